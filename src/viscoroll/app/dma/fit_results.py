@@ -93,7 +93,7 @@ class SeriesFit(Result):
     def misfit_text(self, digits: int) -> str:
         """Return the misfit of each modulus in words, as "0.35% in E', 0.80% in E''".
 
-        digits : number of digits behind the decimal point of the per cent.
+        digits : number of digits after the decimal point of the per cent.
         """
         pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
         return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)

@@ -30,10 +30,10 @@ _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 class Line(NamedTuple):
     """A line that is not blank.
 
-    number : number of the line in the file, from 1;
-    text : the line without the mark of a comment;
+    number : number of the line in the file, from 1.
+    text : the line without the mark of a comment.
     cells : its cells.
-    comment : whether it has such a mark;
+    comment : whether it has such a mark.
     numeric : whether it is a row of numbers.
     """
 
