@@ -40,7 +40,7 @@ from ...motion.checks import output_times
 from ...motion.drive import Drive
 from ...motion.ensemble import FIELDS
 from ...motion.problem import SolverOptions, make_problem
-from ...motion.summaries import QUANTITIES
+from ...motion.summaries import LEVELS, QUANTITIES
 from ..config import check_sections, locate_error
 from ..sampling import Design
 from ..tables import spread
@@ -133,7 +133,7 @@ class RunSection(msgspec.Struct, frozen=True):
     keep: Literal["summaries", "all"] = "summaries"
     fields: tuple[str, ...] = ("V", "omega", "x")
     summaries: tuple[str, ...] = ("V", "omega", "x", "onset_time")
-    quantiles: tuple[Share, ...] = (0.05, 0.25, 0.5, 0.75, 0.95)
+    quantiles: tuple[Share, ...] = LEVELS
 
 
 @dataclass(frozen=True, eq=False)
