@@ -14,7 +14,7 @@ from typing import Any, Literal
 import msgspec
 
 from ..core.errors import FileError, ParameterError, unknown_name_error
-from ..core.sections import as_struct, check_keys, read_toml, section_error
+from ..core.sections import as_struct, check_keys, locate_errors, read_toml, section_error
 from ..cylinder import Cylinder
 from ..materials.material_netcdf import SUFFIX
 from ..materials.material_toml import (
@@ -195,7 +195,5 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     found = read_materials(path)
     if "material" not in found:
         raise FileError(path, "section [material] is missing")
-    try:
+    with locate_errors(path, "base"):
         return Pair(found["material"], found.get("base"))
-    except ParameterError as error:
-        raise section_error(path, "base", error.name, str(error)) from error

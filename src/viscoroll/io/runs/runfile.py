@@ -21,8 +21,6 @@ docs/ensembles.md.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -33,7 +31,7 @@ import msgspec
 
 from ...core.array_types import Floats
 from ...core.errors import FileError, ParameterError, check_names
-from ...core.sections import read_toml, section_error
+from ...core.sections import locate_errors, read_toml, section_error
 from ...materials.material_toml import material_as_toml, parse_materials
 from ...motion.batch import FLOW_PAYS
 from ...motion.checks import output_times
@@ -269,10 +267,10 @@ def read_run(path: str | PathLike[str]) -> Run:
     certain = {name: material for name, material in materials.items() if not inputs_in(inputs.content[name])}
     inputs = correlated(path, replace(inputs, content=inputs.content | certain))
     settings = msgspec.convert(content["run"], RunSection)
-    with _faults_in_run(path, "t"):
+    with locate_errors(path, "run", "t"):
         t = settings.t
         times = output_times(spread(**msgspec.to_builtins(t)) if isinstance(t, TimesSection) else t)
-    with _faults_in_run(path):
+    with locate_errors(path, "run"):
         check_names("fields", settings.fields, FIELDS, "a field")
         check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")
@@ -285,19 +283,6 @@ def read_run(path: str | PathLike[str]) -> Run:
         raise section_error(path, "run", "method", problem)
     _check_inputs(run)
     return run
-
-
-@contextmanager
-def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
-    """Raise a ParameterError within the block as FileError of the section [run], with its line; a context manager.
-
-    path: path of the run file.
-    key: key that is at fault; default: the name of the parameter.
-    """
-    try:
-        yield
-    except ParameterError as error:
-        raise section_error(path, "run", key or error.name, str(error)) from error
 
 
 def _check_inputs(run: Run) -> None:
