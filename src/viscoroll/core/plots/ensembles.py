@@ -130,7 +130,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
     inputs = [_INITIAL_SYMBOLS.get(name) or axis_label(name) for name in indices["input"].values[order]]
     percent = f"{indices.attrs['confidence']:.0%}".replace("%", " %")
     title = f"Sobol indices of {indices.attrs['motions']:,} motions, with {percent} confidence intervals"
-    figure, panels = new_panels(title, len(shown), 2, 2.1, sharey=True)
+    figure, panels = new_panels(title, len(shown), 2.1, sharey=True)
     x = np.arange(order.size)
     for axes, (text, values) in zip(panels, shown, strict=True):
         for key, (kind, grey, shift) in _SOBOL.items():
