@@ -73,7 +73,7 @@ def test_what_an_extra_itself_misses_is_not_the_extra(tmp_path, monkeypatch):
     (tmp_path / "broken_extra.py").write_text("import not_there_at_all")
     monkeypatch.syspath_prepend(tmp_path)
     with pytest.raises(ModuleNotFoundError, match="not_there_at_all"):
-        import_extra("broken_extra", "broken", "runs")
+        import_extra("broken_extra", "runs")
 
 
 # --- systems that are not POSIX ---

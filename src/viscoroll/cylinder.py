@@ -214,7 +214,7 @@ class Cylinder(Methods):
             values |= dict.fromkeys(_SLS)
         elif changes.keys() & set(_SLS):
             values["material"] = None
-        return Cylinder(**(values | changes))
+        return type(self)(**(values | changes))
 
     @property
     def numbers(self) -> dict[str, Any]:

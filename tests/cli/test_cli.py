@@ -285,12 +285,14 @@ def test_result_files_and_scenes_are_drawn(run, here):
     ):  # fmt: skip
         (here / name).write_text(text)
     vr.presets.RUBBER_CYLINDER.material.to_netcdf("rubber.nc")
+    motions = vr.presets.RUBBER_CYLINDER.ensemble([0.5, 1.0, 1.5], 0.0, [0.1, 0.2]).to_xarray()
+    motions.to_netcdf("e.nc", engine="h5netcdf")
     for command in (
         "roll PAPER --V0 1.5 --omega0 0.5 --t 0:3e-3:7 -o m.nc", "sensitivity run.toml -n 16 -o s.nc",
         "contact PAPER --V 0.1:1:5 --delta -0.01:0.01:3 -o c.nc",
     ):  # fmt: skip
         run(*command.replace("PAPER", *PRESET).split())
-    for name in ("m.nc", "c.nc", "s.nc", "rubber.nc", "a.toml", "m.toml", "base.toml"):
+    for name in ("m.nc", "c.nc", "s.nc", "e.nc", "rubber.nc", "a.toml", "m.toml", "base.toml"):
         run("plot", name, "-o", f"{name}.png")
         assert (here / f"{name}.png").read_bytes()[1:4] == b"PNG"
 

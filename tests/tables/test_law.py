@@ -124,7 +124,7 @@ def test_scene_files_and_material_files(saved, tmp_path):
     path = tmp_path / "scene.toml"
     path.write_text(f'[material]\nfile = "rubber.nc"\n{cylinder}')
     assert read_roller(path).material == RUBBER
-    assert read_law_source(path) == law_table_of(RUBBER).pair
+    assert read_law_source(path).pair == law_table_of(RUBBER).pair
 
 
 # --- other writers; what is refused of their files: refusals.txt ---

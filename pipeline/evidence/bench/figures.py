@@ -24,7 +24,7 @@ _ERRORS = {"max": "largest error", "p99": "99th percentile of the errors"}
 def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]], str]]) -> Any:
     """Error over time of each panel's rows by a key, a line for each method."""
     title = "Relative error of V and ω and computing time, for speeds above 1e-3"
-    figure, drawn = new_panels(title, len(shown), 2, 2.6, sharey=True)
+    figure, drawn = new_panels(title, len(shown), 2.6, sharey=True)
     for axes, (title, (rows, key)) in zip(drawn, shown.items(), strict=True):
         for name, label in methods.items():
             points = [(r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and finished(r)]

@@ -136,7 +136,7 @@ def page(folder: Path, sizes: dict[str, Any]) -> dict[str, Any]:
     found = json.loads(html.unescape(re.search(r'<pre id="found">(.*?)</pre>', shown, re.DOTALL)[1]))  # type: ignore[index]
     at = {name: np.array([one[name] for one in found]) for name in found[0]}
     exact = vr.contact(
-        vr.Scene(kappa=1.0, mu=at["mu"], material=read_law_source(RUBBER).law), at["u"], delta=at["creep"]
+        vr.Scene(kappa=1.0, mu=at["mu"], material=read_law_source(RUBBER).pair.law), at["u"], delta=at["creep"]
     )
     ms = at["ms"]
     return {
@@ -155,7 +155,7 @@ def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
     random, count = np.random.default_rng(sizes["seed"]), sizes["states"]
     kappa, mu = 10.0 ** random.uniform(0, 2, count), 10.0 ** random.uniform(-3, 0, count)
     V = 10.0 ** random.uniform(-4, 9, count) / kappa
-    star = vr.contact(vr.Scene(kappa=kappa, mu=mu, material=read_law_source(RUBBER).law), V, delta=0.0).delta_star
+    star = vr.contact(vr.Scene(kappa=kappa, mu=mu, material=read_law_source(RUBBER).pair.law), V, delta=0.0).delta_star
     states = np.column_stack([kappa, mu, V, star * V * random.uniform(-1, 1, count)]).tolist()
     (folder / "states.json").write_text(json.dumps(states))
     (folder / "node.js").write_text(NODE)

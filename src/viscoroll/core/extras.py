@@ -8,11 +8,10 @@ from typing import Any
 from .errors import MissingDependencyError
 
 
-def import_extra(module: str, package: str, extra: str) -> Any:
+def import_extra(package: str, extra: str) -> Any:
     """Return a module of an optional package, imported now.
 
-    module: name of the module, as "fmpy.fmi2".
-    package: distribution that has it, for the error.
+    package: name of the module and of the distribution that has it, as "fmpy".
     extra: extra of viscoroll that installs it, as in ``pip install 'viscoroll[EXTRA]'``, for the error.
 
     Raises
@@ -23,8 +22,8 @@ def import_extra(module: str, package: str, extra: str) -> Any:
         If it is installed, but one of its own dependencies is not.
     """
     try:
-        return import_module(module)
+        return import_module(package)
     except ModuleNotFoundError as error:
-        if str(error.name).partition(".")[0] != module.partition(".")[0]:
+        if error.name != package:
             raise  # the package is installed, and one of its own dependencies is not
         raise MissingDependencyError(package, extra) from None

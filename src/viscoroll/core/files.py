@@ -28,6 +28,20 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 
 @contextmanager
+def file_errors(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
+    """Raise an OSError of the body of the ``with`` as FileError, which gives the reason of the system.
+
+    path: path of the file or folder.
+    problem: what fails, in words, as "cannot be read".
+    remedy: further words, which follow the reason; "" without.
+    """
+    try:
+        yield
+    except OSError as error:
+        raise FileError(path, f"{problem} ({error.strerror or error}){remedy}") from error
+
+
+@contextmanager
 def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     """Give a temporary path beside ``path``, and rename it to ``path`` when the body of the ``with`` ends.
 
@@ -48,20 +62,19 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     target = Path(os.path.realpath(path))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
     try:
-        for wrong, problem in (
-            (target.is_symlink(), "a loop of symbolic links"),
-            (target.is_dir(), "a directory"),
-            (target.exists() and not target.is_file(), "not a regular file"),
-            (target.exists() and not os.access(target, os.W_OK), "read-only"),
-        ):
-            if wrong:
-                raise FileError(path, f"cannot be written: it is {problem}")
-        yield temporary
-        _sync(temporary)
-        os.replace(temporary, target)
-        _sync(target.parent)
-    except OSError as error:
-        raise FileError(path, f"cannot be written ({error.strerror or error})") from error
+        with file_errors(path, "cannot be written"):
+            for wrong, problem in (
+                (target.is_symlink(), "a loop of symbolic links"),
+                (target.is_dir(), "a directory"),
+                (target.exists() and not target.is_file(), "not a regular file"),
+                (target.exists() and not os.access(target, os.W_OK), "read-only"),
+            ):
+                if wrong:
+                    raise FileError(path, f"cannot be written: it is {problem}")
+            yield temporary
+            _sync(temporary)
+            os.replace(temporary, target)
+            _sync(target.parent)
     finally:
         with suppress(OSError):
             temporary.unlink()
@@ -111,12 +124,10 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
         A file that cannot be read, is too large, or differs from its seal.
     """
     file = Path(path)
-    try:
+    with file_errors(path, "cannot be read", f": it must be a {kind}"):
         if file.is_file() and file.stat().st_size > max_bytes:
             raise FileError(path, f"is not a {kind}: it is larger than {max_bytes} bytes")
         content = file.read_bytes()
-    except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error}): it must be a {kind}") from error
     if seal_matches(content) is False:
         raise FileError(path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}")
     return content

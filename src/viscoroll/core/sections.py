@@ -5,8 +5,8 @@ from __future__ import annotations
 import difflib
 import re
 import tomllib
-from collections.abc import Iterable
-from contextlib import suppress
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import is_dataclass
 from os import PathLike
 from pathlib import Path
@@ -14,7 +14,8 @@ from typing import Any, TypeVar, get_args, get_type_hints
 
 import msgspec
 
-from .errors import FileError
+from .errors import FileError, ParameterError
+from .files import file_errors
 
 T = TypeVar("T")
 #: Line with the header of a section.
@@ -41,9 +42,8 @@ _TYPE_NAMES = {
 def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     """Return the content of the TOML file at ``path``; raise FileError if it cannot be read or is not TOML."""
     try:
-        return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
-    except OSError as error:
-        raise FileError(path, f"cannot be read ({error.strerror or error})") from error
+        with file_errors(path, "cannot be read"):
+            return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
     except (ValueError, RecursionError) as error:  # a ValueError of tomllib, or of Python for a number of 5000 digits
@@ -127,6 +127,20 @@ def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> No
         if key not in known:
             problem = f"unknown key {key!r}: must be one of {', '.join(known)}{suggestion(key, known)}"
             raise section_error(path, name, key, problem)
+
+
+@contextmanager
+def locate_errors(path: Any, name: str, key: str = "") -> Iterator[None]:
+    """Raise a ParameterError of the body of the ``with`` as FileError of a section, with its line.
+
+    path: path of the file.
+    name: name of the section.
+    key: key that is at fault; "": the name of the parameter.
+    """
+    try:
+        yield
+    except ParameterError as error:
+        raise section_error(path, name, key or error.name, str(error)) from error
 
 
 def section_error(path: Any, name: str, key: str, problem: str) -> FileError:

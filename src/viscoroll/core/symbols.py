@@ -1,10 +1,12 @@
-"""Symbols of all quantities: name in code, LaTeX symbol, meaning, range, equation of the paper.
+"""Symbols of all quantities: name in code, LaTeX symbol, meaning, range, equation of the paper, read from symbols.csv.
 
 Files, figures and ``docs/symbols.md`` take their words from here, and the units from :mod:`.scale`.
 """
 
 from __future__ import annotations
 
+import csv
+from importlib.resources import files
 from typing import NamedTuple
 
 from .scale import DIMENSIONS, si_unit
@@ -24,66 +26,18 @@ class Symbol(NamedTuple):
     latex : symbol.
     long_name : meaning.
     range : allowed values.
-    equation : its place in the paper.
+    equation : its place in the paper, "" without one.
     """
 
     latex: str
     long_name: str
-    range: str = ""
-    equation: str = ""
+    range: str
+    equation: str
 
 
-#: Name in code -> symbol.
-SYMBOLS = {
-    "alpha": Symbol(r"\alpha", "ratio of retardation time to relaxation time, T_epsilon/T_sigma", ">= 1", "Sect. 3.1"),
-    "kappa": Symbol(r"\kappa", "slenderness: radius divided by contact length at rest, R/l0", "> 0", "Sect. 3.1"),
-    "mu": Symbol(r"\mu", "coefficient of friction", "> 0", "Sect. 2.1"),
-    "gamma": Symbol(r"\gamma", "ratio of the load to inertia, P T_epsilon^2/(m R)", "> 0", "Eq. (4)"),
-    "j": Symbol("j", "moment of inertia divided by m R^2", "> 0", "Eq. (22)"),
-    "V": Symbol("V", "velocity of the axis", "finite", "Sect. 3.1"),
-    "omega": Symbol(r"\omega", "angular velocity", "finite", "Sect. 3.1"),
-    "t": Symbol("t", "time", ">= 0", "Sect. 4"),
-    "x": Symbol("x", "distance travelled", "finite", "Eq. (22)"),
-    "angle": Symbol(r"\theta", "angle turned", "finite", "Eq. (22)"),
-    "delta": Symbol(r"\delta", "creepage (omega - V)/V", "finite", "Eq. (5)"),
-    "delta_star": Symbol(r"\delta^*", "critical creepage, at which full slip begins", "> 0", "Eq. (9)"),
-    "delta_0": Symbol(r"\delta_0", "creepage of free rolling, by the strain that the pressure causes", "finite"),
-    "lam": Symbol(r"\lambda", "contact length divided by contact length at rest", "[alpha^(-1/2), 1]", "Eq. (6)"),
-    "epsilon": Symbol(
-        r"\varepsilon",
-        "shift of the contact towards the leading edge, in half contact lengths",
-        ">= 0",
-        "Eq. (8)",
-    ),
-    "zeta": Symbol(r"\zeta", "time in which a point passes through half the contact", "> 0", "Eq. (7)"),
-    "beta": Symbol(r"\beta", "length of the stick zone divided by contact length", "[0, 1]", "Eq. (10)"),
-    "Q": Symbol("Q", "creep force", "[-mu, mu]", "Eqs. (15), (17)"),
-    "M": Symbol("M", "rolling resistance moment", "finite", "Eqs. (16), (18)"),
-    "C_rr": Symbol(r"C_\mathrm{rr}", "coefficient of rolling resistance, M/(P R)", "finite", "Eq. (16)"),
-    "force": Symbol("f", "force along V", "finite"),
-    "torque": Symbol("q", "torque along omega", "finite"),
-    "drag": Symbol("c", "torque of the bearing against omega, per unit of omega", ">= 0"),
-    "brake": Symbol("B", "largest torque of the brake", ">= 0"),
-    "slope": Symbol(r"\vartheta", "angle of the slope", "(-pi/2, pi/2)"),
-    "grip": Symbol(r"1 - |Q|/\mu", "friction reserve, 1 - |Q|/(mu P)", "[0, 1]", "Eq. (15)"),
-    "rate_fast": Symbol(r"\lambda_1", "growth rate of the faster small disturbance", "finite", "Eq. (22)"),
-    "rate_slow": Symbol(r"\lambda_2", "growth rate of the slower small disturbance", "finite", "Eq. (22)"),
-    "M_half_space": Symbol("M_h", "part of M by losses in the half-space", "finite"),
-    "M_cylinder": Symbol("M_c", "part of M by losses in the cylinder", "finite"),
-    "N": Symbol("N", "added mass of slow speed changes, N in M(V) + N V'", "finite"),
-    "kappa_V": Symbol(r"\kappa V", "similarity variable: kappa times V", "> 0", "Eq. (7)"),
-    "s": Symbol("s", "creepage divided by critical creepage, |delta|/delta_star", "[0, 1]", "Eq. (9)"),
-    "Q_over_mu": Symbol(r"Q/\mu", "creep force divided by limiting friction", "[0, 1]", "Eq. (15)"),
-    "kappa_M": Symbol(r"\kappa M", "kappa times rolling resistance moment, divided by P R", ">= 0", "Eq. (16)"),
-    "p": Symbol("p/E'", "contact pressure", ">= 0", "Eq. (11)"),
-    "tau": Symbol(r"\tau/E'", "shear stress on the cylinder", "|tau| <= mu p", "Eqs. (12), (13)"),
-    "slip_loss": Symbol(r"E_\mathrm{slip}", "energy lost in slip since t = 0", ">= 0", "Eq. (22)"),
-    "rolling_loss": Symbol(r"E_\mathrm{roll}", "energy lost in rolling since t = 0", "finite", "Eq. (22)"),
-    "work_force": Symbol(r"W_f", "work of the force since t = 0", "finite", "Eq. (22)"),
-    "work_torque": Symbol(r"W_q", "work of the torque since t = 0", "finite", "Eq. (22)"),
-    "brake_loss": Symbol(r"E_\mathrm{brake}", "energy lost in the brake since t = 0", ">= 0", "Eq. (22)"),
-    "onset_time": Symbol("t^*", "time of the first change from full to partial slip", ">= 0", "Eq. (9)"),
-}
+#: Name in code -> symbol; the rows of symbols.csv.
+with (files(__package__) / "symbols.csv").open(encoding="utf-8") as _file:
+    SYMBOLS = {name: Symbol(*cells) for name, *cells in [*csv.reader(_file)][1:]}
 
 
 #: Name in code -> meaning, of quantities without a symbol.

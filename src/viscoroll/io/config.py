@@ -14,7 +14,7 @@ from typing import Any, Literal
 import msgspec
 
 from ..core.errors import FileError, ParameterError, unknown_name_error
-from ..core.sections import as_struct, check_keys, read_toml, section_error
+from ..core.sections import as_struct, check_keys, locate_errors, read_toml, section_error
 from ..cylinder import Cylinder
 from ..materials.material_netcdf import SUFFIX
 from ..materials.material_toml import (
@@ -176,7 +176,7 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
 
 
 def read_law_source(path: str | PathLike[str]) -> Any:
-    """Read a material that has a contact law: a pair, a series or bodies, or an alpha; of a layer its cylinder.
+    """Read what has a contact law: a cylinder, a pair, a series or bodies, or an alpha.
 
     Parameters
     ----------
@@ -184,9 +184,9 @@ def read_law_source(path: str | PathLike[str]) -> Any:
 
     Returns
     -------
-    Pair, Prony, Bodies, float or Cylinder
-        A Pair of [material] and [base], or of a cylinder; of a scene its series or bodies, or its alpha, a float; a
-        Cylinder where one body has a layer of finite thickness, since the law then depends on load and radius.
+    Cylinder, Pair, Prony, Bodies or float
+        The Cylinder of a file with a section [cylinder], else a Pair of [material] and [base]; of a scene its series or
+        bodies, or its alpha, a float.
 
     Raises
     ------
@@ -194,16 +194,11 @@ def read_law_source(path: str | PathLike[str]) -> Any:
         As :func:`read_materials` and :func:`read_roller`; a file without a section [material] and without a roller.
     """
     content = {} if Path(path).suffix == SUFFIX else read_toml(path)
-    if content.keys() & set(SCENES) and not content.keys() & set(SECTIONS):
+    if content.keys() & set(SCENES):
         roller = read_roller(path)
-        if isinstance(roller, Cylinder):
-            return roller.pair if roller.pair.covered is None else roller
-        return roller.alpha if roller.material is None else roller.material
+        return roller if isinstance(roller, Cylinder) else roller.alpha if roller.material is None else roller.material
     found = read_materials(path)
     if "material" not in found:
         raise FileError(path, "section [material] is missing")
-    try:
-        pair = Pair(found["material"], found.get("base"))
-    except ParameterError as error:
-        raise section_error(path, "base", error.name, str(error)) from error
-    return read_roller(path) if pair.covered is not None and "cylinder" in content else pair
+    with locate_errors(path, "base"):
+        return Pair(found["material"], found.get("base"))

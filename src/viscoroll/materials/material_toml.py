@@ -15,8 +15,8 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from ..core.errors import FileError, ParameterError
-from ..core.sections import as_struct, read_toml, section_error
+from ..core.errors import FileError
+from ..core.sections import as_struct, locate_errors, read_toml, section_error
 from .law_file import is_law, read_law
 from .material import Material
 from .material_netcdf import SUFFIX
@@ -197,7 +197,7 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
     file that the section names and that is wrong.
     """
     section = _parse_section(path, name, content)
-    try:
+    with locate_errors(path, name):
         if section.file is None:
             material = _make_material(path, name, section)
         else:
@@ -211,8 +211,6 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
             problem = f"temperature = {temperature:g}: wlf or arrhenius is needed too"
             raise section_error(path, name, "temperature", problem)
         return material.at(temperature, shift)
-    except ParameterError as error:
-        raise section_error(path, name, error.name, str(error)) from error
 
 
 def _read_other_file(path: Any, name: str, other: Path) -> Material:
@@ -297,10 +295,8 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
             column: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
             for column, value in lists.items()
         }
-        try:
+        with locate_errors(path, f"{name}.{key}"):  # E is a key of the material too: name the line of the series
             return Prony(**columns) if key == "prony" else Prony.creep(**columns)
-        except ParameterError as error:  # E is a key of the material too: name the line of the series
-            raise section_error(path, f"{name}.{key}", error.name, str(error)) from error
     return None
 
 

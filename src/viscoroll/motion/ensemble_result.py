@@ -19,6 +19,7 @@ from .result import RollResult
 
 if TYPE_CHECKING:
     import xarray as xr
+    from matplotlib.figure import Figure
 
 #: Largest number of motions that ``validity`` examines: some tenths of a second.
 _EXAMINED = 256
@@ -221,3 +222,10 @@ class Ensemble(RollResult):
         from .export import ensemble_dataset
 
         return ensemble_dataset(self)
+
+    def _figure(self) -> Figure:
+        """Return the figure of quantiles over time and of the last values: of speeds, distance and angle."""
+        from ..core.plots import draw
+        from .summaries import drawn_summary
+
+        return draw(drawn_summary(self.to_xarray()))

@@ -22,6 +22,11 @@ from .histogram import Histogram, edges_of
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Levels of the quantiles that are computed where no others are given.
+LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
+#: Quantities of an ensemble that are drawn.
+_DRAWN = ("V", "omega", "x", "angle")
+
 
 class Quantity(NamedTuple):
     """A quantity that summaries describe.
@@ -154,10 +159,23 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     return dataset.assign_attrs(provenance("Summary of an ensemble of motions"), motions=len(motions))
 
 
+def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
+    """Return the summary by which an ensemble is drawn: of both speeds, the distance and the angle, as it has them.
+
+    ensemble: dataset of ``Ensemble.to_xarray``.
+    Returns the dataset of :func:`summary_dataset`, in the units of ``ensemble``; its attributes also tell the number of
+    motions.
+    """
+    names = [name for name in _DRAWN if name in ensemble]
+    summary = summarise(ensemble, names, exact=True)
+    dataset = summary_dataset(summary, ensemble["t"].values, LEVELS, si="R" in ensemble.attrs)
+    return dataset.assign_attrs(motions=ensemble.sizes["motion"])
+
+
 def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summary:
     """Return the summary of the motions of a block, which merges with those of other blocks.
 
-    motions: an :class:`Ensemble`.
+    motions: an :class:`Ensemble`, or its dataset, which has no shares of energy.
     names: names of quantities, keys of :data:`QUANTITIES`, whose fields the ensemble has.
     exact: whether to keep the values for exact quantiles.
     Returns the :class:`Summary`, in the units of the roller: a list of histograms for each name, one for each output

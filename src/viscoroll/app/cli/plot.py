@@ -47,10 +47,13 @@ def _figure_of_netcdf(path: str) -> Any:
     import xarray as xr
 
     from ...core.plots import draw
+    from ...motion.summaries import drawn_summary
 
     try:
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
-            return vr.Material.from_netcdf(path).plot() if "schema" in data.attrs else draw(data)
+            if "schema" in data.attrs:
+                return vr.Material.from_netcdf(path).plot()
+            return draw(drawn_summary(data.load()) if "motion" in data.dims else data)
     except OSError as error:
         if not Path(path).is_file():
             raise vr.FileError(path, "the file does not exist") from error

@@ -159,15 +159,12 @@ def fmu(arguments: Namespace) -> None:
     MissingDependencyError without fmpy or a C compiler.
     """
     from ...core.sections import read_toml
-    from ...io.config import SCENES, read_law_source, read_roller
+    from ...io.config import SCENES, read_law_source
     from ...materials.law_file import is_law
 
     path = arguments.file
     content = {} if Path(path).suffix == ".nc" else read_toml(path)
-    if not content and is_law(path):
-        source = vr.load_law(path)
-    else:
-        source = read_roller(path) if "cylinder" in content else read_law_source(path)
+    source = vr.load_law(path) if not content and is_law(path) else read_law_source(path)
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):
         text = "an FMU is in SI units: kappa, mu, gamma and j of the dimensionless scene are not used; set R, "

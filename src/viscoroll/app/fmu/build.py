@@ -79,7 +79,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         raise ParameterError("model", repr(model), "'Roller' for a cover, whose law holds at one load")
     l0 = _contact_length_of_cover(table)
     starts = _start_values(MODELS[model].variables, given, table, l0)
-    fmpy = import_extra("fmpy", "fmpy", "fmu")
+    fmpy = import_extra("fmpy", "fmu")
     compiler = shutil.which("cc")
     if compiler is None:
         raise MissingDependencyError("cc, a compiler of C,", None)

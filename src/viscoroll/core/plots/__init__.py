@@ -16,10 +16,9 @@ def draw(data: xr.Dataset) -> Figure:
 
     Parameters
     ----------
-    data : dataset of the result, as of its ``to_xarray()``: an ensemble, its summary or that of a run (axes
-        "quantile", or "motion" and "t"), Sobol indices ("input"), a motion ("t" and a variable "regime"), equilibria
-        ("equilibrium"), stresses ("p", "tau" and "x"), else contact states or a table over at least one axis of
-        several values.
+    data : dataset of the result, as of its ``to_xarray()``: a summary of an ensemble or of a run (axis
+        "quantile"), Sobol indices ("input"), a motion ("t" and a variable "regime"), equilibria ("equilibrium"),
+        stresses ("p", "tau" and "x"), else contact states or a table over at least one axis of several values.
 
     Returns
     -------
@@ -34,7 +33,7 @@ def draw(data: xr.Dataset) -> Figure:
 
     names = {*data.dims, *data, *data.coords}
     kinds = (
-        ("quantile" in names or {"motion", "t"} <= set(data.dims), ensembles.distributions),
+        ("quantile" in names, ensembles.distributions),
         ("input" in data.dims, ensembles.sobol_bars),
         ({"t", "regime"} <= names, states.motion),
         ("equilibrium" in data.dims, states.equilibria),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,21 +23,11 @@ if TYPE_CHECKING:
     import xarray as xr
     from matplotlib.figure import Figure
 
-#: Quantities of an ensemble that are drawn.
-_QUANTITIES = ("V", "omega", "x", "angle")
-#: Levels of the quantiles of an ensemble.
-_LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
-#: Bars of the histogram of a run.
-_BARS = 80
-#: Bars of the histogram of an ensemble.
-_ENSEMBLE_BARS = 40
-#: Motions below which each is a point in place of a histogram.
-_MIN_MOTIONS = 8
-#: Relative range below which values are one point in place of a histogram.
-_MIN_RANGE = 1e-12
+#: Largest number of bars of a histogram; fewer motions have two times the root of their number.
+_MOST_BARS = 80
 #: Fraction of the motions in one bar above which a histogram has a logarithmic axis of counts.
 _ONE_BAR = 0.9
-#: Fraction of the motions at each end that the histogram of a run leaves out.
+#: Fraction of the motions at each end that a histogram leaves out.
 _TAIL = 1e-3
 #: Smallest width of an axis that matplotlib draws.
 _MIN_WIDTH = 1e-280
@@ -55,36 +46,28 @@ _INITIAL_SYMBOLS = {"V0": "$V_0$", "omega0": r"$\omega_0$"}
 def distributions(data: xr.Dataset) -> Figure:
     """Draw a row for each quantity: its quantiles over time, and its histogram at the last time.
 
-    data: :class:`xr.Dataset`, an ensemble, with each motion along the axis ``motion``; its summary, which has no
-        histograms; or the summaries of a run, with NAME_quantiles and NAME_histogram.
+    data: :class:`xr.Dataset`, the summaries of a run or of an ensemble, with NAME_quantiles over (quantile, t) or over
+        quantile, and NAME_histogram; without histograms the quantiles alone are drawn.
     Returns the figure.  A quantity without times, or with a single one, has the fraction of motions below each value.
     """
-    ensemble, about = "motion" in data.dims, data.attrs
-    if ensemble:
-        names = [name for name in _QUANTITIES if name in data and data[name].ndim == 2]
-    else:
-        names = [str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")]
+    about, levels = data.attrs, data["quantile"].values
+    names = [str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")]
     design = f", {about['design']}, seed {about['seed']}" if "design" in about else ""
-    columns = 2 if ensemble or any(f"{name}_histogram" in data for name in names) else 1
-    count, rows = data.sizes["motion"] if ensemble else about["motions"], max(len(names), 1)
-    figure, grid = new_figure(f"{count:,} motions{design}", rows, columns, 2.4 * rows, squeeze=False)
+    columns = 2 if any(f"{name}_histogram" in data for name in names) else 1
+    rows = max(len(names), 1)
+    figure, grid = new_figure(f"{about['motions']:,} motions{design}", rows, columns, 2.4 * rows, squeeze=False)
     for name, (left, *right) in zip(names, grid, strict=False):
-        variable = data[name if ensemble else f"{name}_quantiles"]
+        variable = data[f"{name}_quantiles"]
         label = axis_label(name, variable.attrs["units"], variable.attrs.get("symbol", ""))
-        levels = np.array(_LEVELS) if ensemble else data["quantile"].values
-        values = _finite_quantiles(variable.values) if ensemble else variable.values
         if "t" in variable.dims and data.sizes["t"] > 1:
-            quantile_bands(left, t := data["t"].values, levels, values)
+            quantile_bands(left, t := data["t"].values, levels, variable.values)
             left.set(xlabel=variable_label(data["t"]), ylabel=label, xlim=(t[0], t[-1]))
         else:
-            left.plot(values.ravel(), levels, "o-", color="black")
+            left.plot(variable.values.ravel(), levels, "o-", color="black")
             left.set(xlabel=label, ylabel="fraction of motions below", ylim=(0.0, 1.0))
         for axes in right:
             axes.set_xlabel(f"{label} at the end" if "t" in variable.dims else label)
-            if ensemble:
-                _ensemble_histogram(axes, variable.values[:, -1])
-            else:
-                _run_histogram(axes, data, name)
+            _draw_histogram(axes, data, name)
         for axes in (left, *right):
             linear = "x" if axes.get_yscale() == "log" else "both"
             axes.locator_params(nbins=6, axis=linear)
@@ -92,38 +75,12 @@ def distributions(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _finite_quantiles(values: NDArray) -> NDArray:
-    """Return quantiles over motions, (levels, times); NaN at times that no motion reached.
+def _draw_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
+    """Draw the histogram of a quantity at the last time.
 
-    values: values of a quantity, (motions, times), NaN where a motion ended before.
-    """
-    quantiles = np.full((len(_LEVELS), values.shape[1]), np.nan)
-    reached = np.isfinite(values).any(axis=0)
-    quantiles[:, reached] = np.nanquantile(values[:, reached], _LEVELS, axis=0)
-    return quantiles
-
-
-def _ensemble_histogram(axes: Any, values: NDArray) -> None:
-    """Draw the histogram of the motions of an ensemble; of few or equal values a point for each.
-
-    axes: axes of matplotlib, drawn into; the axis of counts is logarithmic where one bar has nearly all motions.
-    values: values of a quantity, (motions,); those that are not finite are left out.
-    """
-    finite = values[np.isfinite(values)]
-    axes.set_ylabel(f"motions, of {values.size:,}")
-    if finite.size >= _MIN_MOTIONS and np.ptp(finite) > _MIN_RANGE * np.abs(finite).max():
-        counts, _, _ = axes.hist(finite, bins=_ENSEMBLE_BARS, color="0.6")
-        if counts.max() > _ONE_BAR * finite.size:  # as at rest: the other bars would not be visible
-            axes.set_yscale("log")
-    else:
-        axes.plot(finite, np.arange(1, finite.size + 1), "o", color="black")
-
-
-def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
-    """Draw the histogram of a run at the last time.
-
-    axes: axes of matplotlib, drawn into; the title states how many motions lie beyond the ends, or that there is none.
-    data: summaries of the run, with NAME_histogram (bins,) or (bins, times), NAME_bin_low and NAME_bin_high (bins,).
+    axes: axes of matplotlib, drawn into; the title states how many motions lie beyond the ends, or that there is none,
+        and the axis of counts is logarithmic where one bar has nearly all motions.
+    data: summaries of motions, with NAME_histogram (bins,) or (bins, times), NAME_bin_low and NAME_bin_high (bins,).
     name: name of the quantity, NAME.
     """
     counts = data[f"{name}_histogram"].values
@@ -134,14 +91,16 @@ def _run_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
         return
     edges, bars = _even_bars(data[f"{name}_bin_low"].values, data[f"{name}_bin_high"].values, counts)
     axes.stairs(bars, edges, fill=True, color="0.6")
+    if bars.size > 1 and bars.max() > _ONE_BAR * bars.sum():  # as at rest: the other bars would not be visible
+        axes.set_yscale("log")
     if outside := int(counts.sum() - round(bars.sum())):
         axes.set_title(f"{outside} more beyond the ends", fontsize="small")
 
 
 def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
-    """Combine the bins of a run to bars of equal width, without the tails; one bar if all values are nearly equal.
+    """Combine bins to bars of equal width, without the tails; one bar if all values are nearly equal.
 
-    low, high: ends of the bins of a run, ascending, (bins,).
+    low, high: ends of the bins, ascending, (bins,).
     counts: motions in each bin, (bins,), of which a bar gets the fraction that it overlaps.
     Returns (edges of the bars, (bars + 1,); numbers of motions, (bars,), which need not be whole).
     """
@@ -151,7 +110,7 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
     start, end = np.clip([low[first], high[last]], -_MAX_NUMBER, _MAX_NUMBER)
     if end - start < _MIN_WIDTH:
         return start + max(1.0, abs(start)) * np.array([-0.5, 0.5]), counts[first : last + 1].sum(keepdims=True)
-    edges = np.linspace(start, end, _BARS + 1)
+    edges = np.linspace(start, end, min(_MOST_BARS, 2 * math.isqrt(counts.sum())) + 1)
     below = np.append(0, np.repeat(np.cumsum(counts), 2))[:-1]
     return edges, np.diff(np.interp(edges, np.ravel([low, high], "F"), below))
 
@@ -171,7 +130,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
     inputs = [_INITIAL_SYMBOLS.get(name) or axis_label(name) for name in indices["input"].values[order]]
     percent = f"{indices.attrs['confidence']:.0%}".replace("%", " %")
     title = f"Sobol indices of {indices.attrs['motions']:,} motions, with {percent} confidence intervals"
-    figure, panels = new_panels(title, len(shown), 2, 2.1, sharey=True)
+    figure, panels = new_panels(title, len(shown), 2.1, sharey=True)
     x = np.arange(order.size)
     for axes, (text, values) in zip(panels, shown, strict=True):
         for key, (kind, grey, shift) in _SOBOL.items():

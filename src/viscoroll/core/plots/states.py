@@ -62,7 +62,7 @@ def field_curves(data: xr.Dataset) -> Figure:
         title += f"{', ' if n else ', at '}{_value_label(data, name, middle)}"
         data = data.isel({name: middle})
     names = [name for name in _shown_fields(data) if first in data[name].dims][:_MAX_PANELS]
-    figure, panels = new_panels(title, len(names), 2, 2.2, sharex=True)
+    figure, panels = new_panels(title, len(names), 2.2, sharex=True)
     x, second = data[first].values, others[:1]
     indices = np.linspace(0, data.sizes[second[0]] - 1, len(LINES)).astype(int) if second else [0]
     for name, axes in zip(names, panels, strict=True):

@@ -49,17 +49,16 @@ def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2,
     return figure, figure.subplots(rows, columns, **options)
 
 
-def new_panels(title: str, count: int, per_row: int, height: float, **options: bool) -> tuple[Figure, list[Any]]:
-    """Make a figure with several axes of one size, row after row.
+def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[Figure, list[Any]]:
+    """Make a figure with several axes of one size, two in a row.
 
     title: text on top of the figure.
     count: number of axes, >= 1.
-    per_row: largest number in a row.
     height: of each row, inches.
     options: keyword arguments of ``Figure.subplots``, as ``sharex``.
     Returns (figure, list of its ``count`` axes).
     """
-    columns = min(per_row, count)
+    columns = min(2, count)
     rows = -(-count // columns)
     figure, grid = new_figure(title, rows, columns, 0.8 + height * rows, squeeze=False, **options)
     for axes in grid.flat[count:]:

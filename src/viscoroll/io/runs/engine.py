@@ -97,7 +97,7 @@ def run_ensemble(
     if progress != "lines":
         progress = check_bool("progress", progress)
     store = Store(Path(path).absolute(), run)
-    import_extra("zarr", "zarr", "runs")
+    import_extra("zarr", "runs")
     store.refuse_other()
     with _executor(store, cluster, threads) as (pool, workers, shared):  # an unknown cluster is refused first
         warn_of_materials(run)
@@ -172,7 +172,7 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
         return
     if cluster != "local" and not _ADDRESS.fullmatch(cluster):
         raise ParameterError("cluster", repr(cluster), "'local' or 'tcp://host:port'")
-    distributed = import_extra("distributed", "distributed", "cluster")
+    distributed = import_extra("distributed", "cluster")
     try:
         with ExitStack() as stack:
             for name in ("distributed", "distributed.client"):

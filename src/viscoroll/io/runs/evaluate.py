@@ -121,7 +121,7 @@ def _fraction_outside(run: Run) -> float:
     V0 = np.abs(content["start"]["V0"])
     scene = roller.scene()
     lam = contact(scene, V0 / roller.scale["V"], delta=0.0, fields="lam").lam
-    frequency = transit_frequency(V0, lam * getattr(roller, "like", roller).R / scene.kappa)
+    frequency = transit_frequency(V0, lam * roller.R / scene.kappa)
     outside: Any = False
     for low, high in measured_bands(run.path, content).values():
         outside = outside | (frequency < low) | (frequency > high)

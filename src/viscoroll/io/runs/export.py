@@ -69,7 +69,7 @@ def _append_motions(store: Path, path: Path) -> None:
     """
     import h5netcdf
 
-    zarr = import_extra("zarr", "zarr", "runs")
+    zarr = import_extra("zarr", "runs")
 
     source = zarr.open_group(store, mode="r", path=MOTIONS, use_consolidated=False)
     arrays = dict(source.arrays())

@@ -182,7 +182,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     """
     import xarray as xr
 
-    import_extra("zarr", "zarr", "runs")
+    import_extra("zarr", "runs")
     root = Path(path)
     start = start_of(root)
     if faults := problems(root, "end", start.run, start.motions):

@@ -3,93 +3,80 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
-from typing import Any, Self
+from typing import Any, ClassVar
 
 import numpy as np
 
-from ...contact_law.parameters import Parameters, Roller
 from ...core.array_types import Floats
 from ...core.checks import check_array
 from ...core.drive import Schedule
 from ...core.errors import ParameterError
 from ...core.scale import Scale
-from ...cylinder import Cylinder, contact_length, scene_of
+from ...cylinder import Cylinder, scene_of
 from ...materials.material import Material
 from ...materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
 from ...materials.measured import Measured
-from ...materials.pair import Pair, Solid
+from ...materials.pair import Solid
+from ...scene import Scene
 from ..config import make_roller
 
 
-@dataclass(frozen=True, eq=False)
-class Rollers(Roller):
-    """Cylinders that have a material each, in SI units.
+class Rollers(Cylinder):
+    """Cylinders that have a material each, in SI units; validity and warnings do not examine them.
 
-    Attributes
-    ----------
-    like : a cylinder with their numbers, which may be arrays (n,), and one of their materials.
-    law : series, bodies or alphas (n,) of their materials, with times in T; the Pair where a body is a cover, a layer
-        of finite thickness.
-    E_prime : contact modulus, Pa, a number or (n,).
-    T : unit of time of the law, s.  If each motion has its own, (n,), times are counted in s: gamma only scales time
-        (Eq. (22)), and gamma/T in place of gamma makes its unit the second for all motions.
+    Its ``material`` and ``base`` may be a :class:`Solid`, whose numbers are arrays (n,).  If T_epsilon is an array,
+    each motion has its own unit of time.  Times are counted in s then: gamma only scales time (Eq. (22)), and
+    gamma/T_epsilon in place of gamma makes its unit the second for all motions.
     """
 
-    like: Cylinder
-    law: Any
-    E_prime: Any
-    T: Any
+    body_data = None  # type: ignore[assignment]
+    about: ClassVar[dict[str, Any]] = {}
 
     @property
     def seconds(self) -> bool:
         """Whether times are counted in s."""
-        return np.ndim(self.T) > 0
+        return np.ndim(self.T_epsilon) > 0
+
+    @property
+    def T_ref(self) -> Any:
+        """Unit of time of the law, s; with ``seconds`` (n,)."""
+        return self.T_epsilon if self.seconds else super().T_ref
 
     @cached_property
-    def _scene(self) -> Parameters:
+    def _scene(self) -> Scene:
         """The dimensionless parameters, computed once; with ``seconds`` gamma counts time in s."""
-        one, law = self.like, self.law
-        if isinstance(law, Pair):
-            law = law.cover(contact_length(one.R, one.load, self.E_prime))
-        scene = scene_of(one.R, one.m, one.load, self.E_prime, self.T, law, one.mu, one.j)
-        return scene.replace(gamma=scene.gamma / self.T) if self.seconds else scene
-
-    def scene(self) -> Parameters:
-        return self._scene
-
-    def on_slope(self, slope: Any) -> Self:
-        return replace(self, like=self.like.on_slope(slope))
+        if not self.seconds:
+            return super()._scene
+        T = self.T_ref
+        scene = scene_of(self.R, self.m, self.load, self.E_prime, T, T / self.T_sigma, self.mu, self.j)
+        return scene.replace(gamma=scene.gamma / T)
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
         """SI value of 1 of each dimensionless quantity, by its name; with ``seconds`` the unit of time is 1 s."""
-        scale = Scale(self.like.R, self.T, self.like.load, self.like.m)
+        scale = super().scale
         if self.seconds:
             scale |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {"x": scale["V"], "angle": scale["omega"]}
         return scale
 
 
-def roller_of(path: Path, content: Mapping[str, Any]) -> Roller:
+def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
     """Return the roller of the motions of a block: a scene, a cylinder, or :class:`Rollers`, one for each motion.
 
     path: path of the run file, for errors and the files that it names.
     content: name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.
     Raises ParameterError for a value out of range; FileError for a material that cannot be read or is wrong.
     """
-    bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
-    one = make_roller(path, content, {name: typical for name, (typical, _) in bodies.items()})
-    if not isinstance(one, Cylinder):
-        return one
-    solids = {name: solid for name, (_, solid) in bodies.items()}
-    if any(isinstance(solid, Solid) for solid in solids.values()):
-        pair = Pair(solids.get("material") or one.pair.cylinder, solids.get("base"), one.plane)
-        return Rollers(one, pair.law if pair.covered is None else pair, pair.E_prime, pair.T_ref)
-    if np.ndim(one.T_epsilon):
-        return Rollers(one, one.T_epsilon / one.T_sigma, one.E_prime, one.T_epsilon)
-    return one
+    if "cylinder" not in content:
+        return make_roller(path, content, {})
+    numbers, bodies = (
+        content["cylinder"],
+        {name: _body(path, name, content[name]) for name in SECTIONS if name in content},
+    )
+    differ = np.ndim(numbers.get("T_epsilon", 0.0)) or any(isinstance(body, Solid) for body in bodies.values())
+    return (Rollers if differ else Cylinder)(**numbers, **bodies)
 
 
 def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
@@ -115,28 +102,35 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
         raise ParameterError(name, error.value, error.allowed, f"{name}: {error}") from error
 
 
-def _body(path: Path, name: str, section: Any) -> tuple[Material, Material | Solid]:
-    """Return the material of the first motion and that of all motions, which is a Solid if motions differ.
+def _first_material(path: Path, name: str, section: Any) -> Material:
+    """Return the material of the first motion.
 
     path: path of the run file.
     name: "material" or "base".
     section: content of that section, with numbers or arrays (n,), or the Material if all of it is certain.
     Raises ParameterError for a value out of range; FileError for a section that is wrong.
     """
-    if isinstance(section, Material):
-        return section, section
-    first = _first(section)
-    typical = parse_materials(path, {name: first})[name]
+    return section if isinstance(section, Material) else parse_materials(path, {name: _first(section)})[name]
+
+
+def _body(path: Path, name: str, section: Any) -> Any:
+    """Return the material of all motions, a Material, or a :class:`Solid` if motions differ.
+
+    path, name, section, errors: as of :func:`_first_material`.
+    """
+    typical = _first_material(path, name, section)
+    if typical is section:
+        return section
     series = parse_series(path, name, section) or typical.prony
     if (factors := _time_factors(path, name, section)) is not None:
         series = series.slower(factors)
     E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))
     if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
-        return typical, typical
+        return typical
     if thickness is not None:
         thickness = check_array("thickness", thickness, above=0.0)
     E = check_array("E", E, above=0.0) if np.ndim(E) else typical.E
-    return typical, Solid(E, check_array("nu", nu, above=-1.0, high=0.5), series, typical.T_ref, thickness)
+    return Solid(E, check_array("nu", nu, above=-1.0, high=0.5), series, typical.T_ref, thickness)
 
 
 def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
@@ -150,7 +144,7 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
     bands: dict[Measured, Any] = {}
     for name in SECTIONS:
         section = content.get(name)
-        if section is None or (record := _body(path, name, section)[0].measured) is None:
+        if section is None or (record := _first_material(path, name, section).measured) is None:
             continue
         factors = None if isinstance(section, Material) else _time_factors(path, name, section)
         bands[record] = tuple(end if factors is None else end / factors for end in (record.low, record.high))

@@ -21,8 +21,6 @@ docs/ensembles.md.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
-from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import cached_property
 from os import PathLike
@@ -33,14 +31,14 @@ import msgspec
 
 from ...core.array_types import Floats
 from ...core.errors import FileError, ParameterError, check_names
-from ...core.sections import read_toml, section_error
+from ...core.sections import locate_errors, read_toml, section_error
 from ...materials.material_toml import material_as_toml, parse_materials
 from ...motion.batch import FLOW_PAYS
 from ...motion.checks import output_times
 from ...motion.drive import Drive
 from ...motion.ensemble import FIELDS
 from ...motion.problem import SolverOptions, make_problem
-from ...motion.summaries import QUANTITIES
+from ...motion.summaries import LEVELS, QUANTITIES
 from ..config import check_sections, locate_error
 from ..sampling import Design
 from ..tables import spread
@@ -133,7 +131,7 @@ class RunSection(msgspec.Struct, frozen=True):
     keep: Literal["summaries", "all"] = "summaries"
     fields: tuple[str, ...] = ("V", "omega", "x")
     summaries: tuple[str, ...] = ("V", "omega", "x", "onset_time")
-    quantiles: tuple[Share, ...] = (0.05, 0.25, 0.5, 0.75, 0.95)
+    quantiles: tuple[Share, ...] = LEVELS
 
 
 @dataclass(frozen=True, eq=False)
@@ -269,10 +267,10 @@ def read_run(path: str | PathLike[str]) -> Run:
     certain = {name: material for name, material in materials.items() if not inputs_in(inputs.content[name])}
     inputs = correlated(path, replace(inputs, content=inputs.content | certain))
     settings = msgspec.convert(content["run"], RunSection)
-    with _faults_in_run(path, "t"):
+    with locate_errors(path, "run", "t"):
         t = settings.t
         times = output_times(spread(**msgspec.to_builtins(t)) if isinstance(t, TimesSection) else t)
-    with _faults_in_run(path):
+    with locate_errors(path, "run"):
         check_names("fields", settings.fields, FIELDS, "a field")
         check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")
@@ -287,19 +285,6 @@ def read_run(path: str | PathLike[str]) -> Run:
     return run
 
 
-@contextmanager
-def _faults_in_run(path: Path, key: str = "") -> Iterator[None]:
-    """Raise a ParameterError within the block as FileError of the section [run], with its line; a context manager.
-
-    path: path of the run file.
-    key: key that is at fault; default: the name of the parameter.
-    """
-    try:
-        yield
-    except ParameterError as error:
-        raise section_error(path, "run", key or error.name, str(error)) from error
-
-
 def _check_inputs(run: Run) -> None:
     """Raise FileError for values of inputs that a motion refuses, before anything is drawn.
 
@@ -312,32 +297,18 @@ def _check_inputs(run: Run) -> None:
     _check_motions(run, medians)
     for number in inputs_in(inputs.content):
         ends = inputs.ends(number.name)
-        try:
-            _begin_motions(run, medians | {number.name: ends})
-        except (ParameterError, FileError) as error:
-            if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
-                raise locate_error(run.path, inputs.content, error) from error
+        error = _fault_of(run, medians | {number.name: ends})
+        if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
+            raise locate_error(run.path, inputs.content, error) from error
+        if error is not None:
             problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
-            if any(_refuses(run, medians | {number.name: end}) for end in ends.tolist()):
+            if any(_fault_of(run, medians | {number.name: end}) for end in ends.tolist()):
                 problem = f"draws extend from {ends[0]:.6g} to {ends[1]:.6g}: {problem}; add truncate = [low, high]"
             problem = f"{number.name}: {problem}"
             raise section_error(run.path, number.section, number.key, problem) from error
     samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
     for values in (inputs.corners(), *samples):
         _check_motions(run, values, " in every draw: truncate so that it is")
-
-
-def _refuses(run: Run, values: dict[str, Any]) -> bool:
-    """Return whether one motion would be refused.
-
-    run: :class:`Run`, the run.
-    values: name of an input -> number, for every input.
-    """
-    try:
-        _begin_motions(run, values)
-    except (ParameterError, FileError):
-        return True
-    return False
 
 
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
@@ -347,29 +318,33 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
     values: name of an input -> number or (n,), for every input.
     advice: last words of the message.
     """
-    try:
-        _begin_motions(run, values)
-    except ParameterError as error:
+    error = _fault_of(run, values)
+    if isinstance(error, ParameterError):
         refusal = ParameterError(error.name, error.value, error.allowed, f"{error}{advice}")
         raise locate_error(run.path, run.inputs.content, refusal) from error
+    if error is not None:
+        raise error
 
 
-def _begin_motions(run: Run, values: dict[str, Any]) -> None:
-    """Raise the error of motions that would be refused; nothing is rolled.
+def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | None:
+    """Return the error of motions that would be refused, which is not raised, else None; nothing is rolled.
 
     run: :class:`Run`, the run.
     values: name of an input -> number or (n,), for every input.
-    Raises ParameterError for a roller, start, drive or setting that a motion refuses, FileError for a material.
+    Returns a ParameterError for a roller, start, drive or setting that a motion refuses, a FileError for a material.
     """
     content, settings = run.inputs.filled(values), run.settings
-    roller = roller_of(run.path, content)
-    for name in ("unsteady", "rested"):
-        if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
-            raise ParameterError(name, str(getattr(settings, name)).lower(), "left out if T_epsilon is uncertain")
-    start = tuple(content["start"].get(name) for name in START)
-    options = SolverOptions(settings.rtol, settings.rest, 1, None, settings.unsteady, settings.rested)
-    drive = Drive(**drive_of(content))
-    make_problem(roller, start, drive, run.t[-1], options)
+    try:
+        roller = roller_of(run.path, content)
+        for name in ("unsteady", "rested"):
+            if getattr(settings, name) is not False and isinstance(roller, Rollers) and roller.seconds:
+                return ParameterError(name, str(getattr(settings, name)).lower(), "left out if T_epsilon is uncertain")
+        start = tuple(content["start"].get(name) for name in START)
+        options = SolverOptions(settings.rtol, settings.rest, 1, None, settings.unsteady, settings.rested)
+        make_problem(roller, start, Drive(**drive_of(content)), run.t[-1], options)
+    except (ParameterError, FileError) as error:
+        return error
+    return None
 
 
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:

@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import FileError
-from ...core.files import write_bytes
+from ...core.files import file_errors, write_bytes
 from ...motion.ensemble_result import Ensemble
 from ...motion.summaries import Summary, merge_summaries, summarise, summary_dataset
 from . import zarr_files
@@ -99,11 +99,9 @@ class Store:
         end = read_record(own)
         if end is None or end.motions == self.run.settings.n:
             return
-        try:
-            for path in (own, *(self.root / name for name in end.files)):
+        for path in (own, *(self.root / name for name in end.files)):
+            with file_errors(path, "cannot be removed"):
                 path.unlink(missing_ok=True)
-        except OSError as error:
-            raise FileError(path, f"cannot be removed ({error.strerror or error})") from error
 
     def refuse_other(self) -> None:
         """Raise FileError unless the folder is new, or the store of this run, perhaps with fewer motions.

@@ -203,7 +203,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     elif path.suffix == ".parquet":
         import pandas as pd
 
-        import_extra("pyarrow", "pyarrow", "parquet")
+        import_extra("pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
     elif path.suffix == ".nc":
         import xarray as xr

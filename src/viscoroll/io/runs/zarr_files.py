@@ -29,7 +29,7 @@ def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None
     number: number of the block whose chunks are returned; None: return the metadata and the arrays that all motions
     share.
     """
-    zarr = import_extra("zarr", "zarr", "runs")
+    zarr = import_extra("zarr", "runs")
 
     files: dict[str, Any] = {}
     group = zarr.open_group(zarr.storage.MemoryStore(files), mode="w", zarr_format=2, attributes=motions.attrs)
@@ -54,7 +54,7 @@ def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
 
     dataset: dataset that fits the memory.
     """
-    zarr = import_extra("zarr", "zarr", "runs")
+    zarr = import_extra("zarr", "runs")
 
     files: dict[str, Any] = {}
     dataset.to_zarr(zarr.storage.MemoryStore(files), zarr_format=2, consolidated=False)

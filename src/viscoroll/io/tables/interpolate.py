@@ -82,7 +82,7 @@ class Interpolant:
             if name in self._bounds:
                 values = np.clip(values, *self._bounds[name])
             results[name] = np.broadcast_to(values, shape).copy() if shape else float(values)
-        return Values(results, title="Interpolated")
+        return Values(results, title="Interpolated", si="load" in self._table.attrs)
 
     def jitted(self, field: str) -> tuple[Any, Any]:
         """Return a field for numba's jitted functions: a function ``at(spline, V, delta, alpha)`` and its spline.
