@@ -304,9 +304,11 @@ def resolve_model(
     moves: whether the function needs gamma, which only a roller that moves has.
     slope: angle, rad, a number or an array; None: level.
     Returns (the Scene or Cylinder under the load on the slope, the argument itself if ``slope`` is None; its
-    dimensionless parameters; its scale: 1 of each dimensionless quantity in the units of the roller).
-    Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma where
-    ``moves``, and a layer beside a body that relaxes too in a function that does not take it.
+    dimensionless parameters; its :class:`Scale`: the factor by which each dimensionless quantity is multiplied to get
+    the units of the roller, 1 for a Scene).
+    Raises ParameterError for what is no scene and no cylinder, a slope out of range or of a shape that does not
+    broadcast, a scene without gamma where ``moves``, and a layer beside a body that relaxes too in a function that does
+    not take it.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"

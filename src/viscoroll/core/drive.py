@@ -21,7 +21,7 @@ _GAINS = {"force": ("dQ_dV", "dQ_domega"), "torque": ("dM_dV", "drag")}
 
 @dataclass(frozen=True, eq=False)
 class Schedule:
-    """A piecewise linear function of time, constant before its first and behind its last corner.
+    """A piecewise linear function of time, constant before its first and after its last corner.
 
     Parameters
     ----------

@@ -1,6 +1,6 @@
 """Files that are written whole or not at all: temporary file, fsync, rename, fsync of the folder.
 
-Files that this package reads again end with a seal, the SHA-256 of all bytes before it.  The seal lies behind the end
+Files that this package reads again end with a seal, the SHA-256 of all bytes before it.  The seal lies beyond the end
 that HDF5 and zip files state, so that other programs do not see it, and this package detects damage before a library
 parses the file.
 """

@@ -18,7 +18,7 @@ class Labels(NamedTuple):
     """Labels that the arguments of a call have in common.
 
     shape : shape of the arguments, broadcast.
-    wrap : function (name, values, names of further axes behind those of ``shape``) -> the values with labels.
+    wrap : function (name, values, names of further axes after those of ``shape``) -> the values with labels.
     dims, coords : axes and coordinates as xarray has them, for pandas too; each coordinate is (its axes, its values).
     """
 
@@ -32,7 +32,7 @@ class Labels(NamedTuple):
 
         name: name of the result.
         values: array.
-        further: names of its axes behind those of the arguments.
+        further: names of its axes after those of the arguments.
         """
         shape = np.shape(values)
         fits = shape[: len(self.shape)] == self.shape and len(shape) == len(self.shape) + len(further)

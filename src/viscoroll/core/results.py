@@ -26,7 +26,9 @@ _MAX_ROWS = 40
 class SummaryRow(NamedTuple):
     """A line of a summary.
 
-    name : name of the quantity.  value : as text.  unit : "" of a dimensionless quantity.
+    name : name of the quantity.
+    value : as text.
+    unit : "" of a dimensionless quantity.
     """
 
     name: str

@@ -63,8 +63,8 @@ DIMENSIONS = {name: dimension for dimension in _TABLE for name in dimension.name
 def dimension_powers(dimension: str) -> dict[str, int]:
     """Return the powers of the factors of a dimension or a unit.
 
-    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1"; an integer behind a symbol is its power, and all
-        symbols behind a "/" are divisors.
+    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1"; an integer after a symbol is its power, and all
+        symbols after a "/" are divisors.
     Returns a dict from symbol to power, without the symbols whose powers cancel.
     """
     found: dict[str, int] = {}

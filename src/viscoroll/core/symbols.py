@@ -23,7 +23,10 @@ MEASURED = "measured_V"
 class Symbol(NamedTuple):
     """A quantity.
 
-    latex : symbol.  long_name : meaning.  range : allowed values.  equation : its place in the paper, "" without one.
+    latex : symbol.
+    long_name : meaning.
+    range : allowed values.
+    equation : its place in the paper, "" without one.
     """
 
     latex: str

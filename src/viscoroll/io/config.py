@@ -112,12 +112,17 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
 
 
 def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type | None]) -> None:
-    """Raise FileError if sections exclude each other, or have unknown keys or values of the wrong type.
+    """Check that the sections of a file describe one roller, and that their keys and types are allowed.
 
     path: path of the file, for the message and the number of the line.
     content: name of a section, or key outside of sections -> its content, as tomllib reads it.
     more: name of a further section that the file may have -> its class, a msgspec.Struct; None if it is checked
     elsewhere.
+    Returns nothing.
+    Raises FileError if none of preset, [scene] and [cylinder] is given, or [cylinder] beside one of the others (a
+    preset may stand beside [scene]); if a section of a material stands without [cylinder]; for an unknown key or
+    section, and for wrong keys or types in [scene], [cylinder] and the sections of ``more``; the sections of materials
+    are checked where they are read.
     """
     check_keys(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):

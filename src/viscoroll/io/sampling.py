@@ -136,7 +136,7 @@ def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop:
     seed: seed of all points, a whole number in [0, 2^63).
     n: number of all points, which are the strata of "latin"; the other designs do not depend on it.
     dimensions: number of coordinates of a point; 0 gives an array (0, stop - start).
-    start, stop: index of the first point, and of the one behind the last.
+    start, stop: index of the first point, and of the one after the last.
     block: number of the block, by which "random" and "latin" choose the random numbers; "sobol" does not depend on it.
     """
     if dimensions == 0:
@@ -229,7 +229,7 @@ def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
 
     seed: seed of the scrambling.
     dimensions: number of coordinates of a point.
-    start, stop: index of the first point, and of the one behind the last; stop > start.
+    start, stop: index of the first point, and of the one after the last; stop > start.
 
     ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block (and refuses more than
     32 bits).  Its state is set instead; a test compares with a sequence from its start.

@@ -210,7 +210,8 @@ class Pair:
         """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous moduli), dimensionless,
         any sign.
 
-        Body 1 is the cylinder.  Both bodies must be a :class:`Material`; a :class:`Solid` has no shear modulus.
+        Body 1 of the formula of :func:`dundurs` is the cylinder.  (0.0, 0.0) for like bodies, up to rounding.  Both
+        bodies must be a :class:`Material`: a :class:`Solid`, which has no shear modulus, gives an AttributeError.
         """
         one, other = self.cylinder, self.half_space
         instant = one.G * one.prony.alpha, other.G * other.prony.alpha

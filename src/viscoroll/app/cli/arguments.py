@@ -107,7 +107,7 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
     suffixes: allowed suffixes, with the dot and in lower case.
     name: name of the option; without its dashes it names the argument, "output" for -o.
     required: whether it must be given; if it need not and is not, the argument is None.
-    more: text behind the suffixes in the help.
+    more: text after the suffixes in the help.
     Returns an :class:`Option`, whose argument becomes a Path; nothing is written.
     """
 

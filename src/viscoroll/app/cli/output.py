@@ -71,7 +71,7 @@ def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None =
 
     frame: pandas DataFrame, the table; without rows the heading stands alone.
     heading: first lines.
-    meanings: name of a column without its unit -> meaning, behind the number of a single row; None: always columns.
+    meanings: name of a column without its unit -> meaning, after the number of a single row; None: always columns.
     Returns the text, which ends with a line break.
     """
     if frame.empty:

@@ -198,7 +198,7 @@ def _print_error(error: object) -> int:
 
 
 def _print_line(message: object) -> None:
-    """Print a message in one line on standard error, behind "viscoroll:"; nothing if that is closed or full.
+    """Print a message in one line on standard error, after "viscoroll:"; nothing if that is closed or full.
 
     message: an object whose text is printed, its line breaks as blanks.
     """

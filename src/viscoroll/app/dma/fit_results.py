@@ -93,7 +93,7 @@ class SeriesFit(Result):
     def misfit_text(self, digits: int) -> str:
         """Return the misfit of each modulus in words, as "0.35% in E', 0.80% in E''".
 
-        digits : number of digits behind the decimal point of the per cent.
+        digits : number of digits after the decimal point of the per cent.
         """
         pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
         return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
@@ -231,7 +231,9 @@ class SeriesFit(Result):
 
         Over omega (rad/s) or t (s): storage, loss and storage_fit, loss_fit, or relaxation and relaxation_fit, in the
         unit of the data.  Over ``mode``: E, strengths divided by the long-time modulus, and tau, s.  Attributes:
-        E_long, T_ref, title, modulus ("tension" or "shear"), and misfit_storage and misfit_loss, or misfit.
+        E_long, long-time modulus in the unit of the data; T_ref, s; title; modulus, "tension" or "shear"; and
+        misfit_storage and misfit_loss, or misfit, root mean squares of relative errors, dimensionless.  The attribute
+        ``units`` of the moduli is the text "unit of the data".
         """
         import xarray as xr
 

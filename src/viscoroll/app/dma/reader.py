@@ -34,7 +34,7 @@ def read_dma(
 
     The headings say which column is which, in any order: frequency or angular frequency (reduced ones first), and two
     of storage, loss, tan delta or phase angle, and magnitude of the complex modulus, or the same of compliances.  A
-    third is compared with what the two give.  Units are behind the names or in a row of their own.  Other columns are
+    third is compared with what the two give.  Units stand after the names or in a row of their own.  Other columns are
     left out and listed in ``notes``.  Columns are parted by tabs, semicolons, commas or blanks; there may be lines
     before the headings, and comments that begin with ``#``.
 
@@ -44,7 +44,8 @@ def read_dma(
     columns : meaning -> heading, as ``{"storage": "Module 1"}``, of columns whose names are not understood; meanings
         are frequency, angular frequency, storage, loss, tan delta, phase angle, modulus (the magnitude), storage
         compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
-        file without headings are called "column 0", "column 1" ...; three of them are frequency, storage and loss.
+        file without headings are called "column 0", "column 1" ...; if there are three, they are taken as angular
+        frequency, storage and loss, in this order.
     units : units of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning
         -> unit, in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in
         Pa, with a warning.
@@ -62,7 +63,8 @@ def read_dma(
     ------
     FileError
         A file that cannot be read, columns that are missing, ambiguous or contradict each other, units that are
-        unknown or of another dimension, gaps and separators of thousands; rows of several temperatures without them.
+        unknown or of another dimension, gaps and separators of thousands; all rows at one frequency; several moduli at
+        one frequency, or several tables, without a column of temperatures.
     ParameterError
         Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file.
 

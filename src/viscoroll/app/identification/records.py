@@ -338,13 +338,13 @@ class Coastdown(Record):
     def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
         """Estimate the speed at the release of the cylinder from the first data.
 
-        It is the first measured value.  Without one of V, V is R omega of a roller that rolls, or the slope of the
+        It is the first measured value.  If V was not measured, V is R omega of a roller that rolls, or the slope of the
         first tenth of x, of at least three points.
 
         name : "V0" or "omega0".
         R : radius of the cylinder, m.
-        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s: the range reaches as far to either side
-        as the largest absolute value in the data.
+        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s.  The range extends to either side of
+        the speed by the largest |V| or |omega| that was measured, and of a slope of x by its absolute value.
         Raises ParameterError where none of these was measured.
         """
         data: Any = self.V if name == "V0" else self.omega

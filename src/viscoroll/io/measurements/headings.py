@@ -18,7 +18,7 @@ _BETWEEN = re.compile(r"\s*/\s*|\s+in\s+|[\s_,]+")
 _LOGARITHM = re.compile(r"(?i)(?:log|lg)(?![a-z])[\s_]*(?:10(?!\d))?[\s_]*(?P<of>.+)")
 #: a text in parentheses, and what follows
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
-#: digits of a power behind a symbol: the only ones that a unit has, but for its leading 1
+#: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
 _POWERS = re.compile(r"(?<=[A-Za-z%°µμ)])\s*(?:\^|\*\*)?\s*[({]?[-+−]?\d(?!\d)[)}]?")
 #: longest text that may be a unit
 _LONGEST = 24

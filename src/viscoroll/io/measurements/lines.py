@@ -31,8 +31,11 @@ _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 class Line(NamedTuple):
     """A line that is not blank.
 
-    number : number of the line in the file, from 1; text : the line without the mark of a comment; cells : its cells.
-    comment : whether it has such a mark; numeric : whether it is a row of numbers.
+    number : number of the line in the file, from 1.
+    text : the line without the mark of a comment.
+    cells : its cells.
+    comment : whether it has such a mark.
+    numeric : whether it is a row of numbers.
     """
 
     number: int
@@ -104,7 +107,7 @@ def separator_of(text: list[str], decimal: str | None) -> str:
 
     text : lines of a file, of which the first 2000 are examined.
     decimal : the decimal mark, "." or ",", which is no separator then; None: not given.
-    Returns a key of :data:`SEPARATORS`; a tab where no separator gives such rows.
+    Returns a key of :data:`SEPARATORS`, the first of several that give as many rows; a tab where none gives any.
     """
 
     def count(separator: str) -> int:

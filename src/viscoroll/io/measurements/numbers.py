@@ -55,7 +55,7 @@ def is_row_of_numbers(cells: list[str]) -> bool:
 def decimal_mark(cells: list[str], doubtful: str) -> str:
     """Return the decimal mark of cells, "" where the marks may be separators of thousands.
 
-    They may be where both marks occur, or where three digits stand behind each mark, as in "1,234".
+    They may be where both marks occur, or where three digits stand after each mark, as in "1,234".
 
     cells : cells of a table or a column; those that are no numbers with a mark do not count.
     doubtful : marks, "", ",", or ",.", to which the rule of three digits applies: the comma where commas separate
@@ -91,6 +91,7 @@ def numbers_of(cells: list[str]) -> Numbers:
     """Return the numbers of cells, and half a unit of the last digit of each.
 
     cells: texts without a fault (:func:`fault_of`), with a decimal point or comma.
+    Returns :class:`Numbers`, two arrays (n,): of "0,25" 0.25 and 0.005.
     """
     exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
     half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]

@@ -195,7 +195,7 @@ class _Layout:
     def part(self, head: int, end: int) -> tuple[list[str], list[str], list[Line]]:
         """Read one table of the file.
 
-        head, end : index of its line of headings, and of the first line behind it: the headings of the next table, or
+        head, end : index of its line of headings, and of the first line after it: the headings of the next table, or
         the end of the file.
         Returns (headings; units, "" without, both one for each column; rows, without comments).
         Raises FileError for a line among the rows that is none, for rows of another number of cells than the headings,
@@ -222,7 +222,7 @@ class _Layout:
         Where blanks separate, words of one name, as "storage modulus", go together if that gives as many cells as rows
         have.
 
-        line : :class:`Line`, the line.
+        line : :class:`Line`, a line of headings or of units.
         """
         if self.separator != " " or len(line.cells) == self.width:
             return [*line.cells]

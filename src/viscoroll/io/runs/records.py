@@ -58,7 +58,7 @@ def read_record(path: Path) -> Record | None:
         stored = path.read_bytes()
         if not seal_matches(stored):
             return None
-        content = zlib.decompressobj().decompress(stored)  # the seal behind it is left over
+        content = zlib.decompressobj().decompress(stored)  # the seal after it is left over
         return msgspec.msgpack.decode(content, type=Record, dec_hook=_decode_array)
     except (OSError, ValueError, zlib.error, msgspec.DecodeError):
         return None

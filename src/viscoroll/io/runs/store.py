@@ -190,8 +190,8 @@ class BlockContent(NamedTuple):
 def block_content(run: Run, block: int) -> BlockContent:
     """Roll the motions of a block, and make the files and the summary that the store keeps of it; nothing is written.
 
-    run: :class:`Run`, the run.
-    block: number of the block, from 0.
+    run: :class:`Run`, with inputs and settings; files of motions are made if ``settings.keep`` says "all".
+    block: number of the block, from 0 to ``run.blocks - 1``.
     Returns the :class:`BlockContent`.
     Raises ParameterError for inputs that a motion does not allow.
     """

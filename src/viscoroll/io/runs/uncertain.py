@@ -222,7 +222,7 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
 
     path: path of the run file.
     inputs: inputs of the run without correlations; ``content["correlation"]`` holds a -> b -> correlation in (-1, 1) of
-    the normal variables behind inputs a and b.
+    the normal variables after inputs a and b.
     Raises FileError for a name without distribution, a value out of range, or a matrix that is not positive definite.
     """
     section, random = inputs.content.get("correlation", {}), inputs.random

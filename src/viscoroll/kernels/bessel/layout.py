@@ -20,7 +20,8 @@ COEFFICIENTS = DEGREE + 1
 class Segment(NamedTuple):
     """Octaves [2**low, 2**high) of one tabulated function.
 
-    function : its formula, in the words of the paper.  low, high : exponents of the ends.
+    function : str, its formula, in the words of the paper.
+    low, high : int, exponents of the ends.
     """
 
     function: str

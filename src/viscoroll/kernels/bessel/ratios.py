@@ -34,7 +34,10 @@ _BINS = TABLE.reshape(-1, layout.COEFFICIENTS)
 
 
 def _row_offset(index: int) -> int:
-    """Return what is added to the number of a bin (:func:`bin_number`) for its row; ``index``: of its segment."""
+    """Return the int that is added to the number of a bin (:func:`.bin_number`, with 4 bits) for its row in the table.
+
+    index : int, number of the segment of :data:`.layout.SEGMENTS` in which the bin is.
+    """
     return layout.segment_start(index) // layout.COEFFICIENTS - ((1023 + layout.SEGMENTS[index].low) << _BIN_BITS)
 
 
@@ -71,9 +74,9 @@ def _r_power_series(terms: int) -> list[float]:
 def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     """Return the first coefficients a_n of the asymptotic series sum a_n x^-n of r or k, from the Riccati equations.
 
-    sign : -1 for r = I1/I0, 1 for k = K0/K1.
-    terms : number of coefficients, > 0.
-    Returns [a_0 = 1, a_1, ...], ``terms`` Decimals, in the digits of the decimal context.
+    sign : int, -1 for r = I1/I0, 1 for k = K0/K1.
+    terms : int, number of coefficients, > 0.
+    Returns [a_0 = 1, a_1, ...], a list of ``terms`` Decimals, in the digits of the current decimal context.
     """
     a = [Decimal(1)]
     for n in range(1, terms):
@@ -87,10 +90,10 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
 def _tail(sign: int) -> np.ndarray:
     """Return the coefficients of x (1 - r), or of z (1 - k), above 64 as a polynomial in the inverse of the argument.
 
-    The polynomial goes through the asymptotic series of that function at Chebyshev nodes.
+    The polynomial goes through the asymptotic series of that function, 16 terms of it, at Chebyshev nodes in [0, 1/64].
 
-    sign : -1 for r, 1 for k.
-    Returns the 9 coefficients (layout.COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant first, doubles.
+    sign : int, -1 for r, 1 for k.
+    Returns the 9 coefficients (layout.COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant 1/2 first, doubles.
     """
     series = [-a for a in asymptotic_series(sign, 17)[1:]]
     nodes = [(1 + x) / (2 * Decimal(_FAR)) for x in chebyshev(layout.COEFFICIENTS)]

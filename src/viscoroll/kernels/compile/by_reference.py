@@ -29,7 +29,9 @@ class _ReferenceModel(models.PrimitiveModel):
 
 @infer_getattr
 class _Attributes(AttributeTemplate):
-    """Types of the fields of a reference: a record in a record is a reference too."""
+    """Types of the fields of a reference, for numba: a record in a record is a reference too, other fields have their
+    own type, and a name that is no field has None, which numba reports as an error of type.
+    """
 
     key = _ReferenceType
 

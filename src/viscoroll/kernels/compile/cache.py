@@ -3,8 +3,8 @@
 numba's own cache stamps a function with the file it is defined in and does not notice a change in a function it calls
 from another module.  Here the cache folder is named after a hash of *all* kernel sources, their coefficient table and
 the versions of numba and llvmlite.  It holds one file for each function, signature and choice of numba's settings,
-behind a SHA-256 of itself.  Anything unreadable, or that others may have written (:mod:`folder`), is compiled again and
-replaced: it is never trusted and never ends the process.
+which begins with a SHA-256 of what follows.  Anything unreadable, or that others may have written (:mod:`folder`), is
+compiled again and replaced: it is never trusted and never ends the process.
 """
 
 import hashlib
@@ -92,7 +92,8 @@ class DiskCache:
 
         signature : tuple of numba's types of the arguments of the kernel.
         codegen : numba's code generator, which knows the processor.
-        Yields None.  Raises what the block raises.
+        Yields None.  Raises what the block raises, and PermissionError if this user may not search the folder of the
+        cache.
         """
         path = self._path(signature, codegen)
         if path.exists():

@@ -173,11 +173,14 @@ def _pipelines():
     Parts are lowered to LLVM's intermediate representation only; wholes link that of all parts and are optimised once.
 
     Returns (compiler of parts, compiler of wholes), subclasses of numba's ``CompilerBase``, made once in a process.
+    They use private names of numba: if a version of numba lacks one, ImportError or AttributeError is raised.
     """
     from numba.core.codegen import JITCodeLibrary
 
     class Part(JITCodeLibrary):
-        """A library of IR alone."""
+        """A library of IR alone, for a kernel that other kernels call: it is neither optimised nor compiled to machine
+        code.
+        """
 
         is_part = True
 
@@ -195,7 +198,10 @@ def _pipelines():
             """Do nothing: there is no code yet."""
 
         def add_llvm_module(self, module):
-            """Take a module over, which numba would link into an empty one; further ones are linked into it."""
+            """Take a module of LLVM over, which numba would link into an empty one; further ones are linked into it.
+
+            module : the module, which belongs to the library from then on.
+            """
             if next(iter(self._final_module.functions), None) is None:
                 self._optimize_functions(module)
                 self._final_module = module
@@ -216,7 +222,10 @@ def _pipelines():
         """A library with the IR of all parts below, optimised and compiled together."""
 
         def finalize(self):
-            """Add the called libraries to the module of LLVM, optimize it once, and turn it into machine code; returns
+            """Link the IR of all called libraries into the module of LLVM, optimise it once, and turn it into machine
+            code.
+
+            Functions of the called libraries become internal, so that LLVM leaves out those that are not used.  Returns
             None.
             """
             module = self._final_module
@@ -234,8 +243,9 @@ def _pipelines():
             manager.run(self._final_module, builder)
 
         def _verify_declare_only_symbols(self):
-            """Raise if a function is missing, where LLVM would end the process; _ZN begins the names of numba's
-            functions.
+            """Raise RuntimeError if a function that the module calls is missing, where LLVM would end the process.
+
+            Names of numba's functions begin with _ZN; others, of the C library, may be missing here.
             """
             for function in self._final_module.functions:
                 if function.is_declaration and function.name.startswith("_ZN"):
@@ -279,6 +289,11 @@ def _pipeline(library_class: type):
 
     @register_pass(mutates_CFG=True, analysis_only=False)
     class Lowering(NativeLowering):
+        """The pass of numba that lowers a kernel to LLVM, into a library of ``library_class``.
+
+        numba reads the name of the pass from ``_name``; ``run_pass`` returns whether the state was changed.
+        """
+
         _name = f"lowering into {library_class.__name__}"
 
         def run_pass(self, state):
@@ -287,7 +302,11 @@ def _pipeline(library_class: type):
             return super().run_pass(state)
 
     class ShortFlags(Flags):
-        """Flags that are compared by those that are set; numba compares all forty at every call that it types."""
+        """Flags that are compared and hashed by those that are set; numba compares all forty at every call that it
+        types.
+
+        Other kinds of numba's flags are never equal to them.
+        """
 
         def __hash__(self):
             return hash(frozenset(self._values))
@@ -300,6 +319,12 @@ def _pipeline(library_class: type):
             return self._values
 
     class Compiler(CompilerBase):
+        """numba's default compiler in nopython mode, with :class:`ShortFlags`, without the passes of
+        :data:`_NOT_NEEDED`.
+
+        Its arguments are those of numba's ``CompilerBase``.  ``define_pipelines`` returns a list of one pass manager.
+        """
+
         def __init__(self, typing, target, library, args, returns, flags, types_):
             super().__init__(typing, target, library, args, returns, ShortFlags(flags), types_)
 

@@ -15,15 +15,16 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     """Compile a function with numba, when it is first called, and keep the machine code on disk.
 
     LLVM is granted no numerical freedom: a result then depends on the source alone, not on what was compiled together
-    (see :mod:`.intrinsics`).
+    (see :mod:`.intrinsics`).  In a kernel a division by zero gives inf or NaN as in numpy, and indices of arrays are
+    not checked; the GIL is released.
 
     Parameters
     ----------
     function : the function; None, for a decorator with the other arguments.
-    inline : for the few short functions at the bottom of every loop: a call of a numba function costs as much as a
-        polynomial, and LLVM by itself does not always spare it.
-    allocates : the function makes arrays, or assigns to them as a whole.  Without it no references are counted; numba
-        counts those of constant tables too, which took a fifth of the time of a motion.
+    inline : bool, for the few short functions at the bottom of every loop: a call of a numba function costs as much as
+        a polynomial, and LLVM by itself does not always spare it.
+    allocates : bool, whether the function makes arrays, or assigns to them as a whole.  Without it no references are
+        counted; numba counts those of constant tables too, which took a fifth of the time of a motion.
 
     Returns
     -------

@@ -164,8 +164,8 @@ def read_onset(I, level, flow):
 def _locate_on_manifold(slow_log):
     """Return the position of a slow logarithm in the table of the slow manifold.
 
-    slow_log : float, slow logarithm of V, the coordinate along the slow manifold; any number up to the end of the
-        table.
+    slow_log : float, slow logarithm of V, the coordinate along the slow manifold; any number below the end of the
+        table, which is the largest one that is tabulated and is not checked here.
 
     Returns (position, t, factor): index in the map's vector at which the row begins, int; argument in [-1, 1] of its
     polynomials; factor of V, delta and the remaining path.  Inside the table the factor is 1.  Below it the position is

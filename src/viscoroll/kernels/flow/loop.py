@@ -128,17 +128,19 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
 
 @kernel
 def _start_in_partial_slip(V0, omega0, edge, level, flow):
-    """Locate the earlier onset of partial slip of a motion that starts inside the stick zone.
+    """Locate the onset of partial slip, at a time before the start, of a motion that starts in partial slip.
 
-    V0, omega0 : float, initial speeds, V0 != 0.
-    edge : float, delta_star at V0.
+    The motion from that onset on passes through the start, so that the tables, which begin at an onset, hold for it.
+
+    V0, omega0 : float, initial speeds, not mirrored; V0 != 0, and |omega0 - V0| < edge |V0|.
+    edge : float, delta_star at V0, dimensionless.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
     Returns (:class:`StickOnset` at a time tau <= 0; its :class:`Asymptote`; whether the map covers the motion, without
     which the other two have no meaning).  Distance, angle and slip loss of the onset are minus those from there to the
-    start; they are 0 below level PATH.  A start on the slow manifold has its onset at practically tau = 0 and no
-    boundary layer.
+    start, distance and angle with the sign of V0; they are 0 below level PATH.  A start on the slow manifold has its
+    onset at practically tau = 0 and no boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)

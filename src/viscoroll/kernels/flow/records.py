@@ -45,8 +45,9 @@ class Motions(NamedTuple):
 class Request(NamedTuple):
     """Requested outputs of a motion.
 
-    level : SPEEDS, PATH or LOSS.  rest : rest threshold, 0 for none.  rest_slow_log : slow logarithm at that
-    threshold.
+    level : SPEEDS, PATH or LOSS.
+    rest : rest threshold, 0 for none.
+    rest_slow_log : slow logarithm at that threshold.
     """
 
     level: Any
@@ -57,7 +58,9 @@ class Request(NamedTuple):
 class FullSlipStart(NamedTuple):
     """Start of a motion in full slip, mirrored so that omega > V.
 
-    frame : +1, or -1 if mirrored.  w : V - j omega.  T, X : integrals of the table of full slip at V.
+    frame : +1, or -1 if mirrored.
+    w : V - j omega.
+    T, X : integrals of the table of full slip at V.
     """
 
     frame: Any
@@ -69,9 +72,12 @@ class FullSlipStart(NamedTuple):
 class StickOnset(NamedTuple):
     """Onset of partial slip, mirrored so that V > 0.
 
-    frame : +1, or -1 if mirrored.  family : PLUS or MINUS.  v : kappa V.  tau : time, gamma t.
+    frame : +1, or -1 if mirrored.
+    family : PLUS or MINUS.
+    v : kappa V.
+    tau : time, gamma t.
     x, angle, loss : distance, angle and slip loss there.  The onset of a start inside the stick zone lies before the
-    start: tau, x, angle and loss count from the start and are negative.
+        start: tau, x, angle and loss count from the start and are negative.
     """
 
     frame: Any
@@ -86,8 +92,10 @@ class StickOnset(NamedTuple):
 class Asymptote(NamedTuple):
     """The motion on the slow manifold that a motion in partial slip approaches.
 
-    slow_log : its slow logarithm at the onset.  rate : relaxation rate k0 of omega - V at onset.  split : see
-    :class:`.layout.FlowTables`.  x, angle, loss : excess of distance, angle and slip loss over that motion.
+    slow_log : its slow logarithm at the onset.
+    rate : relaxation rate k0 of omega - V at onset.
+    split : see :class:`.layout.FlowTables`.
+    x, angle, loss : excess of distance, angle and slip loss over that motion.
     """
 
     slow_log: Any

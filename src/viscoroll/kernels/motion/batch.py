@@ -36,8 +36,9 @@ class Drives(NamedTuple):
     """Drives of many motions.
 
     segments : (m, k, columns) over t, m = 1 for all motions or one for each; columns as COL_* of :mod:`records`, with
-    times and slopes in t, not in tau gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains` prescribed
-    : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
+        times and slopes in t, not in tau
+    gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains`
+    prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
     """
 
     segments: Any

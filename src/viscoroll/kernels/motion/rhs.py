@@ -69,13 +69,20 @@ class Rates(NamedTuple):
 
     Derivatives are partial ones: those in V at fixed omega or d, those in the second unknown at fixed V.
 
-    omega : angular velocity Q : traction, Eq. (17); signed, |Q| <= mu M_half_space, M_cylinder : the parts of the
-    rolling moment, Eq. (18), that half-space and cylinder take; in partial slip each contains n V'/2 of the added mass
-    V_rate : V' p : the collocated unknown; V in full slip and under strong friction p_rate : p' weighted_rate :
-    ``weight`` times the slope of the second unknown: V d' in partial slip, omega' in full slip weight : V in partial
-    slip, 1 in full slip dp_dV, dp_dd : derivatives of p dp_rate_dV, dp_rate_dd : derivatives of p'; in partial slip
-    without strong friction dp_rate_dd is set to 0, which leaves out the feedback of omega through d drate_dV, drate_dd
-    : derivatives of ``weighted_rate`` dweight_dV : derivative of ``weight``: 1 in partial slip, 0 in full slip
+    omega : angular velocity
+    Q : traction, Eq. (17); signed, |Q| <= mu
+    M_half_space, M_cylinder : the parts of the rolling moment, Eq. (18), that half-space and cylinder take; in partial
+        slip each contains n V'/2 of the added mass
+    V_rate : V'
+    p : the collocated unknown; V in full slip and under strong friction
+    p_rate : p'
+    weighted_rate : ``weight`` times the slope of the second unknown: V d' in partial slip, omega' in full slip
+    weight : V in partial slip, 1 in full slip
+    dp_dV, dp_dd : derivatives of p
+    dp_rate_dV, dp_rate_dd : derivatives of p'; in partial slip without strong friction dp_rate_dd is set to 0, which
+        leaves out the feedback of omega through d
+    drate_dV, drate_dd : derivatives of ``weighted_rate``
+    dweight_dV : derivative of ``weight``: 1 in partial slip, 0 in full slip
     """
 
     omega: float
@@ -118,6 +125,7 @@ def applied_forces(V, omega, load, regime):
 def required_forces(V, omega, rates, load, regime, j):
     """Return the forces and torques that act: the applied ones, or those that Eq. (22) requires of a prescribed speed.
 
+    Eq. (22) is V' = force + Q - M_half_space and j omega' = torque + brake - Q - M_cylinder, with ' = d/dtau.
     Force and torque are the applied ones with their feedback, and the brake acts with its largest torque against omega,
     with three exceptions.  If the brake holds omega at 0 its torque is the one that makes omega' = 0.  Else, if omega
     is prescribed, the torque of the motor is the one that gives omega' its prescribed slope.  If V is prescribed, the

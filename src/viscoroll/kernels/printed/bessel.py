@@ -27,10 +27,10 @@ _HANKEL_FROM = 25.0
 def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
     """Return the coefficients of Hankel's expansion of a Bessel function in 1/x.
 
-    order : 0 or 1, of the Bessel function.
-    sign : -1 for sqrt(2 pi x) e^-x I(x), 1 for sqrt(2 x/pi) e^x K(x).
-    terms : highest power.
-    Returns the ``terms`` + 1 coefficients of ascending powers of 1/x, the first 1.
+    order : int, 0 or 1, of the Bessel function.
+    sign : int, -1 for sqrt(2 pi x) e^-x I(x), 1 for sqrt(2 x/pi) e^x K(x).
+    terms : int, highest power.
+    Returns the ``terms`` + 1 coefficients of ascending powers of 1/x, the first 1, a list of floats.
     """
     a = [1.0]
     for n in range(1, terms + 1):

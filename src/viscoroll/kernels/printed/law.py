@@ -57,10 +57,10 @@ def brent(equation, data, low, high, floor):
     """Find the root x of _residual(equation, x, data) in [low, high] by the method of Brent and Dekker.
 
     equation, data : arguments of :func:`_residual`.
-    low, high : floats, ends of the bracket, low < high.
-    floor : float, absolute tolerance; the root is found to floor + 4e-16 |x|.
-    Returns (root, status), a float and an int: OK (0); or NOT_CONVERGED (1), after 60 steps with the best value so far,
-    or with NaN for the root where the residual is NaN at an end.
+    low, high : floats, ends of the bracket, low <= high (equal for alpha = 1).
+    floor : float, absolute tolerance, >= 0; the root is found to floor + 4e-16 |x|.
+    Returns (root, status), a float and an int: OK (0); or NOT_CONVERGED (1), after 60 steps with the best value so far
+    (NaN if the residual became NaN on the way), or with NaN for the root where the residual is NaN at an end.
 
     At most 10 steps were seen with kappa V in [1e-8, 1e8], alpha in [1, 1e4].  The residual falls from >= 0 at low to
     <= 0 at high.  An end where it is 0, or where rounding spoils that sign, is itself the root, to rounding: ``high``
@@ -184,7 +184,7 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
     Returns a float, dimensionless, in [0, mu] but for rounding; mu where beta zeta is 0, in the limit of full slip.
 
     1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at s = 1e-6 (1e-8 for kappa V =
-    1e3, where K1/K0 magnifies the rounding of the bracket). That magnification grows in proportion to V: 1e-13 mu at
+    1e3, where K1/K0 magnifies the rounding of the bracket).  That magnification grows in proportion to V: 1e-13 mu at
     kappa V = 1e4, 2e-9 mu at 1e8.
     """
     k = ratio_k0k1(beta * zeta)

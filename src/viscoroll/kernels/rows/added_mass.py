@@ -2,7 +2,7 @@
 
 Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P T_epsilon^2.  A law of steady
 rolling has no N; its added mass is 0.  A law with N has it as polynomials over octaves of u = kappa |V|
-(``Law.N_rows``: for each row N and its integral over u, a pair; behind the rows the constants of the integral).
+(``Law.N_rows``: for each row N and its integral over u, a pair; after the rows the constants of the integral).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -24,12 +24,13 @@ _HEAVY = -4.0
 def _evaluate_N(u, law):
     """Return N of M = M(V) + N V' at u, its integral and its slope, with the row in which they were evaluated.
 
-    u : kappa |V|, >= 0.
-    law : :class:`Law` of the material, with polynomials of N.
+    u : float, kappa |V|, dimensionless, >= 0, finite.
+    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.
 
-    Returns (row, N, integral, slope): index of the row from 0, or the number of rows where u lies behind the last one
-    and N has its fast limit; N in units of P T_epsilon^2; its integral over u from the place where the argument t of
-    that row is 0 (behind the last row: from infinity); its slope dN/du.
+    Returns (row, N, integral, slope).  row: int, index of the row from 0, or the number of rows where u lies beyond the
+    last one and N has its fast limit (alpha - 1)/(16 alpha u^2).  N: float, in units of P T_epsilon^2.  integral:
+    float, its integral over u from the place where the argument t of that row is 0 (beyond the last row: from
+    infinity).  slope: float, dN/du.  The results of a cover are NaN in its rows.
     """
     row, t, dt_dx = locate_octave(u, law.marks[E0])
     count = law.marks[ROW_COUNT]
@@ -45,13 +46,14 @@ def _evaluate_N(u, law):
 def _evaluate_added_mass(law, V, kappa, gamma):
     """Return the factor gamma N of the added mass, with its slope and its integral, for a law that has N.
 
-    The integral begins at V = 0 or, where V = 0 is out of reach (gamma N < -4 there), at infinity.
+    The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4 there), at infinity.
 
     law : :class:`Law` of the material, with polynomials of N.
-    V : speed of the axis, of either sign; N is even in V.
-    kappa : slenderness R/l0.
-    gamma : P T_epsilon^2/(m R), Eq. (4).
-    Returns (gamma N, its slope over V, its integral over V), dimensionless.
+    V : float, speed of the axis, of either sign, dimensionless; N is even in V.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
+    Returns (gamma N, its slope over V, its integral over V), floats, dimensionless.  The slope is odd in V; at V = 0.0
+    it is that of V > 0.  The integral is continuous at V = 0, and odd in V where it begins there.
     """
     count = law.marks[ROW_COUNT]
     row, N, integral, slope = _evaluate_N(kappa * abs(V), law)
@@ -67,21 +69,26 @@ def _evaluate_added_mass(law, V, kappa, gamma):
 def added_mass(law, V, kappa, gamma):
     """Return the factor gamma N of the added mass, with its slope and its integral; zeros for a law of steady rolling.
 
-    The integral begins at V = 0 or, where V = 0 is out of reach (gamma N < -4 there), at infinity.
+    The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4 there), at infinity.
 
-    law : :class:`Law` of the material: polynomials of each octave; N_rows is empty for steady rolling.
-    V : speed of the axis, of either sign; N is even in V.
-    kappa : slenderness R/l0.
-    gamma : P T_epsilon^2/(m R), Eq. (4).
-    Returns (gamma N, its slope over V, its integral over V), dimensionless.
+    law : :class:`Law` of the material: polynomials of each octave; ``N_rows`` is empty for steady rolling, where
+        nothing else is read.
+    V : float, speed of the axis, of either sign, dimensionless; N is even in V.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
+    Returns (gamma N, its slope over V, its integral over V), floats, dimensionless, as of :func:`_evaluate_added_mass`;
+    (0.0, 0.0, 0.0) for steady rolling.
     """
     return _evaluate_added_mass(law, V, kappa, gamma) if unlikely(law.N_rows.size > 0) else (0.0, 0.0, 0.0)
 
 
 @kernel
 def unsteady_loop(law, kappa, V, out):
-    """Write N of n states, in units of P T_epsilon^2, into ``out``, (n,); ``kappa`` and ``V``, of either sign, have
-    length 1 or n; ``law`` is a :class:`Law` that has N.
+    """Write N of n states into an array.
+
+    law : :class:`Law` that has N (``N_rows`` is not empty); of a cover N is NaN.
+    kappa, V : slenderness, > 0, and speed, of either sign, dimensionless, of length 1 or n.
+    out : (n,), written: N in units of P T_epsilon^2.
     """
     for n in range(out.size):
         _, out[n], _, _ = _evaluate_N(element(kappa, n) * abs(element(V, n)), law)

@@ -68,7 +68,7 @@ SOURCE = record_type("rows marks alpha state_count octaves")
 OCTAVE_SIZE = 3
 #: Index in the head of the rows of s, T_4(s), T_8(s) and T_12(s).
 _S = MAKER_NUMBERS
-#: Mark that is the address of the axis of the selected octave; behind it that of where functions begin, in groups.
+#: Mark that is the address of the axis of the selected octave; after it that of where functions begin, in groups.
 _AXIS = MAKER_MARKS
 #: Binary logarithm of the parts of a row.
 _PARTS_EXPONENT = PARTS_PER_ROW.bit_length() - 1
@@ -89,13 +89,20 @@ def _make_sum(lengths):
         they save.
 
     Returns the kernel, an intrinsic of numba, which takes (axis, first, s, c, rows, to) and returns nothing.  axis,
-    first : vector of coefficients, and index in it where those of the part begin; of each block the group of the
-    highest degree first.  s : the four numbers s, T_4(s), T_8(s) and T_12(s).  c : factor of the second function of a
-    pair; 1 of a single function.  rows, to : vector that is written, and index of the first number written, BLOCK_SIZE
-    for each block.
+    first : vector of coefficients, and int, index in it where those of the part begin; of each block the group of the
+    highest degree first, of each group the coefficients of s^0 to s^3, eight numbers each.  s : tuple of the four
+    floats s, T_4(s), T_8(s) and T_12(s).  c : float, factor of the second function of a pair, (alpha - 1)/alpha, which
+    multiplies the numbers at the indices 2, 3, 6 and 7 of each block; 1 of a single function.  rows, to : vector that
+    is written, and int, index of the first number written, BLOCK_SIZE for each block.
     """
 
     def lower(context, builder, signature, arguments):
+        """Return the instructions of the kernel; numba calls this function for every call of the kernel.
+
+        context, builder, signature, arguments : numba's context of code generation, builder of LLVM, signature of the
+            call, and values of LLVM of its arguments (axis, first, s, c, rows, to).
+        Returns numba's dummy value: the kernel returns nothing.
+        """
         axis, first, numbers, c, rows, to = arguments
         one, zero = (ir.Constant(_BLOCK, [x] * BLOCK_SIZE) for x in (1.0, 0.0))
         power, *chebyshev = (broadcast_value(builder, x, _BLOCK) for x in cgutils.unpack_tuple(builder, numbers))
@@ -134,11 +141,13 @@ def select_alpha(n, source):
     parts.
 
     n : int, index of the state.
-    source : pointer to a SOURCE record, with the addresses of alpha (of length 1 or one for each state), rows and
-        marks; heads of rows and marks are written.
+    source : pointer to a SOURCE record, with the addresses of alpha (>= 1, of length 1 or one for each state), rows and
+        marks.  If that alpha is selected already, nothing is written.  Else into the head of rows are written alpha,
+        its lam, W and C in the fast limit (of both bodies together only) and the Chebyshev polynomials of s, into that
+        of marks a new version, the addresses of the axis of its octave, and the number of rows: that of its octave, for
+        alpha = 1 only 1.
 
-    Rows of the law are then computed when they are first read (:func:`make_part`).  Nothing is done if the alpha is
-    selected already.  Returns nothing.
+    Rows of the law are then computed when they are first read (:func:`make_part`).  Returns nothing.
     """
     source = record_at(source)
     alpha = element(floats_at(source.alpha, source.state_count), n)
@@ -167,13 +176,16 @@ def select_alpha(n, source):
 
 @kernel(allocates=True)
 def make_part(number, source):
-    """Compute a part of a row of the selected alpha, except the moments of the bodies, and write it into the rows.
+    """Compute a part of a row of the selected alpha, and write it into the rows of the law.
 
     number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
-    source : pointer to a SOURCE record, with the addresses of rows and marks; the 24 coefficients of a function, or 48
-        of a pair, are written, and the mark of the part.
+        The part may not be BODY_MOMENTS, the moments of the bodies, which are not on the axis: of like bodies they are
+        halves of M.
+    source : pointer to a SOURCE record, with the addresses of rows and marks.  The 24 coefficients of a function, or 48
+        of a pair, are written, and in the marks the version of the part.
 
-    The moments of like bodies are halves of M.  At alpha = 1, where a sum would round, the closed form is written.
+    At alpha = 1, where a sum would round, the closed form is written: L, lam, H/F^2 and eta/F are 1, M/V and epsilon
+    are 0.  Returns nothing.
     """
     source = record_at(source)
     start = PART_SIZE * number

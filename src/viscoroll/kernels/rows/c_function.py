@@ -34,8 +34,8 @@ SCENE = record_type("function slopes unlike rows marks row_count cover_rows", "k
 
 @inline_kernel
 def refuse(out):
-    """Fill ``out``, the RESULTS numbers of a C function, with NaN, and return 1, the status of a state at which the law
-    is not defined.
+    """Fill ``out``, the RESULTS = 8 numbers of a C function, with NaN, and return 1, the int that is the status of a
+    state at which the law is not defined.
     """
     for n in range(RESULTS):
         out[n] = np.nan
@@ -44,16 +44,22 @@ def refuse(out):
 
 @kernel(allocates=True)
 def _half_space_law(V, omega, out, scenes):
-    """The C function of half-spaces: :func:`_evaluate` without cover; ``out`` and ``scenes`` are pointers to RESULTS
-    numbers and to a SCENE.  Returns the status.
+    """Evaluate the law of half-spaces at one state: the C function, which calls :func:`_evaluate` without a cover.
+
+    V, omega : floats, speed and angular velocity in the units of the caller.
+    out, scenes : pointers to RESULTS = 8 doubles, written, and to a SCENE record.
+    Returns the status, an int: 0, or 1 with all results NaN.
     """
     return _evaluate(V, omega, out, record_at(scenes), None)
 
 
 @kernel(allocates=True)
 def _cover_law(V, omega, out, scenes):
-    """The C function of covers: :func:`_evaluate` with the cover's numbers; ``out`` and ``scenes`` are pointers to
-    RESULTS numbers and to a SCENE.  Returns the status.
+    """Evaluate the law of a cover at one state: the C function, which calls :func:`_evaluate` with the cover's numbers.
+
+    V, omega : floats, speed and angular velocity in the units of the caller.
+    out, scenes : pointers to RESULTS = 8 doubles, written, and to a SCENE record, whose ``cover_rows`` is an address.
+    Returns the status, an int: 0, or 1 with all results NaN.
     """
     scene = record_at(scenes)
     cover_rows = floats_at(scene.cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * (scene.row_count - 1))
@@ -64,13 +70,18 @@ def _cover_law(V, omega, out, scenes):
 def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     """Evaluate the law at one state and write the results in the units of the caller.
 
-    caller_V, caller_omega : speed and angular velocity in the units of the caller, of any sign.
-    pointer : address of RESULTS = 8 numbers, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``, dQ/dV
-        at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, else numbers without meaning.
+    caller_V, caller_omega : floats, speed and angular velocity in the units of the caller, of any sign.
+    pointer : address of RESULTS = 8 doubles, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``, dQ/dV
+        at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV.  Without slopes numbers 4 and 5 stay as
+        they were, and numbers 6 and 7 are overwritten by numbers without meaning.
     scene : a SCENE record: rows of the law, kappa, mu and the units of the caller.
-    cover_rows : numbers that only a cover has, as in :class:`Law`; None of half-spaces.
+    cover_rows : vector of the numbers that only a cover has, as in :class:`Law`; None of half-spaces.
 
-    Returns the status: 0; or 1, and all results are NaN, if V or omega is not finite or kappa |V| exceeds MAX_U.
+    Returns the status, an int: 0; or 1, and all eight results are NaN, if the dimensionless V or omega is not finite or
+    kappa |V| exceeds MAX_U.
+
+    If ``scene.unlike`` is 0, each body has half of M and of its slope.  At V = 0 M is 0; there omega other than 0 is
+    full slip, with the slopes of Q 0.  At V = omega = 0 dQ/domega and dQ/dV are infinite, but 0 in full slip (a cover).
     """
     out = carray(pointer, RESULTS)
     rows = floats_at(scene.rows, scene.row_count * ROW_SIZE)
@@ -110,10 +121,12 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
 def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> NDArray[Any]:
     """Return the user data for the C function of a law: two SCENE records, without slopes and with slopes.
 
-    law : :class:`Law` of one material; its arrays must outlive the records, which hold their addresses.
-    unlike : whether the two bodies differ, so that they take unequal parts of M.
-    kappa, mu : slenderness R/l0 and coefficient of friction.
-    scale : "V", "omega", "Q" and "M" -> the unit of this dimensionless quantity in the units of the caller.
+    law : :class:`Law` of one material, with all rows complete; its arrays must outlive the records, which hold their
+        addresses.
+    unlike : bool, whether the two bodies differ, so that they take unequal parts of M.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
+    scale : "V", "omega", "Q" and "M" -> the unit of this dimensionless quantity in the units of the caller, a float: a
+        dimensionless number times it is the caller's.
     Returns an array of shape (2,) and dtype SCENE.
     """
     cover_rows = law.cover_rows
@@ -124,8 +137,11 @@ def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[
 
 
 def c_function_address(function, record: np.dtype) -> int:
-    """Return the address, an int, of the machine code of a kernel (V, omega, pointer to results, pointer to a record)
-    -> status; ``function``: the kernel; ``record``: dtype of the record.
+    """Return the address of the machine code of a kernel for calls from C; the kernel is compiled if it is not yet.
+
+    function : the kernel (V, omega, pointer to results, pointer to a record) -> status, numba's dispatcher.
+    record : dtype of the record.
+    Returns an int, valid in this process.
     """
     arguments = types.float64, types.float64, types.CPointer(types.float64)
     return function_address(function, record, types.int32, *arguments)

@@ -74,28 +74,34 @@ _DT_DX = np.uint64(2 * TOGETHER)
 
 @inline_kernel
 def stick_argument(u, L, D):
-    """Return v = 2 u/(L - D), the argument of the functions of the stick zone; of no meaning in full slip.
+    """Return v = 2 u/(L - D), the argument of the functions of the stick zone.
 
-    u : kappa |V|.
-    L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta - delta_0|/mu; infinite in full slip.
+    u : float, kappa |V|, dimensionless, >= 0.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    Returns a float, dimensionless, >= 0 in partial slip, and 0 at u = 0.  In full slip it is -0.0, which has no meaning
+    but may be located in the rows like any other v; where rounding makes D equal to L it is infinite (NaN at u = 0).
     """
     return 2.0 * u / (L - D)
 
 
 @inline_kernel
 def traction_over_mu(position, v, u, L, D, law):
-    """Return |Q|/mu, the fraction of the friction that is used, in [0, 1].
+    """Return |Q|/mu, the fraction of the friction that is used; the fraction keeps its digits at small creepage too.
 
-    position : RowPosition of v.
-    v : argument of the stick zone, of :func:`stick_argument`.
-    u : kappa |V|.
-    L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta - delta_0|/mu; infinite in full slip, where the result is 1.
+    position : :class:`RowPosition` of v.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless; not read in full slip.
+    u : float, kappa |V|, dimensionless, >= 0.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
+
+    Returns a float in [0, 1], dimensionless: 0 at D = 0, and 1 where L - D is not above 0, which is full slip, or a
+    NaN.  From D = L/16 on it is 1 - w^2 (H/F^2)(v) with w = L - D, unless that difference is small (:func:`_cancels`);
+    else it is D [(2 L - D) (H/F^2)(v) - v L S] with the mean slope S of H/F^2 between 2 u/L and v.
     """
     w = L - D
-    if not w > 0.0:  # also where rounding puts delta_star above D
+    if not w > 0.0:  # also in partial slip so close to its end that D is rounded to L
         return 1.0
     if D >= SMALL_CREEP * L:
         value, _ = H_over_F2(position, v, law)
@@ -108,26 +114,30 @@ def traction_over_mu(position, v, u, L, D, law):
 
 @inline_kernel
 def _cancels(traction, D, L):
-    """Return whether 1 - w^2 H/F^2 has lost digits, so that the mean slope must be used.
+    """Return whether 1 - w^2 H/F^2 has lost so many digits that the form with the mean slope must be used instead.
 
-    Beyond D = L/2 the two arguments v1 and v2 may be more than one row apart, and the difference stays.
+    That is so where the difference is below 0.1 and D is below L/2.  From D = L/2 on the arguments 2 u/L and v may be
+    more than one row apart, for which the mean slope is not made, and the difference is used in spite of its rounding.
 
-    traction : |Q|/mu as that difference.
-    D : 2 kappa |delta - delta_0|/mu.
-    L : 2 kappa delta_star/mu.
+    traction : float, the difference 1 - w^2 H/F^2, which is |Q|/mu with rounding, dimensionless.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0, finite.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    Returns a bool.
     """
     return traction < 0.1 and D < 0.5 * L
 
 
 @inline_kernel
 def friction_reserve(position, v, L, D, law):
-    """Return the friction reserve 1 - |Q|/mu, in [0, 1], with all its digits where it is small; 0 in full slip.
+    """Return the friction reserve 1 - |Q|/mu, which keeps all its digits where it is small.
 
-    position : RowPosition of v.
-    v : argument of the stick zone, of :func:`stick_argument`.
-    L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta - delta_0|/mu; infinite in full slip.
+    position : :class:`RowPosition` of v.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless; not read in full slip.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns a float in [0, 1], dimensionless: (L - D)^2 (H/F^2)(v), which is 1 to rounding at D = 0; 0 where L - D is
+    not above 0, which is full slip, or a NaN.
     """
     w = L - D
     return min(w * w * H_over_F2(position, v, law)[0], 1.0) if w > 0.0 else 0.0
@@ -135,14 +145,16 @@ def friction_reserve(position, v, L, D, law):
 
 @inline_kernel
 def stick_fraction(position, v, lam, L, D, law):
-    """Return beta, the length of the stick zone divided by the contact length, in [0, 1]: 0 in full slip, 1 at D = 0.
+    """Return beta, the length of the stick zone divided by the contact length.
 
-    position : RowPosition of v.
-    v : argument of the stick zone, of :func:`stick_argument`.
-    lam : length of the contact divided by l0.
-    L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta - delta_0|/mu; infinite in full slip.
+    position : :class:`RowPosition` of v.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless; not read in full slip and at D = 0.
+    lam : float, length of the contact divided by l0, dimensionless, > 0.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns a float in [0, 1], dimensionless: exactly 1 at D = 0; 0 where L - D is not above 0, which is full slip, or a
+    NaN.
     """
     w = L - D
     if not w > 0.0:
@@ -152,13 +164,17 @@ def stick_fraction(position, v, lam, L, D, law):
 
 @inline_kernel
 def traction_slopes(u, L, dL, D, law):
-    """Return the slopes of |Q|/mu in partial slip: over u at fixed D, and over D at fixed u.
+    """Return the slopes of |Q|/mu: over u at fixed D, and over D at fixed u.
 
-    u : kappa |V|.
-    L, dL : 2 kappa delta_star/mu and its slope dL/du.
-    D : 2 kappa |delta - delta_0|/mu; infinite in full slip.
+    u : float, kappa |V|, dimensionless, >= 0.
+    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is not read at small D.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material: polynomials of each octave.
-    Returns (slope over u, slope over D), dimensionless; (0, 0) in full slip.
+    Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) where L - D is not above 0, which is full
+    slip, or a NaN.
+
+    As in :func:`traction_over_mu`, mean slopes of H/F^2 and of its slope are used where D is below L/16 or a difference
+    would lose digits; at D = 0 or u = 0 the slope over u then is 0.
     """
     w = L - D
     if not w > 0.0:
@@ -183,12 +199,17 @@ def traction_slopes(u, L, dL, D, law):
 
 @inline_kernel
 def signed_creep(L, free_creep, state, law):
-    """Return D = 2 kappa |delta - delta_0|/mu with the sign of the traction; infinite, with that sign, in full slip.
+    """Return D = 2 kappa |delta - delta_0|/mu with the sign of the traction, and infinite in full slip.
 
-    L : 2 kappa delta_star/mu.
-    free_creep : 2 kappa delta_0, with delta_0 the creepage of free rolling; 0 for half-spaces.
-    state : :class:`State`: V, kappa, mu, and delta or omega.
-    law : :class:`Law` of the material, which tells whether it is of a cover.
+    The state is in full slip where |delta - delta_0| >= delta_star, which includes omega other than 0 at V = 0 if omega
+    is given.
+
+    L : float, 2 kappa delta_star/mu at the speed of the state, dimensionless, > 0.
+    free_creep : float, 2 kappa delta_0, with delta_0 the creepage of free rolling, dimensionless; 0 for half-spaces.
+    state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
+    law : :class:`Law`, of which only ``cover_rows`` is read: whether the material is a cover (not None).
+    Returns a float, dimensionless: its sign is that of omega - V for half-spaces, that of (delta - delta_0) V for a
+    cover, where V = 0 counts as V > 0; free rolling gives 0.0 or -0.0; full slip gives inf or -inf.
     """
     slip, delta = slip_and_creepage(state)
     slip, delta = sliding_creep(slip, delta, free_creep, state, law.cover_rows)
@@ -198,30 +219,37 @@ def signed_creep(L, free_creep, state, law):
 
 @inline_kernel
 def signed_traction(position, v, u, L, D, mu, law):
-    """Return the traction Q, Eq. (15), divided by the load P, in [-mu, mu], with the sign of D.
+    """Return the traction Q, Eq. (15), divided by the load P.
 
-    position : RowPosition of v.
-    v : argument of the stick zone, of :func:`stick_argument`.
-    u : kappa |V|.
-    L : 2 kappa delta_star/mu.
-    D : 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`; infinite in full slip.
-    mu : coefficient of friction.
+    position : :class:`RowPosition` of v.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless; not read in full slip.
+    u : float, kappa |V|, dimensionless, >= 0.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`, dimensionless; inf
+        or -inf in full slip.
+    mu : float, coefficient of friction, dimensionless, > 0.
     law : :class:`Law` of the material: polynomials of each octave.
+    Returns a float in [-mu, mu], dimensionless, with the sign of D, which may be that of -0.0; mu or -mu in full slip.
     """
     return np.copysign(mu * traction_over_mu(position, v, u, L, abs(D), law), D)
 
 
 @inline_kernel
 def Q_slopes(u, L, dL, D, state, law):
-    """Return the slopes of the traction Q, divided by the load P.
+    """Return the slopes of the traction Q, divided by the load P, over speed, creepage and angular velocity.
 
-    u : kappa |V|.
-    L, dL : 2 kappa delta_star/mu and its slope dL/du.
-    D : 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`; infinite in full slip.
-    state : :class:`State`: V, kappa, mu, and delta or omega.
+    u : float, kappa |V|, dimensionless, >= 0.
+    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless.
+    D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`, dimensionless; inf
+        or -inf in full slip.
+    state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
     law : :class:`Law` of the material: polynomials of each octave.
-    Returns (dQ/dV, dQ/ddelta, dQ/domega), dimensionless; the first at fixed delta or omega, whichever ``state`` has,
-    the others at fixed V; zeros in full slip.
+
+    Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta or at fixed omega,
+    whichever ``state`` has, the others at fixed V.  All are 0 where D is infinite.  In partial slip at V = 0 the last
+    is infinite, since omega = V (1 + delta) then changes delta without bound, and so is the first if omega is given.
+
+    A state of partial slip whose D is rounded to L has dQ/ddelta = 0, and dQ/domega = 0, or NaN at V = 0.
     """
     if abs(D) == np.inf:
         return 0.0, 0.0, 0.0
@@ -237,13 +265,17 @@ def Q_slopes(u, L, dL, D, state, law):
 
 @inline_kernel
 def _index(k, request):
-    """Return the index of the state at place ``k`` in the order of evaluation of a :class:`Request`."""
+    """Return the index of the state at position ``k``, an int >= 0, in the order of evaluation: ``request.order[k]``,
+    or k itself if ``order`` of the :class:`Request` is empty.
+    """
     return request.order[np.uint64(k)] if request.order.size > 0 else k
 
 
 @inline_kernel
 def _state(c, scratch, request):
-    """Return the :class:`State` in column ``c`` of the scratch."""
+    """Return the :class:`State` of numbers in column ``c``, unsigned, of ``scratch``, (SCRATCH_SIZE,), as of
+    :func:`contact_loop`; ``creep_is_omega`` is that of the states of ``request``.
+    """
     return State(
         scratch[_KAPPA + c], scratch[_MU + c], scratch[_V + c], scratch[_CREEP + c], request.states.creep_is_omega
     )  # fmt: skip
@@ -251,13 +283,17 @@ def _state(c, scratch, request):
 
 @inline_kernel
 def _write_positions(arguments, positions, begin, end, laws, scratch):
-    """Write the positions in the rows of the law of the arguments u or v of some states.
+    """Locate the arguments u or v of some states of a block in the rows of their laws, and write the positions into the
+    scratch.
 
-    arguments : index in ``scratch`` of the arguments, _U or _STICK.
-    positions : index in ``scratch`` of the positions, _POSITION or _STICK_POSITION: rows, then t, then dt/dx.
-    begin, end : int, first column (state of a block), and the one behind the last.
-    laws : tuple of :class:`Law`; state k of a block belongs to law k modulo their number.
-    scratch : (SCRATCH_SIZE,), of :func:`contact_loop`, written.
+    arguments : unsigned int, index in ``scratch`` of the arguments of column 0: _U or _STICK.
+    positions : unsigned int, index in ``scratch`` of the positions: _POSITION for u, _STICK_POSITION for v.
+    begin, end : int, first column, which is the place of a state in its block, and the one after the last.
+    laws : tuple of :class:`Law`; the state in column k belongs to law k modulo their number, which must have its
+        material selected.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.  Three numbers a state are written: at ``positions`` the
+        number of its row, an int whose bits are stored as a double; TOGETHER numbers further t; again TOGETHER further
+        dt/dx.
     """
     for k in range(begin, end):
         c = np.uint64(k)
@@ -269,19 +305,27 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
 
 @inline_kernel
 def _position(place, c, scratch):
-    """Return the :class:`RowPosition` of column ``c`` that :func:`_write_positions` has written at ``place``."""
+    """Return the :class:`RowPosition` of column ``c``, unsigned, of ``scratch``; ``place``: _POSITION for u or
+    _STICK_POSITION for v, where :func:`_write_positions` has written it.
+    """
     return RowPosition(float_to_bits(scratch[place + c]), scratch[place + _T + c], scratch[place + _DT_DX + c])
 
 
 @inline_kernel
 def _write_other_fields(n, c, law, scratch, request):
-    """Write the requested quantities of a state except Q and M into ``request.out``.
+    """Write the requested quantities of a state, except Q and M, into ``request.out``.
 
     n : int, index of the state.
-    c : its column in ``scratch``, 0 to TOGETHER - 1, unsigned.
-    law : :class:`Law` of the material of the state.
-    scratch : (SCRATCH_SIZE,), of :func:`contact_loop`, after all its stages.
-    request : :class:`Request` of states and quantities, with the output array, written.
+    c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
+    law : :class:`Law` with the material of the state selected; without rows of the moments of the bodies
+        (:mod:`.alpha_axis`) none of these four may be requested.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`, after all its stages; not changed.
+    request : :class:`Request` of states and quantities; of ``out`` the numbers of state n in the rows of the requested
+        quantities are written, dimensionless.
+
+    At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip ``full_slip`` is 1.0 (else 0.0),
+    and grip, beta and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded to
+    L.  ``dQ_dV`` is at fixed delta or omega, whichever the states have (:func:`Q_slopes`).
     """
     to = request.to
     state = _state(c, scratch, request)
@@ -324,18 +368,23 @@ def _write_other_fields(n, c, law, scratch, request):
 def contact_loop(laws, request, scratch, count):
     """Evaluate the law at ``count`` states and write what is requested, in the units of docs/symbols.md for a scene.
 
-    laws : tuple of :class:`Law`: one of all states; or of states that have a law of their own, as many records as are
-        evaluated together, each with one material selected at a time.
-    request : :class:`Request`: ``states`` (one number for all or for each), ``order`` of evaluation, ``to`` (for each
-        quantity its row of ``out``, -1 if not requested), ``out``, (quantities, states), written from column ``first``
-        on.
-    scratch : (SCRATCH_SIZE,), written.
-    count : int, number of states.
+    laws : tuple of :class:`Law`.  States of one material have one law, whose rows are complete.  If every state has a
+        material of its own, these are as many laws as states are evaluated together, each with one material selected at
+        a time; the loop selects them.
+    request : :class:`Request`: ``states`` (arrays of length 1 or with one number for each state), ``order`` of
+        evaluation, ``to`` (for each quantity its row of ``out``, -1 if it is not requested), ``out``, (quantities,
+        columns), of which column ``first`` + n is written for state n.
+    scratch : (SCRATCH_SIZE,) doubles, overwritten.
+    count : int, number of states, >= 0; with an ``order`` its first ``count`` entries are evaluated, else the states 0
+        to ``count`` - 1.
 
-    The states pass through the stages in blocks: their numbers are copied; then come the positions in the rows, the
-    polynomials of the speed, creepage and position of v, and the polynomials of the traction.  Each stage is a short
-    loop over the states of a block.  So the processor works on several states at once, stages without polynomials are
-    compiled to vector instructions, and what is requested is tested once for a block.
+    The kernel returns nothing.  What each quantity is at V = 0 and in full slip is said at :func:`signed_traction` and
+    :func:`_write_other_fields`; M is 0 at V = 0 and has the sign of V.
+
+    The states pass through the stages in blocks of TOGETHER: their numbers are copied; then come the positions in the
+    rows, the polynomials of the speed, creepage and position of v, and the polynomials of the traction.  Each stage is
+    a short loop over the states of a block.  So the processor works on several states at once, stages without
+    polynomials are compiled to vector instructions, and what is requested is tested once for a block.
     """
     to = request.to
     others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)

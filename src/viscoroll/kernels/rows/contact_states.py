@@ -26,8 +26,11 @@ SCRATCH_SIZE = 15 * TOGETHER
 class State(NamedTuple):
     """One state of the contact, dimensionless; or arrays of states, each of length 1 or with one value for each.
 
-    kappa : R/l0, slenderness.  mu : coefficient of friction.  V : speed of the axis.
-    creep : creepage delta, or angular velocity omega.  creep_is_omega : whether ``creep`` is omega; one for all.
+    kappa : R/l0, slenderness.
+    mu : coefficient of friction.
+    V : speed of the axis, of any sign.
+    creep : creepage delta = (omega - V)/V, or angular velocity omega, of any sign.
+    creep_is_omega : whether ``creep`` is omega; one bool for all states.
     """
 
     kappa: Any
@@ -43,7 +46,7 @@ class Request(NamedTuple):
     states : a :class:`State` of arrays, each of length 1 or with one number for each state.
     order : numbers of the states in the order of evaluation, int; empty: in their own order.
     to : :class:`Fields`, for each quantity its row of ``out``, -1 if it is not requested.
-    out : (requested quantities, states), dimensionless, written.
+    out : (requested quantities, columns), dimensionless, written; state n has column ``first`` + n.
     first : int, column of ``out`` for state 0.
     """
 
@@ -56,13 +59,17 @@ class Request(NamedTuple):
 
 @inline_kernel
 def element(values, n):
-    """Return element ``n`` of an array that has one value for all or one each."""
+    """Return element ``n``, an int, of an array ``values``: of one of length 1, whose value holds for all n, its only
+    element.
+    """
     return values[np.uint64(n * (values.size > 1))]
 
 
 @inline_kernel
 def read_state(states, n):
-    """Return the :class:`State` with number ``n`` of ``states``, a :class:`State` of arrays."""
+    """Return the :class:`State` of numbers with index ``n``, an int, of ``states``, a :class:`State` of arrays, of
+    which those of length 1 hold for all states.
+    """
     return State(
         element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),
         states.creep_is_omega,
@@ -71,12 +78,13 @@ def read_state(states, n):
 
 @inline_kernel
 def write_field(row, value, n, request):
-    """Write a quantity of a state, if it is requested.
+    """Write a quantity of a state into the output, if it is requested.
 
-    row : int, row of the output: a field of the :class:`Fields` of ``request``; below 0 nothing is written.
-    value : the quantity, dimensionless.
-    n : int, index of the state.
-    request : :class:`Request` of states and quantities, with the output array.
+    row : int, row of ``request.out``: a field of the :class:`Fields` of ``request``; if it is below 0, nothing is
+        written.
+    value : float, the quantity, dimensionless.
+    n : int, index of the state; its column is n + ``request.first``.
+    request : :class:`Request` of states and quantities, of whose ``out`` one number is written.
     """
     if row >= 0:
         request.out[np.uint64(row), np.uint64(n + request.first)] = value
@@ -84,12 +92,13 @@ def write_field(row, value, n, request):
 
 @inline_kernel
 def slip_and_creepage(state):
-    """Return slip and creepage of a state, whichever of creepage and omega it has.
+    """Return the direction of slip and the creepage of a state, whichever of creepage and omega it has.
 
-    state : :class:`State`, of numbers: V, kappa, mu, and delta or omega.
-    Returns (slip, delta): a number with the sign of omega - V, which is that difference only where omega is given; the
-    creepage (omega - V)/V.  V = 0 counts as V -> 0+: where omega is given, delta is 0 if omega is 0 too, else infinite
-    with the sign of omega.
+    state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
+
+    Returns (slip, delta), floats, dimensionless.  If omega is given, slip is omega - V; if delta is given, it is delta,
+    or -delta for V < 0, which has the sign of omega - V but not its size.  delta is the creepage (omega - V)/V.  V = 0
+    counts as V -> 0+: if omega is given, delta is 0 for omega = 0 and else infinite with the sign of omega.
     """
     V = state.V
     creep = state.creep

@@ -1,4 +1,4 @@
-"""What the law of a cover of finite thickness has beside its rows: the creep of free rolling and its own fast limit.
+"""What the law of a cover of finite thickness has besides its rows: the creep of free rolling and its own fast limit.
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0, and numba compiles
 nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law 2
@@ -14,15 +14,15 @@ import numpy as np
 from ..compile.jit import inline_kernel
 from .simd_polynomial import TERMS, evaluate_pair
 
-#: Index in the head: lam as u -> infinity; behind it the coefficient of 1/u.
+#: Index in the head: lam as u -> infinity; after it the coefficient of 1/u.
 _LAM = 0
-#: Index in the head: 2 kappa delta_0 as u -> infinity; behind it the coefficient of 1/u.
+#: Index in the head: 2 kappa delta_0 as u -> infinity; after it the coefficient of 1/u.
 _FREE = 2
 #: Index in the head: epsilon u as u -> infinity.
 _EPSILON = 4
 #: Index in the head: 2 M u^2/(V L) as u -> infinity.
 _MOMENT = 5
-#: Index in the head: eta/F as v -> infinity; behind it the coefficient of 1/v.
+#: Index in the head: eta/F as v -> infinity; after it the coefficient of 1/v.
 _SHARE = 6
 #: Numbers of the head.
 COVER_FRONT_SIZE = 8
@@ -31,11 +31,14 @@ COVER_ROW_SIZE = 2 * TERMS
 
 
 class FreeCreep(NamedTuple):
-    """What the creep of free rolling adds to the kinematics omega = V (1 + delta_0 + k L d), k = mu/(2 kappa).
+    """Parts that the creepage of free rolling, delta_0, adds to the kinematics omega = V (1 + delta_0 + k L d).
+
+    Here k = mu/(2 kappa) and L = 2 kappa delta_star/mu; d is (delta - delta_0)/delta_star.  All parts are
+    dimensionless.
 
     creep : delta_0.
-    aside : d(V delta_0)/dV divided by k d(u L)/du, a shift of d.
-    bend : d^2(u delta_0)/du^2 divided by k.
+    aside : d(V delta_0)/dV divided by k d(u L)/du, by which d is shifted.
+    bend : d^2(u delta_0)/du^2 divided by k, with u = kappa |V|.
     """
 
     creep: float
@@ -45,11 +48,15 @@ class FreeCreep(NamedTuple):
 
 @inline_kernel
 def fast_moment(shift, u, cover_rows):
-    """Return M/V, divided by its scale, behind the last row of the law, where the fast limit holds.
+    """Return M/V divided by z, without the term alpha z W/8 of :func:`.evaluate._fast_terms`, in the fast limit.
 
-    shift : M/V of a half-space, dimensionless, which is the result if ``cover_rows`` is None.
-    u : kappa |V|, dimensionless.
-    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
+    The fast limit holds beyond the last row of the law, and z = lam_fast/(2 u) is the ``scale`` of M/V there.
+
+    shift : float, this part of a half-space, dimensionless, which is the result if ``cover_rows`` is None; else not
+        read.
+    u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
+    Returns a float, dimensionless; it falls as 1/u.
     """
     if cover_rows is None:
         return shift
@@ -58,12 +65,13 @@ def fast_moment(shift, u, cover_rows):
 
 @inline_kernel
 def fast_lengths(lam, shift, u, cover_rows):
-    """Return length and shift of the contact behind the last row of the law, where the fast limit holds.
+    """Return length and shift of the contact beyond the last row of the law, where the fast limit holds.
 
-    lam, shift : length divided by l0 and shift epsilon of a half-space, which are the result if ``cover_rows`` is None.
-    u : kappa |V|, dimensionless.
-    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
-    Returns (lam, epsilon), dimensionless.
+    lam, shift : floats, length divided by l0 and shift epsilon of a half-space, dimensionless, which are the result if
+        ``cover_rows`` is None; else not read.
+    u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
+    Returns (lam, epsilon), floats, dimensionless; epsilon is in half contact lengths.
     """
     if cover_rows is None:
         return lam, shift
@@ -72,11 +80,13 @@ def fast_lengths(lam, shift, u, cover_rows):
 
 @inline_kernel
 def fast_eta_over_F(eta_over_F, v, cover_rows):
-    """Return eta/F behind the last row of the law, where the fast limit holds; dimensionless.
+    """Return eta/F beyond the last row of the law, where the fast limit holds.
 
-    eta_over_F : eta/F of a half-space, which is the result if ``cover_rows`` is None.
-    v : 1/F(eta), dimensionless.
-    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
+    eta_over_F : float, eta/F of a half-space, dimensionless, which is the result if ``cover_rows`` is None; else not
+        read.
+    v : float, 1/F(eta), dimensionless, > 0, which may be infinite; read of a cover alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
+    Returns a float, dimensionless; of a cover its limit lam/L for v -> infinity and a term in 1/v.
     """
     if cover_rows is None:
         return eta_over_F
@@ -85,12 +95,14 @@ def fast_eta_over_F(eta_over_F, v, cover_rows):
 
 @inline_kernel
 def free_creep_at(position, u, cover_rows):
-    """Return 2 kappa delta_0, from the creepage delta_0 of free rolling, with its derivatives in u.
+    """Return 2 kappa delta_0, from the creepage delta_0 of free rolling, with its derivatives over u.
 
-    position : :class:`.evaluate.RowPosition` of u in the rows of the law.
-    u : kappa |V|, dimensionless.
-    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
-    Returns (value, first derivative, second derivative), dimensionless; zeros for half-spaces.
+    position : :class:`.evaluate.RowPosition` of u in the rows of the law; beyond the last row the value is a limit and
+        a term in 1/u.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
+    Returns (value, first derivative, second derivative), floats, dimensionless; a cover on the cylinder has the other
+    sign than the same on the base; all are 0.0 for half-spaces.
     """
     if cover_rows is None:
         return 0.0, 0.0, 0.0
@@ -104,14 +116,18 @@ def free_creep_at(position, u, cover_rows):
 
 @inline_kernel
 def sliding_creep(slip, delta, free_creep, state, cover_rows):
-    """Return the part of slip and creepage that causes the traction: delta less that of free rolling.
+    """Return slip and creepage that cause the traction: for a cover without those of free rolling.
 
-    slip : a number with the sign of omega - V.
-    delta : creepage (omega - V)/V; may be infinite at V = 0.
-    free_creep : 2 kappa delta_0, with delta_0 the creepage of free rolling.
-    state : :class:`.contact_states.State`, of which kappa and the sign of V are read.
-    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
-    Returns (a number with the sign of the traction, creepage delta - delta_0); slip and delta for half-spaces.
+    slip : float, a number with the sign of omega - V, of :func:`.contact_states.slip_and_creepage`; not read for a
+        cover.
+    delta : float, creepage (omega - V)/V, dimensionless; infinite at V = 0 if omega is given and not 0.
+    free_creep : float, 2 kappa delta_0, with delta_0 the creepage of free rolling, dimensionless; read of a cover
+        alone.
+    state : :class:`.contact_states.State`, of which kappa and the sign of V are read, of a cover alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
+    Returns (a float with the sign of the traction, delta - delta_0), dimensionless.  Of a cover the first is delta -
+    delta_0 with the sign of V, where V = 0.0 counts as V > 0; of half-spaces the two are ``slip`` and ``delta`` as
+    given.
     """
     if cover_rows is None:
         return slip, delta
@@ -121,12 +137,16 @@ def sliding_creep(slip, delta, free_creep, state, cover_rows):
 
 @inline_kernel
 def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
-    """Return dQ/dV at fixed creepage delta, dimensionless.
+    """Return dQ/dV at fixed creepage delta, from that at fixed delta - delta_0, the creepage less that of free rolling.
 
-    dQ_dV : slope at fixed delta - delta_0, the creepage less that of free rolling.
-    dQ_ddelta : slope with respect to the creepage.
-    free_slope : slope of 2 kappa delta_0 with respect to u = kappa |V|.
-    cover_rows : numbers that only a cover has, a vector as in the module; None, for half-spaces, leaves dQ_dV as it is.
+    A cover's delta_0 changes with the speed, so that the traction changes too while delta stays.  Q is in units of P.
+
+    dQ_dV : float, slope at fixed delta - delta_0, dimensionless.
+    dQ_ddelta : float, slope over the creepage for motion with V > 0, dimensionless, >= 0.
+    free_slope : float, slope of 2 kappa delta_0 over u = kappa |V|, dimensionless.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None, for half-spaces, leaves dQ_dV as
+        it is.
+    Returns a float, dimensionless.
     """
     if cover_rows is None:
         return dQ_dV
@@ -138,12 +158,13 @@ def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
     """Return what the creepage of free rolling adds to the kinematics of partial slip at one speed.
 
     position : :class:`.evaluate.RowPosition` of u in the rows of the law.
-    u : kappa |V|, dimensionless.
-    kappa : slenderness R/l0.
-    k : mu/(2 kappa), dimensionless.
-    uL_slope : d(u L)/du, where L = 2 kappa delta_star/mu.
-    cover_rows : numbers that only a cover has, a vector as in the module; None for half-spaces.
-    Returns :class:`FreeCreep`; its parts are -0.0 for half-spaces, which a compiler leaves out of sums.
+    u : float, kappa |V|, dimensionless, >= 0.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    k : float, mu/(2 kappa), dimensionless, > 0.
+    uL_slope : float, d(u L)/du, where L = 2 kappa delta_star/mu, dimensionless, > 0.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces, of which no other
+        argument is read.
+    Returns :class:`FreeCreep` of floats; its parts are -0.0 for half-spaces, which a compiler leaves out of sums.
     """
     if cover_rows is None:
         return FreeCreep(-0.0, -0.0, -0.0)

@@ -1,4 +1,4 @@
-"""The functions of the law, evaluated from its rows and, behind the last row, by the fast limit.
+"""The functions of the law, evaluated from its rows and, beyond the last row, by the fast limit.
 
     record.select_material(law, n)          ``law`` is now that of motion or state n
     position = locate_row(x, law)           row of x = u = kappa |V|, or of x = v = 1/F(eta) = 2 u/(L - D)
@@ -13,7 +13,7 @@ thread, which makes it for a block of states or motions.
 Such a law has one material selected at a time.  ``select_material`` gives a new material the next version number and
 writes its head; nothing else is touched.  A part of a row bears the version that it was made for.  A reader that finds
 another one calls the maker by its address.  So nothing is cleared from motion to motion, and a motion pays only for the
-parts that it reads.  A part depends on its material alone, not on what was read before. Select the material before the
+parts that it reads.  A part depends on its material alone, not on what was read before.  Select the material before the
 first ``locate_row``: positions of another material mean nothing.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
@@ -22,10 +22,12 @@ Terms of this file:
 
 - u = kappa |V|: dimensionless speed, >= 0.  L = lam (1 + epsilon) = 2 kappa delta_star/mu.
 - D = 2 kappa |delta|/mu: creepage, of a cover less that of free rolling; D < L in partial slip.
-- zeta, eta: half the transit time of the contact and of its stick zone.  F(z) = z + g(z) and H(z) = z^2 + 2 z h(z) with
-  functions g and h of the material (:mod:`.rows`): Eq. (10) is F(eta) = (L - D)/(2 u), and v = 1/F(eta), >= 0.
-- Fast limit: the expansion of the functions for large u or v, used behind the last row.  Its numbers in the head of the
-  rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).
+- zeta, eta: half the transit time of the contact and of its stick zone, divided by the unit of time of the law, which
+  is T_epsilon of one relaxation time and T_ref of a series.  F(z) = z + g(z) and H(z) = z^2 + 2 z h(z) with functions
+  g and h of the material (:mod:`.rows`): Eq. (10) is F(eta) = (L - D)/(2 u), and v = 1/F(eta), >= 0.
+- Fast limit: the expansion of the functions for large u or v, used beyond the last row.  Its numbers in the head of the
+  rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).  A cover has 1/L^2, L, 0
+  and a number for C in their place, with L in its limit u -> infinity, so that the same formulas hold.
 """
 
 from typing import NamedTuple
@@ -52,7 +54,7 @@ from .record import (
 )  # fmt: skip
 from .simd_polynomial import evaluate_pair, evaluate_secants, evaluate_single
 
-#: Row of a position behind the last row, where the fast limit holds.
+#: Row of a position beyond the last row, where the fast limit holds.
 FAST_LIMIT = -1
 #: Biased exponent of 1/2 in the bits of a double.
 _EXPONENT_OF_HALF = 1022
@@ -65,8 +67,9 @@ _BITS_OF_3 = 0x4008 << 48
 class RowPosition(NamedTuple):
     """Position of a variable x = u or v in the rows.
 
-    row : number of the row, or :data:`FAST_LIMIT`.  t : argument of its polynomials, in [-1, 1), of row 0 in [0, 1).
-    dt_dx : slope of t over x.
+    row : int, number of the row, or :data:`FAST_LIMIT` = -1 beyond the last one.
+    t : argument of its polynomials, in [-1, 1), of row 0 in [0, 1); not to be read with FAST_LIMIT.
+    dt_dx : slope of t over x; not to be read with FAST_LIMIT.
     """
 
     row: int
@@ -78,8 +81,9 @@ class LengthAndMoment(NamedTuple):
     """L = 2 kappa delta_star/mu and M/V at one speed, dimensionless.
 
     L, dL, ddL : L and its first two derivatives over u.
-    m : M/V divided by ``scale``.  scale : 1, or z in the fast limit, where M/V itself may underflow.
-    d_um : d(u M/V)/du = dM/dV.
+    m : M/V divided by ``scale``.
+    scale : 1; in the fast limit z = lam_fast/(2 u), since M/V itself may underflow there.
+    d_um : d(u M/V)/du = dM/dV, not divided by ``scale``.
     """
 
     L: float
@@ -94,11 +98,13 @@ class LengthAndMoment(NamedTuple):
 def locate_octave(x, e0):
     """Return the position of x in rows that span one octave each.
 
-    x : argument, >= 0.
+    x : float, >= 0, dimensionless.
     e0 : int, binary exponent; row 0 spans [0, 2^e0), row n > 0 spans [2^(e0 + n - 1), 2^(e0 + n)).
 
-    Returns (row, t, dt/dx): number of the row, an int without upper bound; argument of its polynomials, in [0, 1) in
-    row 0, else in [-1, 1); slope of that argument.
+    Returns (row, t, dt/dx).  row: int, number of the row, without upper bound, as the number of rows of a law is not
+    known here.  t: float, argument of its polynomials: x 2^-e0, in [0, 1), in row 0, else in [-1, 1).  dt/dx: float,
+    slope of t, constant in a row.  An infinite x is beyond the rows of every law; a NaN is in row 0 or beyond all rows,
+    by its sign bit; t of both is NaN.
     """
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
     # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
@@ -110,14 +116,19 @@ def locate_octave(x, e0):
 
 @inline_kernel
 def locate_row(x, law):
-    """Return the :class:`RowPosition` of x >= 0, which is u or v, in the rows of ``law``."""
+    """Return the :class:`RowPosition` of u or v in the rows of a law.
+
+    x : float, u or v, dimensionless, >= 0.
+    law : :class:`Law`, with its material selected, of whose ``marks`` e0 and the number of rows are read.
+    Returns the position; its row is :data:`FAST_LIMIT` beyond the last row, also for infinity.  A NaN has t NaN.
+    """
     row, t, dt_dx = locate_octave(x, law.marks[E0])
     return RowPosition(row if row < law.marks[ROW_COUNT] else FAST_LIMIT, t, dt_dx)
 
 
 @inline_kernel
 def in_fast_limit(position):
-    """Return whether a :class:`RowPosition` lies behind the last row."""
+    """Return whether a :class:`RowPosition` lies beyond the last row, in the fast limit."""
     return unlikely(position.row < 0)
 
 
@@ -126,15 +137,17 @@ def in_fast_limit(position):
 
 @inline_kernel
 def _fast_terms(u, body, law):
-    """Return the terms of the fast limit, the expansion for u beyond the last row.
+    """Return the terms of which the fast limit, the expansion of the functions for u beyond the last row, consists.
 
-    u : kappa |V|, > 0.
-    body : FAST_TOTAL, FAST_HALF_SPACE or FAST_CYLINDER, the index in the head of the rows of W of both bodies or of
-        one; C follows.
+    u : float, kappa |V|, dimensionless, > 0 and finite.
+    body : int, index in the head of the rows: FAST_TOTAL for both bodies, FAST_HALF_SPACE or FAST_CYLINDER for one.  W
+        of it is at this index, C at the next one.
     law : :class:`Law` of the material.
 
-    Returns (z, shift, part): z = zeta; shift = (alpha z/2) (C - W ln z), which with W and C of both bodies is the
-    epsilon of a half-space; part = alpha z W/8.
+    Returns (z, shift, part), floats, dimensionless: z = lam_fast/(2 u), which is zeta in the limit; shift = (alpha z/2)
+    (C - W ln z); part = alpha z W/8.  With W and C of both bodies shift is epsilon of a half-space, and of a cover the
+    relative change of L; with those of one body shift + part is its M/V divided by z.  Of a cover part is 0; of elastic
+    bodies both are 0.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[body]
@@ -147,11 +160,13 @@ def _fast_terms(u, body, law):
 def length_and_moment(position, u, law):
     """Return L = 2 kappa delta_star/mu, M/V and their slopes at u, as :class:`LengthAndMoment`.
 
-    position : :class:`RowPosition` of u: row and argument t in it.
-    u : kappa |V|.
+    position : :class:`RowPosition` of u, in which the polynomials are evaluated.
+    u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is read for ``d_um`` alone.
     law : :class:`Law` of the material: polynomials of each octave.
 
-    The compiler leaves out the fields that a caller does not read.
+    Returns floats.  ``m`` is M/V itself in the rows, with ``scale`` 1, and beyond the last row M/V divided by z, with
+    ``scale`` z.  At u = 0 L of half-spaces is 1 and M/V has its finite limit; of elastic bodies M/V is 0.  The compiler
+    leaves out the fields that a caller does not read.
     """
     if in_fast_limit(position):
         lam = law.rows[LAM_FAST]
@@ -168,12 +183,13 @@ def length_and_moment(position, u, law):
 
 @inline_kernel
 def moment_factor(position, u, scale, state):
-    """Return the factor that turns m, which is M/V divided by ``scale``, into M: V, or V z in the fast limit.
+    """Return the factor by which m, which is M/V divided by ``scale``, becomes M: V, or V z in the fast limit.
 
-    position : :class:`RowPosition` of u: row and argument t in it.
-    u : kappa |V|.
-    scale : ``scale`` of the :class:`LengthAndMoment` at u: 1, or z in the fast limit.
+    position : :class:`RowPosition` of u, which tells whether u is beyond the last row.
+    u : float, kappa |V|, dimensionless, >= 0; not read in the rows.
+    scale : float, ``scale`` of the :class:`LengthAndMoment` at u: 1, or z in the fast limit; not read in the rows.
     state : :class:`State`, of which V (with its sign) and kappa are read.
+    Returns a float with the sign of V, dimensionless.
     """
     return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
 
@@ -182,10 +198,11 @@ def moment_factor(position, u, scale, state):
 def lam_and_epsilon(position, u, law):
     """Return length and shift of the contact at u, Eqs. (6) and (8).
 
-    position : :class:`RowPosition` of u: row and argument t in it.
-    u : kappa |V|.
+    position : :class:`RowPosition` of u, in which the polynomials are evaluated.
+    u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is not read.
     law : :class:`Law` of the material: polynomials of each octave.
-    Returns (lam, epsilon): length divided by l0; shift in half contact lengths.
+    Returns (lam, epsilon), floats, dimensionless: length divided by l0, in (0, 1] for half-spaces; shift in half
+    contact lengths, 0 at u = 0 and for elastic bodies.
     """
     if in_fast_limit(position):
         _, shift, _ = _fast_terms(u, FAST_TOTAL, law)
@@ -195,14 +212,16 @@ def lam_and_epsilon(position, u, law):
 
 @inline_kernel
 def body_moments(position, u, law):
-    """Return the parts of M/V that half-space and cylinder take, and of its slope d(u M/V)/du = dM/dV.
+    """Return the parts of M/V that half-space and cylinder take, and their slopes d(u M/V)/du = dM/dV.
 
-    position : :class:`RowPosition` of u: row and argument t in it.
-    u : kappa |V|.
-    law : :class:`Law` of the material: polynomials of each octave.
+    position : :class:`RowPosition` of u, in which the polynomials are evaluated.
+    u : float, kappa |V|, dimensionless, >= 0 and finite.
+    law : :class:`Law` of the material, not one of the axis of alpha (:mod:`.alpha_axis`), which has no rows of these
+        parts: there each is half of M/V.
 
-    Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), dimensionless; the first two are
-    divided by ``scale`` of the :class:`LengthAndMoment` at u, the slopes are not.
+    Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), floats, dimensionless; the first
+    two are divided by ``scale`` of the :class:`LengthAndMoment` at u, which is 1 in the rows and z in the fast limit;
+    the slopes are not.  Of a cover the body without the layer has 0.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
@@ -216,7 +235,12 @@ def body_moments(position, u, law):
 
 @inline_kernel
 def free_creep_and_slopes(u, law):
-    """Return 2 kappa delta_0 and its first two derivatives over u = kappa |V|; zeros of half-spaces, at no cost."""
+    """Return 2 kappa delta_0, from the creepage of free rolling, with its first two derivatives over u.
+
+    u : float, kappa |V|, dimensionless, >= 0.
+    law : :class:`Law` of the material.
+    Returns (value, first derivative, second derivative), floats, dimensionless; 0.0 each of half-spaces, at no cost.
+    """
     return free_creep_at(locate_row(u, law), u, law.cover_rows)
 
 
@@ -224,9 +248,10 @@ def free_creep_and_slopes(u, law):
 def limits_at_rest(kappa, law):
     """Return L = 2 kappa delta_star/mu and the creepage of free rolling in the limit V -> 0.
 
-    kappa : slenderness R/l0.
+    kappa : float, slenderness R/l0, dimensionless, > 0; not read for half-spaces.
     law : :class:`Law` of the material: polynomials of each octave.
-    Returns (L, delta_0), dimensionless; (1, -0.0) for half-spaces.
+    Returns (L, delta_0), floats, dimensionless; for half-spaces (1.0, -0.0), of which a compiler leaves the second out
+    of sums.
     """
     if law.cover_rows is None:
         return 1.0, -0.0
@@ -240,8 +265,13 @@ def limits_at_rest(kappa, law):
 
 @inline_kernel
 def _half_space_eta_over_F(y, law):
-    """Return (eta/F, minus its slope over y) of a half-space in the fast limit; ``y``: F(eta) = 1/v, >= 0; ``law``:
-    :class:`Law` of the material.
+    """Return eta/F of a half-space in the fast limit, 1 - (alpha y/2) (C - W ln y), and minus its slope over y.
+
+    y : float, F(eta) = 1/v, dimensionless, >= 0.
+    law : :class:`Law` of the material, of whose head alpha, W and C of both bodies are read.
+
+    Returns (eta/F, -d(eta/F)/dy), floats, dimensionless.  At y = 0 the first is 1; the second is -alpha W/2 there,
+    which is a placeholder, as the slope is infinite for W > 0.  Its users multiply it by a power of y, which is 0.
     """
     half = 0.5 * law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]
@@ -251,11 +281,16 @@ def _half_space_eta_over_F(y, law):
 
 @inline_kernel
 def eta_over_F(position, v, law):
-    """Return eta/F, dimensionless; eta = beta zeta is half the transit time of the stick zone, Eq. (10), and F = 1/v.
+    """Return eta/F, from which the stick zone follows; unlike eta it is bounded for every v.
 
-    position : :class:`RowPosition` of v: row and argument t in it.
-    v : 1/F(eta), >= 0.
-    law : :class:`Law` of the material: polynomials of each octave.
+    eta = beta zeta is half the transit time of the stick zone, Eq. (10), and F = 1/v, so that beta = (eta/F)/(v zeta).
+    A law whose rows are made when they are needed computes the row, if it is missing, and stores it in ``law``.
+
+    position : :class:`RowPosition` of v, in which the polynomial is evaluated.
+    v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
+    law : :class:`Law` of the material, of which the polynomials of eta/F are read.
+    Returns a float, dimensionless: for half-spaces it is in (0, 1], and 1 at v = 0 and at infinity; for a cover it is
+    lam/L of the speed at which v = 2 u/L.
     """
     if in_fast_limit(position):
         return fast_eta_over_F(_half_space_eta_over_F(1.0 / v, law)[0], v, law.cover_rows)
@@ -266,12 +301,13 @@ def eta_over_F(position, v, law):
 def H_over_F2(position, v, law):
     """Return the function H/F^2 of v, which gives the traction, and its slope over v.
 
-    position : :class:`RowPosition` of v: row and argument t in it.
-    v : 1/F(eta), >= 0.
+    position : :class:`RowPosition` of v, in which the polynomial is evaluated.
+    v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
     law : :class:`Law` of the material: polynomials of each octave.
 
-    |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta|)/mu.
-    Returns (value, slope), dimensionless.
+    The traction is |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta - delta_0|)/mu.
+    Returns (value, slope), floats, dimensionless.  For half-spaces the value goes from 1 at v = 0 to alpha at infinity;
+    it is 1/L^2 at v = 2 u/L for every material.
     """
     if in_fast_limit(position):
         alpha = law.rows[ALPHA]
@@ -286,13 +322,15 @@ def H_over_F2(position, v, law):
 def H_over_F2_secants(position, near, v, x, law):
     """Return H/F^2 and its slope at v, and the mean slopes of both between v/(1 + x) and v, without cancellation.
 
-    position : :class:`RowPosition` of v: row and argument t in it.
-    near : :class:`RowPosition` of v/(1 + x), in the same row or in the one before.
-    v : 1/F(eta), >= 0.
-    x : ratio of v to the other argument, less 1; >= 0, and 0 gives the slopes at v.
+    position : :class:`RowPosition` of v.
+    near : :class:`RowPosition` of v/(1 + x), in the same row or in the one before; not read where v is beyond the last
+        row, as the fast limit then serves the whole interval.
+    v : float, 1/F(eta), dimensionless, >= 0.
+    x : float, ratio of v to the other argument, less 1, dimensionless, in [0, 1]; 0 gives the slopes at v.
     law : :class:`Law` of the material: polynomials of each octave.
 
-    Returns (value, slope, mean slope of the value, mean slope of the slope), over v, dimensionless.
+    Returns (value, slope, mean slope of the value, mean slope of the slope), floats, all over v, dimensionless.  Where
+    the ends are in two rows, a mean slope is that of either row weighted by its share of the interval.
     """
     if in_fast_limit(position):
         return *H_over_F2(position, v, law), *_fast_secants(v, x, law)
@@ -316,12 +354,12 @@ def H_over_F2_secants(position, near, v, x, law):
 
 @kernel
 def _fast_secants(v, x, law):
-    """Return the mean slopes of H/F^2 and of its slope between v/(1 + x) and v in the fast limit.
+    """Return the mean slopes of H/F^2 and of its slope between v/(1 + x) and v in the fast limit, without cancellation.
 
-    v : 1/F(eta), > 0.
-    x : ratio of v to the other argument, less 1; >= 0, and 0 gives the slopes at v.
-    law : :class:`Law` of the material: polynomials of each octave.
-    Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), over v, dimensionless.
+    v : float, 1/F(eta), dimensionless, > 0, which may be infinite (both are 0 then).
+    x : float, ratio of v to the other argument, less 1, dimensionless, >= 0; 0 gives the slopes at v.
+    law : :class:`Law` of the material, of whose head alpha, W and C of both bodies are read.
+    Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), floats, over v, dimensionless; 0 for elastic bodies.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]

@@ -37,18 +37,21 @@ _constants: list[Any] = []
 
 
 class LawType(types.Callable):
-    """numba's type of a law: (V, omega) -> :class:`LoadsAndSlopes`."""
+    """numba's type of a law, a function (V, omega) -> :class:`LoadsAndSlopes` of two floats; all laws have this one
+    type.
+    """
 
     def __init__(self):
         super().__init__("viscoroll.law")
 
     def get_call_type(self, context, args, kws):
-        """Return numba's signature of a call law(V, omega) -> :class:`LoadsAndSlopes` with two real numbers, integer or
-        float.
+        """Return numba's signature of a call law(V, omega) -> :class:`LoadsAndSlopes` with two real numbers.
 
         context : numba's typing context, not used.
-        args, kws : tuple and dict of numba's types of the positional and of the named arguments.
-        Returns None for other arguments, which numba reports as an error of type.
+        args, kws : tuple and dict of numba's types of the positional and of the named arguments; a type of integers,
+            floats or literal integers is allowed, and converted to double.
+        Returns the signature, (double, double) -> named tuple of eight doubles; None for arguments of another number,
+        name or type, which numba reports as an error of type.
         """
         try:
             kinds = _SIGNATURE.bind(*args, **kws).args
@@ -69,18 +72,22 @@ class LawType(types.Callable):
 
 
 class Jitted:
-    """A law for jitted code: ``law.jitted(V, omega)``, NaN where the law is not defined.
+    """A law for jitted code: ``law.jitted(V, omega)`` -> :class:`LoadsAndSlopes`, all NaN where the law is not defined.
+
+    The units of V, omega and the results are those of the scene's user data.  Python may call it too.  It cannot be
+    pickled: that raises TypeError.
 
     Parameters
     ----------
-    scenes : two records of user data, without slopes and with, whose first field is the address of the C function.
-    owner : what the addresses in ``scenes`` point to, which is kept.
+    scenes : two records of user data (:func:`.c_function.pack_scenes`), without slopes and with, whose first field is
+        the address of the C function.
+    owner : any object that owns the memory to which addresses in ``scenes`` point; it is kept.
 
     Attributes
     ----------
-    plain, address : addresses of the user data without slopes and with.
+    plain, address : int, addresses of the user data without slopes and with.
     function : the C function for calls from Python, with the GIL: to release it takes longer than the law.
-    function_address : its address.
+    function_address : int, its address.
     """
 
     _numba_type_ = LawType()
@@ -102,7 +109,11 @@ class Jitted:
 
     @cached_property
     def ctypes(self) -> tuple[Any, ctypes.c_void_p]:
-        """The C function and its user data, for ctypes; each keeps this law alive."""
+        """The C function and its user data, for ctypes; each keeps this law alive.
+
+        A tuple: a function of ctypes (V, omega, pointer to eight doubles that it writes, address of the user data) ->
+        status, which releases the GIL; a ``c_void_p`` of the user data with slopes.
+        """
         function = ctypes.CFUNCTYPE(*_C_TYPES)(self.function_address)
         scene = ctypes.c_void_p(self.address)
         function.law = scene.law = self  # type: ignore[attr-defined]
@@ -121,9 +132,10 @@ class _LawModel(models.PrimitiveModel):
 def _unbox(kind, law, c):
     """Return the address of the user data of a law that Python passes to jitted code.
 
-    kind, c : numba's type of the law and its context of unboxing.
+    kind, c : numba's type of the law, not used, and its context of unboxing.
     law : the Python object, a :class:`Jitted`, as a value of LLVM.
-    Returns numba's ``NativeValue``: the address, a 64-bit integer, and whether Python raised an error.
+    Returns numba's ``NativeValue``: the address, a 64-bit integer of LLVM, and a bit that is set if Python raised an
+    error on the way.
     """
     address = c.pyapi.object_getattr_string(law, "address")
     value = c.pyapi.long_as_ulonglong(address)
@@ -133,10 +145,11 @@ def _unbox(kind, law, c):
 
 @lower_constant(LawType)
 def _lower_constant(context, builder, kind, law):
-    """Return instructions for the address of a law that is a constant of the code.
+    """Return instructions for the address of a law that is a constant of the code, such as a global variable of a
+    function.
 
     context, builder, kind : numba's context of code generation, builder of LLVM and type of the law.
-    law : the :class:`Jitted`, which is kept alive until the process ends.
+    law : the :class:`Jitted`, which is appended to a list of this module and so kept alive until the process ends.
     Returns a value of LLVM: the address of the user data as a 64-bit integer.
 
     numba does not put code with such an address into its cache: the next process has other addresses.
@@ -150,9 +163,9 @@ def _lower_call(context, builder, signature, arguments):
     """Return instructions that call the C function of a law, whose address begins the user data.
 
     context, builder, signature : numba's context of code generation, builder of LLVM, signature of the call.
-    arguments : values of LLVM: the law, which is the address of its user data, V and omega.
-    Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`.  The status of the C function is not read:
-    a state at which the law is not defined has NaN.
+    arguments : values of LLVM: the law, which is the address of its user data, and the doubles V and omega.
+    Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`, in the units of the user data.  The status
+    of the C function is not read: a state at which the law is not defined has NaN in all eight.
     """
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)

@@ -22,10 +22,12 @@ _LAST_STEP = 1e-8
 
 
 class LoadCurve(NamedTuple):
-    """Nodes of kappa (M - gain V) by rising speed.
+    """Nodes of kappa (M - gain V) by rising speed; all dimensionless.
 
-    u : kappa V, (n,).  value : kappa (M - gain V), (n,).  is_extremum : whether it is an extremum, (n,).
-    gain : slope of the load over the speed.
+    u : kappa V, > 0, (n,).
+    value : kappa (M - gain V), (n,), monotone between two nodes.
+    is_extremum : bool, whether a node is an extremum of the curve, (n,).
+    gain : slope of the load over the speed, of either sign.
     """
 
     u: Any
@@ -38,14 +40,17 @@ class LoadCurve(NamedTuple):
 def _find_crossing(load, n, curve, law):
     """Return u between the nodes ``n`` and n + 1 where the curve equals ``load``: Newton's iteration in a bracket.
 
-    load : value of kappa (M - gain V), between those of the two nodes.
+    load : float, value of kappa (M - gain V), between those of the two nodes, dimensionless.
     n : int, index of the lower node.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
     law : :class:`Law` of the material: polynomials of each octave.
-    Returns u = kappa V, > 0; the node itself where the load equals its extremum to rounding (of the node n + 1).
+    Returns u = kappa V, a float, > 0, dimensionless.  Where the load equals an extremum at the node n + 1 to rounding
+    (EXTREMUM_RTOL), it is that node.
 
-    Beside an extremum steps may end in rounding, above the bound.  The last one is then as near as others: 4e-15 of the
-    load, measured.
+    The iteration, in ln u, starts from interpolation between the nodes, and takes the middle of the bracket where a
+    step would leave it.  It ends when a step is so small that the next one would be rounding, at the latest after 40
+    steps.  Beside an extremum steps may end in rounding, above the bound.  The last one is then as near as others:
+    4e-15 of the load, measured.
     """
     low = curve.u[n]
     high = curve.u[n + 1]
@@ -87,10 +92,10 @@ def crossing_loop(law, curve, load, node, out, start, stop):
 
     law : :class:`Law` of the material: polynomials of each octave.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
-    load : values of kappa (M - gain V), (n,).
+    load : values of kappa (M - gain V), (n,), dimensionless, each between the values at its two nodes.
     node : for each load the index of the node below the crossing, int, (n,).
-    out : values of u, (n,), written from ``start`` to ``stop`` - 1.
-    start, stop : int, index of the first load and of the one behind the last.
+    out : (n,) floats, of which the numbers ``start`` to ``stop`` - 1 are written: u > 0, dimensionless.
+    start, stop : int, index of the first load and of the one after the last.
     """
     for n in range(start, stop):
         out[n] = _find_crossing(load[n], node[n], curve, law)

@@ -7,7 +7,9 @@ T = TypeVar("T")
 
 
 class Loads(NamedTuple, Generic[T]):
-    """Q over P, and M over P R with its parts in half-space and cylinder."""
+    """Dimensionless loads, Q divided by P and M divided by P R, with the parts of M that half-space and cylinder take;
+    or, of a law in SI units, forces and moments per length.
+    """
 
     Q: T
     M: T
@@ -16,7 +18,9 @@ class Loads(NamedTuple, Generic[T]):
 
 
 class LoadsAndSlopes(NamedTuple, Generic[T]):
-    """As :class:`Loads`; dQ/dV at fixed omega, dQ/domega at fixed V, and the slopes of the parts of M."""
+    """As :class:`Loads`, in the same units; then dQ/dV at fixed omega, dQ/domega at fixed V, and the slopes over V of
+    the two parts of M.
+    """
 
     Q: T
     M: T

@@ -36,11 +36,11 @@ _FAST = 1e-9
 
 @kernel
 def _evaluate_asymptotic(terms, x):
-    """Evaluate the asymptotic series sum a_n x^-n with its derivatives.
+    """Evaluate the asymptotic series sum a_n x^-n of r or k, with its first two derivatives.
 
-    terms : coefficients a_0, a_1, ..., of which a_0 = 1, (terms,).
-    x : argument, 64 or more.
-    Returns (value, first derivative, second derivative) over x.
+    terms : coefficients a_0, a_1, ..., of which a_0 = 1 is not read, (terms,), floats.
+    x : float, argument a_i z or b_j z, 64 or more, dimensionless; it may be infinite.
+    Returns (value, first derivative, second derivative) over x, floats; (1, 0, 0) at infinity.
     """
     w = 1.0 / x
     value = slope = second_derivative = 0.0
@@ -53,11 +53,11 @@ def _evaluate_asymptotic(terms, x):
 
 @inline_kernel
 def _jet(rate, z, function):
-    """Return the jet of a function of x = (rate - s) z at s = 0, a vector of four: value, d/dz, d/ds, d2/dz ds.
+    """Return the jet of a function of x = (rate - s) z at s = 0: a vector of four, value, d/dz, d/ds, d2/dz ds.
 
-    rate : a_i or b_j, rate of the mode, > 0.
-    z : zeta, half transit time of the contact, > 0.
-    function : (value, first derivative, second derivative) over x, at x = rate z.
+    rate : float, a_i or b_j, rate of the mode, > 0.
+    z : float, zeta, half transit time of the contact, > 0, in the unit of time of the rate.
+    function : (value, first derivative, second derivative) over x, floats, at x = rate z.
     """
     value, slope, second_derivative = function
     return pack(value, rate * slope, -z * slope, -slope - rate * z * second_derivative)
@@ -65,12 +65,13 @@ def _jet(rate, z, function):
 
 @kernel
 def _write_ratio_jets(z, series, work):
-    """Write the jets of 1/r, k and i2 of every mode: each value with its derivatives d/dz, d/ds, d2/dz ds
-    (:mod:`.series`).
+    """Write the jets of 1/r, k and i2 of every mode (:mod:`.series`): value, d/dz, d/ds, d2/dz ds.
 
-    z : zeta, half transit time of the contact, > 0, in the unit of time of the series.
-    series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2`` are written, four numbers a mode.
+    z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series; at infinity values are 1
+        and derivatives over s are NaN.
+    series : :class:`Series`, of which the rates a and b are read.
+    work : :class:`Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2`` are written, four numbers a mode, as
+        of :func:`_jet`.
     """
     for i in range(series.a.size):
         a = series.a[i]
@@ -101,15 +102,16 @@ def _write_ratio_jets(z, series, work):
 
 @kernel
 def _evaluate_N(z, series, of_g, of_h, of_y):
-    """Return N, the factor of dV/dt in M = M(V) + N dV/dt, at z = zeta > 0, in the unit of time of the series, squared.
+    """Return N, the factor of dV/dt in M = M(V) + N dV/dt, at z = zeta > 0, by the closed form of the module docstring.
 
-    z : zeta, half transit time of the contact, > 0, in the unit of time of the series.
-    series : :class:`Series`: rates and strengths of the modes.
+    z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series; infinite for V = 0.
+    series : :class:`Series` of at least one mode: rates and strengths.
     of_g, of_h, of_y : jets of g, h and sum X_i i2_i at z (:mod:`.series`), vectors of four: value, d/dz, d/ds, d2/dz
-        ds.
+        ds; not read where a limit is returned.
 
-    N goes from -sum E_i tau_i^2 as V -> 0 to z^2 sum E_i/4 in fast rolling; beyond 1e17 times the longest creep time
-    and below 1e-9 times the shortest relaxation time it is that limit.
+    Returns a float, in the unit of time of the series, squared.  From z = 1e17 times the longest creep time on it is
+    the limit V -> 0, -sum E_i tau_i^2; below z = 1e-9 times the shortest relaxation time it is that of fast rolling,
+    z^2 sum E_i/4.  It is 0 for alpha = 1.
     """
     T_mean = relaxed = strength = 0.0
     for i in range(series.a.size):
@@ -142,8 +144,10 @@ def set_alpha_of_state(n, alpha, series):
     """Write the alpha of state ``n`` into a series of one mode, whose creep time is the unit of time.
 
     n : int, index of the state.
-    alpha : alphas, of length 1 or with one for each state; empty: the series is complete and nothing is written.
-    series : :class:`Series`, whose relaxation rate and strengths are written.
+    alpha : alphas >= 1, of length 1 for all states or with one for each; empty: the series is complete and nothing is
+        written.
+    series : :class:`Series` of one mode with b = 1 and Q = 1, of which a[0] = alpha and e[0] = t[0] = sqrt((alpha -
+        1)/alpha) are written; any series if ``alpha`` is empty.
     """
     if alpha.size > 0:
         one_alpha = element(alpha, n)
@@ -155,10 +159,12 @@ def set_alpha_of_state(n, alpha, series):
 def modes_loop(series, alpha, work, z, out):
     """Evaluate the functions of a series, their slopes and N at many z.
 
-    series : :class:`Series`: rates and strengths of the modes; written if ``alpha`` is not empty.
-    alpha : alphas of a series of one mode, of length 1 or with one for each z; empty: the series is complete.
+    series : :class:`Series` of at least one mode: rates and strengths; of one mode, and overwritten, if ``alpha`` is
+        not empty.
+    alpha : alphas >= 1 of a series of one mode, of length 1 or with one for each z; empty: the series is complete.
     work : the :class:`Workspace` of the series, scratch.
-    z : values of zeta > 0, (n,), in the unit of time of the series.
+    z : values of zeta > 0, (n,), in the unit of time of the series.  Where z is infinite, values and N are the limits
+        at rest, and slopes are NaN.
     out : (9, n), written.  Rows 0 to 3: g/z, h/z, m of the half-space, m of the cylinder (m = M/V, in the unit of
         time); rows 4 to 7: their slopes over ln(1/z); row 8: N of M = M(V) + N dV/dt, in the unit of time squared.
     """

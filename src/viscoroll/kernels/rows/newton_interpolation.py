@@ -1,7 +1,7 @@
 """Newton's polynomial through scattered points, evaluated at the 24 nodes of a row and turned into powers of t.
 
 All of it works on one vector ``scratch``: the arguments of :data:`POINT_COUNT` points; for each of up to two functions
-their values, and behind them the leading divided differences; values at the nodes; Chebyshev coefficients.  In front of
+their values, and after them the leading divided differences; values at the nodes; Chebyshev coefficients.  In front of
 arguments and values four numbers are kept free, so that vectors may reach below the first point.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
@@ -20,7 +20,7 @@ POINT_COUNT = 36
 _BLOCK = LANES + POINT_COUNT
 #: Position in ``scratch`` of the arguments of the points.
 ARGUMENTS = LANES
-#: Position of the values of the first function; its divided differences are one block behind.
+#: Position of the values of the first function; its divided differences are one block further.
 VALUES = LANES + _BLOCK
 #: Distance from the values of the first function to those of the second.
 FUNCTION_STRIDE = 2 * _BLOCK
@@ -48,13 +48,15 @@ _SLOW_POWERS = powers_of_chebyshev(TERMS, 1.0, 2.0).ravel()
 def divided_differences(count, scratch):
     """Compute the leading divided differences of ``count`` functions from arguments and values in ``scratch``.
 
-    count : int, number of functions, 1 or 2.
-    scratch : vector of SCRATCH_SIZE numbers with POINT_COUNT arguments at ARGUMENTS, and values at VALUES and one
-        FUNCTION_STRIDE behind; the differences of each function are written one block behind its values, and the values
-        are overwritten.
+    They are the coefficients of Newton's polynomial through the points.  Each order is computed in place, four at a
+    time, from the last point down.  The entries below the first difference of an order are overwritten and are not read
+    again.
 
-    Each order is computed in place, four at a time, from the last point down.  The entries below the first difference
-    of an order are overwritten and are not read again.
+    count : int, number of functions, 1 or 2.
+    scratch : vector of SCRATCH_SIZE numbers with POINT_COUNT arguments, all different, from ARGUMENTS on, and as many
+        values from VALUES on, those of the second function FUNCTION_STRIDE further.  POINT_COUNT differences of each
+        function, those of order 0 first, are written one block (40 numbers) after the begin of its values, and the
+        values are overwritten.
     """
     for order in range(POINT_COUNT):
         first = POINT_COUNT - LANES
@@ -75,10 +77,10 @@ def divided_differences(count, scratch):
 def evaluate_at_nodes(nodes, which, scratch):
     """Evaluate Newton's polynomial of one function at the 24 nodes of a row, and write the values into ``scratch``.
 
-    nodes : arguments of the nodes, (24,).
+    nodes : (24,) contiguous floats, the nodes in the variable of the arguments in ``scratch``.
     which : int, 0 or 1, index of the function.
-    scratch : vector of this module with the divided differences of that function; its values at NODE_VALUES are
-    written.
+    scratch : vector of this module with arguments and with the divided differences of that function; 24 values are
+        written from NODE_VALUES on, over those of another function.
     """
     start = VALUES + FUNCTION_STRIDE * which + _BLOCK
     x = load_row(nodes, 0)
@@ -94,11 +96,12 @@ def evaluate_at_nodes(nodes, which, scratch):
 def sum_of_rows(matrix, first, terms, factors, to, numbers):
     """Write the sum of rows of 24 numbers, each times a factor: the product of a matrix and a vector.
 
-    matrix : vector in which the rows follow each other.
+    matrix : contiguous vector of doubles in which the rows follow each other.
     first : int, index in ``matrix`` at which the first row begins.
-    terms : int, number of rows.
+    terms : int, number of rows and of factors, >= 0.
     factors, to : int, indices in ``numbers`` at which the factors begin, and the sum.
-    numbers : vector with the factors; the sum, 24 numbers, is written.
+    numbers : contiguous vector with the factors; the sum, 24 numbers, is written after all factors have been read, so
+        that the two may overlap.
     """
     zero = broadcast(0.0)
     total = zero, zero, zero, zero, zero, zero
@@ -111,12 +114,15 @@ def sum_of_rows(matrix, first, terms, factors, to, numbers):
 def to_powers(slow, limit, scratch):
     """Replace the values of a function at the 24 nodes of a row by its coefficients of the powers of t.
 
-    slow : whether this is the slow row, where t is in [0, 1] and Chebyshev coefficients below rounding are set to zero;
-        the other rows have t in [-1, 1].
-    limit : in the slow row, the value at t = 0, which has been subtracted from the values at the nodes and is added to
-        the constant coefficient; not read in the other rows.
-    scratch : vector of this module; values at NODE_VALUES are read, and the 24 coefficients, the constant first, are
-        written in their place.
+    The way is by Chebyshev coefficients, of the values less a reference value, which keeps rounding errors small.
+
+    slow : bool, whether this is the slow row, where t is in [0, 1]; there the last Chebyshev coefficient, and those
+        below 4e-16 of the largest one and of ``limit``, are set to zero.  The other rows have t in [-1, 1].
+    limit : float; in the slow row the value at t = 0, which has been subtracted from the values at the nodes and is
+        added to the constant coefficient.  In the other rows it is not read: the value at a middle node takes its
+        place.
+    scratch : vector of this module; 24 values from NODE_VALUES on are read, and the 24 coefficients, the constant
+        first, are written in their place.  Chebyshev coefficients are left after them.
     """
     if not slow:
         limit = scratch[NODE_VALUES + TERMS // 2]

@@ -41,7 +41,7 @@ PARTS_PER_ROW = ROW_SIZE // PART_SIZE
 ALPHA = 0
 #: Index in the head: lam in the fast limit, alpha^(-1/2).
 LAM_FAST = 1
-#: Index in the head: W = sum J_j/T_j of both bodies; behind it C = sum J_j/T_j (ln 2 T_j - 0.5772...).
+#: Index in the head: W = sum J_j/T_j of both bodies; after it C = sum J_j/T_j (ln 2 T_j - 0.5772...).
 FAST_TOTAL = 2
 #: Index in the head: W and C of the half-space.
 FAST_HALF_SPACE = 4
@@ -67,12 +67,14 @@ class Law(NamedTuple):
 
     rows : head and rows, (1 + number of rows) * ROW_SIZE numbers, dimensionless.
     marks : head and versions of the parts, (1 + number of rows) * PARTS_PER_ROW integers.
-    N_rows : rows of N and of its integral (:func:`...materials.law.pack.pack_unsteady`); empty for steady rolling.
+    N_rows : rows of N and of its integral (:func:`...materials.law.pack.pack_unsteady`), a vector; empty for steady
+        rolling.
     selector : address of the kernel (n, source) that selects the material of state n; 0 if all rows are complete.
-    maker : address of the kernel (number of a part, its place among the marks, source) that makes the part; 0 if all
-        rows are complete.
-    source : address of the record that these kernels read (:mod:`..compile.intrinsics`).
-    cover_rows : numbers that only a cover has (:mod:`cover`); None of half-spaces, whose kernels are compiled without.
+    maker : address of the kernel (number of a part, which is its index among the marks; source) that makes the part; 0
+        if all rows are complete.
+    source : address of the record that these two kernels read, SOURCE of their module; 0 if all rows are complete.
+    cover_rows : vector of the numbers that only a cover has (:mod:`cover`); None of half-spaces, whose kernels are
+        compiled without.
     """
 
     rows: Any
@@ -86,18 +88,21 @@ class Law(NamedTuple):
 
 @inline_kernel
 def select_material(law, n):
-    """Make ``law`` that of state or motion ``n``; no work if all have one law or that of n is selected already."""
+    """Make ``law`` that of state or motion ``n``, an int; no work if one law serves all or that of n is selected
+    already.
+    """
     if law.selector != 0:
         call_address(law.selector, n, law.source)
 
 
 @inline_kernel
 def ensure_part(part, row, law):
-    """Return the position in ``law.rows`` of a part of a row, after making the part if it is not up to date.
+    """Return the index in ``law.rows`` of a part of a row, after making the part if it belongs to another material.
 
-    part : offset in a row: LENGTH_MOMENT, LAM_EPSILON, BODY_MOMENTS, H_OVER_F2 or ETA_OVER_F.
-    row : int, number of the row, from 0; a row of the law, not one behind the last.
-    law : :class:`Law` of the material; where a part is made, its ``rows`` and ``marks`` are written.
+    part : int, offset in a row: LENGTH_MOMENT, LAM_EPSILON, BODY_MOMENTS, H_OVER_F2 or ETA_OVER_F.  Rows of the axis of
+        alpha (:mod:`.alpha_axis`) have no BODY_MOMENTS.
+    row : int, number of the row, from 0 to the last row of the law; the fast limit beyond it has no parts.
+    law : :class:`Law` with its material selected; where a part is made, its ``rows`` and ``marks`` are written.
     Returns an int, the index of the first coefficient.
     """
     number = (row + 1) * PARTS_PER_ROW + part // PART_SIZE
@@ -111,11 +116,13 @@ def select_index(n, addresses, state_count, marks):
     """Mark the material of state ``n`` as selected, with the next version number if it was another one.
 
     n : int, index of the state.
-    addresses : int, address of an array of ints: the index of the material of each state.
+    addresses : int, address of an array of 64-bit integers: the index of the material of each state.
     state_count : int, length of that array; 1 if all states have one material.
-    marks : ``marks`` of the :class:`Law`, whose entries SELECTED and VERSION are written.
+    marks : ``marks`` of the :class:`Law`, whose entries SELECTED (the index) and VERSION (one more) are written, if
+        another material or none was selected.
 
-    Returns the index of the material, or -1 if it was selected already, and then nothing is written.
+    Returns the index of the material, an int >= 0, if the caller has to write its data; -1 if it was selected already,
+    and then nothing is written.
     """
     index = element(integers_at(addresses, state_count), n)
     if marks[SELECTED] == index:

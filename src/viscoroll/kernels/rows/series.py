@@ -42,12 +42,12 @@ FUNCTIONS = 4
 
 
 class Series(NamedTuple):
-    """A Prony series of n modes in both forms, all times in one unit.
+    """A Prony series of n modes in both forms, all times in one unit; n may be 0, for elastic bodies.
 
-    a, b : rates of relaxation and of creep, (n,).
+    a, b : rates of relaxation a_i = 1/tau_i and of creep b_j = 1/T_j, (n,).
     e, t : sqrt(E_i tau_i) and sqrt(J_j T_j), (n,).
-    weights : fraction of each creep mode that is the half-space's, (n,); empty if the bodies are alike.
-    Q : the orthogonal matrix, (n, n).
+    weights : fraction of each creep mode that is the half-space's, in [0, 1], (n,); empty if the bodies are alike.
+    Q : the orthogonal matrix Q_ji, (n, n), with creep modes j for rows and relaxation modes i for columns.
     """
 
     a: Any
@@ -59,10 +59,14 @@ class Series(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """Arrays of an evaluation, four numbers for each mode.
+    """Arrays of an evaluation, flat, with a vector of four numbers for each mode.
 
-    inverse_r, k, i2 : 1/r, k and i2.  y : y and, after the evaluation, X.  kf : k f.  right : a right side.
-    matrix : 1/r + Q^T k Q, four numbers an element.  functions : the results, four numbers a function.
+    inverse_r, k, i2 : 1/r and i2 of the relaxation modes, k of the creep modes.
+    y : y and, after the evaluation, X, of the relaxation modes.
+    kf : k f of the creep modes.
+    right : a right side, scratch.
+    matrix : 1/r + Q^T k Q, four numbers an element; after the solve its factors.
+    functions : the results, four numbers a function, at G_OVER_Z, H_OVER_Z, M_HALF_SPACE and M_CYLINDER.
     """
 
     inverse_r: Any
@@ -91,14 +95,19 @@ def workspace_size(modes: int) -> int:
 
 @inline_kernel
 def unpack_series(numbers, n, unlike):
-    """Return the :class:`Series` of ``n`` modes in the vector ``numbers``; ``unlike``: whether it has weights."""
+    """Return the :class:`Series` of ``n`` modes in the vector ``numbers``, as views; ``unlike``: whether it keeps its
+    weights, which are empty otherwise.  The vector begins with a, b, e, t and weights, ``n`` numbers each, and Q by
+    rows.
+    """
     row = numbers[: (5 + n) * n].reshape(5 + n, n)
     return Series(row[0], row[1], row[2], row[3], row[4, : n if unlike else 0], row[5:])
 
 
 @inline_kernel
 def split_workspace(numbers, modes):
-    """Return the :class:`Workspace` of a series of ``modes`` modes in the vector ``numbers``."""
+    """Return the :class:`Workspace` of a series of ``modes`` modes, as views of the vector ``numbers``, which has
+    :func:`workspace_size` doubles.
+    """
     n = LANES * modes
     end = (_VECTORS + modes) * n
     row = numbers[: _VECTORS * n].reshape(_VECTORS, n)
@@ -112,11 +121,12 @@ def new_workspace(modes: int) -> Workspace:
 
 @inline_kernel
 def evaluate_ratios(places, series, work):
-    """Write 1/r, k and i2 of every mode at four places z, the half transit times of the contact.
+    """Write 1/r, k and i2 of every mode at four values of z, the half transit time of the contact.
 
-    places : vector of four z > 0, in the unit of time of the series.
-    series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series, whose ``inverse_r``, ``i2`` and ``k`` are written, four numbers a mode.
+    places : vector of four z > 0, in the unit of time of the series; z may be infinite, where r = k = i2 = 1.
+    series : :class:`Series`, of which the rates a and b are read.
+    work : :class:`Workspace` of the series, whose ``inverse_r``, ``i2`` and ``k`` are written, dimensionless, four
+        numbers a mode: number c of a mode belongs to number c of ``places``.
     """
     z = unpack(places)
     for at in range(LANES * series.a.size):
@@ -133,8 +143,12 @@ def evaluate_ratios(places, series, work):
 
 @inline_kernel
 def multiply(jets, p, q):
-    """Return the product of two vectors of four: number by number, or, if ``jets``, as jets (value, d/dz, d/ds, d2/dz
-    ds); ``p``, ``q``: the factors.
+    """Return the product of two vectors of four: number by number, or as jets.
+
+    jets : bool, True if ``p`` and ``q`` are jets (value, d/dz, d/ds, d2/dz ds), whose product then follows the product
+        rule.
+    p, q : the factors, vectors of four.
+    Returns a vector of four.
     """
     if not jets:
         return p * q
@@ -147,8 +161,8 @@ def multiply(jets, p, q):
 def reciprocal(jets, p):
     """Return 1/p of a vector of four values, or of a jet.
 
-    jets : whether the four are a jet (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
-    p : vector of four numbers, the first or all other than 0.
+    jets : bool, whether the four are a jet (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
+    p : vector of four numbers, of a jet with the first other than 0; of values a 0 gives an infinity.
     Returns a vector of four of the same kind.
     """
     inverse = 1.0 / p
@@ -161,7 +175,15 @@ def reciprocal(jets, p):
 
 @inline_kernel
 def _strength(jets, strength, rate):
-    """Return e_i, or t_j, as a vector; of a jet its slope with respect to s is the strength divided by the rate."""
+    """Return e_i, or t_j, as a vector of four: four times the number, or its jet.
+
+    E_i a_i and J_j b_j do not depend on s, so that e_i = sqrt(E_i a_i)/a_i, with a_i - s for a_i, has the slope e_i/a_i
+    at s = 0.
+
+    jets : bool, whether a jet (value, d/dz, d/ds, d2/dz ds) is returned.
+    strength : float, e_i or t_j, square root of a time.
+    rate : float, a_i or b_j, rate of the same mode; read for a jet alone.
+    """
     return pack(strength, 0.0, strength / rate, 0.0) if jets else broadcast(strength)
 
 
@@ -175,9 +197,10 @@ def _value(jets, p):
 def _factorize(matrix, count):
     """Factorize symmetric positive definite matrices as L D L^T, four at once, in place.
 
-    matrix : (count, count) vectors of four, flat, row by row, of which the lower half is read; overwritten by 1/D on
-        the diagonal and by L D below it.
-    count : int, number of rows.
+    matrix : (count, count) vectors of four, flat, row by row; number c of all vectors makes up matrix c.  The lower
+        half with the diagonal is read, and overwritten by 1/D on the diagonal and by L D below it; the upper half is
+        neither read nor written.
+    count : int, number of rows, >= 0.
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):
@@ -192,11 +215,11 @@ def _factorize(matrix, count):
 
 @inline_kernel
 def _substitute(matrix, right, count):
-    """Solve a linear system with a factorized matrix, in place of its right side.
+    """Solve four linear systems with factorized matrices, in place of their right sides.
 
-    matrix : factors by :func:`_factorize`, (count, count) vectors of four, flat.
-    right : right side, ``count`` vectors of four, flat; overwritten by the solution.
-    count : number of unknowns.
+    matrix : factors by :func:`_factorize`, (count, count) vectors of four, flat; not changed.
+    right : right sides, ``count`` vectors of four, flat; overwritten by the solutions.
+    count : int, number of unknowns of each system, >= 0.
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):
@@ -212,15 +235,17 @@ def _substitute(matrix, right, count):
 
 @inline_kernel
 def solve_modes(jets, series, work):
-    """Solve (1/r + Q^T k Q) y = e for the stresses y of the modes, and write y and k f, f = Q y, into the workspace.
+    """Solve (1/r + Q^T k Q) y = e for the stresses y of the modes; write y and k f, f = Q y, into the workspace.
 
     jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
-    series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series with the ratios 1/r and k; ``y`` and ``kf`` are written, ``right`` and
-        ``matrix`` are scratch.
+    series : :class:`Series`: rates, strengths and Q of the modes.
+    work : :class:`Workspace` of the series with the ratios 1/r and k, four numbers a mode.  ``y`` and ``kf`` are
+        written, in the unit of e, square root of a time; ``right`` is scratch, and ``matrix`` ends as the factors of
+        :func:`_factorize`.
 
-    The factors are those of the value of the matrix.  Of a jet this leaves an error with d/dz or d/ds as a factor: the
-    second pass leaves one with both, and the third none.
+    Values need one solve.  For a jet the matrix is factorized by its value alone, and the error of the solution is
+    corrected with these factors: the first solve leaves an error in the derivatives, which has d/dz or d/ds as a
+    factor; the second leaves one with both, in d2/dz ds; the third leaves none.
     """
     count = series.a.size
     for i in range(count):
@@ -260,14 +285,22 @@ def solve_modes(jets, series, work):
 
 @kernel
 def _split_moment(jets, lam2, series, work):
-    """Return the parts of m = M/V that half-space and cylinder take, by their creep modes; a jet has no slopes in s.
+    """Return the parts of m = M/V that half-space and cylinder take.
 
-    jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
-    lam2 : lam^2, square of the contact length divided by l0, vector of four.
-    series : :class:`Series`: rates and strengths of the modes, with weights of the half-space.
-    work : :class:`Workspace` of the series with i2, k f and, in ``y``, X; ``right`` is scratch.
+    A creep mode has the moment m_j (module docstring).  The half-space takes the sum of weights_j m_j, the cylinder
+    that of (1 - weights_j) m_j.
 
-    Returns (part of the half-space, part of the cylinder), vectors of four, in the unit of time of the series.
+    jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.  Of a jet only
+        the value and d/dz of the results are right: here rates and strengths count as constant in s, so that the other
+        two numbers have no meaning.
+    lam2 : lam^2, square of the contact length divided by l0, dimensionless, vector of four.
+    series : :class:`Series`, with weights of the half-space and at least one mode, all of whose strengths e are above
+        0.
+    work : :class:`Workspace` of the series with i2, with k f, and with X in ``y``; ``right`` is overwritten by v_i =
+        lam^2 X_i u_i/e_i.
+
+    Returns (part of the half-space, part of the cylinder), vectors of four, in the unit of time of the series.  Their
+    sum is m, but for rounding.
     """
     count = series.a.size
     half_space = cylinder = broadcast(0.0)
@@ -294,12 +327,16 @@ def evaluate_functions(jets, z, series, work):
 
     jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     z : vector of four z, or the jet (z, 1, 0, 0) of one, in the unit of time of the series.
-    series : :class:`Series`: rates and strengths of the modes.
-    work : :class:`Workspace` of the series with the ratios 1/r, k and i2 at z; ``functions`` is written (at G_OVER_Z,
-        H_OVER_Z, M_HALF_SPACE, M_CYLINDER), ``y`` becomes X, the rest is scratch.
+    series : :class:`Series`: rates and strengths of the modes; elastic if it has no modes, where all results are 0.
+    work : :class:`Workspace` of the series with the ratios 1/r, k and i2 at z.  ``functions`` is written: vectors of
+        four g/z and h/z, dimensionless, at G_OVER_Z and H_OVER_Z, and m of half-space and cylinder, in the unit of time
+        of the series, at M_HALF_SPACE and M_CYLINDER.  ``y`` ends as X, ``kf`` as k f; the rest is scratch.
 
-    Returns (g, h, sum X_i i2_i), vectors of four.  The moments of the two bodies are scaled so that their sum is m:
-    they differ from it by roundings of alpha times the size of one.  They are halves of m if the bodies are alike.
+    Returns (g, h, sum X_i i2_i), vectors of four; g and h are in the unit of time of the series.
+
+    If the bodies are alike (``weights`` is empty), each has half of m.  Else the parts by :func:`_split_moment`, whose
+    sum has rounding errors of some alpha times its last digit, are multiplied by one factor that makes their sum m; of
+    a jet they have no slopes in s.
     """
     solve_modes(jets, series, work)
     unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)

@@ -28,18 +28,20 @@ def _constant(numbers):
 def _make_sums(count: int, orders: int):
     """Return a kernel that evaluates a polynomial with vectors of four for coefficients, and its derivatives.
 
-    count : number of coefficients.
-    orders : number of values that the kernel returns: the polynomial, its first derivative, and so on.
+    count : int, number of coefficients, >= ``orders``.
+    orders : int, number of values that the kernel returns: the polynomial, its first derivative, and so on.
 
-    Returns the kernel, an intrinsic of numba, which takes (table, start, x): vector of numbers; index in it at which
-    the first coefficient begins; argument, a number.  It returns a tuple of ``orders`` vectors of four doubles,
-    derivatives over x, by Estrin's scheme.
+    Returns the kernel, an intrinsic of numba, which takes (table, start, x): contiguous vector of doubles, or pointer;
+    int, index in it at which the first coefficient begins, four numbers each; argument, a float.  It returns a tuple of
+    ``orders`` vectors of four doubles.  They are derivatives over x by Estrin's scheme, without factorials divided out.
     """
 
     def lower(context, builder, signature, arguments):
-        """Return the instructions of the kernel by Estrin's scheme, as numba calls for them.
+        """Return the instructions of the kernel, by Estrin's scheme; numba calls this function for every call of the
+        kernel.
 
-        context, builder, signature, arguments : numba's context, builder of LLVM, signature and values of the call.
+        context, builder, signature, arguments : numba's context of code generation, builder of LLVM, signature of the
+            call, and values of LLVM of its arguments (table, start, x).
         Returns a value of LLVM: the tuple of the kernel.
         """
         terms = load_vectors(context, builder, signature, arguments, count)
@@ -59,12 +61,15 @@ def _make_sums(count: int, orders: int):
 
 
 def _lower_secants(context, builder, signature, arguments):
-    """Return instructions of (table, start, x, z) -> (p(x), (p(x) - p(z))/(x - z)) of one function and of its slope.
+    """Return instructions of (table, start, x, z) -> p(x) and (p(x) - p(z))/(x - z), of one function and of its slope.
 
-    context, builder, signature, arguments : numba's context, builder of LLVM, signature and values of the call.
-    Returns a value of LLVM: a tuple of four vectors, p and its secant of the function, then both of its slope in t.
+    Here p is the polynomial with six vectors for coefficients, and x and z are the fourth powers of two arguments t;
+    the secant is formed without a difference, so that x = z gives dp/dx.
 
-    p is the polynomial with vectors for coefficients; x and z are fourth powers of two arguments t.
+    context, builder, signature, arguments : numba's context of code generation, builder of LLVM, signature of the call,
+        and values of LLVM of its arguments: vector or pointer, int, two doubles.
+    Returns a value of LLVM, a tuple of four vectors of four: p and its secant of the function, then both of its slope
+    in t.
     """
     terms = load_vectors(context, builder, signature, arguments, _ONE)
     sums = []
@@ -91,10 +96,11 @@ _one_secants = make_intrinsic(_lower_secants, types.UniTuple(FOUR, 4), None, typ
 def evaluate_pair(table, start, t):
     """Return two functions that are stored as a pair, with their first and second derivatives in t.
 
-    table : vector of coefficients.
-    start : index in ``table`` at which those of the pair begin.
-    t : argument, dimensionless.
-    Returns (a, b, a', b', a'', b''); the compiler leaves out what a caller does not read.
+    table : contiguous vector of doubles, or pointer to them, with 48 coefficients of the pair, interleaved by two.
+    start : int, index in ``table`` at which they begin; it is not checked.
+    t : float, argument, dimensionless.
+    Returns (a, b, a', b', a'', b''), floats in the units of the coefficients; the compiler leaves out what a caller
+    does not read.
     """
     twice = 2.0 * t
     square = t * t
@@ -112,11 +118,13 @@ def evaluate_pair(table, start, t):
 
 @inline_kernel
 def _join(sums, t, square):
-    """Return the value at t of a function from the four polynomials of its coefficients whose index is 0, 1, 2, 3
-    modulo 4.
+    """Return a + b t + c t^2 + d t^3, the last step of Estrin's scheme for a polynomial in t.
 
-    sums : their values at t^4, one vector of four.
-    t, square : argument, and t^2.
+    a, b, c and d are polynomials in t^4: that of the coefficients 0, 4, 8 ..., that of 1, 5, 9 ..., and so on.
+
+    sums : vector of four, the values of a, b, c and d at t^4.
+    t, square : floats, argument and t^2, dimensionless.
+    Returns a float.
     """
     a, b, c, d = unpack(sums)
     return fma(square, fma(t, d, c), fma(t, b, a))
@@ -126,10 +134,11 @@ def _join(sums, t, square):
 def evaluate_single(table, start, t):
     """Return one function of the table and its slope in t.
 
-    table : vector of coefficients.
-    start : index in ``table`` at which those of the function begin.
-    t : argument, dimensionless.
-    Returns (value, slope).
+    table : contiguous vector of doubles, or pointer to them, with the 24 coefficients of the function, the constant
+        first.
+    start : int, index in ``table`` at which they begin; it is not checked.
+    t : float, argument, dimensionless.
+    Returns (value, slope), floats in the unit of the coefficients.
     """
     square = t * t
     value, first_derivative = _one_sums(table, start, square * square)
@@ -142,10 +151,10 @@ def evaluate_single(table, start, t):
 def _join_secant(sums, secants, t, s):
     """Return p(t) and its secant (p(t) - p(s))/(t - s) from the four polynomials in t^4 of which p consists.
 
-    sums : vector of the values of the four polynomials at t^4.
-    secants : vector of their secants between t^4 and s^4.
-    t, s : arguments, dimensionless.
-    Returns (p(t), secant).
+    sums : vector of four, the values of the four polynomials at t^4.
+    secants : vector of four, their secants between t^4 and s^4.
+    t, s : floats, arguments, dimensionless.
+    Returns (p(t), secant), floats; the secant is p'(t) at s = t, since nothing is divided by t - s.
     """
     square = t * t
     s_square = s * s
@@ -159,11 +168,12 @@ def _join_secant(sums, secants, t, s):
 def evaluate_secants(table, start, t, s):
     """Return p(t) and (p(t) - p(s))/(t - s) of one function p, and the same of its slope p', without cancellation.
 
-    table : vector of coefficients.
-    start : where those of the function begin.
-    t, s : arguments, dimensionless.
+    table : contiguous vector of doubles, or pointer to them, with the 24 coefficients of p, the constant first.
+    start : int, index in ``table`` at which they begin; it is not checked.
+    t, s : floats, arguments, dimensionless.
 
-    Returns (p(t), secant of p, p'(t), secant of p').
+    Returns (p(t), secant of p, p'(t), secant of p'), floats in the unit of the coefficients; at s = t the secants are
+    p'(t) and p''(t).
     """
     square = t * t
     s_square = s * s

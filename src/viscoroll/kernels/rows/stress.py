@@ -42,10 +42,10 @@ _DEEP = 38.0
 class MemoryWeights(NamedTuple):
     """The strengths of the modes at one z, which all points of a contact have in common; filled by :func:`unit_shape`.
 
-    weight : a_i X_i of each mode, (modes,).
-    complement : 1 - r(a_i z) of each mode, (modes,).
-    z : the z, (1,); NaN: of none yet.
-    work : :class:`.series.Workspace`.
+    weight : a_i X_i of each mode, dimensionless, (modes,).
+    complement : 1 - r(a_i z) of each mode, in [0, 1], (modes,).
+    z : the z to which they belong, (1,); NaN if they belong to none yet.
+    work : :class:`.series.Workspace` of the series, scratch.
     """
 
     weight: Any
@@ -55,10 +55,11 @@ class MemoryWeights(NamedTuple):
 
 
 class Points(NamedTuple):
-    """Arrays of length 1, for all points, or with one value for each point.
+    """Arrays of length 1, for all points, or with one value for each point; all dimensionless.
 
-    x : position in l0 from the foot of the axis, positive in the direction of V.  kappa, mu : of the scene.
-    lam, epsilon, beta, zeta : state of the contact; zeta = inf at V = 0.
+    x : position in l0 from the foot of the axis, positive in the direction of V.
+    kappa, mu : of the scene, > 0.
+    lam, epsilon, beta, zeta : state of the contact; zeta, in the unit of time of the series, is inf at V = 0.
     """
 
     x: Any
@@ -72,15 +73,16 @@ class Points(NamedTuple):
 
 @kernel
 def _memory_integral(u, w, a, r_complement):
-    """Return the memory integral of one relaxation mode at a point of the contact, dimensionless.
+    """Return the memory integral of one relaxation mode at a point of the contact.
 
-    u, w : distances from the front and the rear edge, divided by half the contact length, > 0; u + w = 2.
-    a : a_i z (of one mode alpha z): half transit time z times the rate of the mode, > 0, finite.
-    r_complement : 1 - r(a), r the ratio I1/I0.
+    u, w : floats, distances from the front and the rear edge, divided by half the contact length, > 0; u + w = 2.
+    a : float, a_i z (of one mode alpha z): half transit time z times the rate of the mode, dimensionless, > 0, finite.
+    r_complement : float, 1 - r(a), r the ratio I1/I0, in (0, 1].
 
-    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1.  The integral over [0, pi]
-    is zero.  Near the rear edge it is therefore taken over the small rest [phi, pi], with the other sign, where a (cos
-    phi - cos t) <= a w < 1.
+    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1, a float, dimensionless.
+    The integral over [0, pi] is zero.  Near the rear edge, where w < 1 and a w < 1, it is therefore taken over the
+    small rest [phi, pi], with the other sign, where a (cos phi - cos t) <= a w < 1.  Elsewhere, if a u > 38, the part
+    of [0, phi] where a (cos t - cos phi) exceeds 38 is left out.
     """
     rear = w < 1.0 and a * w < 1.0
     sine = np.sqrt(u * w)
@@ -105,21 +107,28 @@ def _memory_integral(u, w, a, r_complement):
 
 
 def new_memory_weights(series) -> MemoryWeights:
-    """Return :class:`MemoryWeights` of a :class:`Series` that belong to no z yet."""
+    """Return :class:`MemoryWeights` for ``series``, a :class:`Series`, that belong to no z yet: z is NaN, and the other
+    arrays are not initialized.
+    """
     n = series.a.size
     return MemoryWeights(np.empty(n), np.empty(n), np.full(1, np.nan), new_workspace(n))
 
 
 @kernel
 def unit_shape(u, w, z, series, weights):
-    """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point, dimensionless; 0 outside the contact.
+    """Return S/z, the shape of the pressure of Eqs. (11)-(14), at one point.
 
-    u, w : distances from the front and the rear edge, divided by half the contact length; u + w = 2.
-    z : half transit time of the contact, or of the stick zone, in the unit of time of the series; inf is the elastic
-        limit V = 0.
-    series : :class:`Series`: rates and strengths of the modes.
-    weights : :class:`MemoryWeights`, the strengths of the modes at z; computed and written here if they belong to
-        another z.
+    u, w : floats, distances from the front and the rear edge, divided by half the contact length; u + w = 2.  One of
+        them is <= 0 outside the contact.
+    z : float, half transit time of the contact, or of the stick zone, > 0, in the unit of time of the series; inf is
+        the elastic limit V = 0.
+    series : :class:`Series`: rates and strengths of the modes; it may have none.
+    weights : :class:`MemoryWeights`, the strengths of the modes at z.  If they belong to another z, they are computed
+        and written here; a caller that changes ``series`` has to set their z to NaN.
+
+    Returns a float, dimensionless, >= 0: exactly 0 at the edges and outside the contact; sqrt(u w) for z = inf and for
+    elastic bodies; else sqrt(u w) and the memory integrals of the modes, each times a_i X_i.  Modes with weight 0 or an
+    infinite a_i z count as none.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
@@ -145,12 +154,13 @@ def unit_shape(u, w, z, series, weights):
 def stress_loop(series, alpha, whole, stick, points, p, tau):
     """Compute pressure and shear stress at n points of the contact.
 
-    series : :class:`Series`: rates and strengths of the modes; written if ``alpha`` is not empty.
-    alpha : alphas of a series of one mode, of length 1 or n; empty: the series is complete.
-    whole, stick : :class:`MemoryWeights` for the contact and for the stick zone, scratch.
+    series : :class:`Series`: rates and strengths of the modes; of one mode, and overwritten, if ``alpha`` is not empty.
+    alpha : alphas >= 1 of a series of one mode, of length 1 or n; empty: the series is complete.
+    whole, stick : :class:`MemoryWeights` of the series for the contact and for the stick zone, scratch.
     points : :class:`Points`: position x/l0, kappa, mu and the contact state of each point, arrays of length 1 or n.
-    p, tau : (n,), pressure p/E' and modulus |tau|/E' of the shear stress at every point, written; 0 outside the
-        contact.
+    p, tau : (n,) floats, written: pressure p/E' and modulus |tau|/E' of the shear stress at every point, dimensionless,
+        >= 0, where E' = pi E/(1 - nu^2).  Both are 0 at the edges and outside the contact; in the slip zone, which is
+        all of the contact for beta = 0, tau is mu p; for beta = 1 it is 0 but for rounding.
     """
     for i in range(p.size):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:

@@ -34,11 +34,14 @@ _LAWS = MAKER_MARKS
 def _interpolate(source, marks, first, to, out, count):
     """Write numbers of the law of the selected cover, interpolated between the laws at the nodes of its thickness.
 
+    Each number is the sum of those of the laws at the nodes, times weights whose sum is 1 (some may be negative).
+
     source : SOURCE record, with the weights of the nodes for each cover.
-    marks : ``marks`` of the law, with the selected cover and the address of the laws at the nodes of its octave.
+    marks : ``marks`` of the law, with the selected cover, its number of rows, and the address of the laws at the nodes
+        of its octave.
     first : int, index of the first number in each of the laws at the nodes (head, rows, then cover rows).
     to : int, index in ``out`` of the first number that is written.
-    out : vector of the law, of which ``count`` numbers are written.
+    out : vector of rows or cover rows of the law, of which ``count`` numbers are overwritten.
     count : int, number of numbers.
     """
     law_size = (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
@@ -54,13 +57,15 @@ def _interpolate(source, marks, first, to, out, count):
 
 @kernel(allocates=True)
 def select_cover(n, source):
-    """Make the cover of a state the selected one: interpolate the numbers in front of its rows, and its cover rows.
+    """Make the cover of a state the selected one: interpolate the head of its rows, and its cover rows.
 
     n : int, index of the state.
-    source : pointer to a SOURCE record, whose rows, marks and cover rows are written; not if that cover is selected
-        already.
+    source : pointer to a SOURCE record.  If that cover is selected already, nothing is written.  Else the first eight
+        numbers of the head of rows (:data:`.record.ALPHA` to those of :data:`.record.FAST_CYLINDER`) and all cover rows
+        are written, and in the head of marks the index of the cover, a new version, the number of rows and the address
+        of the laws of its octave.
 
-    Rows of the law are then interpolated when they are first read (:func:`make_part`).
+    Rows of the law are then interpolated when they are first read (:func:`make_part`).  Returns nothing.
     """
     source = record_at(source)
     marks = integers_at(source.marks, PARTS_PER_ROW)
@@ -80,8 +85,10 @@ def make_part(number, source):
     """Make a part of a row of the selected cover, by interpolation, and write it into the rows of the law.
 
     number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
-    source : pointer to a SOURCE record; the 24 coefficients of a function, or 48 of a pair, are written, and the mark
-        of the part.
+    source : pointer to a SOURCE record.  The 24 coefficients of a function, or 48 of a pair (L with M/V, lam with
+        epsilon, moments of the bodies), are written, and in the marks the version of the part.
+
+    Returns nothing.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)

@@ -56,7 +56,7 @@ from .simd_polynomial import TERMS
 
 #: Nodes of an octave of z: 6 of them leave an error of 3e-12 in lam, 10 that of rounding (against 40 digits).
 NODES_PER_OCTAVE = 10
-#: Octaves behind the shortest time where the fast limit begins: from there on it is good to rounding.
+#: Octaves beyond the inverse of the shortest time, after which the fast limit begins: there it is good to rounding.
 FAST_LIMIT_OCTAVES = 34
 
 # Functions at a node, in the order of the parts of a row.
@@ -102,8 +102,13 @@ _OUTWARDS = np.array([POINT_COUNT // 2 + (n + 1) // 2 * (-1) ** n for n in range
 
 
 def _leja_order(points: np.ndarray) -> np.ndarray:
-    """Return points, (n,), in an order in which divided differences stay small: from the largest on, each has the
-    largest product of distances from those before it.
+    """Return points in an order in which divided differences stay small.
+
+    The first is the largest.  Each further one has the largest product of distances from those before it (Leja's
+    order).
+
+    points : (n,) floats, different from each other, n > 0.
+    Returns a new array, (n,).
     """
     order = [points.argmax()]
     while len(order) < points.size:
@@ -122,9 +127,9 @@ SOURCE = record_type(
     "rows marks material_index state_count materials material_size "
     "numbers node_count node_versions workspace workspace_size unlike"
 )
-#: Number of a material, and of the head of rows: sum J_j T_j of the half-space; behind it that of the cylinder.
+#: Number of a material, and of the head of rows: sum J_j T_j of the half-space; after it that of the cylinder.
 _T_HALF_SPACE = MAKER_NUMBERS
-#: Number of a material: exponent e0 of its first row; behind it the number of rows, and the number of modes.
+#: Number of a material: exponent e0 of its first row; after it the number of rows, and the number of modes.
 FIRST_EXPONENT = MAKER_NUMBERS + 2
 #: Number of a material where its modes begin (:func:`.series.unpack_series`).
 SERIES_START = FIRST_EXPONENT + 3
@@ -137,12 +142,16 @@ _MATERIAL = MAKER_MARKS + 1
 class Grid(NamedTuple):
     """The grid of the selected material, and the rows that are made from it.
 
-    rows : of the law, written.  scratch : of :mod:`newton_interpolation`.
-    functions : (node_count, 12), values at the nodes; the last 36 nodes are the points of the slow row.
-    node_versions : version for which each block of four nodes was made.
+    rows : vector of the law with its head, up to the part that is made and one more, written.
+    scratch : vector of :mod:`newton_interpolation`.
+    functions : (node_count, 12), values at the nodes in the order of _L to _LN_ETA_OVER_F; the last 36 nodes are the
+        points of the slow row.
+    node_count : int.
+    node_versions : version for which each block of four nodes was made, (node_count/4,).
     series, workspace, modes, unlike : arguments of :func:`.series.unpack_series` and :func:`.series.split_workspace`.
-    e0 : exponent of the first row.  version : that of the selected material.
-    lowest : n of node 0, where z = 2^(n/10).
+    e0 : exponent of the first row, [0, 2^e0).
+    version : that of the selected material.
+    lowest : n of node 0, where z = 2^(n/10), a multiple of four.
     """
 
     rows: Any
@@ -160,13 +169,20 @@ class Grid(NamedTuple):
 
 
 def grid_size(count: int, alpha: float) -> int:
-    """Return the number of nodes, a multiple of four, from which ``count`` rows of a law with ``alpha`` can be made."""
+    """Return the number of nodes of a grid from which rows of a law can be made.
+
+    count : int, number of rows.
+    alpha : float, instantaneous divided by long-time modulus of the material, >= 1; the largest one of many materials.
+    Returns an int, a multiple of four, which includes the 36 points of the slow row.
+    """
     nodes = NODES_PER_OCTAVE * (count + math.ceil(0.5 * math.log2(alpha)) + 4) + 3 * POINT_COUNT + LANES
     return nodes + -nodes % LANES
 
 
 def work_size(nodes: int) -> int:
-    """Return the number of doubles of the scratch of a grid of ``nodes`` nodes."""
+    """Return the number of doubles of the scratch of a grid of ``nodes`` nodes: that of :mod:`newton_interpolation`,
+    then twelve functions at each node.
+    """
     return SCRATCH_SIZE + _FUNCTIONS * nodes
 
 
@@ -175,10 +191,12 @@ def select_series(n, source):
     """Make the material of a state the selected one: write its data into the heads of rows and marks.
 
     n : int, index of the state.
-    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks; heads of rows and marks
-        are written, nothing if that material is selected already.
+    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.  If that material is
+        selected already, nothing is written.  Else the first ten numbers of the material (alpha, lam_fast, W and C
+        three times, sums J_j T_j of both bodies) are written into the head of rows, and into that of marks its exponent
+        e0, its number of rows and of modes, the address of its numbers, its index and a new version.
 
-    Rows of the law are then computed when they are first read (:func:`make_part`).
+    Rows of the law are then computed when they are first read (:func:`make_part`).  Returns nothing.
     """
     source = record_at(source)
     marks = integers_at(source.marks, PARTS_PER_ROW)
@@ -199,8 +217,11 @@ def make_part(number, source):
     """Compute a part of a row of the selected material, and write it into the rows of the law.
 
     number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
-    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks, and scratch; the 24
-        coefficients of a function, or 48 of a pair, are written, and the mark of the part.
+    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks, and scratch.  In the rows
+        the 24 coefficients of a function, or 48 of a pair, are written, in the marks the version of the part.  Nodes of
+        the grid that are needed and belong to another material are computed again.
+
+    Returns nothing.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)
@@ -226,10 +247,12 @@ def _make_functions(part, row, grid):
     """Compute one function of v, or a pair of functions of u, for one row, and write the coefficients of the powers of
     t.
 
-    part : offset in a row: LENGTH_MOMENT, LAM_EPSILON or BODY_MOMENTS of functions of u, H_OVER_F2 or ETA_OVER_F of v.
-    row : int, index of the row, from 0; 0 is the slow row, where t is in [0, 1].
-    grid : :class:`Grid` of function values over ln z of the selected material, whose ``rows`` are written; the
-        coefficients of a pair are interleaved by two.
+    part : int, offset in a row: LENGTH_MOMENT, LAM_EPSILON or BODY_MOMENTS of a pair of functions of u, H_OVER_F2 or
+        ETA_OVER_F of a function of v.
+    row : int, index of the row, from 0; row 0 is the slow row, where t is in [0, 1], else t is in [-1, 1].
+    grid : :class:`Grid` of function values over ln z of the selected material.  Into its ``rows`` 24 coefficients are
+        written, the constant first, or 48 of a pair, interleaved by two (:mod:`.simd_polynomial`).  In the slow row the
+        constant is the exact limit at rest (0 of epsilon).
     """
     over_v = part >= H_OVER_F2
     slow = row == 0
@@ -261,18 +284,22 @@ def _make_functions(part, row, grid):
 
 @inline_kernel
 def _is_times_u(function):
-    """Return whether a function is stored at the nodes as its product with u."""
+    """Return whether a function is stored at the nodes as its product with u: True for _M, _LAM, _HALF_SPACE and
+    _CYLINDER, False for other columns ``function``, an int, of the grid.
+    """
     return function == _M or function == _LAM or function == _HALF_SPACE or function == _CYLINDER
 
 
 @inline_kernel
 def _slow_limit(function, grid):
-    """Return the limit of a function as u or v -> 0; for epsilon that of epsilon/t, t = u 2^-e0.
+    """Return the limit of a function as u or v -> 0; for epsilon, which vanishes, that of epsilon/t, t = u 2^-e0.
 
-    function : column of the function in the grid: _L, _M, _LAM, _EPSILON, _HALF_SPACE, _CYLINDER, _H_OVER_F2 or
+    function : int, column of the function in the grid: _L, _M, _LAM, _EPSILON, _HALF_SPACE, _CYLINDER, _H_OVER_F2 or
         _ETA_OVER_F.
-    grid : :class:`Grid` of the selected material, of whose head the sums J_j T_j of both bodies are read.
-    Returns the value, dimensionless: of M/V and its parts those sums, else 1.
+    grid : :class:`Grid` of the selected material, of which e0 and, in the head, the sums J_j T_j of both bodies are
+        read.
+    Returns a float, dimensionless: of M/V the sum J_j T_j of both bodies, of its parts that of one; of epsilon/t that
+    of both times 2^e0; 1 of the other functions.
     """
     half_space = grid.rows[_T_HALF_SPACE]
     cylinder = grid.rows[_T_HALF_SPACE + 1]
@@ -292,6 +319,8 @@ def _z_of_node(node, grid):
 
     node : int, index of the node, from 0 to node_count - 1.
     grid : :class:`Grid` of function values over ln z of the selected material.
+    Returns a float, > 0, in the unit of time of the material.  Points of the slow row have 1/z from above 0 to 2^(e0 +
+    1) (1 + 2.5 T), T = sum J_j T_j 2^e0, which is a little beyond the end of that row in u and in v.
     """
     slow = node - (grid.node_count - POINT_COUNT)
     n = node + grid.lowest
@@ -307,7 +336,9 @@ def _fill_block(first, grid):
     """Compute the 12 functions at four nodes by the formulas of the modes, and write them into ``grid.functions``.
 
     first : int, index of the first node, a multiple of four.
-    grid : :class:`Grid` of function values over ln z of the selected material, written; its workspace is scratch.
+    grid : :class:`Grid` of the selected material.  Four rows of its ``functions`` are written, in the order of the
+        columns _L to _LN_ETA_OVER_F, dimensionless; M/V, its parts and lam as products with u.  Its workspace is
+        scratch.
     """
     places = pack(
         _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
@@ -344,10 +375,11 @@ def _fill_block(first, grid):
 
 @inline_kernel
 def _ensure_nodes(first, stop, grid):
-    """Compute those nodes of the grid that still hold values of another material.
+    """Compute those nodes of the grid, in blocks of four, that still hold values of another material.
 
-    first, stop : numbers of the first node and of the one behind the last.
-    grid : :class:`Grid` of function values over ln z of the selected material, written.
+    first, stop : int, index of the first node that is needed, and of the one after the last.
+    grid : :class:`Grid` of the selected material, whose ``functions`` and ``node_versions`` are written for blocks that
+        are out of date; others stay.
     """
     for block in range(first // LANES, (stop - 1) // LANES + 1):
         if grid.node_versions[block] != grid.version:
@@ -360,10 +392,10 @@ def _ln_from_end(node, row, over_v, grid):
     """Return ln(u/end) or ln(v/end) at a node of the grid, where end is the right end of an octave of u or v.
 
     node : int, index of the node, not one of the slow row.
-    row : int, index of the row that spans the octave.
+    row : int, index of the row that spans the octave, whose end is 2^(e0 + row).
     over_v : bool, True for v, False for u.
-    grid : :class:`Grid` of function values over ln z of the selected material, in which the node is made if it is
-        missing.
+    grid : :class:`Grid` of the selected material, in which the node is computed if it holds values of another one.
+    Returns a float, dimensionless: 0 at the end of the octave, -ln 2 at its begin, > 0 beyond the end.
     """
     _ensure_nodes(node, node + 1, grid)
     end = (node + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
@@ -376,13 +408,16 @@ def _ln_from_end(node, row, over_v, grid):
 def _collect_points(row, first, count, over_v, grid):
     """Write the 36 points around an octave of u or v into the scratch of ``grid``, as arguments and values.
 
-    Arguments are ln u or ln v, counted from the end of the octave.  The points are nodes around its middle.
+    Arguments are ln u or ln v, counted from the end of the octave.  The points are the 36 nodes of the grid around its
+    middle, from the middle outwards.
 
     row : int, index of the row that spans the octave, > 0.
     first : int, column of the first function in the grid, _L to _ETA_OVER_F.
-    count : int, number of functions, 1 or 2, that are neighbours.
+    count : int, number of functions, 1, or 2 with neighbouring columns.
     over_v : bool, True if they are functions of v, False for u.
-    grid : :class:`Grid` of function values over ln z of the selected material; missing nodes are made.
+    grid : :class:`Grid` of the selected material.  Its ``scratch`` is written: 36 arguments from ARGUMENTS on and 36
+        values of each function from VALUES on, one FUNCTION_STRIDE apart.  Nodes that hold values of another material
+        are computed.
     """
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
     node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
@@ -404,15 +439,17 @@ def _collect_points(row, first, count, over_v, grid):
 
 @kernel
 def _collect_slow_points(first, count, over_v, grid):
-    """Write the 36 points of the slow row, from 1/z = 0 to a little beyond its end, into the scratch of ``grid``.
+    """Write the 36 points of the slow row, from 1/z near 0 to a little beyond its end, into the scratch of ``grid``.
+
+    Arguments are t = u or v divided by the end of the row, 2^e0.  Values count from the limit t -> 0
+    (:func:`_slow_limit`); epsilon is divided by t, and functions that the grid has as products with u are divided by u.
 
     first : int, column of the first function in the grid, _L to _ETA_OVER_F.
-    count : int, number of functions, 1 or 2, that are neighbours.
+    count : int, number of functions, 1, or 2 with neighbouring columns.
     over_v : bool, True if they are functions of v, False for u.
-    grid : :class:`Grid` of function values over ln z of the selected material; missing nodes are made.
-
-    Arguments are t = u or v divided by the end of the row.  Values count from the limit t -> 0; epsilon is divided by
-    t.
+    grid : :class:`Grid` of the selected material.  Its ``scratch`` is written: 36 arguments from ARGUMENTS on and 36
+        values of each function from VALUES on, one FUNCTION_STRIDE apart.  Nodes that hold values of another material
+        are computed.
     """
     end = math.ldexp(1.0, int(grid.e0))
     _ensure_nodes(grid.node_count - POINT_COUNT, grid.node_count, grid)

@@ -121,7 +121,12 @@ class CoverModes:
     """
 
     def __init__(self, cover: Cover) -> None:
-        """Compute the modes of one ``cover``, a :class:`..cover.Cover` of a single thickness and Poisson's ratio."""
+        """Compute the modes of a cover and of the body beside it; its thickness is not needed for them.
+
+        cover: :class:`..cover.Cover` of one thickness and one Poisson's ratio.  Its fields ``total`` (series of both
+            bodies together), ``layer`` (series of the layer), ``part`` (part of the layer in the long-time compliance,
+            here ``share``), ``nu``, and if ``part`` is below 1 ``other_nu``, are read.
+        """
         modes, layer = cover.total.modes, cover.layer
         self.series, self.J, self.alpha = modes_record(modes), modes.J, float(cover.total.alpha)
         self.cover, self.share, self.nodes = cover, cover.part, layer_nodes(cover.nu)
