@@ -112,7 +112,8 @@ def stress(
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
         points = Points(mirrored, *(read(start, stop) for read in readers))
         _compute_stresses(scene, read_alpha(start, stop), points, p[start:stop], tau[start:stop])
-        tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
+        if scene.cover is None:  # else tau is not computed
+            tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, p.size, _BLOCK)
     unit = scale["p"]
