@@ -11,6 +11,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from viscoroll.core.plots import draw
+from viscoroll.motion.summaries import drawn_summary
 
 from ..stage import ROOT
 from .geometry import geometry
@@ -45,5 +46,6 @@ PAGES = {
 }
 FIGURES: dict[str, Callable[..., Figure]] = {
     "rubber-roller": rubber_roller, "grid": grid,
-    "geometry": geometry, "figure-2": figure_2, "figure-3": figure_3, "figure-7": figure_7, "ensemble": draw,
+    "geometry": geometry, "figure-2": figure_2, "figure-3": figure_3, "figure-7": figure_7,
+    "ensemble": lambda motions: draw(drawn_summary(motions)),
 } | {name: partial(of_page, *page.split()) for name, page in PAGES.items()}  # fmt: skip

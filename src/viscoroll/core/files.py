@@ -28,7 +28,7 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 
 @contextmanager
-def file_errors(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
+def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
     """Raise an OSError of the body of the ``with`` as FileError, which gives the reason of the system.
 
     path: path of the file or folder.
@@ -62,7 +62,7 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     target = Path(os.path.realpath(path))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
     try:
-        with file_errors(path, "cannot be written"):
+        with as_file_error(path, "cannot be written"):
             for wrong, problem in (
                 (target.is_symlink(), "a loop of symbolic links"),
                 (target.is_dir(), "a directory"),
@@ -124,7 +124,7 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
         A file that cannot be read, is too large, or differs from its seal.
     """
     file = Path(path)
-    with file_errors(path, "cannot be read", f": it must be a {kind}"):
+    with as_file_error(path, "cannot be read", f": it must be a {kind}"):
         if file.is_file() and file.stat().st_size > max_bytes:
             raise FileError(path, f"is not a {kind}: it is larger than {max_bytes} bytes")
         content = file.read_bytes()

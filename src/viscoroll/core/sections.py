@@ -15,7 +15,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 import msgspec
 
 from .errors import FileError, ParameterError
-from .files import file_errors
+from .files import as_file_error
 
 T = TypeVar("T")
 #: Line with the header of a section.
@@ -42,7 +42,7 @@ _TYPE_NAMES = {
 def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     """Return the content of the TOML file at ``path``; raise FileError if it cannot be read or is not TOML."""
     try:
-        with file_errors(path, "cannot be read"):
+        with as_file_error(path, "cannot be read"):
             return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
@@ -130,7 +130,7 @@ def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> No
 
 
 @contextmanager
-def locate_errors(path: Any, name: str, key: str = "") -> Iterator[None]:
+def as_section_error(path: Any, name: str, key: str = "") -> Iterator[None]:
     """Raise a ParameterError of the body of the ``with`` as FileError of a section, with its line.
 
     path: path of the file.

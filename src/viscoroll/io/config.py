@@ -14,7 +14,7 @@ from typing import Any, Literal
 import msgspec
 
 from ..core.errors import FileError, ParameterError, unknown_name_error
-from ..core.sections import as_struct, check_keys, locate_errors, read_toml, section_error
+from ..core.sections import as_section_error, as_struct, check_keys, read_toml, section_error
 from ..cylinder import Cylinder
 from ..materials.material_netcdf import SUFFIX
 from ..materials.material_toml import (
@@ -200,5 +200,5 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     found = read_materials(path)
     if "material" not in found:
         raise FileError(path, "section [material] is missing")
-    with locate_errors(path, "base"):
+    with as_section_error(path, "base"):
         return Pair(found["material"], found.get("base"))

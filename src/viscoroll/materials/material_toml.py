@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 
 from ..core.errors import FileError
-from ..core.sections import as_struct, locate_errors, read_toml, section_error
+from ..core.sections import as_section_error, as_struct, read_toml, section_error
 from .law_file import is_law, read_law
 from .material import Material
 from .material_netcdf import SUFFIX
@@ -197,7 +197,7 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
     file that the section names and that is wrong.
     """
     section = _parse_section(path, name, content)
-    with locate_errors(path, name):
+    with as_section_error(path, name):
         if section.file is None:
             material = _make_material(path, name, section)
         else:
@@ -295,7 +295,7 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
             column: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
             for column, value in lists.items()
         }
-        with locate_errors(path, f"{name}.{key}"):  # E is a key of the material too: name the line of the series
+        with as_section_error(path, f"{name}.{key}"):  # E is a key of the material too: name the line of the series
             return Prony(**columns) if key == "prony" else Prony.creep(**columns)
     return None
 

@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from ...core.errors import FileError, ParameterError
-from ...core.files import file_errors
+from ...core.files import as_file_error
 from .numbers import is_row_of_numbers
 
 #: separators of cells and their names in messages, those that are least often part of a cell first
@@ -55,7 +55,7 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     Raises FileError for a file that cannot be read or decoded, workbooks and other binary files; ParameterError for an
     encoding that Python does not know.
     """
-    with file_errors(path, "cannot be read"):
+    with as_file_error(path, "cannot be read"):
         raw = Path(path).read_bytes()
     if raw.startswith(_WORKBOOKS):
         raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")

@@ -16,7 +16,7 @@ import msgspec
 import numpy as np
 
 from ...core.errors import FileError
-from ...core.files import file_errors, seal, seal_matches, write_bytes
+from ...core.files import as_file_error, seal, seal_matches, write_bytes
 from ...motion.summaries import Summary
 
 #: Folder of the records in a store.
@@ -137,5 +137,5 @@ def make_folder(path: Path) -> None:
     path: path of the folder.
     Raises FileError if that fails, as where a file of that name exists.
     """
-    with file_errors(path, "cannot be created as a folder"):
+    with as_file_error(path, "cannot be created as a folder"):
         path.mkdir(parents=True, exist_ok=True)

@@ -31,7 +31,7 @@ import msgspec
 
 from ...core.array_types import Floats
 from ...core.errors import FileError, ParameterError, check_names
-from ...core.sections import locate_errors, read_toml, section_error
+from ...core.sections import as_section_error, read_toml, section_error
 from ...materials.material_toml import material_as_toml, parse_materials
 from ...motion.batch import FLOW_PAYS
 from ...motion.checks import output_times
@@ -267,10 +267,10 @@ def read_run(path: str | PathLike[str]) -> Run:
     certain = {name: material for name, material in materials.items() if not inputs_in(inputs.content[name])}
     inputs = correlated(path, replace(inputs, content=inputs.content | certain))
     settings = msgspec.convert(content["run"], RunSection)
-    with locate_errors(path, "run", "t"):
+    with as_section_error(path, "run", "t"):
         t = settings.t
         times = output_times(spread(**msgspec.to_builtins(t)) if isinstance(t, TimesSection) else t)
-    with locate_errors(path, "run"):
+    with as_section_error(path, "run"):
         check_names("fields", settings.fields, FIELDS, "a field")
         check_names("summaries", settings.summaries, QUANTITIES, "a summary")
     text = path.read_text(encoding="utf-8-sig")

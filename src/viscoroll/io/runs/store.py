@@ -21,7 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.errors import FileError
-from ...core.files import file_errors, write_bytes
+from ...core.files import as_file_error, write_bytes
 from ...motion.ensemble_result import Ensemble
 from ...motion.summaries import Summary, merge_summaries, summarise, summary_dataset
 from . import zarr_files
@@ -100,7 +100,7 @@ class Store:
         if end is None or end.motions == self.run.settings.n:
             return
         for path in (own, *(self.root / name for name in end.files)):
-            with file_errors(path, "cannot be removed"):
+            with as_file_error(path, "cannot be removed"):
                 path.unlink(missing_ok=True)
 
     def refuse_other(self) -> None:
