@@ -24,6 +24,8 @@ LINES: tuple[dict[str, Any], ...] = (
     {"color": "#c8642a", "linestyle": "-."},
     {"color": "#6aa84f", "linestyle": (0, (1, 1.2))},
 )
+#: Height above quantile bands that their legend needs, as a part of the height of the bands: that of three lines.
+_ABOVE_BANDS = 0.5
 #: Greys of quantile bands, from the widest.
 _GREYS = ("0.85", "0.65", "0.45")
 #: Width of every figure, inches.  On a screen 390 pixels wide the smallest text, of 8.3 points, is then 7 pixels high.
@@ -135,7 +137,9 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
         axes.plot(t, values[n], ".-", color="black", label=f"{100 * levels[n]:g} %")
     zero_line(axes)
     if levels.size:
-        small_legend(axes)
+        low, high = axes.get_ylim()
+        axes.set_ylim(low, high + _ABOVE_BANDS * (high - low))
+        small_legend(axes, loc="upper right")
 
 
 def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
