@@ -221,7 +221,8 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     ``M`` as kappa M, ``dM_dV`` as it is.  (Of a cover the traction is not 0 at delta = 0.)
     law: table of the material.
     u: kappa |V|, >= 0, at most 1e300, (n,).
-    names: fields that kernels compute, as of :func:`.contact_fields.computed_fields`.
+    names: fields that kernels compute, as "lam", "epsilon", "M", "dM_dV", "N"
+        (:func:`.contact_fields.computed_fields`); all are those of kappa = mu = 1.
     Returns an array (names, n), dimensionless.
     """
     return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)

@@ -240,11 +240,12 @@ def _title_unit(title: Any) -> str | None:
 
 
 def _to_seconds(name: str, value: Any) -> Any:
-    """Return durations of Python, numpy and pandas in seconds; None if the value is no duration.
+    """Return durations of Python, numpy and pandas in seconds.
 
     name: name of the argument, for the error.
-    value: what a caller gave.
-    Returns a float or an array of the shape of ``value``.
+    value: what a caller gave, of any type.
+    Returns a float or an array of the shape of ``value``, without its labels, NaN for NaT; None if the value is no
+    duration, and for lists and masked arrays of durations.
     Raises ParameterError for a duration in months or years, whose length is not fixed, or without a unit.
     """
     if isinstance(value, timedelta):

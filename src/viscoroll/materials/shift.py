@@ -63,8 +63,10 @@ class WLF:
         object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
-        """Return a_T at a ``temperature``, degrees Celsius: dimensionless, > 0, 1 at T0.  Raises ParameterError as the
-        class states.
+        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
+
+        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is converted.
+        Raises ParameterError and warns as the class states.
         """
         above = check_celsius("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
@@ -109,8 +111,10 @@ class Arrhenius:
         object.__setattr__(self, "T0", check_celsius("T0", self.T0))
 
     def __call__(self, temperature: float) -> float:
-        """Return a_T at a ``temperature``, degrees Celsius: dimensionless, > 0, 1 at T0.  Raises ParameterError as the
-        class states.
+        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
+
+        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is converted.
+        Raises ParameterError and warns as the class states.
         """
         kelvin = check_celsius("temperature", temperature) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))

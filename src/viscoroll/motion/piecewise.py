@@ -95,9 +95,10 @@ def check_function(
 
 
 def count_motions(function: TimeFunction) -> int:
-    """Return the number of motions for which a function has values of their own, an int; 1 if it is the same for all.
+    """Return for how many motions a function of time is given, an int; 1 if all motions share it.
 
-    function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable.
+    function: :class:`TimeFunction`, as :func:`check_function` returns it: an array, () or (n,), a :class:`Schedule`, or
+        a :class:`Piecewise`, the fit of a callable.
     """
     if isinstance(function, Piecewise):
         return len(function.terms)

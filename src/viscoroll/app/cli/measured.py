@@ -130,10 +130,10 @@ def fit(arguments: Namespace) -> int:
 
 
 def _wlf(text: str) -> vr.WLF:
-    """Return the shift of the option --wlf.
+    """Return the time-temperature shift of the option --wlf, a :class:`viscoroll.WLF`.
 
-    text: "C1,C2,T0", T0 and C2 in degrees Celsius and K, C1 dimensionless.
-    Raises ParameterError for another form.
+    text: "C1,C2,T0": C1 dimensionless, C2 in K, T0 in degrees Celsius.
+    Raises ParameterError for another form, and for values that :class:`viscoroll.WLF` refuses.
     """
     try:
         C1, C2, T0 = (float(part) for part in text.split(","))

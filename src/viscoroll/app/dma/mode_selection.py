@@ -29,12 +29,14 @@ _CANDIDATES = 3
 
 
 def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum, tuple[float, float], bool]:
-    """Find the spectrum of fewest modes that reaches a misfit, or comes within 5 % of the best one where none reaches
-    it.
+    """Find a spectrum of few modes that reaches a misfit, or comes within 5 % of the best one where none reaches it.
+
+    Modes are left out one by one as long as the misfit allows it.
 
     data : measured moduli, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`.
     target : largest misfit of each row of the data, a root mean square of relative errors, dimensionless.
-    modes : number of modes, of which fewer are used only where more have no strength; None: as few as the target needs.
+    modes : number of modes to fit, an int >= 1; those to which the fit gives no strength are dropped, and the target
+        decides the returned flag alone.  None: as few as the target needs.
     Returns (the spectrum; (shortest, longest time) of its grid, s; whether every row has a misfit <= target).
 
     Raises

@@ -136,12 +136,11 @@ class Record:
         return {name: value for name in ("load", "m") if (value := getattr(self, name, None)) is not None}
 
     def initial_values(self, R: float) -> InitialValues:
-        """Return the unknowns that the record may have of its own, with their initial values.
+        """Return the start values V0, omega0 and t0 of the motion, which a fit may need; :class:`Coastdown` has them.
 
-        R : radius of the cylinder, m.
-        Returns name ("V0", "omega0", "t0") -> (initial value; (low, high) where the record leaves it open, None where
-        it gives it), in SI units; {} of records other than a :class:`Coastdown`.
-        Raises ParameterError where a start is open and the data do not show it.
+        R : radius of the cylinder, m; not used here.
+        Returns {}: other records have no motion.  :class:`Coastdown` returns name -> (initial value; (low, high) where
+        the record does not give it, else None), in SI units.
         """
         return {}
 

@@ -130,8 +130,9 @@ class FreeRolling:
 
         scene: dimensionless parameters, numbers or arrays, with one or several materials or alphas, no cover.
         V: speeds, dimensionless, any sign and shape; broadcasts with the scene.
-        Returns the states in the broadcast shape, with results divided by R/T_ref, T_ref and R.  Without gamma g is
-        NaN, and only their contact lengths are known.
+        Returns the states: u = kappa |V| and the index of the material in the broadcast shape, the other fields as they
+        broadcast with it; results will be divided by R/T_ref, T_ref and R.  u is infinite where kappa |V| overflows.
+        Without gamma g is NaN, and only contact lengths are known.
         Raises ParameterError for a cover, whose N is not known.
         """
         refuse_cover(scene, "free rolling is not examined, since N is not available")

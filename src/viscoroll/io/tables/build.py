@@ -228,8 +228,8 @@ def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]
 
     table: :class:`xr.Dataset`, the grid, by whatever method it was computed.
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
-    Returns field -> difference, dimensionless, >= 0: relative at each node for :data:`RELATIVE_FIELDS`, else divided by
-    the largest value of the field.
+    Returns field -> difference, a float >= 0, dimensionless: relative at each node for :data:`RELATIVE_FIELDS`, else
+    divided by the largest magnitude of the field in the rows; of a field that is 0 there it is the difference itself.
     """
     rows = _evaluate_nodes(roller, {name: table[name].values for name in schema.axes_of(table)}, "table")
     found = {}

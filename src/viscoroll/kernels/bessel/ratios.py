@@ -169,12 +169,12 @@ def ratio_k(z):
 
 @inline_kernel
 def ratio_i2(x, r):
-    """Return the ratio i2 = I2/I0 = 1 - 2 r/x of modified Bessel functions, to full relative accuracy (2.4 ULP).
+    """Return the ratio i2 = I2/I0 = 1 - 2 r/x of modified Bessel functions, to 2.4 ULP.
 
     x : argument, float >= 0, dimensionless; may be infinite.
     r : float, r(x) of :func:`ratio_r`, of which i2 is formed from x = 4 on; not read below.
-    Returns a float, dimensionless: 0 at x = 0; less than 1 in exact numbers, but rounded to 1.0 from x = 4e16 or so on;
-    NaN of a NaN.
+    Returns a float, dimensionless: less than 1 in exact numbers, but rounded to 1.0 from x = 4e16 or so on; subnormal,
+    with fewer digits, below x = 1e-153 or so, and 0 below 1e-162 and at x = 0; NaN of a NaN.
     """
     if not x < 4.0:  # or a NaN
         return 1.0 - 2.0 * r / x

@@ -93,7 +93,7 @@ def _without_garbage_collection():
 class EntryPipeline:
     """The compiler of kernels that Python calls, in the interface of numba's compiler classes.
 
-    context : what numba passes to the constructor of a compiler.
+    context : tuple of what numba passes to the constructor of a compiler: first its typing and target context.
     """
 
     def __init__(self, *context):
@@ -108,7 +108,7 @@ class EntryPipeline:
         given, and numba's own compiler compiles all later kernels of the process too, without a further warning.  If
         both fail, the function itself cannot be compiled, and later kernels are compiled as before.
 
-        function : the Python function.
+        function : the Python function, undecorated.
         Returns numba's ``CompileResult``.  Raises the error of numba's own compiler if that fails too.  The first call
         in a process prints a line on standard error (:func:`.notice.announce_compiling`).
         """

@@ -78,7 +78,8 @@ def _write_output(out, column, state):
 
     out : outputs (ROWS, times), of which one column is written, all rows but ROLLING_LOSS.
     column : int, index of the output time.
-    state : :class:`.records.Output`.
+    state : :class:`.records.Output`: V, omega, distance and angle (times gamma), delta, regime (a code of
+        :mod:`..motion.records`) and loss by slip, dimensionless, with the signs of the motion, not mirrored.
     """
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
     out[_ANGLE, column], out[_DELTA, column], out[_REGIME, column] = state.angle, state.delta, state.regime

@@ -118,6 +118,8 @@ def _effective_load(load, spin_sign, scene):
     load: Load, at V = 0.
     spin_sign: float, sign of omega against which the brake acts; 0 for none.
     scene: Scene, with the added mass.
+    With the result V' = inverse_mass (Q + force) + V_rate and omega' = inverse_inertia (torque - Q) + omega_rate hold
+    at V = 0, where M is 0, although the moment n V' of the added mass acts, half of it on V and half on omega.
     Returns ``load`` with other ``torque``, ``inverse_mass`` and ``inverse_inertia``; without brake and added mass they
     stay too.  The field ``brake`` stays although its torque is in ``torque``.
     """

@@ -140,7 +140,8 @@ def _add_feedback_to_matrix(work):
     """Add the effect of the second unknown on p', diag(F) S^-1 diag(c) of the module, to the Newton matrix of p.
 
     work: Workspace, with S^-1 in ``d_matrix``, F in ROW_FEEDBACK and c in ROW_COUPLING; rows and columns 1 ... N of
-    ``p_matrix`` are changed.
+    ``p_matrix`` are changed.  Both matrices are flat vectors by columns, element (i, k) at ROW_LENGTH k + i; row and
+    column 0 are not used.
     """
     for k in range(1, ROW_LENGTH):
         for i in range(1, ROW_LENGTH):

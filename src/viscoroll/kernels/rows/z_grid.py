@@ -6,6 +6,10 @@ around an octave (:mod:`newton_interpolation`) is evaluated at the nodes of that
 goes through points at Chebyshev nodes of 1/z and is one in t.  No root is solved for and no slope is needed.  A row
 depends on its material alone, not on the rows that were made before.
 
+A part is the place of one function in a row, PART_SIZE numbers, of which a pair of functions takes two.  Marks are
+integers beside the rows: some for the law as a whole, then for each part of each row the version of the material for
+which it was computed.
+
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
@@ -216,12 +220,12 @@ def select_series(n, source):
 def make_part(number, source):
     """Compute a part of a row of the selected material, and write it into the rows of the law.
 
-    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
-    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks, and scratch.  In the rows
-        the 24 coefficients of a function, or 48 of a pair, are written, in the marks the version of the part.  Nodes of
-        the grid that are needed and belong to another material are computed again.
+    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + k, with the row from 0 and k, the number
+        of the part in its row; of a pair of functions that of its first part.
+    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks, and scratch.
 
-    Returns nothing.
+    Returns nothing.  Written are the 24 coefficients of the function, or 48 of a pair, in the rows; the mark
+    ``number``; functions and versions of those nodes of the grid that belonged to another material; and the scratch.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)

@@ -306,7 +306,8 @@ class AxisRows(NamedTuple):
     """The rows of an octave of alpha as groups of terms in s (:mod:`...kernels.rows.alpha_axis`), read-only.
 
     A group is the four coefficients of T_4g(s) s^i, i = 0 to 3, of eight neighbouring numbers of a row (a block).
-    numbers : of each block its groups, that of the highest degrees first; of most blocks fewer than four, as those of
+    numbers : one vector, in which group n begins at 32 n, 4 x 8 numbers, i outermost: of each block its groups, that of
+        the highest degrees first; of most blocks fewer than four, as those of
         high degrees are 0.
     starts : index of the first group of each function or pair of functions of each row, then the number of all groups,
         (4 rows + 1,): L with M/V, lam with epsilon, H/F^2, eta/F.
@@ -319,12 +320,14 @@ class AxisRows(NamedTuple):
 
 
 def pack_axis(records: list[Any], c: Floats) -> AxisRows:
-    """Return the rows of several alphas as the alpha axis of the kernels has them (:mod:`...kernels.rows.alpha_axis`).
+    """Interpolate the coefficients of 16 laws over alpha, and pack the result for the kernels of an alpha each.
 
-    records: records of the laws of standard linear solids (:func:`pack_record`) at the 16 nodes of an octave of alpha,
-        with equal numbers of rows.
+    The interpolation is by Chebyshev polynomials in s in [-1, 1], the place of alpha in its octave; the kernels are
+    those of :mod:`...kernels.rows.alpha_axis`.
+    records: records of the laws of standard linear solids (:func:`pack_record`) at the 16 Chebyshev nodes of s, in the
+        order of :func:`...kernels.numerics.interpolation.chebyshev`, with equal numbers of rows.
     c: (alpha - 1)/alpha of each, > 0, (16,), by which M/V and epsilon are divided.
-    Returns :class:`AxisRows`: terms of Chebyshev polynomials in s, the place of alpha in its octave, in groups of four.
+    Returns :class:`AxisRows`: terms of these polynomials, in groups of four.
     Groups of high degrees are left out where all blocks of the function need no more than
     :data:`...kernels.rows.alpha_axis.SHORT` states; else all four groups of all its blocks are kept.  M/V of half-space
     and cylinder are not packed: each is half of M/V.
