@@ -43,6 +43,9 @@ _BITS = 52
 class Sample(dict[str, Floats]):
     """Draws of each quantity by name, (n,), with the seed and the design that give them again.
 
+    seed : seed, a whole number in [0, 2^63).
+    design : "random", "latin" or "sobol".
+
     Examples
     --------
     >>> import viscoroll as vr
@@ -60,9 +63,10 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
 
     Parameters
     ----------
-    n : number of draws, >= 1; powers of two suit "sobol".
-    seed : whole number >= 0, below 2^63, kept in the result.
-    rng : in place of a seed, which is drawn from it: a numpy.random.Generator, or an argument of default_rng.
+    n : number of draws, 1 to 1e12; powers of two suit "sobol".
+    seed : whole number >= 0, below 2^63, kept in the result; None: ``rng`` must be given.
+    rng : in place of a seed, which is then drawn from it: a numpy.random.Generator, which is advanced, or an argument
+        of default_rng.
     design : "random", "latin" (hypercube) or "sobol" (scrambled); the draws are those of a run file of one block.
     **quantities : a number, or a frozen scipy.stats distribution, e.g.
         ``V0=scipy.stats.uniform(-1, 2)``; drawn through its inverse CDF.
@@ -70,7 +74,8 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     Returns
     -------
     Sample
-        A mapping from name to draws, an array (n,), with attributes ``seed`` and ``design``.
+        A mapping from name to draws, an array (n,) of float64, in the order of ``quantities``; a number is repeated n
+        times.  Its attributes ``seed`` and ``design`` give the same draws again, also where ``rng`` was given.
 
     Raises
     ------
@@ -116,7 +121,9 @@ def _is_distribution(name: str, value: Any) -> bool:
 
     name: name of the quantity, for the message.
     value: what a caller gave; an object with a method ``ppf`` counts as a distribution.
-    Raises ParameterError for what is neither, or a distribution whose median is not finite.
+    Returns True for a distribution, False for one finite number.
+    Raises ParameterError for anything else, such as an array, and for a distribution whose median is not one finite
+    number.
     """
     random = hasattr(value, "ppf")
     try:
@@ -136,8 +143,12 @@ def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop:
     seed: seed of all points, a whole number in [0, 2^63).
     n: number of all points, which are the strata of "latin"; the other designs do not depend on it.
     dimensions: number of coordinates of a point; 0 gives an array (0, stop - start).
-    start, stop: index of the first point, and of the one after the last.
-    block: number of the block, by which "random" and "latin" choose the random numbers; "sobol" does not depend on it.
+    start, stop: index, among all points, of the first point of the block and of the first one after it; start < stop.
+        "latin" chooses the strata by them and "sobol" the points; "random" uses their difference alone.
+    block: number of the block, >= 0, by which "random" and "latin" choose the random numbers; "sobol" does not depend
+        on it.
+    Returns a new array (dimensions, stop - start), clipped to [:data:`SMALLEST`, :data:`LARGEST`], the doubles next to
+    0 and 1 for which the inverse of a distribution stays finite.
     """
     if dimensions == 0:
         return np.empty((0, stop - start))
@@ -153,7 +164,7 @@ def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop:
 
 
 def _stream(seed: int, number: int) -> np.random.Generator:
-    """Return the random generator (Philox) of one stream of a seed.
+    """Return a new random generator (Philox), at the start of one stream of a seed.
 
     seed: the seed, in [0, 2^63).
     number: number of the stream, in [0, 2^64): that of a block, or 2^64 - 1 for the keys of permutations.
@@ -168,6 +179,9 @@ def _keys(seed: int, dimensions: int) -> Words:
 
 def permuted(index: Words, n: int, key: Words) -> Words:
     """Return the images of numbers under a permutation of 0 ... n - 1, computed for each number by itself.
+
+    The Feistel network permutes the numbers below the next power of 4; it is applied again to images that are not below
+    n, until they are.
 
     index: the numbers, < n, (k,), uint64.
     n: size of the permutation, >= 1.
@@ -186,10 +200,13 @@ def permuted(index: Words, n: int, key: Words) -> Words:
 def _feistel(index: Words, half: int, key: Words) -> Words:
     """Return the images of numbers under a permutation of all numbers of 2 * half bits.
 
-    index: the numbers, (k,), uint64, < 2^(2 half).
+    In each round the right half and a key are mixed and added, bit by bit without carry, to the left half, and the
+    halves change places; this can be inverted for any mixing.
+
+    index: the numbers, (k,), uint64, < 2^(2 half); not changed.
     half: bits of half a number, 1 to 32.
     key: keys of the rounds, (rounds,), uint64.
-    Returns the images, (k,), uint64.
+    Returns the images, (k,), uint64, < 2^(2 half), a new array.
     """
     width, mask = np.uint64(half), np.uint64(2**half - 1)
     left, right = index >> width, index & mask
@@ -214,10 +231,11 @@ def _mix_bits(x: Words) -> Words:
 def _sequence(seed: int, dimensions: int) -> Any:
     """Return the scrambled Sobol sequence of scipy.stats.qmc at its start.
 
-    The last two are kept; a caller advances a copy.
+    The sequences of the last two calls are kept and returned again, so a caller must advance a copy.
 
-    seed: seed of the scrambling.
-    dimensions: number of coordinates of a point.
+    seed: seed of the scrambling, in [0, 2^63).
+    dimensions: number of coordinates of a point, >= 1.
+    Returns a :class:`scipy.stats.qmc.Sobol` of 52 bits.
     """
     from scipy.stats import qmc
 
@@ -229,10 +247,12 @@ def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
 
     seed: seed of the scrambling.
     dimensions: number of coordinates of a point.
-    start, stop: index of the first point, and of the one after the last; stop > start.
+    start, stop: index of the first point, and of the one after the last, 0 <= start < stop.
+    Returns a new array, whose entries are multiples of 2^-52.
 
-    ``fast_forward`` of scipy visits all points before, which at 10^11 would take minutes a block (and refuses more than
-    32 bits).  Its state is set instead; a test compares with a sequence from its start.
+    ``fast_forward`` of scipy visits all points before ``start``, which at 10^11 would take minutes a block (and refuses
+    more than 32 bits).  The private state ``_quasi`` of a copy of the sequence is set instead, by the Gray code of
+    ``start``; a test compares with a sequence from its start.
     """
     sequence = copy.copy(_sequence(seed, dimensions))
     drawn = np.empty((stop - start, dimensions))

@@ -60,20 +60,23 @@ def run_ensemble(
         there.
     cluster : None: threads of this process.  "local": processes of this machine.  "tcp://host:port": a running dask
         scheduler, whose workers see ``path`` on a shared disk.
-    threads : threads or local processes; default ``$VISCOROLL_THREADS`` or the number of cores available.
-    progress : True: draw a progress bar.  "lines": write a line of progress every half minute, for a log.
+    threads : threads or local processes; default ``$VISCOROLL_THREADS`` or the number of cores available.  Ignored with
+        the address of a scheduler, which has workers of its own.
+    progress : True: draw a progress bar on standard error.  "lines": write a line of progress there every half minute,
+        for a log.  False: neither.
 
     Returns
     -------
     int
-        Number of blocks that were evaluated; 0 if the store held all of them.
+        Number of blocks that this call evaluated; 0 if the store held all of them.  The summaries are complete then.
 
     Raises
     ------
     FileError
         The folder holds something else or cannot be written, another process writes to it, or the cluster is lost.
     ParameterError
-        An unknown cluster, or inputs that a motion does not allow.
+        An unknown cluster, ``threads`` that is no whole number >= 1, another ``progress``, or inputs that a motion does
+        not allow.
     MissingDependencyError
         If zarr, or dask for a cluster, is not installed.
     Interrupted
@@ -118,14 +121,19 @@ def run_ensemble(
 def _evaluate_missing(
     store: Store, shared: Any, pool: Executor, workers: int, advance: Callable[..., Any]
 ) -> Iterator[int]:
-    """Submit the missing blocks, and yield the number of motions of each one that is finished and stored.
+    """Evaluate the missing blocks on an executor, and report each one that is finished and stored.
+
+    At most two blocks for each worker are submitted at a time; the next ones follow as blocks finish.
 
     store: :class:`Store`, the store of the run.
-    shared: the store, or dask's reference to it, as tasks take it.
-    pool, workers: executor, and its number of workers.
-    advance: function (number of motions, on_disk=True) of the progress bar; it is called here for blocks that were on
-    disk.
-    Raises what the evaluation of a block raises; blocks that are not running yet are then cancelled.
+    shared: the same store, or, on a cluster, dask's reference to it (a Future), which workers resolve to the store.
+    pool: :class:`concurrent.futures.Executor`, on which the blocks are evaluated.
+    workers: its number of workers.
+    advance: function (number of motions, on_disk=True) of the progress bar, whose result is ignored.  It is called here
+        for motions that were on disk before; for those that are yielded the caller calls it.
+    Yields the number of motions of each evaluated block, in the order in which they finish.
+    Raises what the evaluation of a block raises; blocks that are not running yet are then cancelled, as they are if the
+    caller stops the iteration.
     """
     running: set[Future[int]] = set()
     checked = 0  # motions before the block at hand
@@ -151,12 +159,18 @@ def _evaluate_missing(
 def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterator[tuple[Executor, int, Any]]:
     """Open the executor of the tasks; a context manager.
 
+    On threads, an error or Ctrl-C in the body of the ``with`` makes running blocks stop before their next part, and the
+    threads are not awaited; else the executor is closed when its tasks are done.
+
     store: :class:`Store`, store of the run.
-    cluster: None (threads of this process), "local" (processes of this machine) or the address of a scheduler.
-    threads: number of threads or local processes; None: all cores available.
-    Yields (executor; its number of workers; the store, or dask's reference to it, as tasks take it).
-    Raises ParameterError for an unknown cluster, FileError for one without workers or whose connection is lost,
-    MissingDependencyError without dask.  At an error running blocks of threads are told to stop.
+    cluster: None (threads of this process), "local" (dask processes of this machine) or the address of a dask
+        scheduler, "tcp://host:port" or "tls://host:port".
+    threads: number of threads or local processes; None: ``$VISCOROLL_THREADS``, else all cores available; ignored with
+        an address.
+    Yields (a :class:`concurrent.futures.Executor`; its number of workers, >= 1; the first argument of its tasks: the
+    store itself for threads, else dask's reference to it).
+    Raises ParameterError for an unknown cluster, FileError for a scheduler that does not answer, has no workers or is
+    lost while blocks run, MissingDependencyError without dask.
     """
     if cluster is None:
         interrupted = threading.Event()
@@ -195,12 +209,13 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
 
 
 def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
-    """Return a client of dask: of a running scheduler, or of workers that are started on this machine.
+    """Return a ``distributed.Client``: of a running scheduler, or of workers that are started on this machine.
 
     distributed: the module ``distributed``.
     cluster: "local" or the address of a scheduler.
-    threads: number of local processes; None: all cores available.  A running scheduler has its own.
-    Raises OSError if no scheduler answers within 10 s.
+    threads: number of local processes, of one thread each; None: ``$VISCOROLL_THREADS``, else all cores available.
+        Ignored for a running scheduler, which has workers of its own.
+    Raises OSError if no scheduler answers within 10 s, ParameterError for a wrong ``threads``.
     """
     if cluster != "local":
         return distributed.Client(cluster, timeout=10)
@@ -216,10 +231,11 @@ def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
 def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Callable[..., Any]]:
     """Draw the progress of a run on standard error; a context manager.
 
-    run: run whose motions are counted.
-    progress: False (nothing), True (a bar) or "lines" (a line every half minute).
-    Yields a function (number of motions, on_disk=False) that advances it; motions that were on disk do not count in the
-    rate.
+    run: :class:`Run`, whose motions are counted.
+    progress: False (nothing is drawn), True (a bar) or "lines" (a line every half minute, the first one after that
+        time).
+    Yields a function (number of motions, on_disk=False) -> None that advances it; motions that were on disk do not
+    count in the rate, from which the time left is estimated.
     """
     from tqdm import tqdm
 
@@ -233,8 +249,8 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
         def advance(motions: int, on_disk: bool = False) -> None:
             """Advance the bar.
 
-            motions: number of motions.
-            on_disk: whether they were on disk already.
+            motions: number of motions to add, >= 0.
+            on_disk: whether they were on disk before this call, so that they do not count in the rate.
             """
             if on_disk and progress:  # a disabled bar has no attribute initial
                 bar.initial += motions

@@ -54,9 +54,12 @@ class Distribution:
     def ppf(self, u: Floats) -> Floats:
         """Return the quantiles of the truncated distribution, in the unit of the input.
 
-        An upper tail is inverted from above, by the survival function, so that it keeps its digits.
+        If more than half of the whole distribution lies below the interval, it is inverted from above, by the survival
+        function, so that the upper tail keeps its digits.
 
-        u: probabilities in (0, 1), of any shape, which the result has too.
+        u: probabilities in (0, 1), of any shape.
+        Returns an array of that shape, within [low, high]; where the interval is the support of the law, the quantiles
+        of the law as scipy computes them, which may overflow to an infinity.
         """
         law = self.law
         if (self.low, self.high) == law.support():
@@ -105,9 +108,14 @@ class Inputs:
         return {name: values.item() for name, values in middle.items()}
 
     def values(self, points: Floats) -> dict[str, Floats]:
-        """Return the value of each input at points of the unit cube: name -> values, (n,), in the units of the file.
+        """Map points of the unit cube to the values of all inputs.
 
-        points: (dimensions, n), in (0, 1), in the order of :attr:`dimensions`.
+        Under the copula the coordinates of correlated inputs are first replaced by those of normal variables with the
+        stated correlations.  A distribution takes its quantile at its coordinate u, a file of N rows the row floor(u N)
+        for all its columns.
+
+        points: (dimensions, n), in (0, 1), in the order of :attr:`dimensions`; other numbers of rows raise ValueError.
+        Returns name -> values, (n,), in the units of the file: distributions, then columns.
         """
         rows = dict(zip(self.dimensions, points, strict=True))
         if self.mixing is not None:
@@ -125,10 +133,12 @@ class Inputs:
         return values
 
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
-        """Return the smallest and the largest draw of an input, (2,), in the unit of the file.
+        """Return the ends of the draws of an input, (2,), [lower, upper], in the unit of the file.
 
-        name: name of the input.
-        low, high: probabilities whose quantiles are the ends of a distribution; a column of a file has its extremes.
+        name: name of the input, else StopIteration.
+        low, high: probabilities; the ends of a distribution are its quantiles there, by default those of the smallest
+            and the largest coordinate that a point has.  They are ignored for a column of a file, whose ends are its
+            smallest and its largest number.
         """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
@@ -136,9 +146,13 @@ class Inputs:
         return np.array([column.min(), column.max()])
 
     def corners(self) -> dict[str, Floats]:
-        """Return extreme inputs, name -> (n,): each input at one end and all others at the other, and all at one end.
+        """Return combinations of extreme inputs, for which the checks of a run file make motions.
 
-        Columns of a file with several keep their medians, as their ends need not occur together.
+        With k inputs that are distributions or the only column of their file there are n = 2 (k + 1) combinations: each
+        of the k inputs at its upper end with all others at their lower ends; all at their lower ends; then the same
+        with the ends exchanged.
+        Returns name -> values, (n,), in the units of the file.  The columns of a file with several are at their
+        medians, a number each, as their ends need not occur together.
         """
         names = [*self.random, *(name for columns in self.joint.values() if len(columns) == 1 for name in columns)]
         at_low = np.eye(len(names), len(names) + 1, dtype=bool)
@@ -146,19 +160,21 @@ class Inputs:
         return self.medians | ends
 
     def largest(self, name: str) -> float:
-        """Return the largest magnitude of a start speed that a run file lets occur.
+        """Return the largest magnitude of a start speed up to which a flow map is made.
 
-        name: "V0" or "omega0", which the file must give.
-        Returns a float in the unit of the file: of a distribution without a millionth of the draws at each end; of a
-        column of a data file its largest magnitude; of a fixed number that.
+        name: "V0" or "omega0"; KeyError if the section [start] does not give it.
+        Returns a float >= 0 in the unit of the file.  A distribution may be unbounded: its quantiles at 1e-6 and
+        1 - 1e-6 are taken, which two in a million draws exceed.  Of a column of a data file all rows count; of a fixed
+        number its magnitude is returned.
         """
         start = self.content["start"][name]
         return float(np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max())
 
     def filled(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the sections of the run file with values in place of the inputs: name of a section -> content.
+        """Return the sections of the run file with values in place of the inputs.
 
-        values: name of an input -> number or (n,), for every input.
+        values: name of an input -> number or (n,), for every input, else KeyError; other names have no effect.
+        Returns name of a section -> content, all of it new but for parts that are neither tables nor lists.
         """
         return _fill_in(self.content, values)
 
@@ -166,9 +182,10 @@ class Inputs:
 def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
     """Return a part of the content with values in place of its inputs; in a list "same" repeats the number before.
 
-    part: an input, or a section, list or number of the file.
+    part: an :class:`Input`, or a section, list, number, text or material of the file; it is not changed.
     values: name of an input -> number or (n,).
-    Returns a new part of the same kind.
+    Returns the value of an input; a new dict of a section; a new list of a list, in which a first "same" stays as it
+    is; any other part itself.
     """
     if isinstance(part, Input):
         return values[part.name]
@@ -183,6 +200,9 @@ def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
 
 
 def inputs_in(part: Any) -> list[Input]:
-    """Return the inputs within a part of the content of a run file."""
+    """Return the inputs within a part of the content of a run file, a list of :class:`Input` in the order of the file.
+
+    part: a section, table, list, number or any other value; what is neither table, list nor input gives an empty list.
+    """
     members = part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
     return [part] if isinstance(part, Input) else [found for member in members for found in inputs_in(member)]

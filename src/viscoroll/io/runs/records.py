@@ -45,12 +45,14 @@ class Record(msgspec.Struct):
 
 
 def encoded(record: Record) -> bytes:
-    """Return the bytes of a record: MessagePack, compressed and sealed."""
+    """Return the bytes of the file of a ``record``, a :class:`Record`: MessagePack, compressed and sealed."""
     return seal(zlib.compress(msgspec.msgpack.encode(record, enc_hook=_encode_array), _LEVEL))
 
 
 def read_record(path: Path) -> Record | None:
-    """Return the record in a file; None if it is missing, cannot be read, or is damaged in any way.
+    """Return the :class:`Record` in a file; None if it is missing, cannot be read, or is damaged in any way.
+
+    The seal, the SHA-256 at the end of the file, must be there and agree.  Nothing is raised.
 
     path: path of the record.
     """
@@ -65,7 +67,7 @@ def read_record(path: Path) -> Record | None:
 
 
 def _encode_array(array: np.ndarray) -> list[Any]:
-    """Return the type and the bytes of an array, which MessagePack has no type for."""
+    """Return [type as numpy writes it, as "<i8"; bytes] of an ``array``, which MessagePack has no type for."""
     return [array.dtype.str, array.tobytes()]
 
 
@@ -74,7 +76,8 @@ def _decode_array(kind: Any, value: Any) -> np.ndarray:
 
     kind: type of the field, which msgspec passes; it is not used.
     value: [type as of numpy, "<i4" or "<i8"; bytes].
-    Raises ValueError for another type.
+    Returns a read-only vector of that type.
+    Raises ValueError for another type, or a number of bytes that is no multiple of its size.
     """
     name, content = value
     if name not in ("<i4", "<i8"):
@@ -86,7 +89,8 @@ def damaged(root: Path, record: Record) -> list[str]:
     """Return the files of a record that are missing or differ from their digest; [] if all is well.
 
     root: path of the folder of the store.
-    record: the record, whose ``files`` are paths below ``root`` with their SHA-256.
+    record: the :class:`Record`, whose ``files`` are paths below ``root`` with their SHA-256.
+    Returns paths below ``root``, in the order of the record; a file that cannot be read counts as missing.
     """
     return [name for name, digest in record.files.items() if _digest(root / name) != digest]
 
@@ -108,9 +112,9 @@ def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
 
     A file that has this content already is left alone; folders are created.
 
-    root: the folder.
-    files: path below root -> content.
-    Returns path below root -> SHA-256 in hexadecimal digits.
+    root: path of the folder.
+    files: path below root -> content, bytes; {} writes nothing.
+    Returns path below root -> SHA-256 in hexadecimal digits, sorted by path.
     Raises FileError if one cannot be written; the files before it stay.
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
@@ -123,6 +127,8 @@ def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
 
 def refuse_unreadable(root: Path) -> None:
     """Raise FileError if the folder of a store, or that of its records, exists and may not be read.
+
+    Without this check unreadable records would look like missing ones, and blocks would be evaluated again.
 
     root: path of the folder of the store.
     """

@@ -50,18 +50,18 @@ def build(
 
     Parameters
     ----------
-    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or a law, of :func:`viscoroll.load_law` or
-        :func:`viscoroll.io.tables.law`, with kappa = mu = 1: then V is kappa V, delta kappa delta/mu, Q Q/mu and M
-        kappa M.  Its parameters are numbers, no arrays.
+    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or a law of half-spaces, of
+        :func:`viscoroll.load_law` or :func:`viscoroll.io.tables.law`.  A law is taken with kappa = mu = 1: the axis V
+        then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa M.  The dataset of a layer or of
+        every alpha is refused.  All parameters are numbers, no arrays.
     V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_epsilon or in m/s; for V < 0 see the signs
         of Eqs. (17), (18).
     delta : creepages, (n,), dimensionless, any sign, strictly increasing.
     alpha : values of alpha, (n,), in [1, 1e12], strictly increasing, in place of that of a scene without a material;
         None: no such axis.
-    method : "table", from the rows of the law, or "direct", by root solves of the printed equations, of one relaxation
-        time.  With "direct" the rows are evaluated too, and ``difference_from_rows`` of a
-        field is the largest difference: of lam, zeta and delta_star relative, of other fields divided by their largest
-        value.
+    method : "table": fields are evaluated from the rows of the law.  "direct": they are found by root solves of the
+        equations as the paper prints them, which have one relaxation time; the rows are evaluated too, and the
+        attribute ``difference_from_rows`` of each field is the largest difference (:func:`differences`).
     command : recorded in ``history``; default: the command line of this process.
 
     Returns
@@ -76,8 +76,9 @@ def build(
     Raises
     ------
     ParameterError
-        Where ``what`` is none of these or has arrays, an axis is out of range or does not increase; an unknown method,
-        or "direct" of a material.
+        Where ``what`` is none of these or has arrays; an axis is out of range or does not increase strictly; there are
+        more than 5e7 nodes; ``alpha`` is given for a cylinder or for a scene with a material; an unknown method, or
+        "direct" of a material.
 
     Examples
     --------
@@ -126,8 +127,9 @@ def build(
 def _roller_of(what: Any) -> Scene | Cylinder:
     """Return the roller of a grid: a scene or a cylinder itself, of a law the scene with kappa = mu = 1.
 
-    what: a Scene, a Cylinder, a law, or the dataset of a law.
-    Raises ParameterError for anything else, and for a roller with arrays.
+    what: a :class:`Scene`, a :class:`Cylinder`, a :class:`LawTable`, or the dataset of a law of half-spaces.
+    Raises ParameterError for anything else (the datasets of a layer and of every alpha too), and for a roller whose
+    parameters are arrays; FileError for a dataset of a law that is incomplete.
     """
     if getattr(what, "attrs", {}).get(schema.KIND) == "law":
         what = parse_law(dataset_content(what), "law")
@@ -145,10 +147,11 @@ def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: s
 
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     axes: "V", "delta" and perhaps "alpha" -> nodes, (n,), in the units of the roller.
-    method: "table" or "direct".
+    method: "table" (rows of the law) or "direct" (root solves of the printed equations).
 
-    Returns field -> values over all axes, or over V and alpha for fields that do not depend on the creepage, in the
-    units of the roller.
+    Returns field -> values in the units of the roller: "beta" and "Q" of shape (V, delta) or (V, delta, alpha); the
+    other fields, which do not depend on the creepage, (V,) or (V, alpha).
+    Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out of range.
     """
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
@@ -163,8 +166,9 @@ def _evaluate(
     """Return fields of the contact: name -> values in the shape of the points, in the units of the roller.
 
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
-    points: "V", and perhaps "delta" (else 0) and "alpha" (else that of the roller) -> arrays that broadcast.
-    names: names of the fields.
+    points: "V", and perhaps "delta" and "alpha" -> arrays that broadcast; without "delta" fields are at delta = 0 as an
+        array (1,), which broadcasts too; without "alpha" the roller has its own.
+    names: names of the fields, as of :func:`viscoroll.contact`.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
@@ -175,7 +179,9 @@ def _evaluate(
 def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
     """Add the largest errors of both interpolations, and where they occur, to the attributes of the fields of a grid.
 
-    table: the grid; its fields get the attributes spline_error, spline_error_at, linear_error and linear_error_at.
+    table: the grid, which is changed.  Each field gets the attributes spline_error and linear_error, the largest
+        absolute error of cubic splines and of linear interpolation over :data:`SAMPLE_SIZE` random points, in the unit
+        of the field; and spline_error_at and linear_error_at, the point as text, as "V = 0.31, delta = 0.0042".
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, for the exact values at random points.
     """
     points = random_points(table, SAMPLE_SIZE, SEED)
@@ -194,9 +200,11 @@ def errors_at(
     """Return the absolute errors of interpolation in a grid: field -> errors, (n,), in the unit of the field.
 
     table: :class:`xr.Dataset`, the grid.
-    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, of which the exact values are.
-    points: axis -> coordinates, (n,), in the units of the grid.
-    linear: whether interpolation is linear in the axes as they are, else by cubic splines.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, for the values from the rows of the law with which
+        the interpolated ones are compared.
+    points: each axis of the grid -> coordinates, (n,), within the axis, in the units of the grid.
+    linear: whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V, delta and ln alpha.
+    Raises OutOfTableError for a point outside of an axis.
     """
     exact = _evaluate(roller, points, schema.VOLUME + schema.PLANE)
     found = Interpolant(table, linear)(**points)
@@ -205,6 +213,8 @@ def errors_at(
 
 def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
     """Return random points in random cells of a grid; along an axis of one node they all have its coordinate.
+
+    A cell is drawn with equal probability for each axis, then the place in it evenly in the coordinate itself.
 
     table: the grid, dataset of :func:`build`.
     count: number of points.
@@ -228,8 +238,10 @@ def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]
 
     table: :class:`xr.Dataset`, the grid, by whatever method it was computed.
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
-    Returns field -> difference, a float >= 0, dimensionless: relative at each node for :data:`RELATIVE_FIELDS`, else
-    divided by the largest magnitude of the field in the rows; of a field that is 0 there it is the difference itself.
+    Returns field -> largest difference over all nodes, a float >= 0: for :data:`RELATIVE_FIELDS` divided by the
+    magnitude in the rows at the same node, for other fields by the largest magnitude in the rows.  Both are
+    dimensionless.  Where that magnitude is 0, as of M of elastic bodies, the difference itself is taken, in the unit of
+    the field.
     """
     rows = _evaluate_nodes(roller, {name: table[name].values for name in schema.axes_of(table)}, "table")
     found = {}

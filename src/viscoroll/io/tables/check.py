@@ -51,7 +51,11 @@ class Check(NamedTuple):
 
 @dataclass(frozen=True)
 class Report:
-    """All checks of a validation, and the settings it ran with."""
+    """All checks of a validation, and the settings it ran with.
+
+    checks : the checks, :class:`Check` each, at least one.
+    settings : name of a setting, as "seed" -> number; only printed.
+    """
 
     checks: tuple[Check, ...]
     settings: dict[str, int]
@@ -62,7 +66,12 @@ class Report:
         return all(check.passed for check in self.checks)
 
     def __str__(self) -> str:
-        """Return a line for each check with the measured and the allowed difference, the verdict and the settings."""
+        """Return a table in words: a heading, a line for each check, a blank line, the verdict, version and settings.
+
+        The line of a check has its name, the measured and the allowed difference, "ok" or "EXCEEDED", and the meaning.
+        The verdict is the number of checks whose difference is beyond what is allowed.  Raises ValueError without
+        checks.
+        """
         width = max(len(check.name) for check in self.checks)
         lines = [
             f"{c.name:<{width}} {c.measured:9.2e} {c.allowed:9.2e}  {'ok' if c.passed else 'EXCEEDED':<8}  {c.meaning}"
@@ -78,30 +87,33 @@ class Report:
 
 
 def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
-    """Compare a law, or the laws of random alphas, with the formulas of the modes at random speeds.
+    """Check a table by numbers that were not used to make it, and return a :class:`Check` for each difference.
 
-    Of a grid compare every node with the rows of the law, and the splines at random points in random cells.
+    The law of half-spaces, or the laws of random alphas, are compared with the formulas of the modes at random speeds;
+    the law of a layer with solves of the contact (:func:`.law.measured_errors`).  Of a grid every node is compared with
+    the rows of the law, and the splines at random points in random cells.
 
     Parameters
     ----------
     table : dataset of :func:`viscoroll.io.tables.law`, of :func:`viscoroll.io.tables.build` for a scene of one
         relaxation time, or of :func:`viscoroll.io.tables.load`.
-    count : number of random points, >= 1.
+    count : number of random points, >= 1; of a layer that of the speeds, of every alpha as of
+        :func:`.law.measured_errors`.
     seed : seed of the random points, >= 0.
 
     Returns
     -------
     list of Check
-        Of a law one for each function: the largest relative error, allowed up to the stated error times
-        :data:`SAMPLE_RATIO` plus :data:`ROUNDING`.  Of a grid two for each field: its nodes, relative or divided by the
-        largest value, and the splines, absolute.
+        Of a law one for each function: the largest error, dimensionless, of the kind that :func:`.law.measured_errors`
+        states; allowed are the error that the file states times :data:`SAMPLE_RATIO` plus :data:`ROUNDING`.  Of a grid
+        two for each field: its nodes, then its splines (:func:`_check_grid`).
 
     Raises
     ------
     ParameterError
         A count or seed out of range.
     FileError
-        A grid of a material or a cylinder, or a dataset that is no table.
+        A grid of a material or a cylinder, a dataset that is no table, or a law that is incomplete.
     """
     count, seed = check_integer("n", count, 1), check_integer("seed", seed, 0)
     source = table.encoding.get("source", "table")
@@ -118,16 +130,23 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
 
 
 def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
-    """Compare a grid with the law: return two checks for each field, of its nodes and of the splines between them.
+    """Compare a grid with the rows of the law: two checks for each field, of its nodes and of the splines between them.
 
     table: dataset of a grid.
     count: number of random points.
     seed: seed of these points.
     source: path of the grid, for messages.
-    Returns a list of :class:`Check`, for each field [nodes, splines].  The difference at the nodes is relative, or, of
-    fields that may be 0, divided by the largest value of the field; that of the splines, at ``count`` random points, is
-    absolute.  The splines may be off by a multiple of the error that the grid states.
-    Raises FileError for what is no grid, or a grid that is not of a scene with an alpha.
+    Returns a flat list of 2 times as many :class:`Check` as the grid has fields: nodes and splines of the first field
+    ("beta"), nodes and splines of the second, and so on.
+
+    - "grid: NAME, nodes": the largest difference over all nodes (:func:`.build.differences`), dimensionless: of lam,
+      zeta and delta_star relative at each node, of the other fields divided by their largest magnitude.  Allowed are
+      1e-12.
+    - "grid: NAME, splines": the largest error at ``count`` random points, absolute, in the unit of the field.  Allowed
+      are 2 times the ``spline_error`` that the grid states, plus 2e-15.
+
+    Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a cylinder, a
+    material, or a version before 1.0).
     """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:

@@ -44,7 +44,8 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
         Another suffix; for C a file name that is no identifier; for Modelica a grid over several alphas, as its tables
         have two inputs.
     FileError
-        If it cannot be written there, or ``table`` is neither a law nor a grid.
+        If it cannot be written there; ``table`` is neither a law nor a grid, or is incomplete; for C the law of every
+        alpha.
 
     Examples
     --------
@@ -53,7 +54,8 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
     Notes
     -----
-    All formats hold the same bits as ``table`` (``tests/tables/test_grids.py``, ``tests/tables/test_law.py``).
+    All formats hold the same bits as ``table`` (``tests/tables/test_grids.py``, ``tests/tables/test_law.py``); Modelica
+    has Q and M alone.
     """
     path = Path(path)
     store.check(table, "export")
@@ -68,7 +70,8 @@ def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
     """Write a law or a grid in the 64-bit offset format (CDF-2), which every netCDF library since 2004 reads.
 
     table: dataset of the law or grid.
-    path: file to write.
+    path: file to write; it is replaced if it exists.
+    Raises FileError if it cannot be written.
     """
     with replace_file(path) as temporary:
         encoding = {name: {"_FillValue": None} for name in table.variables}
@@ -78,10 +81,12 @@ def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
 def _write_csv(table: xr.Dataset, path: Path) -> None:
     """Write a grid as CSV: a row of names, then one for every node, the first axis slowest.
 
-    Columns are the axes, then the fields.  The digits read back to the same bits.
+    Columns are the axes, then the fields; a field that does not depend on the creepage is repeated for each delta.  The
+    digits read back to the same bits.
 
     table: dataset of the grid.
-    path: file to write.
+    path: file to write; it is replaced if it exists.
+    Raises FileError if it cannot be written.
     """
     fields = table[list(schema.fields_of(table))]
     with replace_file(path) as temporary:
@@ -91,9 +96,12 @@ def _write_csv(table: xr.Dataset, path: Path) -> None:
 def _write_modelica(table: xr.Dataset, path: Path) -> None:
     """Write tables of a grid for Modelica: Q over (V, delta) for CombiTable2D, M over V for CombiTable1D blocks.
 
-    table: dataset of a grid over V and delta, or one alpha too.
-    path: file to write.
-    Raises ParameterError for a grid over other axes.
+    The file is text: "#1", comments, then "double Q(n+1,m+1)", whose first column is V and first row delta with 0 in
+    the corner, and "double M(n,2)" with the columns V and M, in the units of the grid.  Other fields are left out.
+
+    table: dataset of a grid over V and delta; an axis alpha must have one node.
+    path: file to write; it is replaced if it exists.
+    Raises ParameterError for a grid over several alphas, and for an atlas; FileError if the file cannot be written.
     """
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
     if schema.axes_of(plane) != ("V", "delta"):
@@ -115,6 +123,9 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
     """Return the lines that describe a grid and its use in Modelica, without marks of a comment.
 
     table: dataset of the grid.
+    Returns texts of one line, in this order: version and title; the paper; a line for each parameter of the roller that
+    the grid states, and the material as TOML; axes and units; use of Q and of M; signs for V < 0; the absolute errors
+    of linear interpolation in Q and M, with the point where each occurs if the grid states it (NaN if it states none).
     """
     units = {name: table[name].attrs["units"].replace("1", "dimensionless") for name in ("V", "Q", "M")}
     errors = []
@@ -138,8 +149,9 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
 def linear_error(field: xr.DataArray) -> float:
     """Return the stated error of linear interpolation in a field, absolute, in its unit.
 
-    field: variable of a grid; of kind "atlas", which states no error, the result is NaN.  Files before 1.2 state the
-    error under another name.
+    field: variable of a grid.  Its attribute "linear_error" is returned; files before 1.2 state that error as
+        "interpolation_error".
+    Returns the error; NaN if the field states none, and of an atlas, whose errors are of another interpolation.
     """
     spline = field.attrs.get("interpolation_error", np.nan) if "V" in field.dims else np.nan
     return float(field.attrs.get("linear_error", spline))
@@ -148,10 +160,14 @@ def linear_error(field: xr.DataArray) -> float:
 def _write_matlab(table: xr.Dataset, path: Path) -> None:
     """Write a grid as one struct ``viscoroll`` of MATLAB: breakpoints, tables, linear errors, dimensions, parameters.
 
-    alpha and beta are functions of MATLAB, so that variables of these names would hide them.
+    Its fields are each axis and each field of the grid by name, without axes of one node; structs ``dimensions``,
+    ``linear_error`` and ``linear_error_at``, each with an entry for every field of the grid; a text ``about``; and a
+    struct ``given`` with the parameters.  All is in one struct because alpha and beta are functions of MATLAB, which
+    variables of these names would hide.
 
     table: dataset of the grid.
-    path: file to write.
+    path: file to write; it is replaced if it exists.
+    Raises FileError if it cannot be written.
     """
     from scipy.io import savemat
 
@@ -173,9 +189,13 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
 def _write_header(dataset: xr.Dataset, path: Path) -> None:
     """Write the rows of a law and their evaluator as one header of C.
 
+    The header contains the material as a comment, the evaluator (``c/vr_law.h``), arrays ``static const double`` with
+    the coefficients, of a cover with those of its creep too, and a variable ``static const vr_law``.
+
     dataset : dataset of a law, of half-spaces or of a cover.
-    path : file to write; its stem becomes the name of the variable, of type vr_law.
-    Raises ParameterError for a stem that is no identifier of C, FileError if the file cannot be written.
+    path : file to write, replaced if it exists; its stem becomes the name of the variable.
+    Raises ParameterError for a stem that is no identifier of C; FileError for the law of every alpha, which has no such
+    evaluator, and if the file cannot be written.
     """
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
@@ -219,8 +239,13 @@ def _initializer(values: Floats) -> str:
 def _write_json(dataset: xr.Dataset, path: Path) -> None:
     """Write the variables, as nested lists of numbers, and the main attributes of a law as one JSON object.
 
-    dataset: dataset of the law.
-    path: file to write.
+    The object has the attributes title, viscoroll_table, bodies, material, comment, references, source, license and the
+    checksum, as far as the dataset has them; law_schema as an integer; and each variable by its name.  Digits read back
+    to the same bits.
+
+    dataset: dataset of the law, of any kind.
+    path: file to write; it is replaced if it exists.
+    Raises FileError if it cannot be written.
     """
     numbers = {str(name): variable.values.tolist() for name, variable in dataset.variables.items()}
     about = ("title", "viscoroll_table", "bodies", "material", "comment", "references", "source", "license", CHECKSUM)

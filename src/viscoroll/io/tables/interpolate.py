@@ -1,4 +1,8 @@
-"""Interpolation between the nodes of a grid, by tensor cubic splines."""
+"""Interpolation between the nodes of a grid, by tensor cubic splines.
+
+A grid is a table of fields of the contact over V, delta and perhaps alpha.  An atlas is the table that version 0.1.0
+wrote: over alpha, kappa_V = kappa V and s = |delta|/delta_star, creepage divided by critical creepage, in [0, 1].
+"""
 
 from __future__ import annotations
 
@@ -23,19 +27,20 @@ if TYPE_CHECKING:
 class Interpolant:
     """A table prepared for repeated interpolation; :func:`interpolate` prepares one in each call.
 
-    A call ``interpolant(fields, V=..., delta=...)`` takes names of fields and points, and returns what
-    :func:`interpolate` does, with the same errors.
+    A call ``interpolant(fields, V=..., delta=...)`` takes names of fields and points, and raises the errors of
+    :func:`interpolate`; with ``linear=False`` it returns the same values.
 
     Parameters
     ----------
     table : a Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
         The spline of a field is computed at its first use, from the values at that time.
-    linear : whether to interpolate linearly in the untransformed axes, as look-up blocks do.
+    linear : whether to interpolate linearly in V, delta and alpha, as look-up blocks do; else by cubic splines in ln V,
+        delta and ln alpha.  Tables over (V, delta) of versions before 1.0 are interpolated linearly in any case.
 
     Raises
     ------
     FileError
-        If it is not a table.
+        If it is not a grid, as the law of a material is none, or is incomplete.
 
     Examples
     --------
@@ -51,8 +56,8 @@ class Interpolant:
 
         table : the grid, dataset of a file or of ``build``.
         linear : whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V, delta and ln
-        alpha.
-        Raises FileError if it is not a table.
+            alpha; grids of the kinds "literal" and "material" (before 1.0) are always interpolated linearly.
+        Raises FileError if it is not a grid.
         """
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)
@@ -66,9 +71,12 @@ class Interpolant:
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
         """Interpolate fields at points.
 
-        fields: names of fields of the table; None: all, which needs a coordinate on every axis.
-        points: axis -> coordinates, numbers or arrays that broadcast, in the units of the table.
-        Returns the fields as :class:`Values`, each in the shape of the points, a number where all are numbers.
+        fields: a name or names of fields of the table; None: all, which needs a coordinate on every axis.
+        points: axis -> coordinates, numbers or arrays that broadcast, in the units of the table.  A coordinate is
+            needed on each axis of the fields, also on one of a single node; others may be given too.
+        Returns the fields as :class:`Values`, each a new array of the broadcast shape of all points, a float where all
+        are numbers.  Q, Q_over_mu and beta are clipped to the bounds of the law: |Q| <= mu P, |Q_over_mu| <= 1 and
+        0 <= beta <= 1.
         Raises ParameterError and OutOfTableError as :func:`interpolate`.
         """
         known = schema.fields_of(self._table)
@@ -89,15 +97,16 @@ class Interpolant:
 
         Parameters
         ----------
-        field : name of a field over V, delta and alpha or some of them.
+        field : name of a field of the grid, over V, delta and alpha or some of them.
 
         Returns
         -------
-        at : a jitted function of numbers, in the units of the table; it returns a record of ``value`` and its
-            derivatives ``dV``, ``ddelta`` and ``dalpha``, clipped as values of this class are, with slopes 0 there,
-            and NaN outside of the axes.  For an axis that the field does not
-            depend on any number may be given.
-        spline : first argument of ``at``.
+        at : jitted function of the spline and three floats V, delta and alpha, in the units of the table.  It returns a
+            :class:`...kernels.splines.spline.Value`: ``value`` and its derivatives ``dV``, ``ddelta`` and ``dalpha``.
+            Q and beta are clipped to the bounds of the law; where that happens the derivatives are 0.  All four are NaN
+            for a coordinate outside of its axis.  The field may not depend on one of the coordinates, or the grid may
+            have a single node on that axis: then any number may be given there, it is ignored, and its derivative is 0.
+        spline : vector of doubles, the first argument of ``at``.
 
         Raises
         ------
@@ -131,11 +140,12 @@ class Interpolant:
     ) -> tuple[dict[str, Floats], tuple[int, ...]]:
         """Check the points of a call, and convert them to the coordinates of the splines.
 
-        points: axis -> coordinates that the caller gave, which broadcast.
-        names: fields to interpolate.
-        Raises ParameterError for axes that are missing or unknown and for values that are no finite numbers,
-        OutOfTableError for a point outside of an axis.
-        Returns (axis -> coordinates in the shape of the points; that shape).
+        points: axis -> coordinates that the caller gave, numbers or arrays that broadcast, perhaps with units.
+        names: names of the fields to interpolate, which need the axes that they depend on.
+        Raises ParameterError for axes that are missing or unknown, for values that are no finite numbers, for shapes
+        that do not broadcast and for a unit of another dimension; OutOfTableError for a point outside of an axis.
+        Returns (each axis of ``points`` -> coordinates of :meth:`_map_axis`, read-only, in the broadcast shape; that
+        shape, () of numbers).
         """
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() <= set(self._axes):
@@ -155,24 +165,28 @@ class Interpolant:
         return {name: np.broadcast_to(self._map_axis(name, array), shape) for name, array in arrays.items()}, shape
 
     def _map_axis(self, name: str, values: Floats) -> Floats:
-        """Return the coordinate in which the law is smooth, for values on one axis of the grid.
+        """Transform values on one axis of the table to the coordinate in which the fields are smooth.
 
-        name: name of the axis: "V", "delta" or "alpha" of a grid; "alpha", "kappa_V" or "s" of an atlas (a table over
-            alpha, kappa V and s in [0, 1]).
-        values: values on the axis, of any shape.
-        Returns an array of the same shape: ln of the values; s/(1 + sqrt(1 - s)) of s; the values themselves of delta,
-        and of all axes where the interpolation is linear.
+        Splines are fitted and evaluated in that coordinate.
+
+        name: name of the axis: "V", "delta" or "alpha" of a grid; "alpha", "kappa_V" or "s" of an atlas (module
+            docstring).
+        values: values on the axis, of any shape, > 0 on V, alpha and kappa_V, in [0, 1] on s.
+        Returns an array of the same shape.  Where the interpolation is linear, and on delta: ``values`` itself, not a
+        copy.  Else ln(values) on V, alpha and kappa_V, and s/(1 + sqrt(1 - s)) on s, which is 0 at s = 0, 1 at s = 1,
+        and resolves the end of the stick zone at s = 1.
         """
         if self._linear or name == "delta":
             return values
         return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
 
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
-        """Return the spline of a field, computed at its first use and kept.
+        """Return the spline of a field, computed at its first use and kept in ``_splines``.
 
         name: name of the field.
-        Returns (names of the axes of more than one node; spline, a function of coordinates (..., axes); without such
-        axes the value of the field).
+        Returns (names of those of its axes that have more than one node, in their order; the spline over these, a
+        function that takes coordinates of :meth:`_map_axis`, (..., axes), and returns values, (...)).  Without such
+        axes the names are () and the second entry is the value of the field, an array without axes.
         """
         if name not in self._splines:
             field = self._table[name].squeeze()
@@ -188,14 +202,16 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     Parameters
     ----------
     table : Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
-    fields : names out of the table's fields; default all, which need a coordinate on every axis.
+    fields : a name or names out of the table's fields; default all, which need a coordinate on every axis.
     **points : coordinates, numbers or arrays that broadcast, in the table's units: ``V``, ``delta`` and, where the
-        table has it, ``alpha``.  ``delta`` only for beta and Q.  Of an atlas of 0.1.0: ``alpha``, ``kappa_V``, ``s``.
+        table has it, ``alpha``.  ``delta`` is needed for beta and Q only.  Of an atlas of 0.1.0: ``alpha``,
+        ``kappa_V`` = kappa V and ``s`` = |delta|/delta_star, in [0, 1].
 
     Returns
     -------
     Values
-        The fields as attributes; scalars if all coordinates are.
+        The fields as attributes, in the units of the table, arrays of the broadcast shape of all coordinates; floats if
+        all coordinates are numbers.
 
     Raises
     ------
@@ -205,7 +221,7 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
         An unknown field, a coordinate that is missing, unknown, NaN or infinite, shapes that
         do not broadcast.
     FileError
-        If ``table`` is not a table.
+        If ``table`` is not a grid, or is incomplete.
 
     Examples
     --------
@@ -217,9 +233,10 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
 
     Notes
     -----
-    Tensor not-a-knot cubic spline in ln V, delta and ln alpha, clipped to |Q| <= mu P and 0 <= beta <= 1; the error at
-    random points is stated in ``spline_error`` of each field, which another point may exceed
-    (``tests/tables/test_grids.py``), and the point in ``spline_error_at``.  Tables over
+    Tensor not-a-knot cubic spline in ln V, delta and ln alpha, of a lower degree along an axis of fewer than four
+    nodes, clipped to |Q| <= mu P and 0 <= beta <= 1; the largest error at random points is stated in ``spline_error``
+    of each field, which another point may exceed (``tests/tables/test_grids.py``), and the point in
+    ``spline_error_at``.  Tables over
     (V, delta) of earlier versions are interpolated linearly, as their files state.  Each call builds the splines anew,
     which takes most of its time; keep an :class:`Interpolant` for repeated calls.  A law
     (:func:`viscoroll.io.tables.law`, :func:`viscoroll.contact`) has none of these errors.

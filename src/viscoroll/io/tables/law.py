@@ -42,26 +42,38 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
 
     Parameters
     ----------
-    material : a :class:`viscoroll.Prony`, :class:`viscoroll.Bodies`, :class:`viscoroll.Material`, that of a
-        :class:`viscoroll.Cylinder`, or alpha >= 1, of a solid with T_epsilon = 1.
-    base : the :class:`viscoroll.Material` of the half-space where it is another.
-    alpha : in place of a material, the lowest and the highest alpha of the law of every alpha between, of one
-        relaxation time with T_epsilon = 1; whole octaves, within 1 and 1e12.
+    material : a :class:`viscoroll.Prony`, a :class:`viscoroll.Bodies`, a :class:`viscoroll.Material` without a
+        thickness, a :class:`viscoroll.Cylinder`, of which the bodies are taken, or a number alpha in [1, 1e12], of a
+        solid with T_epsilon = 1.
+    base : the :class:`viscoroll.Material` of the half-space where it differs from that of the cylinder; only beside a
+        Material.
+    alpha : in place of a material, (lowest, highest) alpha of the law of every alpha between, of one relaxation time
+        with T_epsilon = 1; both in [1, 1e12], the first below the second.  The range is extended to whole octaves
+        [2^n, 2^(n+1)).
 
     Returns
     -------
     xarray.Dataset
-        Coefficients of lam, epsilon, m_half_space, m_cylinder and N over ``kappa |V|``, of share and press over
-        v = 1/F(eta), each with its ``largest_relative_error`` against the formulas of the modes, measured at eight
-        random points of every octave (parts of M relative to M, N to its largest value); limits; both forms of the
-        series; the material as TOML.  ``comment`` describes the evaluation.  The law holds for any speed, creepage,
-        kappa, mu, load and radius.  For every alpha polynomials of ln alpha too, one for each octave, of lam,
-        epsilon/c, M/V/c, N/c, share and press with c = (alpha - 1)/alpha, and errors of the laws of random alphas.
+        Of half-spaces the coefficients of lam, epsilon, m_half_space, m_cylinder (M of either body divided by V) and N
+        over ``kappa |V|``, of share = eta/F(eta) and press = H(eta)/F(eta)^2 over v = 1/F(eta), where eta is half the
+        transit time of the stick zone.  Each function has its ``largest_relative_error`` as an attribute
+        (:func:`measured_errors`).  Further variables are the fast limits and both forms of the series; attributes are
+        the material as TOML and ``comment``, which describes the evaluation.  The law holds for any speed, creepage,
+        kappa, mu, load and radius.
+
+        Of a cylinder with a layer (a thickness) the law holds at its ratio of l0 to thickness alone, that is at its
+        load and radius, and at any speed, creepage and mu.  It has no N and no series, and in addition limit =
+        2 kappa delta_star/mu and free = 2 kappa delta_0 over ``kappa |V|``.
+
+        With ``alpha`` the polynomials are of ln alpha too, one for each octave of alpha, of lam, epsilon/c, M/(V c),
+        N/c, share and press with c = (alpha - 1)/alpha.
 
     Raises
     ------
     ParameterError
-        An argument that is no material, alphas out of range, both or neither of ``material`` and ``alpha``.
+        An argument that is no material, or materials in an array; alphas out of range, or not two in ascending order;
+        both or neither of ``material`` and ``alpha``; a ``base`` beside anything but a Material; a Material with a
+        thickness, as its law depends on load and radius: give the Cylinder; a layer beside a body that relaxes too.
 
     Examples
     --------
@@ -89,26 +101,35 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
 def measured_errors(
     table: LawTable | alpha_axis.LawAxis, count: int | None = None, seed: int = _SEED
 ) -> dict[str, float]:
-    """Return the largest relative error of every tabulated function at random points below its fast limit.
+    """Compare a tabulated law with exact values at random points, and return the largest error of each function.
 
-    For half-spaces no equation is solved: a random zeta (half the transit time of the contact) gives both a speed and,
-    by the closed formulas of the modes, the functions there.  The law of a cover is compared with a solve with more
-    terms at each speed.
+    There are three cases:
+
+    - Half-spaces: no equation is solved.  A random zeta (half the transit time of the contact, in T_ref) gives, by the
+      closed formulas of the modes, the functions and the speed ``kappa |V|`` or v = 1/F at which they have these
+      values.  Points in the fast limit, beyond the last row of the table, are left out.
+    - Every alpha: 16 random alphas for each octave of alpha; the law of each is compared as one of half-spaces.
+    - A cover, a layer of finite thickness: at each random speed the contact is solved with more terms of the pressure
+      than the table was made with (:func:`_measured_errors_of_cover`).
 
     Parameters
     ----------
-    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.alpha_axis.LawAxis`, the law of every alpha, of
-        which random alphas are tested.
-    count : number of points, approximate for every alpha; default: :data:`_POINTS_PER_OCTAVE` in each octave, and
-        :data:`_COVER_SPEEDS` speeds for the law of a layer.
+    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.alpha_axis.LawAxis`, the law of every alpha.
+    count : number of points.  Of every alpha the laws of the random alphas share it, with at least one point each.
+        None: eight for each octave of zeta (of each alpha), or 40 speeds for a cover.
     seed : seed of the points and alphas, >= 0.
 
     Returns
     -------
     dict of str to float
-        Name of a function of the law -> largest relative error, dimensionless; of parts of M relative to M, of N to
-        its largest value.  The names are :data:`FUNCTIONS` for half-spaces; :data:`AXIS_FUNCTIONS` for every alpha,
-        where "m" has the sum of the errors of both parts of M; for a cover those of :func:`_measured_errors_of_cover`.
+        Name of a function -> largest error, >= 0, dimensionless; 0.0 of a function that is 0 at all points, as epsilon
+        of elastic bodies.
+
+        - Half-spaces, names :data:`FUNCTIONS`: relative to the exact value at the point; of m_half_space and
+          m_cylinder relative to their sum there, of N to the largest |N| at all points.
+        - Every alpha, names :data:`AXIS_FUNCTIONS`: the largest of these over the alphas; "m" has the sum of the
+          largest errors of both parts of M.
+        - A cover: names and scales of :func:`_measured_errors_of_cover`, without N.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):
@@ -138,15 +159,19 @@ def measured_errors(
 
 
 def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Generator) -> dict[str, float]:
-    """Return the largest errors of the law of a layer against its solve with more terms, at random speeds.
+    """Compare the law of a layer at random speeds with solves of the contact, which have 60 terms of the pressure.
 
-    Errors of share and press follow from those of the other functions and of L = 2 kappa delta_star/mu.
+    Each speed takes a solve by the secant method (:func:`.cover_rows.solve_at_speed`).
 
-    table: :class:`LawTable`, the law.
-    count: number of speeds, from a tenth of the slowest rate of the layer to ten times the fastest.
-    random: numpy Generator, which draws the speeds.
-    Returns function -> largest relative error, dimensionless: "lam", "epsilon", "m_half_space", "m_cylinder" (both that
-    of M), "share", "press", "limit" (of L), "free" (of delta_0, divided by L).
+    table: :class:`LawTable` of a cover.
+    count: number of speeds u = kappa |V|, spaced evenly in ln u at random, from a tenth of the slowest rate of the
+        bodies (at most 0.1) to ten times the fastest (at least 10), rates multiplied by T_ref.
+    random: numpy Generator, which draws the speeds and is advanced.
+    Returns function -> error, >= 0, dimensionless.  Largest relative errors: "lam", "epsilon", "limit" (of L =
+    2 kappa delta_star/mu), "m_half_space" and "m_cylinder" (both that of their sum M; 0 where M = 0).  "free": the
+    largest error of 2 kappa delta_0, divided by L at the same speed.  Not measured but bounded, to first order, by
+    share = lam/L and press = 1/L^2: "share" has the sum of the errors of lam and L, "press" twice the error of L.
+    Raises ParameterError where a solve finds no contact length that carries the load.
     """
     cover: Any = table.material
     slow, fast = 0.1 / table.retardation_time.max(initial=1.0), 10.0 / table.relaxation_time.min(initial=1.0)
@@ -167,11 +192,12 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
 
 
 def _evaluate_polynomial(table: LawTable, function: int, x: Floats) -> Floats:
-    """Return a function of a law from its coefficients, at arguments before its fast limit.
+    """Evaluate one function of a law by its rows of polynomials.
 
     table: :class:`LawTable`, the law.
     function: index in :data:`FUNCTIONS`: 0 lam, 1 epsilon, 2 m_half_space, 3 m_cylinder, 4 N, 5 share, 6 press.
-    x: kappa |V| for functions 0 to 4, v = 1/F(eta) for the others, (n,), dimensionless.
+    x: kappa |V| for functions 0 to 4, v = 1/F(eta) for the others, (n,), dimensionless, > 0 and below the end of the
+        last row, 2^(e0 + rows - 1); the fast limit beyond it is not evaluated.
     Returns values, (n,), dimensionless.
     """
     m, e = np.frexp(x)

@@ -30,17 +30,19 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     Parameters
     ----------
     low, high : ends, low < high; with "log" low > 0.
-    count : number of values, both ends among them, >= 2.
+    count : number of values, both ends among them, 2 to 5e7.
     spacing : "linear" (equal steps) or "log" (equal ratios).
 
     Returns
     -------
     array of shape (count,)
+        The numbers, ascending; the first is ``low`` and the last is ``high``.
 
     Raises
     ------
     ParameterError
-        An unknown spacing, low >= high, high - low beyond the doubles, count < 2, or "log" with low <= 0.
+        An unknown spacing, ends that are not finite, low >= high, high - low beyond the doubles, a count out of range
+        or no whole number, or "log" with low <= 0.
 
     Examples
     --------
@@ -64,20 +66,23 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     Parameters
     ----------
     what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, as of :func:`build`.
-    V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_epsilon, of a Cylinder in m/s.
-    count : number of nodes, odd, at least 5.
-    alpha : those of the grid, (n,), strictly increasing, in place of that of a scene without a material; None: none.
+    V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_ref, where T_ref is T_epsilon of a
+        scene with alpha, else the unit of time of its material; of a Cylinder in m/s.
+    count : number of nodes, odd, 5 to 5e7.
+    alpha : values of alpha of the grid, (m,), >= 1, strictly increasing, in place of that of a scene without a
+        material; None: the grid has no such axis, and ``what`` its own alpha or material.
 
     Returns
     -------
     array of shape (count,)
-        Creepages, symmetric about 0, which is one of them.  Half of the nodes lie in equal steps, half as densely
-        as the values of delta_star.  The ends lie beyond the largest delta_star: there the whole contact slips.
+        Creepages, dimensionless, ascending, symmetric about 0, which is one of them.  Half of the nodes lie in equal
+        steps, half as densely as the values of delta_star at all (V, alpha).  The ends are +-1.1 times the largest
+        delta_star: there the whole contact slips.
 
     Raises
     ------
     ParameterError
-        An even or small count; speeds or alphas out of range or not increasing.
+        An even or small count; speeds or alphas out of range or not increasing; ``alpha`` beside a material.
 
     Examples
     --------
@@ -103,11 +108,12 @@ def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     """Return the nodes of an axis as a new vector.
 
     name: name of the axis, for messages.
-    nodes: a number or numbers as a caller gave them.
+    nodes: a number, which is an axis of one node, or numbers (n,), as a caller gave them, perhaps with a unit.
     bounds: keywords of :func:`.check_array`: ``unit``, and ``low``, ``above`` and ``high``, between which the values
-    must lie.
-    Raises ParameterError for nodes that are out of range or do not increase strictly.
-    Returns the nodes, (n,), strictly increasing, in the unit of ``bounds``.
+        must lie.
+    Raises ParameterError for nodes that are not finite, out of range or not strictly increasing, for none, for more
+    than one axis, and for a unit of another dimension.
+    Returns the nodes, (n,), n >= 1, strictly increasing, float64, in the unit of ``bounds``; always a copy.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():

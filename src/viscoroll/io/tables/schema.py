@@ -48,8 +48,10 @@ COMMENT = (
 def axes_of(table: xr.Dataset) -> tuple[str, ...]:
     """Return the names of the axes of a grid, the first of which varies slowest.
 
-    table: dataset of a grid or of an atlas.
-    Returns ("V", "delta") or ("V", "delta", "alpha") of a grid, ("alpha", "kappa_V", "s") of an atlas.
+    table: dataset of a grid, or of an atlas, the table of version 0.1.0.
+    Returns ("V", "delta") or, if the dataset has that dimension, ("V", "delta", "alpha") of a grid; ("alpha",
+    "kappa_V", "s") of an atlas, where s = |delta|/delta_star.
+    Raises KeyError for a dataset without the attribute :data:`KIND`.
     """
     if table.attrs[KIND] == "atlas":
         return ("alpha", "kappa_V", "s")
@@ -62,12 +64,14 @@ def fields_of(table: xr.Dataset) -> tuple[str, ...]:
 
 
 def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
-    """Return a variable of a grid with long_name, units, symbol, range, equation and reference as attributes.
+    """Make a variable of a grid, with long_name, units, symbol, range, equation and reference as attributes.
 
     name: name of the quantity, a key of ``core.symbols.SYMBOLS``.
     dims: names of the axes of the variable.
     values: array of its values, over ``dims``.
-    si: whether it is in SI units, else dimensionless.
+    si: whether the values are in SI units, else dimensionless; the range of Q is then that of "mu P" in place of "mu".
+    Returns the variable, float64.
+    Raises KeyError for another name.
     """
     import xarray as xr
 
@@ -78,11 +82,13 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
 
 
 def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
-    """Return the global attributes of a grid that is computed now: name -> text.
+    """Return the global attributes of a grid that is computed now.
 
     title: title of the grid.
     grid: axes of the grid in words.
-    command: command that computed it, for ``history``; None: the command line of this process.
+    command: command that computed it, for ``history``; None or "": the command line of this process.
+    Returns name -> text: Conventions, title, institution, source, history (time of the call in UTC and the command),
+    references, comment, viscoroll_table ("grid"), schema_version, viscoroll_version and grid.
     """
     now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
     return {
@@ -101,7 +107,10 @@ def global_attributes(title: str, grid: str, command: str | None) -> dict[str, s
 
 
 def check(table: Any, path: Any) -> None:
-    """Check kind, version, variables, dimensions, axes and values of a grid.
+    """Check kind, version, variables, dimensions, axes and values of a grid; nothing is returned or changed.
+
+    Each variable must have float64 values, all finite; each axis at least one, strictly increasing; dimensions must be
+    axes of the grid, in their order.  Of the fields over V (:data:`PLANE`) those that are missing are not required.
 
     Parameters
     ----------

@@ -27,9 +27,11 @@ def is_law(table: Any) -> bool:
 
 
 def check(table: Any, path: Any) -> None:
-    """Raise FileError if a dataset is neither a law nor a grid, or is incomplete.
+    """Raise FileError if a dataset is neither a law nor a grid, is incomplete, or differs from its checksum.
 
-    table: the dataset.
+    Of a law the checksum of its numbers is compared; a grid has none.
+
+    table: the dataset; anything else is refused too.
     path: path of its file, or another name, for the message.
     """
     if is_law(table):
@@ -51,8 +53,8 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     Raises
     ------
     FileError
-        If it cannot be written there; a file of that name is left as it was.
-        If ``table`` is neither.
+        If it cannot be written there; a file of that name is then left as it was.  If ``table`` is neither a law nor a
+        grid, or is incomplete.
 
     Examples
     --------
@@ -118,7 +120,10 @@ def info(path: str | PathLike[str]) -> str:
     Returns
     -------
     str
-        Lines to print, joined by newlines.  Errors of a law are relative; those of a grid are its attributes, absolute.
+        Lines to print, joined by newlines: path, kind and size of the file; title; of a law a line for each function
+        with its largest relative error; of a grid a line for each axis with its nodes and range, then one for each
+        field with its axes and the absolute errors that it states ("spline", "linear", "stated" in old files); at the
+        end those of the attributes material, comment, source, history and checksum that the file has.
 
     Raises
     ------
