@@ -93,13 +93,13 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
     Returns
     -------
     Scene or Cylinder
-        A Cylinder if there is a section [cylinder].
+        A Cylinder in SI units if there is a section [cylinder], else a Scene, dimensionless.
 
     Raises
     ------
     FileError
-        A file that cannot be read, is not TOML, has none of the three or a cylinder beside a scene, an
-        unknown or missing key, a value of the wrong type or out of its range.
+        A file that cannot be read, is not TOML, has none of preset, [scene] and [cylinder] or a cylinder beside one of
+        the others, an unknown or missing key, a value of the wrong type or out of its range.
     """
     content = read_toml(path)
     check_sections(path, content, dict.fromkeys(more))
@@ -112,7 +112,7 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
 
 
 def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type | None]) -> None:
-    """Check that the sections of a file describe one roller, and that their keys and types are allowed.
+    """Refuse a file whose sections do not describe one roller, or have keys or types that are not allowed.
 
     path: path of the file, for the message and the number of the line.
     content: name of a section, or key outside of sections -> its content, as tomllib reads it.
@@ -144,10 +144,11 @@ def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, A
 
     path: path of the file, for messages.
     content: name of a section -> its keys and values; ``preset`` -> name of a scene.
-    materials: "material" and "base" -> material, as far as the file has these sections.
-
+    materials: "material" and "base" -> :class:`Material`, as far as the file has these sections; ignored without
+        [cylinder].
     Raises ParameterError for a value out of range or missing, or an unknown preset; FileError for a wrong series.
-    Returns a Cylinder if there is a section [cylinder], else a Scene.
+    Returns a :class:`Cylinder` if there is a section [cylinder]; else a :class:`Scene`: that of the preset, in which
+    the values of [scene] replace its own, or without a preset that of [scene].
     """
     if "cylinder" in content:
         return Cylinder(**content["cylinder"], **materials)
@@ -168,7 +169,9 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
 
     path: path of the file, which is read again for the line.
     content: name of a section -> its keys and values.
-    error: the error, which names the parameter; one that no section gives is put at [scene] or [cylinder].
+    error: the error, which names the parameter.  The first section that gives it is named; if none does, [scene] or
+        [cylinder]; of a key outside of sections, as preset, none.
+    Returns the error, which is not raised.  Its message has no line if the file cannot be read again.
     """
     sections = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
     default = next((name for name in SCHEMA if name in content), "")
@@ -176,11 +179,12 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
 
 
 def read_law_source(path: str | PathLike[str]) -> Any:
-    """Read what has a contact law: a cylinder, a pair, a series or bodies, or an alpha.
+    """Read the bodies of a file, as an argument of :func:`viscoroll.io.tables.law`.
 
     Parameters
     ----------
-    path : TOML with [material], perhaps [base], or a scene file; or the netCDF of a material.
+    path : TOML file with [material] and perhaps [base], or with a preset, [scene] or [cylinder]; or the netCDF file of
+        a material.
 
     Returns
     -------
@@ -191,7 +195,8 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     Raises
     ------
     FileError
-        As :func:`read_materials` and :func:`read_roller`; a file without a section [material] and without a roller.
+        As :func:`read_materials` and :func:`read_roller`; a file without a section [material] and without a roller; a
+        [base] that does not fit the material.
     """
     content = {} if Path(path).suffix == SUFFIX else read_toml(path)
     if content.keys() & set(SCENES):

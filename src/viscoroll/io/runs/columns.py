@@ -20,10 +20,13 @@ _SERIES = {
 
 
 def attributes(name: str, si: bool) -> dict[str, Any]:
-    """Return the attributes of a column of a store: name -> value, long_name, units and more, as JSON takes them.
+    """Return the attributes of a column of a store, of types that JSON has.
 
-    name: name of an input (as base_E, tau_2, drive_torque_time_1) or of a field of a motion.
+    name: name of an input (as base_E, tau_2, drive_torque_time_1), of a field of a motion, or "t".
     si: whether the run is in SI units, else dimensionless.
+    Returns a dict with long_name and units ("1" of a dimensionless quantity); of most quantities symbol and equation
+    too; of the codes regime, status and flow no units, but the lists flag_values and flag_meanings.  The long_name is
+    "" of a name that is none of these.
     """
     if name.startswith(PREFIXES["drive"]):
         load, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")

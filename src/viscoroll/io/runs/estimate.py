@@ -25,13 +25,13 @@ _USUAL_RESIDENT = 4e8
 
 @dataclass(frozen=True)
 class Estimate:
-    """What a run takes.
+    """Time, memory and disk space that a run takes.
 
     Attributes
     ----------
-    run : the run.
-    workers : threads that the time is for.
-    trial : motions that were rolled to measure it.
+    run : the :class:`Run`.
+    workers : threads that the time is for, at most one for each block.
+    trial : number of motions that were rolled to measure it.
     seconds : wall-clock time, s.
     memory : largest resident memory, bytes.
     stored : size of the store, bytes.
@@ -47,7 +47,11 @@ class Estimate:
     law_seconds: float = 0.0
 
     def __str__(self) -> str:
-        """Return size, time, memory and disk space of the run in words, a line each, and the size of the trial."""
+        """Return the estimate in words, five lines.
+
+        They are: motions, blocks and method; time in a fitting unit, and how much of it the laws of covers take unless
+        that is 0; memory in MB; disk space in MB; size of the trial.
+        """
         run = self.run
         laws = f", {_duration(self.law_seconds)} of it once for the laws of covers" if self.law_seconds else ""
         return (
@@ -62,18 +66,26 @@ class Estimate:
 def estimate(run: Run, threads: int | None = None) -> Estimate:
     """Roll some motions of the first block and scale their time, memory and size up to the run.
 
-    They are rolled twice, and the second time counts: the first one contains what a process does once, as to compile,
-    to import and to compute laws.  The laws of covers are added once.
+    They are rolled twice, and the second time counts: the first one contains work that a process does once, such as
+    imports, compilation, laws and a flow map, which the estimate leaves out.  The time of the laws of covers, which may
+    be long, is measured by itself and added once.
 
     Parameters
     ----------
     run : a run of :func:`read_run`.
-    threads : number of threads that the run will have; None: all cores available.
+    threads : number of threads that the run will have; None: ``$VISCOROLL_THREADS``, else all cores available.
 
     Returns
     -------
     Estimate
         Time in s, memory and size of the store in bytes; printed, it states them in words.  Nothing is written.
+        Memory is the largest that this process has had so far, plus the motions of the blocks that the workers roll at
+        the same time; the size leaves out the summaries.
+
+    Raises
+    ------
+    ParameterError
+        ``threads`` that is no whole number >= 1, or inputs that a motion does not allow.
 
     Examples
     --------
@@ -102,10 +114,12 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
 def _time_of_laws(run: Run) -> float:
     """Return the seconds that the laws of the covers of the first block take; 0.0 of half-spaces.
 
-    A cover is a layer of finite thickness, each of which has a law of its own.  One law, that of the largest thickness
-    and nu, is computed, and its time multiplied by the number of laws.
+    A cover is a layer of finite thickness.  A run with one cover needs one law; covers that differ have laws at nodes
+    of thickness (and of Poisson's ratio nu, if that differs), between which they are interpolated.  One law, that of
+    the largest thickness and the largest nu, is computed here, and its time is multiplied by the number of laws.
 
-    run: :class:`Run`, the run, of half-spaces or of covers.
+    run: :class:`Run`, of half-spaces or of covers.
+    Raises ParameterError or FileError for inputs of the first block that no cylinder allows.
     """
     from ...materials.law.cover_rows import cover_rows
     from ...materials.law.per_element import count_laws
@@ -119,9 +133,9 @@ def _time_of_laws(run: Run) -> float:
 
 
 def _peak_memory() -> float:
-    """Return the largest resident memory of this process so far, in bytes.
+    """Return the largest resident memory of this process so far, in bytes, as the system counts it.
 
-    Where the system does not tell, a usual value is returned.
+    On Windows, where Python does not tell it, :data:`_USUAL_RESIDENT` is returned, 4e8 bytes.
     """
     try:
         import resource
@@ -133,7 +147,8 @@ def _peak_memory() -> float:
 def _duration(seconds: float) -> str:
     """Return a duration as a text, in the largest unit of days, hours, minutes, seconds of which it has at least two.
 
-    seconds: the duration, s.
+    seconds: the duration, s, >= 0.
+    Returns a text as "2.5 hours", with one decimal; in seconds, also below two, with two digits, as "0.013 seconds".
     """
     for unit, size in (("days", 86400.0), ("hours", 3600.0), ("minutes", 60.0)):
         if seconds >= 2.0 * size:

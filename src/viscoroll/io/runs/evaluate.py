@@ -25,11 +25,14 @@ _STARTS = 1000
 
 
 def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
-    """Return the inputs of the motions of a block: name -> values, (motions,), in the units of the run file.
+    """Draw the inputs of the motions of a block.
 
-    run: :class:`Run`, the run.
+    run: :class:`Run`, which states the distributions, seed, design and number of motions.
     block: number of the block, from 0.
-    most: number of motions at most, the first of the block; None: all of it.
+    most: number of motions at most, >= 1; None: all of the block.  The inputs of a smaller number are a sample of the
+        same distributions, but only with "sobol" exactly the first ones of the whole block.
+    Returns name of each uncertain input -> values, (motions,), in the units of the run file; {} without uncertain
+    inputs.
     """
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)
@@ -45,17 +48,19 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     run : a run of :func:`read_run`.
     values : name of each uncertain input -> a number or (n,), in the units of the file.
     count : number of motions; n where an input is an array (n,).
-    threads : number of threads; None: all cores available.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, else all cores available.
 
     Returns
     -------
     Ensemble
-        The motions, with the fields that the run needs.
+        The motions, ``count`` of them, with the fields that the run keeps or summarises (``run.fields``).
 
     Raises
     ------
     ParameterError
-        Inputs that a motion does not allow.
+        Inputs that a motion does not allow, or a ``count`` that does not fit them.
+    FileError
+        A material that these inputs do not allow.
 
     Examples
     --------
@@ -75,9 +80,9 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
 
 def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
-    """Draw the inputs of a block, and compute its motions.
+    """Draw the inputs of a block, and compute its motions, on one thread.
 
-    run: :class:`Run`, the run.
+    run: :class:`Run`, with its inputs and settings.
     block: number of the block, from 0.
     Returns (name of an input -> values, (motions,), in the units of the run file; the motions, an :class:`Ensemble`
     with the fields that the run needs).
@@ -91,12 +96,14 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
 def warn_of_materials(run: Run) -> None:
     """Warn of motions of a run outside the measured bands of its materials, judged by their starts and by their median.
 
-    The band of a material is the range of frequencies at which it was measured.  The starts of a run in SI units with a
-    start speed are compared with the bands.  In any case the motion of the median inputs is computed, which may warn
-    too.
+    The band of a material is the range of angular frequencies in which it was measured.  If [start] gives V0 and a
+    material has such a band, the transit frequencies of the first 1000 starts are compared with the bands.  If that
+    gives no warning, also without bands, the contact of the median roller at the largest start speed is examined.  In
+    any case the motion of the median inputs is integrated, which may warn too.
 
-    run: :class:`Run`, the run.
-    Returns nothing; warnings are those of :func:`viscoroll.ensemble`.
+    run: :class:`Run`, with its inputs and settings.
+    Returns None; each warning is a :class:`ModelWarning`, that of a band once for each material in a process.
+    Raises ParameterError for medians that a motion does not allow.
     """
     medians = run.inputs.medians
     content = run.inputs.filled(medians)
@@ -111,10 +118,11 @@ def warn_of_materials(run: Run) -> None:
 def _fraction_outside(run: Run) -> float:
     """Return the fraction of motions whose transit frequency at the start is outside a measured band of a material.
 
-    The transit frequency is |V| divided by the contact length.  A start at rest is inside: M is 0 there.
+    The transit frequency is |V0| divided by the contact length in free rolling at that speed, in 1/s; it is compared
+    with angular frequencies in rad/s.  A start at rest is inside: M is 0 there.
 
-    run: a run in SI units, whose first motions, at most 1000, are examined.
-    Returns the fraction, 0 to 1.
+    run: :class:`Run` in SI units that gives V0; its first motions, at most 1000 of the first block, are examined.
+    Returns the fraction of these, 0 to 1, of motions outside the band of at least one material; 0 without bands.
     """
     content = run.inputs.filled(block_inputs(run, 0, _STARTS))
     roller: Any = roller_of(run.path, content)

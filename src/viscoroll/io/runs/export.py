@@ -63,9 +63,12 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
 def _append_motions(store: Path, path: Path) -> None:
     """Copy the motions, chunk by chunk, into the group "motions" of a netCDF-4 file.
 
-    store: folder of the results, which has every motion.
-    path: the file, which is there already.
-    Raises OSError if the disk is full; the file is then incomplete.
+    The file is first lengthened by the largest size that the group can take.  Numbers are compressed (gzip), with
+    checksums (Fletcher-32), in the chunks of the store.
+
+    store: path of the folder of the results, which has every motion.
+    path: path of the netCDF-4 file, which is there already.
+    Raises OSError if the disk is full (the file is then incomplete), MissingDependencyError without zarr.
     """
     import h5netcdf
 
@@ -100,10 +103,11 @@ def _largest_size(array: Any) -> int:
 def _reserve(path: Path, size: int) -> None:
     """Lengthen a file, so that HDF5, which may crash on a full disk, does not meet one.
 
-    HDF5 cuts off at its end what it did not use.
+    When HDF5 closes the file it cuts off the bytes that it did not use.  Where the system cannot reserve disk space,
+    zeros are written.
 
     path: path of the file, which must exist.
-    size: number of bytes to add at its end.
+    size: number of bytes to add at its end, > 0.
     Raises OSError if the disk is full.
     """
     with path.open("r+b") as file:

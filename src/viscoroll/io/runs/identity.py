@@ -22,11 +22,12 @@ ADVICE = "give another folder with -o, or delete this one"
 
 
 def about(run: Run) -> dict[str, Any]:
-    """Return the attributes of a store: name -> text or number.
+    """Return the attributes of a store, by which a reader finds out how it was made.
 
-    They are title, versions, size, seed, design and method of the run, and the text of its file.
-
-    run: :class:`Run`, the run.
+    run: :class:`Run`, whose results the store holds.
+    Returns name -> value: the texts Conventions, title, source, versions (JSON of :func:`_software`), design, method
+    ("flow" or "integrate"), quantities ("in SI units" or "dimensionless") and run_file, the text of the file; the
+    integers motions, motions_a_block, blocks and seed.
     """
     return provenance("Ensemble of motions of a viscoelastic cylinder") | {
         "versions": json.dumps(_software()),
@@ -56,7 +57,7 @@ def _software() -> dict[str, str]:
 
 
 def identity(run: Run) -> str:
-    """Return a digest of all that the blocks of a run depend on, whatever their number, and of the software.
+    """Return a digest of all that the bits of a block depend on: inputs, settings, method, size of blocks, software.
 
     Two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata depend
     on the number of motions, or ``n`` changes their method or the size of their blocks.
@@ -72,9 +73,13 @@ def identity(run: Run) -> str:
 def refuse_another(root: Path, run: Run, record: Record) -> None:
     """Raise FileError if a store belongs neither to a run nor to the same run with fewer motions.
 
-    root: path of the folder of the store.
-    run: :class:`Run`, the run.
-    record: a record of the store: "start", or "end", or, if both are lost, of any block, which does not state ``n``.
+    The message states which of these it is: other versions of the software, another run file, more motions, or a run
+    that cannot be extended, and what to change.
+
+    root: path of the folder of the store, for the message.
+    run: :class:`Run` that is to be written there.
+    record: a :class:`Record` of the store: "start", or "end", or, if both are lost, of any block.  That of a block does
+        not state the ``n`` of its run: it must have the identity of ``run``.
     """
     of_a_block = record.summary is not None
     if record.run == identity(run) and (of_a_block or record.motions == run.settings.n):
@@ -92,7 +97,10 @@ def refuse_another(root: Path, run: Run, record: Record) -> None:
 def _no_extension(before: Run, run: Run) -> str:
     """Return why a store cannot be extended, and what to change in the run file, as words of a message; "" if it can.
 
-    before: :class:`Run`, the run of the store.
+    The first of these that holds counts: fewer motions than the store has; a Latin hypercube; a Sobol sequence of a
+    number that is no power of two; another size of blocks; another method.
+
+    before: :class:`Run` of the store.
     run: :class:`Run`, the same run with another ``n``.
     """
     n, design = run.settings.n, run.settings.design

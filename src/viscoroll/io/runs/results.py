@@ -27,8 +27,9 @@ class RunResults(Result):
 
     Attributes
     ----------
-    path : the folder.
-    summaries : dataset over t, quantile and the bins of each quantity, as ``xarray.open_zarr(path)``.
+    path : path of the folder.
+    summaries : dataset over t, quantile and the bins of each quantity, as ``xarray.open_zarr(path)`` gives it
+        (:func:`.motion.summaries.summary_dataset`).
 
     Examples
     --------
@@ -67,7 +68,8 @@ class RunResults(Result):
         Returns
         -------
         xarray.Dataset
-            Inputs, fields, onset_time, rest_time, status and flow, in the units of the run file.
+            Inputs, fields, onset_time, rest_time, status (code of :class:`MotionStatus`) and flow (1 if the motion was
+            read from a flow map, 0 if it was integrated), in the units of the run file.
 
         Raises
         ------
@@ -106,7 +108,8 @@ class RunResults(Result):
         """Return a row for each quantity and time: mean, std, min, max, and a column for each quantile.
 
         A unit is part of the name of a quantity, as in "V [m s-1]", the first level of the index; the second is the
-        time, NaN for a quantity that is one number per motion.  The label of a quantile is its level, a float.
+        time, NaN for a quantity that is one number per motion.  The label of the column of a quantile is its level, a
+        float in [0, 1].  At a time at which no motion has a value all entries are NaN.
 
         Examples
         --------
@@ -130,11 +133,13 @@ class RunResults(Result):
         return pd.concat(tables)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return the title and the rows that print this result.
+        """Return the title, with the number of motions, and the rows that print this result.
 
-        Returns (title; list of :class:`SummaryRow`: path of the folder; design and seed of the draws; number of output
-        times and the last one; mean and standard deviation of each quantity at the last time, or of a quantity of the
-        whole motion; how many motions ended in which way; whether every motion is kept, or summaries alone).
+        Returns (title; list of :class:`SummaryRow`, in this order: "path", the folder; "drawn by", design and seed of
+        the draws; "t", the number of output times and the last one, with its unit; a row for each summarised quantity
+        by its name, with mean, standard deviation and unit, of a quantity over time "at the end", that is at the last
+        output time, nan where no motion has a value; a row "ended" for each status that some motions have, with their
+        number and the status in words; "kept", "every motion" or "summaries").
         """
         data = self.summaries
         t, about = data["t"], data.attrs
@@ -169,7 +174,8 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     Raises
     ------
     FileError
-        If the folder is no results store, is not finished, or its summaries are damaged.
+        If the folder is no results store, is not finished, or its summaries are damaged; the files of the motions are
+        not examined (:func:`verify` does that).
     MissingDependencyError
         If zarr is not installed.
 

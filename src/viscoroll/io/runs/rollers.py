@@ -55,7 +55,11 @@ class Rollers(Cylinder):
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
-        """SI value of 1 of each dimensionless quantity, by its name; with ``seconds`` the unit of time is 1 s."""
+        """SI value of 1 of each dimensionless quantity, by its name, as a :class:`.scale.Scale`.
+
+        With ``seconds`` the units of t, onset_time and rest_time are 1 s, and those of x and angle follow from the
+        speeds, m and rad for 1 s; all other units are those of the cylinders, (n,) each.
+        """
         scale = super().scale
         if self.seconds:
             scale |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {"x": scale["V"], "angle": scale["omega"]}
@@ -63,11 +67,15 @@ class Rollers(Cylinder):
 
 
 def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
-    """Return the roller of the motions of a block: a scene, a cylinder, or :class:`Rollers`, one for each motion.
+    """Return the roller of the motions of a block.
 
     path: path of the run file, for errors and the files that it names.
-    content: name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.
-    Raises ParameterError for a value out of range; FileError for a material that cannot be read or is wrong.
+    content: name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs; a material
+        without uncertain numbers may be a :class:`Material` already.
+    Returns a :class:`Scene` without a section [cylinder]; :class:`Rollers` if T_epsilon or the materials differ between
+    motions; else a :class:`Cylinder`.  The other numbers of all three may be arrays (n,).
+    Raises ParameterError for a value out of range or a missing one, or an unknown preset; FileError for a material that
+    cannot be read or is wrong.
     """
     if "cylinder" not in content:
         return make_roller(path, content, {})
@@ -82,8 +90,9 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
 def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return the loads and prescribed speeds of the section [drive] as keywords of :func:`viscoroll.ensemble`.
 
-    content: name of a section -> keys and values, numbers or arrays (n,); without [drive] the result is empty.
-    Returns name -> number, array (n,) or Schedule, in the units of the file.
+    content: name of a section -> keys and values, numbers or arrays (n,); a table within [drive] has the keys times and
+        values.
+    Returns name -> number, array (n,) or :class:`Schedule`, in the units of the file; {} without [drive].
     Raises ParameterError, which names the load, for a wrong schedule.
     """
     drive = content.get("drive", {})
@@ -91,10 +100,12 @@ def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
-    """Return a piecewise linear load; raise ParameterError that names it.
+    """Make a piecewise linear load.
 
-    name: name of the load.
-    times, values: times and values of its corners, in order, each a number or (n,), in the units of the file.
+    name: name of the load, for errors.
+    times, values: times and values of its k corners, in order, each a number or (n,), in the units of the file.
+    Returns the :class:`Schedule`; its times, and likewise its values, are (k,) if all are numbers, else (n, k).
+    Raises ParameterError, which names the load, for what a Schedule refuses.
     """
     try:
         return Schedule(*(np.stack(np.broadcast_arrays(*corners), axis=-1) for corners in (times, values)))
@@ -103,18 +114,22 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
 
 
 def _first_material(path: Path, name: str, section: Any) -> Material:
-    """Return the material of the first motion.
+    """Return the :class:`Material` of the first motion.
 
-    path: path of the run file.
+    path: path of the run file, for errors, and to which files that the section names are relative.
     name: "material" or "base".
-    section: content of that section, with numbers or arrays (n,), or the Material if all of it is certain.
+    section: content of that section, with numbers or arrays (n,), of which the first elements are taken; or the
+        Material if all of it is certain, which is returned.
     Raises ParameterError for a value out of range; FileError for a section that is wrong.
     """
     return section if isinstance(section, Material) else parse_materials(path, {name: _first(section)})[name]
 
 
 def _body(path: Path, name: str, section: Any) -> Any:
-    """Return the material of all motions, a Material, or a :class:`Solid` if motions differ.
+    """Return the material of all motions: a :class:`Material`, or a :class:`Solid` if it differs between motions.
+
+    E, nu, thickness and the series of a Solid are arrays (n,) as far as they differ; its T_ref is that of the first
+    motion.  A temperature that differs multiplies the relaxation times of each motion.
 
     path, name, section, errors: as of :func:`_first_material`.
     """
@@ -138,8 +153,10 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
 
     path : path of the run file.
     content : name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.
-    Returns record of a measurement -> (lowest, highest frequency), rad/s, numbers or (n,); bodies without a record are
-    left out.
+    Returns record of a measurement, a :class:`Measured` -> (lowest, highest frequency), rad/s, arrays (n,) where the
+    temperature differs between motions, else floats.  Bodies without a record, as a given series is, are left out; {}
+    if there is none.
+    Raises ParameterError and FileError as :func:`_first_material`.
     """
     bands: dict[Measured, Any] = {}
     for name in SECTIONS:
@@ -152,12 +169,14 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
 
 
 def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats | None:
-    """Return the factors of the relaxation times at the temperature of each motion, relative to those at the first.
+    """Return the factors of the relaxation times at the temperature of each motion, relative to those of the first.
 
-    path: path of the run file.
+    path: path of the run file, for errors.
     name: "material" or "base".
-    section: content of that section, whose "temperature", in the unit of the file, may be an array (n,).
-    Returns the factors, dimensionless, (n,); None if the temperature is certain or not given.
+    section: content of that section, whose "temperature", in degrees Celsius, may be an array (n,).
+    Returns the factors, dimensionless, > 0, (n,), of which the first is 1; None if the temperature is a number or not
+    given.
+    Raises KeyError for a temperature without a key wlf or arrhenius, FileError for a section that is wrong.
     """
     if not np.ndim(section.get("temperature", 0.0)):
         return None
@@ -169,7 +188,7 @@ def _first(part: Any) -> Any:
     """Return a part of a section with the first element of each of its arrays, a float, in place of the array.
 
     part: a table, list, number or text of the section; arrays are (n,).
-    Returns a new part of the same kind.
+    Returns a new dict or list of a table or list, a float of an array, any other part itself.
     """
     if isinstance(part, dict):
         return {key: _first(member) for key, member in part.items()}

@@ -141,8 +141,8 @@ class Run:
     Attributes
     ----------
     path, text : path and text of the file.
-    settings : its section [run].
-    inputs : its other sections, and which of their numbers are uncertain.
+    settings : its section [run], a :class:`RunSection`.
+    inputs : its other sections, and which of their numbers are uncertain, as :class:`.inputs.Inputs`.
     t : output times, dimensionless or, with [cylinder], in s, (t,).
     digest : SHA-256 of what the results depend on, apart from the number of motions, the method and the size of
         blocks: other settings, inputs, samples.
@@ -166,7 +166,9 @@ class Run:
     def method(self) -> Literal["flow", "integrate"]:
         """Method of all blocks: "flow" or "integrate".
 
-        It depends on the run as a whole, so that bits do not depend on blocks.
+        It is that of the file, or for "auto" the flow map if one serves (:attr:`mappable`), the run has at least
+        :data:`.batch.FLOW_PAYS` motions, and a start speed differs from 0.  It depends on the run as a whole, so that
+        bits do not depend on blocks.
         """
         if self.settings.method != "auto":
             return self.settings.method
@@ -176,13 +178,17 @@ class Run:
 
     @property
     def mappable(self) -> bool:
-        """Whether a flow map serves: only start speeds are uncertain, and no load acts."""
+        """Whether a flow map serves: only start speeds are uncertain, [drive] is absent or empty, and not unsteady."""
         driven = self.inputs.content.get("drive") or self.settings.unsteady
         return not driven and set(self.inputs.uncertain) <= set(START)
 
     @cached_property
     def fastest(self) -> float:
-        """Speed up to which the flow map is tabulated; the few faster motions are integrated."""
+        """Speed up to which the flow map is tabulated: the larger of |V0| and R |omega0|.
+
+        It is in m/s, or dimensionless, where R is 1; of distributions see :meth:`.inputs.Inputs.largest`.  The few
+        faster motions are integrated.  Raises KeyError if [start] lacks one of the two.
+        """
         R = self.inputs.content["cylinder"]["R"] if self.si else 1.0
         return max(self.inputs.largest("V0"), R * self.inputs.largest("omega0"))
 
@@ -193,7 +199,7 @@ class Run:
 
     @property
     def fields(self) -> tuple[str, ...]:
-        """Fields of the motions that are kept or summarised."""
+        """Fields of the motions that are kept (with keep = "all" only) or summarised, in the order of ``FIELDS``."""
         needed = {name for wanted in self.settings.summaries for name in QUANTITIES[wanted].fields}
         kept = set(self.settings.fields) if self.settings.keep == "all" else set()
         return tuple(name for name in FIELDS if name in needed | kept)
@@ -219,7 +225,9 @@ class Run:
         return -(-self.settings.n // self.block)
 
     def edges(self, block: int) -> tuple[int, int]:
-        """Return the index of the first motion of a block, and of the first motion of the next block.
+        """Return (index of the first motion of a block, index of the one after its last), counted over the run.
+
+        block: number of the block, from 0 to ``blocks`` - 1.  The last block ends at n and may be shorter.
 
         Examples
         --------
@@ -240,13 +248,17 @@ def read_run(path: str | PathLike[str]) -> Run:
     Returns
     -------
     Run
-        The run, with all of the file checked; nothing is drawn or rolled yet.
+        The run, with all of the file checked, the motions of median and extreme inputs for their ranges too; nothing is
+        drawn or rolled yet.
 
     Raises
     ------
     FileError
-        A file that cannot be read or is not TOML, a misspelt key (with the nearest), a value of the wrong type or with
-        a unit, a range that exceeds what the input allows, a sample that cannot be read: each with its line.
+        A file that cannot be read or is not TOML, a section [run] or [start] that is missing, a misspelt key (with the
+        nearest), a value of the wrong type or with a unit, a range that exceeds what the input allows, a sample that
+        cannot be read, method "flow" where no flow map serves: each with its line.
+    MissingDependencyError
+        A sample in a .parquet file, if pyarrow is not installed.
 
     Examples
     --------
@@ -288,10 +300,12 @@ def read_run(path: str | PathLike[str]) -> Run:
 def _check_inputs(run: Run) -> None:
     """Raise FileError for values of inputs that a motion refuses, before anything is drawn.
 
-    It checks the medians, the ends of each input with the others at their medians, and combinations of ends.
+    It checks in turn the medians; the ends of each input with the others at their medians; combinations of ends
+    (:meth:`.inputs.Inputs.corners`); and all rows of each file of several columns.
 
-    run: :class:`Run`, the run.
-    The error states the line of the input, the range of its draws and the reason.
+    run: :class:`Run`, with its inputs and settings.
+    The error states the line and the reason: of an end of an input also the range of its draws, and the remedy to
+    truncate; of a wrong setting of [run] that setting; of combinations the first parameter that is refused.
     """
     inputs, medians = run.inputs, run.inputs.medians
     _check_motions(run, medians)
@@ -314,9 +328,9 @@ def _check_inputs(run: Run) -> None:
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
     """Raise FileError, with its line, for motions that would be refused; nothing is rolled.
 
-    run: :class:`Run`, the run.
-    values: name of an input -> number or (n,), for every input.
-    advice: last words of the message.
+    run: :class:`Run`, with its inputs and settings.
+    values: name of an input -> number or (n,), for every input, in the units of the file.
+    advice: last words of the message; not added to the error of a material, which is raised as it is.
     """
     error = _fault_of(run, values)
     if isinstance(error, ParameterError):
@@ -327,11 +341,13 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
 
 
 def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | None:
-    """Return the error of motions that would be refused, which is not raised, else None; nothing is rolled.
+    """Find out whether motions would be refused, without rolling them.
 
-    run: :class:`Run`, the run.
-    values: name of an input -> number or (n,), for every input.
-    Returns a ParameterError for a roller, start, drive or setting that a motion refuses, a FileError for a material.
+    run: :class:`Run`, with its inputs and settings.
+    values: name of an input -> number or (n,), for every input, in the units of the file.
+    Returns None if the motions are allowed.  Else the error, which is not raised: a ParameterError for a roller, start,
+    drive or setting that a motion refuses, and for ``unsteady`` or ``rested`` where T_epsilon differs between motions;
+    a FileError for a material.
     """
     content, settings = run.inputs.filled(values), run.settings
     try:
@@ -350,11 +366,11 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
 def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materials: list[str], inputs: Inputs) -> str:
     """Return the ``digest`` of a :class:`Run`; comments and the order of keys do not change it.
 
-    settings: content of the section [run], of which n, method and block do not count.
+    settings: :class:`RunSection`, content of the section [run], of which n, method and block do not count.
     times: output times, (t,), in the unit of the file.
-    content: name of a section -> content, as read.
-    materials: materials without uncertain inputs, as TOML.
-    inputs: uncertain inputs, whose columns of files count.
+    content: name of a section -> content, as read; [run] is left out.
+    materials: materials without uncertain inputs, as TOML, so that files that they name count too.
+    inputs: :class:`.inputs.Inputs`, whose columns of data files count.
     Returns a SHA-256, 64 hexadecimal digits.
     """
     kept = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _NOT_IN_DIGEST}

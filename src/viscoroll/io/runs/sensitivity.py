@@ -52,20 +52,21 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 
     Parameters
     ----------
-    run : a run of :func:`read_run`; its seed, t, rtol, rest and summaries count, its n, design and quantiles do not.
+    run : a run of :func:`read_run`; its inputs, seed, t, method, rtol, rest and summaries count, its n, design, keep
+        and quantiles do not.
     n : number of base points in [16, 65536], rounded up to a power of two.
     threads : number of threads; None: ``$VISCOROLL_THREADS`` or the number of cores.  The bits do not depend on it.
-    progress : whether to draw a progress bar if it takes longer than a second.
+    progress : whether to draw a progress bar on standard error if the call takes longer than a second.
 
     Returns
     -------
     xarray.Dataset
         For every quantity ``NAME_S1``, ``NAME_S1_conf``, ``NAME_ST``, ``NAME_ST_conf`` over (t, input), or over
         input if the quantity is one number per motion: the indices, dimensionless, and the half-widths of
-        their bootstrap intervals of 95 %.  A quantity that some motions do not have, or that
-        varies by no more than rtol of its largest value at any t, has no indices: the attribute
-        ``refused`` states which, at which t and why.  There its entries are NaN, and if it has
-        none at any t it is left out.
+        their bootstrap intervals of 95 %.  At a t at which some motions do not have the quantity, or at which its
+        standard deviation is at most rtol times its largest magnitude at all t, it has no indices: its entries are NaN
+        there, and the attribute ``refused`` states which quantity, at which t and why, a line each.  A quantity without
+        indices at any t is left out.  Estimates may lie slightly outside of [0, 1].
 
     Raises
     ------
@@ -140,7 +141,8 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
 def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
     """Return the names of the uncertain inputs of a run, if Sobol indices are defined for them.
 
-    inputs: :class:`Inputs`, the inputs.
+    inputs: :class:`Inputs` of the run.
+    Returns the names, distributions before columns, in the order of the rows of the cube.
     Raises ParameterError if there are none, or they are not independent: correlated, or several columns of one file.
     """
     if not inputs.uncertain:
@@ -157,12 +159,15 @@ def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
 
 
 def _points(count: int, base: int, seed: int) -> Floats:
-    """Return points of the unit cube, (input, motion): A, B, and A with the row of each input in turn taken from B.
+    """Return the points of the unit cube at which Saltelli's estimators need the motions.
 
-    count: number of inputs.
+    A and B are the two halves of the coordinates of one scrambled Sobol sequence of 2 count dimensions.
+
+    count: number of inputs, >= 1.
     base: number of points of A and of B, a power of two.
-    seed: seed of the sequence.
-    Returns (count, (count + 2) base), in (0, 1).
+    seed: seed of the sequence, in [0, 2^63).
+    Returns an array (count, (count + 2) base), in (0, 1), a row for each input and a column for each motion: the points
+    of A, those of B, then for each input n the points of A with row n taken from B.
     """
     A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
     mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
@@ -174,13 +179,14 @@ def _outcomes(
 ) -> tuple[dict[str, Floats], NDArray[np.int8]]:
     """Roll all motions at points of the unit cube, block by block.
 
-    run: :class:`Run`, run that states the quantities.
-    cube: points of the unit cube, (input, motion).
-    threads: number of threads; None: all cores available.
+    run: :class:`Run`, whose ``settings.summaries`` name the quantities.
+    cube: points of the unit cube, (input, motion), of :func:`_points`.
+    threads: number of threads, on which the motions of one block run; None: all cores available.
     progress: whether a progress bar is drawn.
-    Raises ParameterError if the values of all motions would take more than 0.5 GB.
+    Raises ParameterError if the values of all motions would take more than 0.5 GB, and for inputs that a motion does
+    not allow.
     Returns (name of a quantity -> values, (t, motion), or (1, motion) of one number per motion, in the units of the
-    run; status code of each motion, (motion,)).
+    run, NaN where a motion does not have it; status of each motion, a code of :class:`MotionStatus`, (motion,), int8).
     """
     motions = cube.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
@@ -209,9 +215,10 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
 
     values: outcomes, (2 + inputs, base points): of the points A, of B, and of A with one input from B each.
     noise: standard deviation, in the unit of the quantity, up to which the values count as equal: their error by rtol.
-    seed: seed of the bootstrap.
-    Returns (first-order indices, half-widths of their 95 % intervals, total indices, half-widths, (4, inputs),
-    dimensionless; "" or, with NaN, why there are no indices).
+    seed: seed of the bootstrap, whose 100 resamples draw base points with replacement.
+    Returns (array (4, inputs), dimensionless, whose rows are the first-order indices, the half-widths of their 95 %
+    intervals, the total indices and their half-widths; ""), or, where a value is not finite or the values are equal,
+    (such an array of NaN; the reason, in words).
     """
     from scipy.special import ndtri
 
@@ -230,7 +237,10 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
 def _estimated(values: Floats) -> Floats:
     """Return first-order and total indices, (2, inputs), dimensionless.
 
-    values: outcomes, (2 + inputs, base points), as of :func:`_indices`.
+    With A, B and the mixed outcomes AB_n less the mean of A and B, and the variance v of A and B together, they are
+    mean(B (AB_n - A))/v and mean((AB_n - A)^2)/(2 v), the estimators (b) and (f) of Table 2 of Saltelli et al. (2010).
+
+    values: outcomes, (2 + inputs, base points), as of :func:`_indices`, finite and not all equal.
     """
     A, B, *others = values - values[:2].mean()
     mixed = np.array(others)
@@ -241,7 +251,9 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
     """Return a row for each quantity, time and input that has indices, the largest total index first at each t.
 
     indices: dataset of :func:`sobol_indices`.
-    Returns a table of pandas with the columns "quantity", "t" with its unit, "input", "S1", "S1_conf", "ST", "ST_conf".
+    Returns a :class:`pandas.DataFrame` with the columns "quantity", "t" with its unit as "t [s]", "input", "S1",
+    "S1_conf", "ST", "ST_conf".  "t" is NaN in the rows of a quantity that is one number per motion, and the column is
+    missing if all are.
     """
     import pandas as pd
 

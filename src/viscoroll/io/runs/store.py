@@ -45,8 +45,8 @@ class Store:
 
     Attributes
     ----------
-    root : the folder, which need not exist yet.
-    run : the run.
+    root : path of the folder, which need not exist yet.
+    run : the :class:`Run` whose results it holds.
     """
 
     root: Path
@@ -56,7 +56,8 @@ class Store:
         """Create the folder and write the metadata of all motions; a store of this run stays as it is.
 
         The store of the same run with fewer motions is extended: its metadata are written anew, its summaries are
-        removed.  Temporary files of killed processes are removed.
+        removed.  Temporary files of killed processes are removed.  Metadata are those of :func:`metadata`, none if
+        motions are not kept; the record "start" is written in any case.
 
         Raises
         ------
@@ -75,7 +76,7 @@ class Store:
         name: "start", "end" or the number of a block.
         files: path below the store -> content.
         more: other fields of the :class:`Record`: ``about`` of the start, ``summary`` of a block.
-        Raises FileError if a file cannot be written.
+        Raises FileError if a file cannot be written; the part is then not complete.
         """
         record = Record(identity(self.run), write_files(self.root, files), self._motions(name), **more)
         write_bytes(_record_path(self.root, name), encoded(record))
@@ -83,7 +84,8 @@ class Store:
     def _motions(self, name: str | int) -> int:
         """Return the number of motions of a part.
 
-        name: number of a block; "start" and "end" have the motions of the whole run.
+        name: number of a block, of which the last may have fewer motions; "start" and "end" have those of the whole
+            run.
         """
         if isinstance(name, str):
             return self.run.settings.n
@@ -106,7 +108,9 @@ class Store:
     def refuse_other(self) -> None:
         """Raise FileError unless the folder is new, or the store of this run, perhaps with fewer motions.
 
-        A folder with records of another run, with other files, or that cannot be read is refused.
+        A folder is new if it does not exist, or has nothing but the folders of records and motions, without a readable
+        record.  Refused are a file, a folder that cannot be read, one with other files, and the store of another run,
+        of a run with more motions, or of one that cannot be extended (:func:`.identity.refuse_another`).
         """
         root = self.root
         if not root.exists():
@@ -127,7 +131,8 @@ class Store:
     def missing(self) -> Iterator[int]:
         """Yield the numbers of the blocks that are missing or damaged, ascending.
 
-        The records of all blocks and all their files are read.
+        A block is read, its record and all its files, when its turn comes, so that the caller may evaluate blocks while
+        it iterates.
         """
         own = identity(self.run)
         for block in range(self.run.blocks):
@@ -139,7 +144,8 @@ class Store:
 
         block: number of the block, from 0.
         Returns the number of its motions.
-        Raises ParameterError for inputs that a motion does not allow, FileError if writing fails.
+        Raises ParameterError for inputs that a motion does not allow, FileError if writing fails, CancelledError if the
+        run was interrupted (:func:`.blocks.cancel_with`); nothing of the block counts as stored then.
         """
         files, summary, count = block_content(self.run, block)
         self._write_part(block, files, summary=summary)
@@ -166,7 +172,7 @@ class Store:
                 path.unlink()
 
     def _summaries(self) -> Iterator[Summary]:
-        """Yield the summary of each block in order; raise FileError if its record is damaged."""
+        """Yield the :class:`Summary` of each block in order; raise FileError if its record is missing or damaged."""
         for block in range(self.run.blocks):
             record = read_record(_record_path(self.root, block))
             if record is None or record.summary is None:
@@ -175,7 +181,7 @@ class Store:
 
 
 class BlockContent(NamedTuple):
-    """What a store holds of a block.
+    """Result of a block, as a store holds it.
 
     files : path below the store -> content of the chunks of its motions; empty if summaries alone are kept.
     summary : summary of its motions.
@@ -190,9 +196,9 @@ class BlockContent(NamedTuple):
 def block_content(run: Run, block: int) -> BlockContent:
     """Roll the motions of a block, and make the files and the summary that the store keeps of it; nothing is written.
 
-    run: :class:`Run`, with inputs and settings; files of motions are made if ``settings.keep`` says "all".
+    run: :class:`Run`, with inputs and settings; files of motions are made if ``settings.keep`` is "all".
     block: number of the block, from 0 to ``run.blocks - 1``.
-    Returns the :class:`BlockContent`.
+    Returns the :class:`BlockContent`, whose ``files`` are {} if ``settings.keep`` is "summaries".
     Raises ParameterError for inputs that a motion does not allow.
     """
     values, motions = roll_block(run, block)
@@ -203,7 +209,10 @@ def block_content(run: Run, block: int) -> BlockContent:
 def metadata(run: Run) -> dict[str, bytes]:
     """Return the metadata of the group of all motions: path below the store -> content; {} if motions are not kept.
 
-    run: run whose motion of medians is rolled for names and types.
+    Names and types of the columns are those of one motion, which is rolled for that, with each input at its median.
+
+    run: :class:`Run`, with its inputs and settings.
+    Raises ParameterError for medians that a motion does not allow.
     """
     if run.settings.keep == "summaries":
         return {}
@@ -214,10 +223,12 @@ def metadata(run: Run) -> dict[str, bytes]:
 def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> dict[str, bytes]:
     """Return files of the group of all motions: the chunks of a block, or the metadata.
 
-    run: :class:`Run`, the run.
-    columns: name -> values over (motion,) or (motion, t), in the units of the run.
-    block: number of the block; None: return the metadata.
-    Returns path below the store -> content.
+    run: :class:`Run`, which gives output times, units, number of motions and size of blocks.
+    columns: name -> values over (motion,) or (motion, t), in the units of the run; for the metadata those of any number
+        of motions, of which names, types and the number of times count.
+    block: number of the block whose chunks are returned; None: return the metadata, and the array t, which all motions
+        share.
+    Returns path below the store, as "motions/V/3.0" -> content.
     """
     import xarray as xr
 
@@ -232,10 +243,11 @@ def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = Non
 def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
     """Return the columns that are kept of motions: inputs, fields and how they ended.
 
-    run: run that states the fields.
-    values: name of an input -> values, (n,).
+    run: :class:`Run`, whose settings name the fields.
+    values: name of each uncertain input -> values, (n,).
     motions: :class:`Ensemble`, motions with these inputs.
-    Returns name -> values over (motion,) or (motion, t), in the units of the run; "flow" as 0 or 1.
+    Returns name -> values in the units of the run: the inputs, onset_time, rest_time, status (codes) and flow (0 or 1,
+    int8) over (motion,), the fields of ``run.settings.fields`` over (motion, t).
     """
     columns = {name: values[name] for name in run.inputs.uncertain}
     columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}
@@ -247,8 +259,9 @@ def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
 
     root: path of the folder of the store.
     name: "start", "end" or the number of a block.
-    run, motions: identity and number of motions that the record must state.
-    Returns [] if the part is complete; the record alone if that is missing, damaged or of another run.
+    run, motions: identity of the run (:func:`.identity.identity`) and number of motions that the record must state.
+    Returns [] if the part is complete; the path of the record alone if that is missing, damaged, of another run or of
+    another number of motions; else the paths of files that are missing or damaged.
     """
     path = _record_path(root, name)
     record = read_record(path)
@@ -266,8 +279,12 @@ def _record_path(root: Path, name: str | int) -> Path:
 def locked(root: Path) -> Iterator[None]:
     """Keep other processes from writing to a store; a context manager, which creates the folder.
 
+    The lock ends with the body of the ``with``, or with the process.  The file records/.lock stays.
+
     root: path of the folder of the store.
-    Raises FileError if another process writes to it, or the disk does not allow locks; it does not wait.
+    Yields None.
+    Raises FileError if another process writes to it, the folder cannot be created, or the disk does not allow locks; it
+    does not wait.
     """
     from filelock import FileLock, Timeout
 

@@ -32,11 +32,14 @@ _KEYS_OF_INPUT = {"distribution", "file", "column"}
 
 
 def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
-    """Return the inputs of a run file, without correlations; files of samples are read.
+    """Collect the uncertain numbers of a run file; files of samples are read.
 
     path: path of the run file, to which the paths of samples are relative.
     content: name of a section -> content, as tomllib reads it.
-    Raises FileError, with its line, for an uncertain number that is wrong.
+    Returns the :class:`Inputs`, without correlations: all of ``content``, with an :class:`Input` in place of each
+    uncertain number of the sections of the roller, [start] and [drive].
+    Raises FileError, with its line, for an uncertain number that is wrong; MissingDependencyError for a .parquet file
+    without pyarrow.
     """
     reader = _Reader(path, "cylinder" in content)
     sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
@@ -62,7 +65,9 @@ class _Reader:
         """Return a section with inputs in place of its uncertain numbers, which are collected.
 
         name: name of the section.
-        section: content of the section, or what stands in its place, which is returned as it is and refused elsewhere.
+        section: content of the section.  What is no table is returned as it is; checks of the file refuse it later.
+        Returns a new dict.  Of a material only the numbers of :data:`_UNCERTAIN_IN_MATERIAL` may be uncertain; the
+        values of its other keys stay as they are.
         Raises FileError for an uncertain number that is wrong.
         """
         if not isinstance(section, dict):
@@ -71,14 +76,18 @@ class _Reader:
         return {key: self.part(value, name, key, (key,)) if key in keys else value for key, value in section.items()}
 
     def part(self, value: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
-        """Return a value of the file, or an :class:`Input` if it is uncertain; of a list or table, each member so.
+        """Return a value of the file with an :class:`Input` in place of each uncertain number.
 
-        A table with a key distribution, file or column is an uncertain number; it is collected.
+        A table with a key distribution, file or column is an uncertain number; it is collected in ``random`` or
+        ``joint``.  Lists and other tables are searched at any depth.
 
         value: value at a key of the file.
         section, key: section and key of the value; of a member of a table "section.key" and its key.
-        words: keys from the section down to it, and positions in lists from "1", of which its name is made.
-        Raises FileError for an uncertain number that is wrong, or a misspelt key of one.
+        words: keys from the section down to it, and positions in lists from "1"; joined by "_" they make the name of
+            the input, as "tau_2".
+        Returns an Input of an uncertain number, a new list or dict of a list or another table, else ``value``.
+        Raises FileError for an uncertain number that is wrong, or a table whose key is like one of an uncertain number,
+        as a misspelt one is.
         """
         if isinstance(value, list):
             return [self.part(member, section, key, (*words, str(n))) for n, member in enumerate(value, 1)]
@@ -110,11 +119,13 @@ class _Reader:
     def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
         """Return the distribution of an uncertain number, truncated if the file says so.
 
-        number: the uncertain number.
+        number: the uncertain number, for errors.
         table: its table of TOML: distribution, parameters of scipy.stats by name, and perhaps truncate = [low, high],
-        either of which may be infinite.
-        Raises FileError for an unknown distribution, parameters that it does not allow, or an interval of zero
-        probability.
+            either of which may be infinite.
+        Returns the :class:`Distribution`, whose interval is the part of ``truncate`` within the support of the law;
+        without ``truncate`` it is the support.
+        Raises FileError for an unknown distribution, parameters that it does not allow, a ``truncate`` that is not two
+        numbers, or an interval of zero probability.
         """
         law = self.frozen_law(number, table)
         low, high = (float(end) for end in law.support())
@@ -162,7 +173,10 @@ class _Reader:
     def add_column(self, number: Input, table: dict[str, Any]) -> None:
         """Read the column of a file that is the sample of an uncertain number, and collect it in ``joint``.
 
-        number: the uncertain number.
+        In SI units the numbers of a CSV are converted to the unit of the key.  Strengths and times of a series and
+        corners of a load, which stand in tables within a section, must be without a unit there.
+
+        number: the uncertain number, whose name the column gets in ``joint``.
         table: its table of TOML: file, a .csv, .nc or .parquet, relative to the run file, and column.
         Raises FileError for a file or column that cannot be read, or whose length differs from that of its other
         columns.
@@ -190,13 +204,16 @@ def _is_number(value: Any) -> bool:
 
 
 def read_column(path: Path, column: str, unit: str) -> Floats:
-    """Return a column of finite numbers, (n,), from a file.
+    """Read a column of finite numbers from a file.
 
-    path: a .csv, .nc or .parquet file.
-    column: name of the column.
-    unit: unit to convert to, if a CSV states another; "1": a ratio.  Other files are not converted.
-    Raises FileError for a CSV, ValueError, OSError or KeyError for the others and for what are no finite numbers;
-    MissingDependencyError without pyarrow.
+    path: path of a .csv, .nc (netCDF-4) or .parquet file.
+    column: name of the column or variable.
+    unit: unit in pint's spelling, "1" of a ratio, to which the numbers of a CSV are converted if it states another.
+        Other files are not converted, and a unit that they state is not read.
+    Returns float64, (n,), n >= 1, contiguous.
+    Raises FileError for a CSV that cannot be read or has no such column; ParameterError for its unit, if that has
+    another dimension; ValueError, OSError or KeyError for other files and suffixes, and for a column that is empty, has
+    several axes or has values that are no finite numbers; MissingDependencyError for .parquet without pyarrow.
     """
     if path.suffix == ".csv":
         values = column_in_unit(named_table(path, (column,)), column, unit)
@@ -220,9 +237,12 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 def correlated(path: Path, inputs: Inputs) -> Inputs:
     """Return the inputs with the Gaussian copula that the section [correlation] states; without it nothing is added.
 
-    path: path of the run file.
-    inputs: inputs of the run without correlations; ``content["correlation"]`` holds a -> b -> correlation in (-1, 1) of
-    the normal variables after inputs a and b.
+    path: path of the run file, for errors.
+    inputs: :class:`Inputs` of the run without correlations; ``content["correlation"]`` has a -> b -> correlation in
+        (-1, 1) of the normal variables of which the inputs a and b are monotone functions.  A pair that is not given
+        has correlation 0; a.b and b.a may both be given if they are equal.
+    Returns new Inputs with ``correlated``, the names in [correlation] in the order of ``random``, and ``mixing``, the
+    Cholesky factor of their matrix; without that section they are () and None.
     Raises FileError for a name without distribution, a value out of range, or a matrix that is not positive definite.
     """
     section, random = inputs.content.get("correlation", {}), inputs.random

@@ -18,9 +18,9 @@ class Verdict:
     Attributes
     ----------
     blocks : number of blocks of the run.
-    missing : blocks that are missing or damaged.
-    damaged : files that are damaged, and files of the start that are missing.
-    finished : whether the summaries are complete.
+    missing : numbers of the blocks that are missing or damaged, ascending.
+    damaged : paths, below the store, of files that are damaged, and of files of the start that are missing.
+    finished : whether the summaries are complete and undamaged.
     """
 
     blocks: int
@@ -34,7 +34,11 @@ class Verdict:
         return self.finished and not self.missing and not self.damaged
 
     def __str__(self) -> str:
-        """Return the verdict in words: one line if all is well, else a line for each damaged part, and the remedy."""
+        """Return the verdict in words.
+
+        It is one line if all is well.  Else there are a line for each damaged file, one with the number of missing
+        blocks, one if the summaries are missing or incomplete, and a last one that names the remedy.
+        """
         if self.ok:
             blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
             return f"complete: {blocks} and the summaries match their SHA-256"
@@ -54,7 +58,8 @@ def verify(path: str | PathLike[str]) -> Verdict:
     Returns
     -------
     Verdict
-        Damaged files and missing blocks; ``ok`` if there are none, a text by ``str``.
+        Damaged files, missing blocks, and whether the summaries are complete; its ``ok`` is True if nothing is missing
+        or damaged, ``str`` gives it in words.  A run that is not finished is no error.
 
     Raises
     ------
@@ -84,7 +89,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
 
 
 def start_of(path: str | PathLike[str]) -> Record:
-    """Return the record "start" of a store, which states the run.
+    """Return the record "start" of a store, a :class:`Record` that states identity, motions and attributes of the run.
 
     path: folder of the store.
     Raises FileError if the folder does not exist, may not be read, or has no such record or a damaged one.

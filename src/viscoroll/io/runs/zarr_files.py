@@ -21,13 +21,16 @@ _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 
 def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None = None) -> dict[str, bytes]:
-    """Return files of the group of all motions: path below the group -> content; nothing is written.
+    """Return files of the group of all motions, as zarr encodes them in memory; nothing is written to disk.
 
-    motions: dataset over (motion, t), of one block.
-    count: number of motions of the run.
+    motions: dataset over (motion, t) with the motions of one block, whose last one may be short; for the metadata the
+        number of its motions has no effect.
+    count: number of motions of the run, the length of all arrays over motion.
     block: number of motions of a full block, which is one chunk.
-    number: number of the block whose chunks are returned; None: return the metadata and the arrays that all motions
-    share.
+    number: number of the block whose chunks are returned, from 0; None: return the metadata (.zgroup, .zarray, .zattrs)
+        and the arrays without the axis motion, as t.
+    Returns path below the group, as "V/3.0" -> content.
+    Raises MissingDependencyError without zarr.
     """
     zarr = import_extra("zarr", "runs")
 
@@ -52,7 +55,10 @@ def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None
 def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
     """Return all files of a small dataset as zarr writes them: path below its group -> content; nothing is written.
 
-    dataset: dataset that fits the memory.
+    The metadata of all arrays together (.zmetadata) are left out; :func:`consolidated` makes them.
+
+    dataset: :class:`xr.Dataset` that fits the memory.
+    Raises MissingDependencyError without zarr.
     """
     zarr = import_extra("zarr", "runs")
 
@@ -65,6 +71,7 @@ def consolidated(files: dict[str, bytes]) -> bytes:
     """Return the content of .zmetadata, JSON from which readers take all metadata at once.
 
     files: path -> content, of the hierarchy; of these only metadata (.zgroup, .zarray, .zattrs) count.
+    Returns the content in UTF-8, with the paths in alphabetic order.
     """
     metadata = {key: json.loads(text) for key, text in sorted(files.items()) if _is_metadata(key)}
     return json.dumps({"metadata": metadata, "zarr_consolidated_format": 1}, indent=1).encode()
