@@ -120,11 +120,11 @@ class Feedback:
 def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
     """Replace a field by its checked numbers, and keep the unit that it was given in.
 
-    load: the schedule or feedback, whose field becomes a float or a read-only array; a unit is entered into its
-    ``units``.
+    load: :class:`Schedule` or :class:`Feedback`, changed in place although it is frozen: its field becomes a float or a
+        read-only array, and a unit is entered into its ``units``.  Numbers with a unit stay in that unit.
     name: name of the field.
-    low: smallest allowed number.
-    Raises ParameterError for numbers that are not finite or below ``low``.
+    low: smallest allowed number, -infinite for none; compared before any conversion.
+    Raises ParameterError for numbers that are not numeric, not finite or below ``low``.
     """
     numbers, unit = split_unit(name, getattr(load, name))
     object.__setattr__(load, name, read_only(check_array(name, numbers, low=low)))
@@ -133,13 +133,15 @@ def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
 
 
 def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
-    """Return an argument in its unit, without that unit: numbers, a schedule or a feedback.
+    """Convert an argument that a caller gave with a unit to the unit of the argument.
 
     name: name of the argument, by which its unit is found.
     value: what a caller gave: a number, an array, a value with a unit, a :class:`Schedule`, a :class:`Feedback` or a
-        function of time; what has no unit stays as it is.
+        function of time.
     units: object whose method ``unit`` gives the unit of each argument by name, as "N m-1".
-    Returns a value of the same kind; the fields of a schedule or a feedback are in their units too.
+    Returns ``value`` itself if it has no unit, as a function of time; else a value of the same kind without unit: plain
+    numbers, with the labels of xarray and pandas, or a new schedule or feedback whose fields are in their units, those
+    of a schedule within a feedback too.
 
     Raises
     ------
@@ -160,11 +162,12 @@ def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
 
 
 def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
-    """Return a schedule or a feedback with those fields that have a unit in the wanted units.
+    """Convert those fields of a schedule or a feedback that were given with a unit.
 
     name: name of the argument, for errors.
-    load: the schedule or feedback; itself is returned if none of its fields has a unit.
-    wanted: name of a field -> unit, as "m s-1".
+    load: :class:`Schedule` or :class:`Feedback`; not changed.
+    wanted: name of a field -> unit, as "m s-1"; for each field that may have a unit.
+    Returns a new load of the same class without units; ``load`` itself if none of its fields has a unit.
     Raises ParameterError for a unit of another dimension.
     """
     converted = {
@@ -174,11 +177,10 @@ def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
 
 
 def require_time_argument(name: str, function: Callable[..., Any]) -> None:
-    """Refuse a function of time that cannot be called with a time alone.
+    """Raise ParameterError for a function of time that cannot be called with a time alone; it is not called here.
 
     name: name of the argument that the function is, for the error.
-    function: the function of a caller; one without a signature, as compiled code may be, is accepted.
-    Raises ParameterError.
+    function: the function of a caller.  One whose signature Python cannot find, as of some compiled code, is accepted.
     """
     try:
         parameters = signature(function)
@@ -203,12 +205,13 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
 
     Returns
     -------
-    tan, cos : of the shape of ``slope``; (0, 1) for None.
+    tan, cos : tangent, and cosine > 0, dimensionless, arrays of the shape of ``slope``, numpy floats of a number; the
+        floats 0.0 and 1.0 for None.
 
     Raises
     ------
     ParameterError
-        A slope that is not in (-pi/2, pi/2).
+        A slope that is not numeric, not finite, not in (-pi/2, pi/2), or has a unit that is no angle.
     """
     if slope is None:
         return 0.0, 1.0
@@ -225,9 +228,12 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
 
     name: name of the argument, as "force", "torque", "brake", "drag" or "V", by which its unit is found.
     value: what a caller gave, in SI units for a cylinder; None stays None.
-    scale: scale of the roller; with that of a scene ``value`` is returned unchecked.
-    Returns a value of the same kind, a float for a number.  A function takes the dimensionless time then, and returns
-    dimensionless arrays; its values are checked when it is called.
+    scale: :class:`.scale.Scale` of the roller, a unit for each quantity, numbers or, of many cylinders, (n,).  With
+        that of a scene ``value`` is returned itself, unchecked.
+    Returns a new value of the same kind: a float for a number (an array (n,) of many cylinders), an array, a
+    :class:`Schedule` (with values (n, k) of many cylinders), a :class:`Feedback` whose gains are divided by the unit of
+    the load over that of the speed, or a function.  Such a function takes the dimensionless time and returns
+    dimensionless arrays; the values of the caller's function are checked when it is called.
 
     Raises
     ------

@@ -82,10 +82,11 @@ _TYPE_NAMES: tuple[tuple[Any, str], ...] = (
 
 
 def describe_value(value: Any) -> str:
-    """Return a value for a message: its text in one line of at most 60 characters, and its type unless it is a number.
+    """Return a value for a message: its text in one line of at most 60 characters, and its type in parentheses.
 
     value: what a caller gave, of any type.
-    Returns a text as "'abc' (a text)".
+    Returns a text as "'abc' (a text)", "[1, 2] (a list)", or of an array "... (of type int64, shape (3,))"; of None, an
+    int or a float the text alone.
     """
     text = f"{' '.join(repr(value).split()):.60}"
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
@@ -97,9 +98,11 @@ def describe_value(value: Any) -> str:
 
 
 def described_error(name: str, found: str, allowed: str) -> ParameterError:
-    """Return the error of a parameter that a property describes better than its value.
+    """Return the error, not raised, of a parameter that a property describes better than its value.
 
-    name: of the parameter.  found: verb and property, as "is empty".  allowed: words that follow "must be".
+    name: name of the parameter.
+    found: verb and property, as "is empty".
+    allowed: words that follow "must be".
     """
     return ParameterError(name, found, allowed, f"{name} {found}: must be {allowed}")
 
@@ -111,17 +114,19 @@ def mark_dimensionless(error: ParameterError) -> ParameterError:
 
 
 def shape_error(name: str, shape: tuple[int, ...], allowed: str) -> ParameterError:
-    """Return the error of an array of a wrong shape.
+    """Return the error, not raised, of an array of a wrong shape.
 
-    name: of the parameter.  shape: that was found.  allowed: words that follow "must be".
+    name: name of the parameter.
+    shape: shape that was found.
+    allowed: words that follow "must be".
     """
     return described_error(name, f"has shape {shape}", allowed)
 
 
 def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
-    """Return the error of a call that must give one of two parameters.
+    """Return the ParameterError, not raised, of a call that must give exactly one of two parameters.
 
-    first, second: the parameters.
+    first, second: names of the parameters.
     both: whether both were given; else neither was.
     """
     sentence = f"{first} and {second} are both given: give one of the two" if both else f"give {first} or {second}"
@@ -129,9 +134,9 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
 
 
 def check_one_given(**values: Any) -> str:
-    """Return the name of that one of two parameters which is given.
+    """Check that exactly one of two parameters is given, and return its name.
 
-    values: both parameters by name, None where one is not given.
+    values: exactly two parameters by name, None where one is not given.
     Raises ParameterError if none or both are given.
     """
     given = [name for name, value in values.items() if value is not None]
@@ -142,10 +147,10 @@ def check_one_given(**values: Any) -> str:
 
 
 def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
-    """Return the error of a parameter whose value is not a known name.
+    """Return the ParameterError, not raised, of a parameter whose value is not a known name; it lists all of these.
 
     name: name of the parameter.
-    value: what was found.
+    value: what was found, of any type.
     known: the names that are allowed.
     kind: noun for these names, with its article, as "a field".
     """
@@ -154,13 +159,14 @@ def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -
 
 
 def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
-    """Return one name, or several, as a tuple, in the order given.
+    """Check one name, or several, and return them as a tuple, in the order given; names given twice stay.
 
     name: name of the parameter, for the error.
     values: what a caller gave: a name or an iterable of names.
     known: the names that are allowed.
     kind: noun for these names, with its article, as "a field", for the error.
-    Raises ParameterError for the first value that is not known.
+    Returns a tuple of texts, () of an empty iterable.
+    Raises ParameterError for the first value that is not known; of what is neither text nor iterable, for that.
     """
     try:
         names = (values,) if isinstance(values, str) else tuple(values)

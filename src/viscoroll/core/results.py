@@ -27,8 +27,8 @@ class SummaryRow(NamedTuple):
     """A line of a summary.
 
     name : name of the quantity.
-    value : as text.
-    unit : "" of a dimensionless quantity.
+    value : its value as text.
+    unit : its unit as "m s-1"; "" of a dimensionless quantity.
     """
 
     name: str
@@ -40,19 +40,20 @@ class Result:
     """Base class of results.  A subclass implements :meth:`_summary` and :meth:`to_xarray`."""
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return (title, rows) of the summary."""
+        """Return (title; rows, a list of :class:`SummaryRow`) of the summary; subclasses implement it."""
         raise NotImplementedError
 
     def to_xarray(self) -> xr.Dataset:
-        """All fields as a dataset, with long names and units."""
+        """Return all fields as a dataset, with long names and units; subclasses implement it."""
         raise NotImplementedError
 
     def to_pandas(self) -> pd.DataFrame:
         """Return the dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state.
 
-        A column of a quantity with a unit is called as "V [m s-1]", because pandas writes no attributes into files.
-        The index has the axes of the variable that has most axes.  Variables over other axes, as the corners of a
-        drive, are left out.
+        A column of a quantity with a unit is named as "V [m s-1]", because pandas writes no attributes into files.
+        The index has the axes of the variable that has most axes, the first one of several with as many; a result of a
+        single state has one row, with index 0 named "state".  Variables over other axes, as the corners of a drive, are
+        left out.
         """
         data = self.to_xarray()
         dims = max((variable.dims for variable in data.values()), key=len)
@@ -71,6 +72,7 @@ class Result:
         Returns
         -------
         matplotlib.figure.Figure
+            The figure, which is not shown.
 
         Raises
         ------
@@ -138,8 +140,9 @@ def format_value(value: Any) -> str:
     """Return a number or a short array as text; of a long array its shape and range.
 
     value: a number, a text, or an array of any shape.
-    Returns a float with 12 significant digits, an array of at most four elements with 6, of a larger array a text as
-    "(100,), 0 to 2.5, 3 not finite".
+    Returns a float with 12 significant digits; an array of one to four elements, or without axes, with six digits after
+    the point; of a larger array a text as "(100,), 0 to 2.5, 3 not finite" or "(100,), none finite"; of an empty one
+    its shape; of anything else its ``str``.
     """
     if not isinstance(value, np.ndarray):
         return f"{value:.12g}" if isinstance(value, float) else str(value)
@@ -196,13 +199,14 @@ class Values(Result):
         """Keep the fields of a result, with the arguments that tables and figures need as axes.
 
         values: name -> number or array of the field.
-        given: name -> argument by which the call varied, a number or an array that broadcasts with the fields; for
-            coordinates.  None: none.
-        units: name -> unit as "m s-1", where it is not that of the field's name.  None: none.
+        given: name -> argument by which the call varied, a number or an array that broadcasts with the fields, which
+            becomes a coordinate.  None: there is none.
+        units: name -> unit as "m s-1", where it is not that of the field's name.  None: no field has such a unit.
         title: first line of the summary, title of dataset and figure.
         si: whether values are in SI units, else dimensionless.
-        labels: labels of the caller's arrays, put onto the fields of their shape; None for plain arrays.
-        about: further attributes of the dataset by name; None: none.
+        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape; None: fields stay
+            plain arrays.
+        about: further attributes of the dataset by name; None: there are none.
         """
         self._about = about or {}
         self._values = values if labels is None else {name: labels.apply(name, each) for name, each in values.items()}
@@ -210,9 +214,10 @@ class Values(Result):
         self._title, self._si = title + ", in SI units" * si, si
 
     def __getattr__(self, name: str) -> Any:
-        """Return the field of a name; AttributeError names the fields that were computed.
+        """Return the field of a name, which Python asks for where the object has no attribute of that name.
 
         name: name of a field.
+        Raises AttributeError, with the names of the fields that were computed, for another name.
         """
         if name.startswith("_"):
             raise AttributeError(name)
@@ -248,8 +253,10 @@ class Values(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return all results, and the arguments that vary, as a dataset with long names and units.
 
-        An axis along which one argument alone varies has the name and the values of that argument; other axes are
-        called ``state``.  Arguments with labels of xarray or pandas determine axes and coordinates.
+        An axis along which one argument alone varies has the name and the values of that argument; another axis is
+        named ``state``, or of several axes ``state_0``, ``state_1`` and so on.  Arguments with labels of xarray or
+        pandas determine axes and coordinates.  Results and arguments are broadcast to the common shape, numbers are
+        variables without axes, truth values become 0 or 1.
 
         Examples
         --------
@@ -285,11 +292,14 @@ class Values(Result):
 def _name_axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
     """Name the axes of a result by the arguments that vary along them.
 
-    given: name -> argument, which broadcasts to ``shape``.
+    An axis has the name of an argument if that argument has more than one value along it, has none along other axes,
+    and no other argument varies along it.  Else the axis is named "state" if it is the only one, and "state_0",
+    "state_1" and so on by its index if there are several.
+
+    given: name -> argument, an array that broadcasts to ``shape``.
     shape: shape of arguments and results, broadcast.
-    Returns (names of all axes: of an argument that alone varies along an axis and along no other, else ``state``, of
-    several axes ``state_0``, ``state_1`` ...; dict from the name of such an argument to its values, (size of the
-    axis,)).
+    Returns (tuple of the names of all axes; dict from the name of each such argument to its values, (size of the
+    axis,)); ((), {}) for the shape ().
     """
     dims, values = [], {}
     for axis, size in enumerate(shape, -len(shape)):

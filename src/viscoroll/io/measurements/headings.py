@@ -58,8 +58,11 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     They are: as a name alone, then with a unit in brackets or at its end.
 
     heading : text of the heading, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)".
-    row : the cell of a row of units for this column, "" without; a heading without a unit has this one.
-    Returns at least one :class:`Reading`, unless the heading is empty.
+    row : the cell of a row of units for this column, "" without; a way of reading without a unit in the heading takes
+        this one, without brackets around it.
+    Returns a list of :class:`Reading`, of "Frequency/Hz" ("Frequency/Hz", "") and ("Frequency", "Hz").  Each has
+    ``log`` set if the heading begins with log, lg or log10, which its name leaves out.  The list is [] for an empty
+    heading.
     """
     log = False
     if found := _LOGARITHM.fullmatch(heading.strip()):
@@ -78,9 +81,10 @@ def readings(heading: str, row: str = "") -> list[Reading]:
 
 
 def may_be_unit(text: str) -> bool:
-    """Return whether a text may be a unit, for pint to decide: at most 24 characters, of symbols and their powers.
+    """Return whether a text has the form of a unit; whether it is one pint decides.
 
-    Sums and towers of powers, of which pint computes the value, are none; nor is a text without a letter or one of % °.
+    A unit has 1 to 24 characters, a letter or one of % ° ℃ º, and no digits but powers of one digit after a symbol and
+    a leading "1/".  So pint does not compute numbers and towers of powers, which may take very long.
 
     text : the text, without brackets around it.
     """
@@ -93,12 +97,13 @@ def may_be_unit(text: str) -> bool:
 
 
 def conversion(unit: str, wanted: str) -> tuple[float, float]:
-    """Return the conversion of a unit as files spell it to another: wanted = factor * number + offset.
+    """Return the conversion of a unit as files spell it to another: number in ``wanted`` = factor * number + offset.
 
-    unit : "" and "-" of a ratio; "mpa", "U/min", "C", "Nm" are read as MPa, rpm, degC, N m where pint's own reading has
-        another dimension.
+    unit : unit as a file spells it; the texts of :data:`NO_UNIT`, as "" and "-", are that of a ratio.  "mpa", "U/min",
+        "C", "Nm" are read as MPa, rpm, degC, N m where pint does not know the text, or reads a unit of another
+        dimension than ``wanted``.
     wanted : unit in pint's spelling, "1" of a ratio.
-    Returns (factor, offset); the offset is in the unit ``wanted``, and 0 but for temperatures.
+    Returns (factor, offset), floats; the offset is in the unit ``wanted``, and 0 but for temperatures.
 
     Raises
     ------

@@ -48,10 +48,13 @@ class Line(NamedTuple):
 def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     """Return the lines of a text file, without their ends.
 
+    Minus signs of typography become "-"; a first line "sep=;" of Excel becomes empty, so that line numbers stay.
+
     path : path of the file.
     encoding : name of the encoding, as Python calls it; None: by the first bytes, else the first of UTF-8, cp1252 and
-    Latin-1 that fits.
-    Minus signs of typography become "-"; a first line "sep=;" of Excel becomes empty, so that line numbers stay.
+        Latin-1 that fits.
+    Returns a list of texts, [""] of an empty file; lines may end by CR LF, CR or LF, and the text after the last end is
+    a line too.
     Raises FileError for a file that cannot be read or decoded, workbooks and other binary files; ParameterError for an
     encoding that Python does not know.
     """
@@ -81,8 +84,10 @@ def cut_lines(text: list[str], separator: str) -> list[Line]:
 
     text : lines of a file.
     separator : a key of :data:`SEPARATORS`.
-    Returns the lines with their cells, as :class:`Line`, up to the first that Python's csv cannot cut; nothing is
-    raised. (pandas would ask that all lines of a file, its preamble too, are as wide as its table.)
+    Returns a list of :class:`Line`, up to the first line that Python's csv cannot cut; nothing is raised.  A line with
+    the mark of a comment is cut too, without the mark, and never counts as a row of numbers.  The number of a row whose
+    quoted cells go on over several lines is that of its last line.  (pandas would require that all lines of a file, its
+    preamble too, are as wide as its table.)
     """
     mark = re.compile(_COMMENT.format(separator.strip(" ")))
     plain, found = [mark.sub("", line) for line in text], []
@@ -106,8 +111,9 @@ def separator_of(text: list[str], decimal: str | None) -> str:
     """Return the separator that cuts most lines into rows of numbers of one width, of two cells and more.
 
     text : lines of a file, of which the first 2000 are examined.
-    decimal : the decimal mark, "." or ",", which is no separator then; None: not given.
-    Returns a key of :data:`SEPARATORS`, the first of several that give as many rows; a tab where none gives any.
+    decimal : the decimal mark, "." or ",", which is then not tried as a separator; None: not given.
+    Returns a key of :data:`SEPARATORS`, the first of several that give as many rows; a tab where none gives any, as in
+    a file with a single column.
     """
 
     def count(separator: str) -> int:

@@ -15,7 +15,9 @@ from .table import Table, read_table
 def named_table(
     path: str | PathLike[str], names: Collection[str], decimal: str | None = None, encoding: str | None = None
 ) -> Table:
-    """Read a table whose headings are the line that has one of the given names, with a unit or without.
+    """Read a table of which the user has named columns: its headings are the line that has one of these names.
+
+    A cell has a name if it is the name, alone or with a unit.
 
     path : path of the file.
     names : names of columns; where no line has any, the line above the first row of numbers is taken for headings.
@@ -30,7 +32,9 @@ def named_table(
 
 
 def _is_named(heading: str, name: str) -> bool:
-    """Return whether a heading of a file is a name, or that name with a unit; one of logarithms only as a whole.
+    """Return whether a heading of a file is a name, alone or with a unit.
+
+    A heading of logarithms, as "log10(f/Hz)", must be equal to the name: its numbers are not those of f.
 
     heading: text of the heading.
     name: the name that the user gives.
@@ -41,8 +45,10 @@ def _is_named(heading: str, name: str) -> bool:
 def find_column(table: Table, name: str) -> int | None:
     """Return the index of the column with a name, from 0; None where there is none.
 
-    table : :class:`Table`, table with headings.
-    name : a heading as the file has it, which goes first, or a heading without its unit.
+    Columns whose whole heading is the name are preferred to those with the name and a unit.
+
+    table : :class:`Table`, whose headings are searched.
+    name : a heading as the file has it, or without its unit.
 
     Raises
     ------
@@ -76,13 +82,13 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     table : :class:`Table`, a table with headings.
     name : name of the column, with its unit or without.
     wanted : unit of the result in pint's spelling, "1" of a ratio.
-    unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the file, and
-        without one the numbers are taken to be in ``wanted``.
+    unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the heading or of the
+        row of units.  Where none is given, or it is a sign as "-" or "1", the numbers are taken to be in ``wanted``.
 
     Returns
     -------
     array of shape (n,)
-        The numbers, in the unit ``wanted``.
+        The numbers, in the unit ``wanted``, float64; of a heading of logarithms they stay logarithms.
 
     Raises
     ------

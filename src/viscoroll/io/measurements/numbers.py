@@ -57,10 +57,11 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 
     They may be where both marks occur, or where three digits stand after each mark, as in "1,234".
 
-    cells : cells of a table or a column; those that are no numbers with a mark do not count.
-    doubtful : marks, "", ",", or ",.", to which the rule of three digits applies: the comma where commas separate
-    cells, both where a cell of three digits, as "567", occurs beside.
-    Returns ".", "," or ""; "." where no cell has a mark.
+    cells : cells of a table or a column; those that are no numbers with a single mark do not count.
+    doubtful : the marks, "", ",", or ",.", that are taken for separators of thousands if three digits stand after each
+        of them: the comma where commas also separate cells; both where the column has a cell of three digits alone, as
+        "567".  For other marks three digits after each are no reason to doubt.
+    Returns "." or ",", the mark of all cells; "" where it is in doubt; "." where no cell has a mark.
     """
     marked = [cell for cell in cells if _NUMBER.fullmatch(cell) and set(cell) & set(",.")]
     marks = set("".join(marked)) & set(",.")
@@ -72,8 +73,10 @@ def decimal_mark(cells: list[str], doubtful: str) -> str:
 def fault_of(cell: str, decimal: str) -> str:
     """Return why a cell cannot be read as a number, in words that continue a message; "" if it can.
 
-    cell : text of the cell.
+    cell : text of the cell; an empty one and marks as "nan", "---" and "inf" are missing values.
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
+    Returns "" for a number without a mark, or with that decimal mark alone; else the reason: a missing value, a
+    possible separator of thousands, or no number with that mark.
     """
     if _GAP.fullmatch(cell):
         return "is a missing value: remove its row"
@@ -90,8 +93,9 @@ def fault_of(cell: str, decimal: str) -> str:
 def numbers_of(cells: list[str]) -> Numbers:
     """Return the numbers of cells, and half a unit of the last digit of each.
 
-    cells: texts without a fault (:func:`fault_of`), with a decimal point or comma.
-    Returns :class:`Numbers`, two arrays (n,): of "0,25" 0.25 and 0.005.
+    cells: texts without a fault (:func:`fault_of`), with a decimal point or comma; exponents may be written with e or
+        d.
+    Returns :class:`Numbers`, two arrays (n,): of "0,25" 0.25 and 0.005, of "3" 3.0 and 0.5, of "1e3" 1000.0 and 500.0.
     """
     exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
     half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]

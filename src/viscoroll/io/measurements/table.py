@@ -32,9 +32,9 @@ class Table:
 
     path : path of the file.
     headings : one a column; "column 0" and so on where the file has none.
-    units : the cell of a row of units below each heading, "" without.
-    rows : the lines of numbers, of which all cells beyond the headings are empty.
-    parts : number of tables of the file that these rows are from.
+    units : the cell of a row of units below each heading, "" without; one a column.
+    rows : the lines of numbers, :class:`Line` each, of which all cells beyond the headings are empty.
+    parts : number of tables of the file, with the same headings, of which these are the rows.
     without_headings : whether the file has no headings.
     decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
     """
@@ -55,8 +55,10 @@ class Table:
         """Return the numbers of a column, with half a unit of their last digits.
 
         column : index of the column, from 0.
-        Raises FileError, with the number of the line, for a gap, a text, a separator of thousands, or the other decimal
-        mark.
+        Returns :class:`Numbers`, two arrays (rows,).
+        Raises FileError, with the number of the line, for a gap, a text, the other decimal mark, and a mark that may be
+        a separator of thousands: both marks in one column, or three digits after each mark beside a cell of three
+        digits.
         """
         cells = [row.cells[column] for row in self.rows]
         threes = any(len(cell) == 3 and cell.isdigit() for cell in cells)
@@ -82,21 +84,22 @@ def read_table(
 ) -> Table:  # fmt: skip
     """Read the table of a text file, which may have a preamble, comments, and several tables with the same headings.
 
-    The separator is that by which most lines are rows of numbers.  Headings are the last line before the numbers that
-    ``is_heading_line``, else the line above the first row; without one columns are "column 0", "column 1" ...
+    The separator is that by which most lines are rows of numbers.  Headings are the last line above the numbers that
+    ``is_heading_line`` accepts; if it accepts none, the last line above the first row of numbers that is neither a
+    comment nor a row of numbers; if there is none either, columns are named "column 0", "column 1" and so on.
 
     Parameters
     ----------
     path : a text file in UTF-8, UTF-16, cp1252 or Latin-1.
     is_heading_line : a function of the cells of a line, a list of texts, that returns whether they are headings.
-    decimal : "." or ","; None: the mark that is there.  Where both may be meant, the numbers are refused when they are
-        read.
+    decimal : "." or ","; None: the mark that is there.  Where a mark may be a separator of thousands too, the table is
+        returned with ``decimal`` "", and :meth:`Table.numbers` refuses numbers with a mark.
     encoding : name of the encoding, as Python calls it; None: by the first bytes.
 
     Returns
     -------
     Table
-        The rows of all tables of the file, one after the other.
+        The rows of all tables of the file, one after the other; ``parts`` is the number of these tables.
 
     Raises
     ------
@@ -154,11 +157,12 @@ class _Layout:
         self.cut = f"separated by {SEPARATORS[self.separator]}"
 
     def fault(self, line: Line, problem: str) -> FileError:
-        """Return the error that names a line and quotes it."""
+        """Return the error, not raised, that names a ``line``, states a ``problem`` and quotes 60 characters of it."""
         return FileError(self.path, f"line {line.number} {problem}: {line.text[:_QUOTED]!r}")
 
     def is_row(self, line: Line) -> bool:
-        """Return whether a line is a row of numbers that is as wide as most rows, or has numbers alone.
+        """Return whether a line is a row of numbers, and either as wide as most of these, or of two numbers and more
+        without texts.
 
         line: the line with its cells.
         """
@@ -167,9 +171,12 @@ class _Layout:
     def heads(self) -> list[int]:
         """Return the index, in ``lines``, of the line of headings of each table of the file, ascending, at least one.
 
-        In a file without headings a line "column 0", "column 1" ... takes the place of all lines above the numbers.
+        Lines that ``is_heading_line`` accepts and that have numbers below them begin a table each.  If there is none,
+        the last line above the numbers that is no comment is taken for headings.  If there is none either, ``lines`` is
+        changed: a new line "column 0", "column 1" and so on replaces all lines above the numbers, and [0] is returned.
 
-        Raises FileError for a line of headings that is cut by other separators, and for numbers above the headings.
+        Raises FileError for rows of numbers above the headings, and for a comment with names of columns whose
+        separators are not those of the numbers.
         """
         lines, width = self.lines, self.width
         heads = [n for n, line in enumerate(lines) if not line.numeric and self.is_heading_line(self.headings(line))]
@@ -195,9 +202,11 @@ class _Layout:
     def part(self, head: int, end: int) -> tuple[list[str], list[str], list[Line]]:
         """Read one table of the file.
 
-        head, end : index of its line of headings, and of the first line after it: the headings of the next table, or
-        the end of the file.
-        Returns (headings; units, "" without, both one for each column; rows, without comments).
+        head, end : index, in ``lines``, of its line of headings, and of the first line after the table: the headings of
+            the next table, or the end of the file.
+        Returns (headings, without empty ones at the end; units as the file spells them, "" where none is given, as many
+        as headings; rows, a list of :class:`Line` without comments, of which lines before the next headings that are no
+        rows, as a title, are left out).
         Raises FileError for a line among the rows that is none, for rows of another number of cells than the headings,
         and for a line above them that is neither units nor numbers.
         """
@@ -217,10 +226,11 @@ class _Layout:
         return names, self.units(body[:first], len(names)), rows
 
     def headings(self, line: Line) -> list[str]:
-        """Return the cells of a line of headings, a new list.
+        """Return the cells of a line of headings or of units, a new list of texts.
 
-        Where blanks separate, words of one name, as "storage modulus", go together if that gives as many cells as rows
-        have.
+        Where blanks separate and the line has another number of cells than the rows, it is cut again: first with words
+        of one name, as "storage modulus", kept together, then only at two blanks and more.  The first of these that
+        gives as many cells as the rows have is taken, else the first.  A blank within brackets becomes "·".
 
         line : :class:`Line`, a line of headings or of units.
         """
@@ -233,10 +243,11 @@ class _Layout:
     def units(self, between: list[Line], width: int) -> list[str]:
         """Find the row of units between headings and numbers: a line in which at least half of the texts are units.
 
-        between : lines between headings and numbers.
+        between : lines between headings and numbers, :class:`Line` each, which may be none.
         width : number of columns.
-        Returns the unit of each column as the file spells it, (width), "" for a column without one.
-        Raises FileError for another line there that is no comment.
+        Returns a list of ``width`` texts, the unit of each column as the file spells it, with its brackets; "" for a
+        column without one, and for all columns if there is no row of units.
+        Raises FileError for another line there that is no comment, a second row of units too.
         """
         found = [""] * width
         for line in between:
