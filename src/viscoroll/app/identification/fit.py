@@ -194,13 +194,23 @@ class Identification(Result):
         points that fit agree best, and their intervals are profiles.  Then follow products that hold near the values
         found only, by the slopes there, if their intervals are narrower than a third of the narrowest one before.
 
+        Parameters
+        ----------
         level : confidence level of the intervals of the products, in (0, 0.9999]; which unknowns are undetermined is
             decided at 0.95.
-        Returns a list of :class:`.profile.Product` with ``.powers`` (name -> exponent), ``.value`` (at the best fit, of
-        SI values), ``.low`` and ``.high`` (both divided by ``value``) and ``.near`` (whether it holds near the values
-        found only); of either kind the best determined first.  It is empty where fewer than two unknowns are
-        undetermined, or no product has an interval of at most a factor of e.
-        Raises ParameterError for another level.
+
+        Returns
+        -------
+        list[Product]
+            :class:`.profile.Product`, each with ``.powers`` (name -> exponent), ``.value`` (at the best fit, of SI
+            values), ``.low`` and ``.high`` (both divided by ``value``) and ``.near`` (whether it holds near the values
+            found only); of either kind the best determined first.  It is empty where fewer than two unknowns are
+            undetermined, or no product has an interval of at most a factor of e.
+
+        Raises
+        ------
+        ParameterError
+            For another level.
         """
         return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 

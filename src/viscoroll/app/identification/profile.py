@@ -73,6 +73,8 @@ class Profile(NamedTuple):
 class Product(NamedTuple):
     """A product of powers of unknowns that the data determine where they cannot tell these apart.
 
+    Attributes
+    ----------
     powers : name of unknown -> exponent, of the unknowns whose power is not 0.  Exponents of unknowns with a linear
         coordinate (brake, drag, nu, V0, omega0 and t0) hold near the values found only.
     value : value of the product at the best fit, of SI values.
