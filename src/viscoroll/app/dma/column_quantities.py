@@ -61,9 +61,10 @@ def columns_of(
     named : quantity -> heading, of columns that the user named; keys of :data:`.vocabulary.UNITS`, here and below.
     overruling : quantity -> unit in place of that of the file.
     defaults : quantity -> unit where the file gives none.
-    Returns (the columns of known quantities, in the order of the table; heading of each other column -> why it is left
-    out, "" where no quantity is known of it).
-    Raises ParameterError for a heading that the table does not have.
+    Returns (a list of :class:`Column`, the columns of known quantities, in the order of the table; a dict, heading of
+    each other column, or "column INDEX" without one -> why it is left out: "no numbers", a unit that does not fit, or
+    "" where no quantity is known of it).  A heading of a quantity that the user named by another one is left out.
+    Raises ParameterError for a heading that the table does not have, FileError for one that several columns have.
     """
     owners = {_index(table, heading): name for name, heading in named.items()}
     columns: list[Column] = []
@@ -91,7 +92,9 @@ def _index(table: Table, heading: str) -> int:
 
     table : :class:`Table`, table with headings.
     heading : the heading, with its unit or without.
-    Raises ParameterError, with the headings of the table, where none is it.
+    Returns the index, from 0.
+    Raises ParameterError, with the headings of the table, where the table does not have it; FileError where several
+    columns have it.
     """
     found = find_column(table, heading)
     if found is None:
@@ -103,9 +106,10 @@ def _index(table: Table, heading: str) -> int:
 def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
     """Return why the unit of a heading contradicts the quantity that the heading may name.
 
-    meaning : the quantity that the heading may name, with the unit that stands in the heading.
+    meaning : :class:`Meaning`, the quantity that the heading may name, with the unit that stands in the heading.
     overruling : quantity -> unit that the user gives in place of that of the file; these are not checked.
-    Returns a text for the user; "" where the unit fits, is missing, or is replaced by the user.
+    Returns a text for the user: the unit is unknown or of another dimension, is Hz of an angular frequency, or is an
+    angle of tan delta or none of a phase angle.  "" where the unit fits, is missing, or is replaced by the user.
     """
     name, _, unit, _ = meaning
     if name in overruling or unit in NO_UNIT:

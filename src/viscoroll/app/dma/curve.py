@@ -78,7 +78,7 @@ class Curve(NamedTuple):
 
         tau : times of the modes, s, shape (modes,); not used, as the responses suffice.
         responses : what :meth:`responses` returns for these times, shape (2, n, modes).
-        Returns the derivatives, dimensionless, shape (2, n, modes).
+        Returns the derivatives, dimensionless, shape (2, n, modes), row 0 of the storage, row 1 of the loss modulus.
         """
         storage, loss = responses
         return np.array([2.0 * loss * loss, loss * (1.0 - 2.0 * storage)])
@@ -128,7 +128,7 @@ class Relaxation(NamedTuple):
         """Return the derivatives of the responses by ln tau, (t/tau) exp(-t/tau).
 
         tau : times of the modes, s, shape (modes,).
-        responses : what :meth:`responses` returns for these times.
+        responses : what :meth:`responses` returns for these times, shape (1, n, modes).
         Returns the derivatives, dimensionless, shape (1, n, modes).
         """
         return (self.t[:, None] / tau) * responses
@@ -159,12 +159,14 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS)
     columns : the fields of ``kind`` in any order of points, (n,), each without a unit or of the dimension in
         :data:`UNITS`: omega in rad/s, t in s; moduli without a unit may be in any, as long as it is the same.
     fewest : least number of points.
-    Returns the curve, of the class ``kind``, points of one frequency or time in the order in which they were given.
+    Returns the curve, of the class ``kind``, in ascending order; points of one frequency or time stay in the order in
+    which they were given.
 
     Raises
     ------
     ParameterError
-        Values that are not positive or not finite, columns of other shapes, or fewer than ``fewest`` points.
+        Values that are no numbers, not positive or not finite, of a unit of another dimension, columns of other shapes,
+        or fewer than ``fewest`` points.
     """
     names = kind._fields
     values = [check_array(name, given, unit=UNITS[name], above=0.0) for name, given in zip(names, columns, strict=True)]
@@ -206,8 +208,10 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
     21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is that of a straight line in ln E' over ln omega through the
     neighbours of a point: those within a quarter of a decade, and at least the five nearest.
 
-    curve : :class:`Curve`, storage and loss modulus, n points.
-    Returns :class:`KramersKronig`: the measured divided by the computed loss modulus at each point, and their median.
+    curve : :class:`Curve`, storage and loss modulus, n points, which may be fewer than five.
+    Returns :class:`KramersKronig`: the measured divided by the computed loss modulus at each point, infinite where the
+    storage modulus does not rise and NaN where all neighbours are of one frequency, and the median of those that are
+    not NaN, which is NaN if all are.
     """
     x, y = np.log(curve.omega), np.log(curve.storage)
     ratio, nearest = np.empty_like(x), min(_NEIGHBOURS, x.size) - 1

@@ -66,8 +66,8 @@ class DynamicModuli(Result):
         """Return an iterator over omega, storage and loss, (n,) each, so that ``omega, storage, loss = read_dma(path)``
         works.
 
-        Warns with ModelWarning where the record has several temperatures or moduli of shear, which these arrays do not
-        state.
+        Warns with ModelWarning where the record has temperatures that span more than 1 K, or moduli of shear, which
+        these arrays do not state.
         """
         lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (self.mode == "shear")
         if lost:
@@ -85,7 +85,9 @@ class DynamicModuli(Result):
     def __getitem__(self, name: Any) -> Any:
         """Return a field by its name, or omega, storage, loss by their place.
 
-        name : name of a field; 0, 1 or 2; or a slice, which gives a tuple of the arrays.
+        name : name of a field; 0, 1 or 2, or -3 to -1 from the end; or a slice, which gives a tuple of the arrays.
+        Returns the field, or the array, (n,).
+        Raises KeyError for another name, IndexError for another number.
         """
         if isinstance(name, (int, slice)):
             return (self.omega, self.storage, self.loss)[name]
@@ -112,8 +114,9 @@ class DynamicModuli(Result):
         return xr.Dataset(data, attrs=about)
 
     def _figure(self) -> Figure:
-        """Return the matplotlib figure of storage and loss modulus, Pa, over angular frequency, rad/s, both axes
-        logarithmic.
+        """Return the matplotlib figure of storage and loss modulus, Pa, over angular frequency, rad/s.
+
+        Both axes are logarithmic; the points of all temperatures are drawn alike.
         """
         from ...core.plots.style import new_figure
 
@@ -126,8 +129,9 @@ class DynamicModuli(Result):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return title and rows of the printed report.
 
-        Returns (source, number of points, range of omega, mode and temperatures in one line; two rows: the columns with
-        their units, and the notes).
+        Returns (title: source, number of points, range of omega in rad/s, mode and, if the record has them,
+        temperatures, in one line; two :class:`SummaryRow`: the columns with their headings and units, and the notes, or
+        "no unused column" where there are none).
         """
         words = [f"{self.omega.size} points", f"omega {self.omega.min():.4g} to {self.omega.max():.4g} rad/s"]
         words.append("shear (G', G'')" if self.mode == "shear" else "tension (E', E'')")

@@ -61,18 +61,22 @@ def fit_prony(
 ) -> Fit:
     """Fit a Prony series to storage and loss modulus.
 
-    Non-negative least squares of the relative errors of both, on times that reach half a decade or a decade beyond the
-    data (at the slow end less, down to half a decade inside, where else no long-time modulus is left); as few modes as
-    the misfit needs, then their times are moved too.
+    The strengths are those of non-negative least squares of the relative errors of both moduli, on times that reach
+    half a decade or a decade beyond the data (at the slow end less, down to half a decade inside, where else no
+    long-time modulus is left).  Then modes are left out until there are as few as the misfit needs, and their times are
+    refined too.
 
     Parameters
     ----------
     omega : angular frequencies, rad/s, > 0, (n,), in any order, repeated or not; or what :func:`viscoroll.read_dma`
-        returns, alone: its moduli, temperatures, mode and source are then taken.
-    storage, loss : storage and loss modulus at them, > 0, (n,), both in one unit.
-    modes : largest number of modes; fewer are returned only where non-negative strengths have no use for more.
-        Default: as few as ``misfit`` needs, or, where it cannot be reached, as few as come within 5 % of the best.
-    misfit : root mean square of the relative errors that E' and E'' may each have, dimensionless (0.01 is 1 %).
+        returns, alone: its moduli, temperatures, mode and source are then taken.  With ``temperature`` a list of
+        curves, one vector each, is allowed too.
+    storage, loss : storage and loss modulus at them, > 0, (n,), both in one unit; lists where ``omega`` is one.
+    modes : number of modes, an int from 1 to 64; fewer are returned only where the grids of times give no more modes a
+        strength > 0.  Default: as few as ``misfit`` needs, or, where no grid reaches it, as few as come within 5 % of
+        the least misfit.
+    misfit : root mean square of the relative errors that E' and E'' may each have, dimensionless, > 0 (0.01 is 1 %).
+        With ``modes`` it decides ``reached`` of the result alone.
     temperature : degrees Celsius: one number of all points; one a point, (n,), as measured (those within 0.5 K of one
         another are one curve); or one a curve, (curves,), where the columns are lists of curves.  None: not known, the
         points are of one curve.  The curves are shifted to ``reference`` first.
@@ -91,15 +95,18 @@ def fit_prony(
     Returns
     -------
     Fit
-        ``print`` shows a report; E, G, storage and loss are in the unit of the data, times in s.
+        ``print`` shows a report; E, storage and loss are in the unit of the data, times in s, at the reference
+        temperature.  Where the misfit cannot be reached, ``reached`` is False, and nothing is raised.
 
     Raises
     ------
     ParameterError
-        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; a curve that does not
-        level off at low frequencies; neighbouring curves that do not overlap; factors that rise with the temperature; a
-        reference of which the factors say nothing; ``modes``, ``misfit``, ``on`` or ``mode`` that are not allowed;
-        ``reference`` or ``shift`` without ``temperature``; another ``mode`` than that of the record.
+        Fewer than 3 points, or a curve of fewer than 2 frequencies; values that are not positive or not finite; columns
+        of other shapes; frequencies that span more than 30 decades; a curve that does not level off at low frequencies;
+        neighbouring curves that do not overlap; factors that rise with the temperature; a reference of which the
+        factors say nothing; ``modes``, ``misfit``, ``on`` or ``mode`` that are not allowed; ``reference`` or ``shift``
+        without ``temperature``; ``omega`` without ``storage`` and ``loss``, or a record with them; another ``mode``
+        than that of the record.
 
     Warns
     -----
@@ -157,19 +164,22 @@ def fit_relaxation(
 ) -> RelaxationFit:
     """Fit a Prony series to a relaxation modulus: what a test at constant strain gives.
 
-    Non-negative least squares of the relative errors, as of :func:`fit_prony`, on times from half the first of the data
-    to half a decade or a decade beyond the last.
+    The fit is by non-negative least squares of the relative errors, as in :func:`fit_prony`, on times that reach half a
+    decade or a decade beyond the data, but not below half the first time, and at the slow end less, down to half a
+    decade inside, where else no long-time modulus is left.
 
     Parameters
     ----------
     t : times since the strain was applied, s, > 0, (n,), in any order.  Leave out those of the ramp: E(t) is that of a
         step.
     relaxation : relaxation modulus at them, stress over strain, > 0, (n,), in one unit.
-    modes : largest number of modes, an int >= 1; None: as few as ``misfit`` needs or, where it cannot be reached, as
-        few as come within 5 % of the least misfit.
-    misfit : root mean square of the relative errors that E(t) may have, dimensionless (0.003 is 0.3 %).  Rolling
+    modes : number of modes, an int from 1 to 64; fewer are returned only where the grids of times give no more modes a
+        strength > 0.  None: as few as ``misfit`` needs or, where no grid reaches it, as few as come within 5 % of the
+        least misfit.
+    misfit : root mean square of the relative errors that E(t) may have, dimensionless, > 0 (0.003 is 0.3 %).  Rolling
         resistance is made of E'', which follows from the slope of E(t).  For typical slopes an error of 1 % in E(t)
-        means 10 to 30 % in E'', one of 0.3 % means about 5 %.
+        means 10 to 30 % in E'', one of 0.3 % means about 5 %.  With ``modes`` it decides ``reached`` of the result
+        alone.
     temperature : temperature of the test, degrees Celsius, or None where it is not known; it stays with the material.
     mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.
     source : source of the data, in words; it stays with the material.
@@ -179,14 +189,20 @@ def fit_relaxation(
     RelaxationFit
         ``print`` shows a report.  Its E is in the unit of the data, its times are in s.  The material is taken as
         measured at rates between 1 over the last and 1 over the first time.  More than 1000 points are thinned to the
-        means of 500 logarithmic bins first, to which the misfit then belongs.
+        means of 500 logarithmic bins first, to which the misfit then belongs.  Where the misfit cannot be reached,
+        ``reached`` is False, and nothing is raised.
 
     Raises
     ------
     ParameterError
-        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; times whose ratio is
-        too large for one series; a modulus that rises, or does not level off at long times; ``modes``, ``misfit``,
-        ``mode`` or ``temperature`` that are not allowed.
+        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; times that span more
+        than 30 decades; a modulus whose last value is above 1.1 times the first, or that does not level off at long
+        times; ``modes``, ``misfit``, ``mode`` or ``temperature`` that are not allowed.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature that looks like kelvin.
 
     Examples
     --------
@@ -217,13 +233,14 @@ def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve
     """Fit a series to measured moduli: the part that :func:`fit_prony` and :func:`fit_relaxation` have in common.
 
     curve : a :class:`Curve` or :class:`Relaxation`, all points that were measured.
-    modes : largest number of modes; None: as few as the misfit needs.
-    misfit : root mean square of the relative errors that each modulus may have, > 0.
-    Returns (the data that were fitted, thinned if they have more than 1000 points; the arguments of
-    :class:`.fit_results.SeriesFit` that state data and series, by name; the root mean square of the relative errors of
-    each modulus, (storage, loss) or (relaxation,)).
-    Raises ParameterError for ``misfit`` or ``modes`` out of range, points that spread over more than
-    :data:`MOST_SPREAD`, and data without a long-time modulus.
+    modes : number of modes, 1 to 64; None: as few as the misfit needs (:func:`.mode_selection.fewest_modes`).
+    misfit : root mean square of the relative errors that each modulus may have, dimensionless, > 0.
+    Returns (the data that were fitted, of the class of ``curve``, thinned if it has more than 1000 points; a dict of
+    arguments of :class:`.fit_results.Fit` or :class:`.fit_results.RelaxationFit`: E, T_ref, prony, target, reached,
+    grid, band, points, outside, and the columns of the data; the root mean square of the relative errors of each
+    modulus, dimensionless, (storage, loss) or (relaxation,)).  A series without modes has T_ref = 1.
+    Raises ParameterError for ``misfit`` or ``modes`` out of range, frequencies or times whose largest ratio is above
+    :data:`MOST_SPREAD`, 1e30, and data without a long-time modulus.
     """
     target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)

@@ -20,8 +20,8 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
     """Return the title and the lines that ``print(fit)`` shows.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
-    Returns (title, a sentence with the number of modes and points and the range of the data; the lines below, in
-    order). The lines on wider grids are computed at the first call.
+    Returns (title, a sentence with the number of modes and of measured points and the range of omega or t; the lines
+    below, a list of :class:`SummaryRow` in order).  The first call computes ``fit.wider``.
     """
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"
@@ -33,10 +33,12 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
 def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     """Yield the lines of the report below its title, each as (name, text).
 
-    They are: constants, thinning, misfit, the lines of this kind of fit, modes outside the data, fits on wider grids,
-    and the table of modes with strengths divided by the long-time modulus and times in s.
+    They are: constants (with the factor to Young's modulus where the data are of shear, and the temperature where it is
+    known), thinning where points were thinned, misfit, the lines of this kind of fit, modes outside the data, fits on
+    wider grids, and the table of modes with strengths divided by the long-time modulus and times in s.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
+    Yields pairs (name, text); name is "" of a line that continues the one before.
     """
     prony, symbol = fit.prony, symbol_of(fit)
     floor = "" if fit.plateau else "; at its lower bound: the data do not determine it"
@@ -73,8 +75,9 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
     """Yield the lines of the report on the consistency of storage and loss modulus, and on the shifts of a master
     curve, each as (name, text).
 
-    They are one on Kramers-Kronig; of curves at two or more temperatures also the shift factors, combined temperatures,
-    the mismatch of neighbours where shifts were found by their overlap, and each shift that the overlap leaves open.
+    They are one on Kramers-Kronig; of curves at two or more temperatures also the shift factors, a line where
+    temperatures were combined into fewer curves, the largest mismatch of neighbours where shifts were found by their
+    overlap, and a line for each shift that the overlap leaves open.
 
     fit : a :class:`viscoroll.Fit`.
     symbol : "E" or "G".
@@ -105,9 +108,11 @@ def _of_relaxation(symbol: str) -> Iterator[tuple[str, str]]:
 def _kramers_kronig(median: float, symbol: str) -> str:
     """Return a sentence on whether storage and loss modulus can be of one material.
 
-    median : median of the Kramers-Kronig ratio, measured over computed loss modulus; NaN where it could not be
-        computed.
+    median : median of the Kramers-Kronig ratio, measured over computed loss modulus, dimensionless; NaN where it could
+        not be computed.
     symbol : "E" or "G".
+    Returns a text without a subject, which follows the symbol of the loss modulus.  It warns of a median outside of
+    0.8 to 1.25, and of NaN says that there are too few frequencies.
     """
     if np.isnan(median):
         return f"cannot be compared with {symbol}': too few different frequencies (Kramers-Kronig)"
@@ -118,6 +123,8 @@ def _kramers_kronig(median: float, symbol: str) -> str:
 
 def _outside(fit: Any) -> str:
     """Return a sentence on the modes whose times lie outside the data, with their share of the sum of all strengths.
+
+    Where there are none, the sentence says so; so it does of a series without modes.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     """

@@ -53,8 +53,8 @@ class SeriesFit(Result):
         :meth:`modulus`.
     target : the misfit that was requested, a root mean square of relative errors, dimensionless.
     reached : whether it is reached.
-    outside : for each mode of ``prony`` whether its time lies outside the data, shape (modes,).
-    band : first and last angular frequency of the data, rad/s; of relaxation the reciprocal times.
+    outside : for each mode of ``prony`` whether its time lies outside of 1/omega, or of t, of the data, shape (modes,).
+    band : (lowest, highest) angular frequency of the data, rad/s; of relaxation (1/last time, 1/first time).
     points : number of points that were measured; above 1000 the means of 500 logarithmic bins were fitted, and they
         are the data and the misfit here.
     grid : shortest and longest time that the fit was allowed, s.
@@ -93,7 +93,8 @@ class SeriesFit(Result):
     def misfit_text(self, digits: int) -> str:
         """Return the misfit of each modulus in words, as "0.35% in E', 0.80% in E''".
 
-        digits : number of digits after the decimal point of the per cent.
+        digits : number of digits after the decimal point of the per cent, an int >= 0.
+        Returns a text, of two parts for storage and loss, of one for relaxation.
         """
         pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
         return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
@@ -115,13 +116,21 @@ class SeriesFit(Result):
 
     @cached_property
     def wider(self) -> tuple[Any, ...]:
-        """Two fits on grids of times that are one and two decades wider on either side, with a mode at every time.
+        """Two fits on wider grids of times, to compare with this one: a property that they change is not determined by
+        the data.
 
-        They show which properties the data do not determine.  A tuple of two
-        :class:`.spectrum_sensitivity.ExtendedGridFit`, with ``decades`` = 1 and 2.  Each has its long-time modulus
-        ``E``, ``alpha`` and series ``prony``, and three arrays of one shape, dimensionless: speeds ``V`` (kappa V)
-        whose transit frequency lies within the data, ``M`` (kappa M) of the wider fit at these speeds, and ``M_fit``,
-        that of the present fit at the same load.  They are computed at the first access.
+        It is of type tuple[ExtendedGridFit, ...]: two :class:`.spectrum_sensitivity.ExtendedGridFit`, on grids that are
+        one and two decades wider on either side.  No mode is left out of them to save modes.  Their fields are:
+
+        - ``decades``: 1 or 2;
+        - ``E``: long-time modulus of the wider fit, in the unit of the data;
+        - ``alpha``: its instantaneous divided by its long-time modulus, dimensionless;
+        - ``prony``: its :class:`viscoroll.Prony`, strengths divided by its E, times in units of T_ref of this fit;
+        - ``V``: kappa V, dimensionless, (n,), at speeds whose transit frequency lies within the data; n may be 0;
+        - ``M``: kappa M of the wider fit at these speeds, dimensionless, (n,);
+        - ``M_fit``: kappa M of this fit at the same speeds and the same load, dimensionless, (n,).
+
+        They are computed at the first access.
         """
         from .spectrum_sensitivity import fit_on_extended_grid
 
@@ -131,8 +140,10 @@ class SeriesFit(Result):
 
     @property
     def measured(self) -> Measured:
-        """What a material keeps of the data, a :class:`Measured`: the frequencies, rad/s, the larger misfit, and the
-        source.
+        """What a material keeps of the data, a :class:`Measured`.
+
+        It has the lowest and the highest frequency, rad/s, the misfit (of storage and loss the larger one), and the
+        source; where there is none, the number of points, as "25 points".
         """
         source = self.source or f"{self.points} points"
         return Measured(*self.band, self.largest_misfit, source)
@@ -151,6 +162,11 @@ class SeriesFit(Result):
         name : name of the material, free text.
         density : density, kg/m^3; None: not known.
         thickness : thickness of the layer, m; None for a half-space.
+
+        Returns
+        -------
+        viscoroll.Material
+            E in Pa, times in units of ``T_ref``, s, as the fit has them.
 
         Raises
         ------
@@ -175,12 +191,13 @@ class SeriesFit(Result):
         )  # fmt: skip
 
     def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
-        """Return whether the transit frequency of a contact with this material lies within the data, and the fit is
-        near them.
+        """Return whether the transit frequency of a contact with this material lies within the data, and the misfit of
+        the fit is at most 5 %.
 
-        The transit frequency |V|/(lam l0) must lie within the frequencies of the data; shifted to another
-        temperature (``Material.at``), the data are shifted with it.  At its front edge every contact has a layer
-        with a shorter transit time: modes faster than the transit act there as far as they go.
+        The transit frequency |V|/(lam l0) must lie within the frequencies of the data, ends included, so that it does
+        not at V = 0.  Where the material was shifted to another temperature (``Material.at``), the frequency is
+        converted to that of the data.  At its front edge every contact has a layer with a shorter transit time: modes
+        faster than the transit act there.
 
         Parameters
         ----------
@@ -192,12 +209,13 @@ class SeriesFit(Result):
         -------
         Assumption
             ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``: whether it lies within the data and
-            the misfit is small enough, of the shape of V.
+            the larger misfit is at most 0.05; ``sentence``: both in words.  The first two have the shape of V,
+            broadcast with that of the cylinder's parameters.
 
         Raises
         ------
         ParameterError
-            A cylinder of another series; NaN or infinite V.
+            A cylinder neither of whose bodies has the series of this fit; NaN or infinite V.
 
         Examples
         --------
@@ -219,7 +237,7 @@ class SeriesFit(Result):
     def _moduli(self, x: ArrayLike) -> Floats:
         """Return the moduli of the fit, in the unit of the data.
 
-        x : angular frequencies, rad/s, or of a fit of relaxation times, s, of any shape.
+        x : angular frequencies, rad/s, or of a fit of relaxation times, s, > 0, of any shape; not checked.
         Returns shape (2, *x.shape), storage and loss, or (1, *x.shape), relaxation.
         """
         points = np.asarray(x, np.float64)
@@ -229,11 +247,11 @@ class SeriesFit(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return the data, the fit and its series as a dataset.
 
-        Over omega (rad/s) or t (s): storage, loss and storage_fit, loss_fit, or relaxation and relaxation_fit, in the
-        unit of the data.  Over ``mode``: E, strengths divided by the long-time modulus, and tau, s.  Attributes:
-        E_long, long-time modulus in the unit of the data; T_ref, s; title; modulus, "tension" or "shear"; and
-        misfit_storage and misfit_loss, or misfit, root mean squares of relative errors, dimensionless.  The attribute
-        ``units`` of the moduli is the text "unit of the data".
+        Over omega (rad/s) or t (s): the data that were fitted, storage and loss or relaxation, and the fit at the same
+        points, storage_fit and loss_fit or relaxation_fit, in the unit of the data.  Over ``mode``: E, strengths
+        divided by the long-time modulus, and tau, s.  Attributes: E_long, long-time modulus in the unit of the data;
+        T_ref, s; title; modulus, "tension" or "shear"; and misfit_storage and misfit_loss, or misfit, root mean squares
+        of relative errors, dimensionless.  The attribute ``units`` of the moduli is the text "unit of the data".
         """
         import xarray as xr
 

@@ -72,28 +72,34 @@ def master_curve(
     ----------
     omega, storage, loss : columns, (n,), or lists of curves, one vector a temperature; rad/s, and one unit of moduli.
     temperature : degrees Celsius, one of all points, one a point, (n,), or one a curve, (curves,).
-    reference : degrees Celsius; None: where a given shift is 1, else the middle one of the curves.
-    shift : factors a_T > 0 in the order of the curves, (curves,); a function of the temperature in degrees Celsius that
-        returns a_T; or None: found by the overlap of neighbouring curves.
-    on : "both" or "storage": the moduli by whose overlap shifts are found.
+    reference : degrees Celsius; None: where a given shift is 1 (T0 of a :class:`viscoroll.WLF` or
+        :class:`viscoroll.Arrhenius`, the temperature of a factor of 1), if it is within the temperatures, else the
+        temperature of the middle curve, of an even number the warmer one.
+    shift : factors a_T > 0, dimensionless, in the order of the curves, (curves,); a function of the temperature in
+        degrees Celsius that returns a_T; or None: found by the overlap of neighbouring curves, and interpolated to the
+        reference, ln a_T linearly in the temperature.  All are divided by that of the reference.
+    on : "both" or "storage": the moduli by whose overlap shifts are found; not used where shifts are given.
 
     Returns
     -------
     tuple
-        The master curve, a :class:`Curve` of all n points at the reference temperature, sorted by frequency; the
-        :class:`Shifts` of the temperatures.
+        (The master curve, a :class:`Curve` of all n points at the reference temperature, sorted by frequency; the
+        :class:`Shifts` of the temperatures, whose ``mismatch`` and ``freedom`` are NaN where the shifts were given.)
+        Of a single temperature the factor is 1, unless a shift is given and the reference is another.
 
     Raises
     ------
     ParameterError
-        As for curves; a temperature for each point or curve is missing; temperatures that cannot be told apart; a
-        reference that the shift says nothing of; neighbouring curves that do not overlap; shift factors that do not
-        fit, or rise with the temperature.
+        Moduli or frequencies that are not > 0 and finite, or fewer than 3 points; temperatures of another number than
+        points or curves; temperatures that drift, so that sweeps cannot be told apart; a reference more than 0.5 K
+        outside of the temperatures where the overlap gives the shifts, or with listed factors at none of them; a curve
+        of a single frequency; neighbouring curves that do not overlap; shift factors of another number than the curves,
+        not > 0, or that rise with the temperature.
 
     Warns
     -----
     ModelWarning
-        Curves so flat that their overlap does not fix the shift; temperatures that look like kelvin.
+        Curves so flat that their overlap leaves more than a decade for the shift; temperatures that look like kelvin.
     """
     point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
     whole = [check_array(name, column, above=0.0) for name, column in zip(Curve._fields, columns, strict=True)]
@@ -134,8 +140,8 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
     """Return the pairs of neighbouring curves whose shift their overlap leaves open, in words for a report.
 
     shifts : :class:`Shifts`, shift factors of the curves.
-    Returns a text for each pair whose ``freedom`` is above :data:`LARGEST_FREEDOM` decades, with both temperatures and
-    the range of the shift; an empty list where there is none, as of factors that were given.
+    Returns a text for each pair whose ``freedom`` is above :data:`LARGEST_FREEDOM`, one decade, with both temperatures
+    and the range of the shift; an empty list where there is none, as of factors that were given.
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
     return [
@@ -148,11 +154,11 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[Floats, Floats, Floats]:
     """Find the shifts of neighbouring curves by their overlap.
 
-    curves : one for each temperature, the coldest first.
-    temperatures : temperatures of the curves, degrees Celsius, (curves,).
-    Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; root mean square difference of ln
-    E' and ln E'' of each pair of neighbours, (curves - 1,); decades by which the shift of each pair may vary, (curves -
-    1,)).
+    curves : list of :class:`_LogCurve`, one for each temperature, the coldest first.
+    temperatures : temperatures of the curves, degrees Celsius, (curves,), for messages.
+    Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; root mean square difference of the
+    logarithms of the moduli of each pair of neighbours, (curves - 1,); decades by which the shift of each pair may
+    vary, (curves - 1,)); of a single curve the last two are empty.
     Raises ParameterError for neighbours that do not overlap, or differ by more than 0.3 in ln E' and ln E''.
     """
     found = [_align(*pair) for pair in pairwise(curves)]
@@ -174,8 +180,9 @@ class _LogCurve:
     """
 
     def __init__(self, curve: Curve, on: str) -> None:
-        """Take logarithms, average repeated frequencies, and interpolate: by a cubic spline, of two or three points by
-        PCHIP.
+        """Take logarithms, average those of repeated frequencies, and make the interpolant.
+
+        It is a cubic spline, of two or three different frequencies a monotone piecewise cubic (PCHIP).
 
         curve : :class:`Curve`, storage and loss modulus.
         on : "storage" or "both": the moduli that are kept.
@@ -195,8 +202,8 @@ class _LogCurve:
 class _Alignment(NamedTuple):
     """The shift that lays the warm curve on the cold one; all three are NaN where no shift leaves an overlap.
 
-    step : what is added to ln omega of the warm curve, signed.
-    mismatch : root mean square difference of ln E' and ln E'' after the shift.
+    step : what is added to ln omega of the warm curve, signed; a factor a_T below 1 gives a step below 0.
+    mismatch : root mean square difference of ln E' (and of ln E'', if it is kept) after the shift, dimensionless.
     freedom : decades over which the shift may be moved before the mismatch rises by :data:`_EQUALLY_GOOD`.
     """
 
@@ -209,8 +216,9 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
     """Find the shift of a pair of curves: by a search in steps over all shifts that leave an overlap, then by Brent's
     method.
 
-    cold, warm : curve of the lower and of the higher temperature.
-    Returns the :class:`_Alignment`, of NaN where no shift leaves enough overlap.
+    cold, warm : :class:`_LogCurve`, curve of the lower and of the higher temperature.
+    Returns the :class:`_Alignment`, of three NaN where no shift leaves enough overlap (:func:`_mismatch`).  Its
+    ``freedom`` is measured in the steps of the search, 0.05 in ln omega.
     """
     from scipy.optimize import minimize_scalar
 
@@ -233,10 +241,11 @@ def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> float:
     """Return the mean square difference of two curves where they overlap, each at its points against the other's
     interpolant.
 
-    step : what is added to ln omega of the warm curve.
-    cold, warm : curve of the lower and of the higher temperature.
-    Returns the mean of the squared differences of ln E' and ln E'', dimensionless; :data:`_NONE` where they overlap by
-    less than 15 % of the shorter range, or with fewer than three points of both together.
+    step : what is added to ln omega of the warm curve, signed.
+    cold, warm : :class:`_LogCurve`, curve of the lower and of the higher temperature, both with the same moduli.
+    Returns the mean of the squared differences of ln E' (and of ln E'', if it is kept), dimensionless; :data:`_NONE`,
+    1e6, where they overlap by less than 15 % of the shorter range in ln omega, or with fewer than three points of both
+    together.
     """
     low, high = max(cold.x[0], warm.x[0] + step), min(cold.x[-1], warm.x[-1] + step)
     if high - low < _OVERLAP * min(cold.x[-1] - cold.x[0], warm.x[-1] - warm.x[0]):

@@ -1,4 +1,8 @@
-"""Fewest modes for a misfit: a grid of times that reaches it, from which modes are left out or merged one by one."""
+"""Fewest modes for a misfit: a grid of times that reaches it, from which modes are left out or merged one by one.
+
+A row of the data is one measured modulus: a :class:`.curve.Curve` has two, storage and loss, a
+:class:`.curve.Relaxation` one.  The misfit of a row is the root mean square of its relative errors, dimensionless.
+"""
 
 from __future__ import annotations
 
@@ -31,13 +35,17 @@ _CANDIDATES = 3
 def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum, tuple[float, float], bool]:
     """Find a spectrum of few modes that reaches a misfit, or comes within 5 % of the best one where none reaches it.
 
-    Modes are left out one by one as long as the misfit allows it.
+    Spectra on grids of times are the starts.  From the first that is good enough modes are left out one by one, as long
+    as the spectrum stays good enough, and times are refined.  Where no grid reaches the target, good enough is a root
+    of the sum of the squared misfits within 5 % of the least among the grids.
 
     data : measured moduli, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`.
-    target : largest misfit of each row of the data, a root mean square of relative errors, dimensionless.
-    modes : number of modes to fit, an int >= 1; those to which the fit gives no strength are dropped, and the target
-        decides the returned flag alone.  None: as few as the target needs.
-    Returns (the spectrum; (shortest, longest time) of its grid, s; whether every row has a misfit <= target).
+    target : largest misfit of each row of the data, a root mean square of relative errors, dimensionless, > 0.
+    modes : number of modes to fit, an int >= 1; the target then decides the returned flag alone.  The spectrum has
+        fewer where no grid has as many modes with a strength > 0, or where one is lost as another is left out.  None:
+        as few as the target needs.
+    Returns (the :class:`Spectrum`, which may have no mode; (shortest, longest time) of its grid, s; whether every row
+    has a misfit <= target).
 
     Raises
     ------
@@ -54,6 +62,7 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
     reached = any(_reaches_target(data, spectrum, target) for spectrum, _ in starts)
 
     def good(tried: Spectrum) -> bool:
+        """Return whether a spectrum reaches the target or, where no grid does, is within 5 % of the best one."""
         return _reaches_target(data, tried, target) if reached else _size(data, tried) <= limit
 
     fewest = modes or 1
@@ -70,14 +79,18 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
 
 
 def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, tuple[float, float]]]:
-    """Fit spectra on wider and wider, denser and denser grids of times until one reaches the target.
+    """Fit spectra on up to four grids of times until one reaches the target.
 
-    The slow end of a grid is shortened until the fit has a long-time modulus; a grid without one is left out.
+    The grids reach half a decade, then a whole one beyond the data on either side, each with one, then two times a
+    decade; of a :class:`Relaxation` no time is below half the first one of the data.  The slow end of a grid is
+    shortened by quarters of a decade, down to half a decade inside the data, until the fit has a long-time modulus; a
+    grid that never has one is left out.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     target : largest misfit of each row, dimensionless; None: all grids are fitted.
-    Returns [(spectrum, (shortest, longest time of its grid, s)), ...], in the order of the grids.  If a grid reaches
-    the target it is the last; the list is empty where no grid leaves a long-time modulus.
+    Returns a list of at most four pairs (:class:`Spectrum`, refined; (shortest, longest time of its grid, s)), in the
+    order of the grids.  If a grid reaches the target it is the last; the list is empty where no grid leaves a long-time
+    modulus.
     """
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
     low, high = data.band
@@ -104,7 +117,7 @@ def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
 
 
 def _reaches_target(data: Data, spectrum: Spectrum, target: float) -> bool:
-    """Return whether no row of the data has a misfit above the target.
+    """Return whether no row of the data has a misfit above the target: each is at most the target.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     spectrum : :class:`Spectrum`, the fit.
@@ -129,11 +142,12 @@ def _leave_out_mode(
     """Return a spectrum with one mode less, with a mode left out or two neighbours merged, or None.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    spectrum : :class:`Spectrum`, spectrum of the data from which a mode is left out.
+    spectrum : :class:`Spectrum`, spectrum of the data from which a mode is left out, of at least one mode.
     ends : (shortest, longest) time that is allowed, s.
-    good : function of a spectrum that returns whether it is acceptable; None: any is, and the best is returned.
-    Returns the first acceptable one of the three best candidates, with times refined unless the best is acceptable as
-    it is; None if none of them is.  Modes without strength are left out too, so that more than one may be missing.
+    good : function of a spectrum that returns whether it is acceptable; None: any is.
+    Returns the candidate with the least misfit as it is, if it is acceptable; else the first of the three best ones
+    that is acceptable after its times are refined; None if none of them is.  With ``good`` None it is the best one,
+    refined.  Modes without strength are left out too, so that more than one may be missing.
     """
     tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):

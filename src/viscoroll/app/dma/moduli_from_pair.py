@@ -30,11 +30,12 @@ _ROUNDED = 0.05
 def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Numbers]) -> tuple[Floats, Floats]:
     """Return storage and loss from two measured quantities, after a check that all others agree with them.
 
-    table : the table that has the columns; its lines are named in the error message.
+    table : :class:`Table`, the table that has the columns; its lines are named in the error message.
     pair : the two quantities, a key of :data:`PAIRS`.
-    columns : quantity ("storage", "loss", "tan delta", "modulus") -> its numbers, (n,) each, those that the file has;
-        all in Pa or all in 1/Pa, tan delta dimensionless.
-    Returns (storage, loss), (n,) each, in the unit of the columns: compliances of compliances.
+    columns : quantity ("storage", "loss", "tan delta", "modulus") -> :class:`Numbers`, values and half a unit of their
+        last digits, (n,) each, of those that the file has; all in Pa or all in 1/Pa, tan delta dimensionless.
+    Returns (storage, loss), (n,) each, in the unit of the columns: compliances of compliances.  Signs are not checked
+    here: a negative or infinite value stays.
     Raises FileError, with the line, where a further column differs by more than 1 % beside its rounding, where a
     magnitude is not above the storage or loss beside it, or where the digits of the file leave storage or loss
     uncertain by more than 5 %.

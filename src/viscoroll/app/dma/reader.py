@@ -47,8 +47,10 @@ def read_dma(
         file without headings are called "column 0", "column 1" ...; if there are three, they are taken as angular
         frequency, storage and loss, in this order.
     units : units of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning
-        -> unit, in place of what the file says.  Without, frequencies are in Hz, angular ones in rad/s, moduli in
-        Pa, with a warning.
+        -> unit, in place of what the file says.  Columns for which neither gives a unit are taken in Hz (frequencies),
+        rad/s (angular frequencies), Pa (moduli), degrees (phase angles) and degrees Celsius, the first three with a
+        warning; compliances must have one, and so must temperatures above 200 and phase angles of which none is above
+        pi/2, since they may be in kelvin or in radians.
     decimal : "." or ","; default: the one that the numbers have.
     encoding : encoding of the file; default: by its first bytes.
 
@@ -56,15 +58,18 @@ def read_dma(
     -------
     DynamicModuli
         ``omega`` in rad/s, ``storage`` and ``loss`` in Pa and ``temperature`` in degrees Celsius or None, (n,) each, in
-        the order of the file; ``print`` shows in three lines what was understood.  It unpacks into three arrays:
+        the order of the file; ``mode`` is "shear" where the headings say so, else "tension".  ``temperature`` is None
+        where the file has none, and of reduced frequencies at several temperatures, which belong to a reference that
+        the file does not say.  ``print`` shows in three lines what was understood.  It unpacks into three arrays:
         ``omega, storage, loss = read_dma(path)``.
 
     Raises
     ------
     FileError
         A file that cannot be read, columns that are missing, ambiguous or contradict each other, units that are
-        unknown or of another dimension, gaps and separators of thousands; all rows at one frequency; several moduli at
-        one frequency, or several tables, without a column of temperatures.
+        missing, unknown or of another dimension, gaps and separators of thousands; a frequency that is not > 0; moduli
+        that the digits of the file leave uncertain by more than 5 %; all rows at one frequency; several moduli at one
+        frequency, or several tables, without a column of temperatures.
     ParameterError
         Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file.
 
@@ -132,7 +137,7 @@ class _Choice(NamedTuple):
     """The columns that :func:`read_dma` reads, as :func:`_choose_columns` chose them.
 
     mode : "tension", "shear", or "" where no heading says.
-    pair : the two quantities that give the moduli, a key of :data:`.moduli_from_pair.PAIRS`.
+    pair : the two quantities that give the moduli, or compliances, a key of :data:`.moduli_from_pair.PAIRS`.
     columns : quantity (:attr:`.column_quantities.Column.quantity`) -> its columns, one or more, which must then agree;
         those of ``mode`` or of no mode, and all of moduli or all of compliances.
     """
@@ -169,7 +174,7 @@ def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
 def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
     """Return whether a line of the file is the one with the headings, which :func:`.read_table` looks for.
 
-    It is if its cells name two different known quantities, or if a cell is a heading that the user gave.
+    It is if its cells name at least two different known quantities, or if a cell is a heading that the user gave.
 
     cells : texts of the cells of the line, with units or without.
     named : quantity -> heading, the argument ``columns`` of :func:`read_dma`; empty where the user named none.
@@ -186,10 +191,10 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     :data:`.moduli_from_pair.PAIRS`.
 
     table : the table of the file; it is used for the error message only.
-    found : columns of known quantities, in the order of the file.
+    found : list of :class:`Column`, columns of known quantities, in the order of the file.
     others : heading -> why the column is left out, "" for an unknown quantity.  It is changed: columns of another mode
         or kind than the pair, and measured frequencies beside reduced ones, are added.
-    Returns the :class:`_Choice`.
+    Returns the :class:`_Choice`; its ``columns`` have temperature, and quantities beside the pair, too.
     Raises FileError where no column is a frequency, or no two give the moduli; its message lists the headings.
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
@@ -229,9 +234,10 @@ def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: 
 
     table : :class:`Table`, the table that has the columns.
     quantity : name of their quantity (:attr:`.column_quantities.Column.quantity`), as "frequency" or "storage".
-    alike : the columns of this quantity, at least one.
+    alike : list of :class:`Column`, the columns of this quantity, at least one.
     others : heading -> why the column is left out.  It is changed: all columns but the first are added.
-    Returns :class:`Numbers`, (n,), in rad/s, Pa, 1/Pa, degrees Celsius or, of tan delta, dimensionless.
+    Returns :class:`Numbers` of the first column: values, and half a unit of their last digits, (n,) each, in rad/s, Pa,
+    1/Pa, degrees Celsius or, of tan delta, dimensionless.
     Raises FileError with the line where two columns contradict each other, or where a cell is no number.
     """
     first = numbers_of(table, alike[0])
@@ -247,11 +253,13 @@ def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: 
 
 
 def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
-    """Warn of columns whose unit neither the file nor the user gives; there is no warning where all units are given.
+    """Warn, by one ModelWarning, of frequencies and moduli whose unit neither the file nor the user gives.
 
-    table : the table of the file, for the messages.
-    taken : the columns that are read.
-    Raises FileError for a modulus or frequency without a unit beside one that has it.
+    Temperatures, phase angles and compliances are not examined here.  There is no warning where all units are given.
+
+    table : :class:`Table`, the table of the file, for the messages.
+    taken : list of :class:`Column`, the columns that are read.
+    Raises FileError for a modulus without a unit beside one that has it, and for a frequency likewise.
     """
     assumed = []
     for word, unit in {"frequency": "rad/s", "moduli": "Pa"}.items():
@@ -268,10 +276,11 @@ def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
 def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     """Refuse what is not one frequency sweep at each temperature.
 
-    These are: rows that are all of one frequency; several tables in the file without a column of temperatures; where
-    all rows are of one temperature, two of one frequency whose storage moduli differ by more than a factor of 1.25.
+    These are: rows that are all of one frequency (to 0.1 %, at least two rows); several tables in the file without a
+    column of temperatures; where all rows are of one temperature, within 1 K or because the file has none, two of one
+    frequency whose storage moduli differ by more than a factor of 1.25.
 
-    table : the table from which the record was read; its lines are named in the message.
+    table : :class:`Table`, the table from which the record was read; its lines are named in the message.
     record : :class:`DynamicModuli`, the moduli in the order of the rows.
     Raises FileError for each of the three; returns nothing.
     """

@@ -26,7 +26,7 @@ Data = Curve | Relaxation
 class Spectrum(NamedTuple):
     """A discrete spectrum in the units of the data: long-time modulus and modes of a generalised Maxwell solid.
 
-    E : long-time modulus.
+    E : long-time modulus, in the unit of the data.
     strength : strength of each mode, in the unit of E, shape (modes,).
     tau : time of each mode, s, descending, shape (modes,); modes may be 0.
     """
@@ -40,8 +40,7 @@ class Spectrum(NamedTuple):
 
         data : measured moduli, a :class:`Curve` or a :class:`Relaxation` at n points; only their frequencies or times
             are used.
-        Returns shape (2, n), storage and loss, of a :class:`.curve.Curve`; (1, n) of
-        relaxation.
+        Returns shape (2, n), storage and loss, of a :class:`.curve.Curve`; (1, n) of relaxation.
         """
         return np.array(data.constant)[:, None] * self.E + data.responses(self.tau) @ self.strength
 
@@ -52,6 +51,7 @@ def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
     prony : :class:`Prony`, strengths divided by the long-time modulus, times over T_ref.
     E : long-time modulus, in the unit of the data.
     T_ref : unit of the times of the series, s.
+    Returns the :class:`Spectrum`, strengths in the unit of E and times in s, in the order of the series.
     """
     return Spectrum(E, prony.E * E, prony.tau * T_ref)
 
@@ -59,7 +59,8 @@ def spectrum_of(prony: Prony, E: float, T_ref: float) -> Spectrum:
 def _relative_columns(data: Data, constant: float, modes: Floats) -> Floats:
     """Return the matrix of the least squares: responses of a constant and of modes, divided by the measured moduli.
 
-    data : measured moduli, ``rows`` of them (2 of storage and loss, 1 of relaxation) at n points.
+    data : measured moduli, a :class:`Curve` (rows = 2, storage and loss) or a :class:`Relaxation` (rows = 1), at n
+        points.
     constant : long-time modulus whose response is the first column, in the unit of the data; 1.0 for a unit response.
     modes : responses of the modes, in the unit of the data, shape (rows, n, modes).
     Returns shape (rows n, 1 + modes), dimensionless; the column of the constant is the first.
@@ -96,9 +97,9 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
     """Solve the least squares with non-negative strengths on fixed times; modes without strength are left out.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    tau : times of modes, s, in any order, shape (modes,).
-    Returns the spectrum, its times descending; its long-time modulus is at least :data:`FLOOR` of the lowest modulus,
-    and its number of modes may be smaller than that of ``tau``, down to 0.
+    tau : times of modes, s, > 0, in any order, shape (modes,), which may be empty.
+    Returns the :class:`Spectrum`, its times descending; its long-time modulus is at least :data:`FLOOR`, 1 %, of the
+    lowest storage or relaxation modulus, and its number of modes may be smaller than that of ``tau``, down to 0.
     """
     from scipy.optimize import nnls
 
@@ -114,7 +115,9 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 def has_plateau(data: Data, E: float) -> bool:
     """Return whether the data determine the long-time modulus of a fit, which is then above the least that is allowed.
 
-    data : measured moduli.
+    The least is 1 % of the lowest storage or relaxation modulus; above it means by more than 1e-4 of it.
+
+    data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     E : long-time modulus of a fit of the data, in their unit, as of :func:`on_times`.
     """
     return E > 1.0001 * _least_modulus(data)
@@ -125,10 +128,10 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     spectrum : :class:`Spectrum`, spectrum from which the search starts, all strengths > 0.
-    ends : (shortest, longest) time that is allowed, s.
-    calls : largest number of evaluations of the residuals.
-    Returns the refined spectrum, from which modes without strength are left out; ``spectrum`` itself if it has no
-    modes.
+    ends : (shortest, longest) time that is allowed, s; times outside are moved to the ends.
+    calls : largest number of evaluations of the residuals, >= 1; when they are used up the best times so far are taken.
+    Returns the refined :class:`Spectrum`, from which modes without strength are left out; ``spectrum`` itself if it has
+    no modes.
     """
     count = spectrum.tau.size
     if not count:
@@ -160,8 +163,8 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     logs : start, logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 + 2 modes,).
-    low, high : bounds of the logarithms, of the same shape; a start outside is moved to the bound.
-    calls : largest number of evaluations of the residuals.
+    low, high : bounds of the logarithms, of the same shape, perhaps infinite; a start outside is moved to the bound.
+    calls : largest number of evaluations of the residuals, >= 1; with 1 the start is returned.
     Returns the logarithms at the minimum, or the best ones found when the calls are used up, (1 + 2 modes,).
     """
     logs = np.clip(logs, low, high)
@@ -190,7 +193,9 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
 def _normal_matrix(slopes: Floats) -> Floats:
     """Return slopes.T @ slopes, in products that are too small for BLAS to share among threads.
 
-    slopes : derivatives of the residuals, shape (residuals, unknowns).
+    It keeps BLAS from starting threads, which would take longer than the product.
+
+    slopes : derivatives of the residuals, shape (residuals, unknowns); at least one unknown.
     Returns shape (unknowns, unknowns).
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)

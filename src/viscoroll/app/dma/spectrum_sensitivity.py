@@ -1,4 +1,7 @@
-"""Sensitivity of a fit to its grid of times: modulus, alpha and rolling resistance with a wider grid."""
+"""Sensitivity of a fit to its grid of times: modulus, alpha and rolling resistance with a wider grid.
+
+Speeds, moments and kappa are those of a :class:`viscoroll.Scene`: V in units of R/T_ref, M divided by P R.
+"""
 
 from __future__ import annotations
 
@@ -23,7 +26,7 @@ _SPEEDS = 4
 class ExtendedGridFit(NamedTuple):
     """A fit by non-negative least squares on the times of another fit and on a wider grid, beside that other fit.
 
-    decades : by which the grid is wider on either side.
+    decades : number of decades by which the grid is wider on either side.
     E : long-time modulus of the wider fit, in the unit of the data.
     alpha : its instantaneous over its long-time modulus.
     prony : its series, strengths divided by its E and times over the T_ref of the fit.
@@ -52,15 +55,17 @@ def fit_on_extended_grid(
     """Fit strengths on the times of a fit and on a wider grid together, to see what the data leave open outside their
     range.
 
-    No mode is left out: a fit with as few modes as possible would leave out those outside the data first, though the
-    data allow them.
+    No mode is left out to save modes: a fit with as few modes as possible would leave out those outside the data first,
+    though the data allow them.  Modes to which non-negative least squares give no strength are left out.
 
     data : measured moduli, a :class:`.curve.Curve` or a :class:`.curve.Relaxation`.
     prony : :class:`Prony`, series of the fit, strengths divided by E, times over T_ref.
     E, T_ref : long-time modulus of the fit, in the unit of the data, and unit of its times, s.
     grid : (shortest, longest) time of its grid, s.
-    decades : number of decades by which the grid becomes wider on either side.
-    Returns the :class:`ExtendedGridFit`, with the rolling moment of both fits.
+    decades : number of decades by which the grid becomes wider on either side; of a :class:`Relaxation` the shortest
+        time stays at least half the first time of the data.
+    Returns the :class:`ExtendedGridFit`, with the rolling moment of both fits at speeds of which the data tell, at the
+    same load and radius: kappa of the wider fit is sqrt(its E / E) times that of the fit.
     """
     reach = 10.0**decades
     times = grid_of_times((max(grid[0] / reach, data.shortest), grid[1] * reach), _TIMES)
@@ -75,8 +80,8 @@ def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats
     """Compute the rolling moment of free rolling at speeds whose transit frequency |V|/(lam l0) lies within the data.
 
     prony : :class:`Prony`, series of the fit.
-    slow, fast : lowest and highest frequency of the data, times T_ref.
-    Returns (kappa V, kappa M), (n,) each, dimensionless, four speeds a decade; n may be 0.
+    slow, fast : lowest and highest angular frequency of the data, times T_ref, dimensionless.
+    Returns (kappa V, kappa M), (n,) each, dimensionless, in ascending order of V, four speeds a decade; n may be 0.
     """
     low, high = np.log10(slow / np.sqrt(prony.alpha)), np.log10(fast)
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))
@@ -89,9 +94,10 @@ def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats
 def _contact_of(prony: Prony, kappa: float, V: Floats) -> Any:
     """Compute the contact in free rolling, delta = 0, at mu = 1.
 
-    prony : series of the material.
-    kappa : slenderness, 1 or relative to that of another fit.
-    V : speeds in R/T_ref, (n,).
-    Returns the state with ``.lam`` and ``.M``, (n,) each, dimensionless.
+    prony : :class:`Prony`, series of cylinder and half-space.
+    kappa : slenderness R/l0, > 0, dimensionless: 1, or relative to that of another fit.
+    V : speeds in units of R/T_ref, dimensionless, (n,); n may be 0.
+    Returns the state with ``.lam`` (contact length divided by l0) and ``.M`` (rolling moment divided by P R), (n,)
+    each, dimensionless.
     """
     return contact(Scene(material=prony, kappa=kappa, mu=1.0), V, delta=0.0, fields=("lam", "M"))

@@ -37,9 +37,11 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
 
     temperature : temperature of all points, one number; of each point, (n,); or of each curve, (curves,); degrees
         Celsius.
-    *columns : omega, storage and loss, three, each (n,), or each a list of ``curves`` vectors, one a curve.
+    *columns : omega, storage and loss, three, each (n,), or each a list of ``curves`` vectors, one a curve; with units
+        or without.
     Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, in rad/s and the unit
-    of the moduli; index of the first point of each curve, (curves,), or None where the columns are no lists).
+    of the moduli (Pa, if they have units), not checked; index of the first point of each curve, (curves,), or None
+    where the columns are no lists).
     Raises ParameterError for shapes that do not go together, and for temperatures that are no finite numbers.
     """
     given = check_array("temperature", temperature, unit="degC")
@@ -64,7 +66,8 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
 def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     """Divide points into sets of one temperature.
 
-    In ascending order, a temperature that is at most :data:`LEAST_DISTANCE` above the one before is of the same set.
+    In ascending order, a temperature that is at most :data:`LEAST_DISTANCE`, 0.5 K, above the one before is of the same
+    set.
 
     temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
     first : index of the first point of each curve, (curves,), as of :func:`points_of`; None: each set counts as a
@@ -74,7 +77,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     Raises
     ------
     ParameterError
-        No points; a set whose temperatures span more than :data:`.dynamic_moduli.SAME_TEMPERATURE`.
+        No points; a set whose temperatures span more than :data:`.dynamic_moduli.SAME_TEMPERATURE`, 1 K.
     """
     if not temperature.size:
         raise described_error("temperature", "is empty", "one number for each point")
@@ -111,8 +114,9 @@ def nearest(base: float, temperatures: Floats) -> int:
 
     base : the temperature for which the set is sought, degrees Celsius, a number.
     temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
-    Returns an index of ``temperatures``.
-    Raises ParameterError for a temperature more than :data:`LEAST_DISTANCE` below the first set or above the last.
+    Returns an index of ``temperatures``, an int; of two that are equally near that of the colder set.
+    Raises ParameterError for a temperature more than :data:`LEAST_DISTANCE`, 0.5 K, below the first set or above the
+    last.
     """
     low, high = temperatures[0], temperatures[-1]
     if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
@@ -121,14 +125,15 @@ def nearest(base: float, temperatures: Floats) -> int:
 
 
 def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, float]:
-    """Return shift factors that the user lists as factors of the sets, which are 1 at the reference, and the reference.
+    """Sort listed shift factors by sets and divide them by that of the reference, which is found if it is not given.
 
     shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves.
     sets : :class:`Sets`, the sets of the points.
-    base : reference, degrees Celsius; None: the temperature of a set whose factor is 1, else the middle set.
+    base : reference, degrees Celsius; None: the temperature of the coldest set whose factor is 1 to 1e-9, else that of
+        the middle set, of an even number the warmer one.
     Returns (factors of the sets, dimensionless, (sets,), divided by that of the reference; reference, degrees Celsius).
     Raises ParameterError for factors that are not > 0, of another number than the curves, or different at one
-    temperature, and for a reference that is at none of the sets.
+    temperature, and for a reference that is within 0.5 K of none of the sets.
     """
     factors, temperatures = check_array("shift", shift), sets.temperature
     if not (factors > 0.0).all():

@@ -132,7 +132,9 @@ def _quantity(name: str) -> tuple[str, str] | None:
 
 
 def _parts(word: str) -> list[str]:
-    """Split a word that is composed of words of the vocabulary, as "storagemodulus".
+    """Split a word that is composed of words of the vocabulary, as "storagemodulus" into "storage" and "modulus".
+
+    A letter e or g before "storage" or "loss" is split off too, as in "estorage".
 
     word : letters, in lower case, or digits.
     Returns the words that it is composed of; [word] if it is in the vocabulary itself or is not composed of such words.
