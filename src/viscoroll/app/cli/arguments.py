@@ -29,8 +29,8 @@ def command(words: str, *options: Option | list[Option]) -> Callable[[CommandFun
     """Return a decorator that adds a function to :data:`COMMANDS`, so that the program has it as a command.
 
     words: words of the command, as "tables law", a key of :data:`.help_texts.HELP`.
-    options: options of the command, in the order of its help; a list of them is a group of which one at most may be
-        given.
+    options: options of the command, in the order of its help, each as :func:`option` or :func:`output` returns it; a
+        list of them is a group of which one at most may be given.
     Returns a decorator that takes the function of the command and returns it unchanged.
     """
 
@@ -46,6 +46,7 @@ def option(*names: str, **settings: Any) -> Option:
 
     names: positional name, or names of the option with dashes, as of ``ArgumentParser.add_argument``.
     settings: keywords of ``ArgumentParser.add_argument``, as type and help.
+    Returns an :class:`Option`, a function that takes a parser of argparse, or a group of one, and adds the argument.
     """
     return methodcaller("add_argument", *names, **settings)
 
@@ -55,8 +56,8 @@ def numbers(text: str) -> Any:
 
     text: the argument; the members of a list are separated by commas.
     Returns a float for one NUMBER, else an array (n,) of the numbers of all members in their order; ranges have both
-    ends.
-    Raises ArgumentTypeError for any other form.
+    ends.  A single NUMBER may be infinite or NaN here: the library refuses it.
+    Raises ArgumentTypeError for any other form, and for a range that does not ascend.
     """
     import numpy as np
 
@@ -69,7 +70,8 @@ def _numbers_of_member(text: str) -> Any:
 
     text: NUMBER, LOW:HIGH:COUNT or LOW:HIGH:COUNT:log.
     Returns a float, or of a range an array (COUNT,) in equal steps or, with log, equal ratios.
-    Raises ArgumentTypeError for any other form, and for a range that does not ascend.
+    Raises ArgumentTypeError for any other form, for a range that does not ascend, for a COUNT below 2, and with log for
+    a LOW that is not > 0.
     """
     try:
         low, *rest = text.split(":")
@@ -87,10 +89,10 @@ def _numbers_of_member(text: str) -> Any:
 def roller_of_argument(text: str) -> Any:
     """Return the roller of an argument: the scene or the cylinder of a TOML file, or the preset of a name.
 
-    text: path of the file, or the name, as "paper-section-5".
+    text: path of the file, which ends in .toml (in any case), or the name, as "paper-section-5".
     Returns a :class:`viscoroll.Scene`, dimensionless, or a :class:`viscoroll.Cylinder`, in SI units.
-    Raises ParameterError for an unknown preset; FileError for a file that cannot be read, or whose name does not end in
-    .toml.
+    Raises ParameterError for an unknown preset; FileError for a .toml file that cannot be read, and for an existing
+    file whose name does not end in .toml.
     """
     from ...io.config import preset, read_roller
 
@@ -115,6 +117,7 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
         """Convert an argument to the path of the output file, which is not created.
 
         text: the argument; of a .zarr folder a "/" at its end is left out.
+        Returns the Path; a file that exists is allowed.
         Raises ArgumentTypeError for another suffix, a folder that does not exist, and a directory other than a .zarr.
         """
         text = text.rstrip("/") if text.endswith(".zarr/") else text  # as shells complete the name of a folder

@@ -26,7 +26,9 @@ def doctor(arguments: Namespace) -> int:
     """Print the lines of a problem report: versions, cache, threads, a check of the law, packages.
 
     arguments: parsed command line, not used.
-    Returns True, exit code 1, if a required package is missing, else False, exit code 0.
+    Returns True, exit code 1, if a required package or llvmlite is missing, else False, exit code 0; a faulty cache and
+    missing optional libraries are only printed.
+    Raises ParameterError for a wrong $VISCOROLL_THREADS.
     """
     required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()
     names = [re.split(r"[^\w-]", requirement)[0] for requirement in required if "extra ==" not in requirement]
@@ -73,7 +75,10 @@ def _lines() -> Iterator[tuple[str, str]]:
 def _check() -> str:
     """Evaluate one state of the contact, as a check that the package works.
 
-    Returns a line of text: values of the state, the time that the call took, and the warnings that it gave.
+    The time is mostly that of compiling or loading the kernels, where they have not been used before.
+
+    Returns a line of text: Q of the state, dimensionless, the time that the call took in s, and the warnings that it
+    gave.
     """
     with warnings.catch_warnings(record=True) as caught:
         warnings.simplefilter("always")
@@ -97,6 +102,9 @@ def _version(name: str) -> str | None:
 
 def _fault_of_cache(folder: Path) -> str:
     """Return why the cache of compiled functions is not used or cannot be written, as the end of a line of the report.
+
+    It is not used where others could write into it; it cannot be written where the folder, or if it does not exist the
+    nearest folder above it that does, is not writable.
 
     folder: folder of the compiled functions, which need not exist.
     Returns a text that begins with ";", or "" if the cache is in order.

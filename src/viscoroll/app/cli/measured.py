@@ -21,6 +21,9 @@ from .arguments import FIGURES, command, option, output
 def show(arguments: Namespace) -> None:
     """Print the moduli, relaxation modes and creep modes of each material of a file.
 
+    Moduli are in Pa, times in s; creep modes are printed as strengths J_i, divided by the long-time compliance, and
+    times T_i.  An elastic material has no table of modes.
+
     arguments: parsed command line with file, path of a TOML file with [material] or [base], or of the netCDF of a
         material.
     Raises FileError for a file that cannot be read.
@@ -44,7 +47,8 @@ def _named_heading(text: str) -> tuple[str, str]:
     """Convert an argument NAME=HEADING to (quantity, heading); :func:`viscoroll.read_dma` checks the quantity.
 
     text: the argument, for example "storage=Module 1"; the heading may have further equals signs.
-    Raises ArgumentTypeError for another form.
+    Returns (text before the first equals sign, text after it), both without blanks at their ends.
+    Raises ArgumentTypeError where there is no equals sign or no heading.
     """
     name, _, heading = map(str.strip, text.partition("="))
     if not heading:
@@ -82,16 +86,27 @@ def _named_heading(text: str) -> tuple[str, str]:
 def fit(arguments: Namespace) -> int:
     """Fit a Prony series to a DMA, print the fit, and write its material if a path is given.
 
+    A fit is faulty if it misses the required misfit, or if its misfit is above 5 %; standard error then says so, with a
+    path and without.
+
     arguments: parsed command line with
-        data, path of the text file; decimal, "." or ",", and encoding, each None for the default;
-        units, "F,M" or None; column, a list of (quantity, heading), perhaps empty;
-        mode, "tension", "shear" or None; temperature and reference, degrees Celsius, or None; wlf, "C1,C2,T0" or None;
-        on, "both" or "storage"; modes, largest number or None; misfit, root mean square of relative errors;
-        nu, Poisson's ratio, and name of the material;
-        output, path that is written, .toml or .nc, or None; force, whether a fit that misses the misfit is written too,
-        with a mark in its source.
-    Returns 1, and writes nothing, if the fit misses the misfit, or has an error above 5 %, and force is not given; else
-    0.
+        data, path of the text file;
+        decimal, "." or ",", or None: as the numbers have it;
+        encoding, name of an encoding, or None: by the first bytes of the file;
+        units, "F,M", units of frequency and of moduli, or None;
+        column, a list of (quantity, heading), perhaps empty;
+        mode, "tension" or "shear" in place of what the headings say, or None;
+        temperature of all points, degrees Celsius, in place of those of the file, or None;
+        reference, temperature of the master curve, degrees Celsius, or None;
+        wlf, "C1,C2,T0", or None: shifts from the overlap of the curves;
+        on, "both" or "storage", the moduli whose overlap gives the shifts;
+        modes, largest number of modes, or None: as few as the misfit needs;
+        misfit, required root mean square of relative errors, dimensionless;
+        nu, Poisson's ratio;
+        name of the material, perhaps "";
+        output, path that is written, .toml or .nc, or None: nothing is written;
+        force, whether a faulty fit is written too, with a mark in its source.
+    Returns 1, and writes nothing, if the fit is faulty and force is not given; else 0.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
@@ -156,8 +171,11 @@ def identify(arguments: Namespace) -> None:
 
     arguments: parsed command line with
         file, path of a TOML file of measurements;
-        starts, number of searches, seed of their random points, robust, whether outliers count less;
-        output, path of the report, .txt, .json or .nc, or None; plot, path of a figure or None.
+        starts, number of searches, >= 1;
+        seed of their random points, >= 0;
+        robust, whether outliers count less;
+        output, path of the report that is written, .txt (the text printed), .json or .nc, or None;
+        plot, path of the figure that is written, .png, .pdf or .svg, or None.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ..identification.measurements_toml import read_measurements

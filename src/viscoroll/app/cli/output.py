@@ -16,11 +16,12 @@ if TYPE_CHECKING:
 def show(arguments: Namespace, result: Any, heading: str = "") -> None:
     """Print or write a result by its ``to_xarray`` and ``to_pandas``.
 
-    In the table codes are replaced by their meanings, and rows of equilibria that a load does not have are left out.
+    In the table codes, as those of regimes, are replaced by their meanings, and rows of equilibria that a load does not
+    have (V is NaN) are left out.  The dataset, for a .nc file, stays as it is.
 
     arguments: parsed command line with output and format, as of :func:`deliver`.
     result: a result of the library that has both methods, as of ``contact``, ``roll`` or ``steady``.
-    heading: first lines of the text; "": the title of the data.
+    heading: first lines of the text, which csv and json do not have; "": the title of the data.
     Raises FileError if the file cannot be written.
     """
     import numpy as np
@@ -40,8 +41,11 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
 def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading: str) -> None:
     """Print a table in the required format, or write it or the dataset in the format of the suffix.
 
-    arguments: parsed command line with output, a path that ends in .txt, .csv or .nc, or None; and format of standard
-        output without a path, "text", "csv" or "json".
+    In json, an object of column -> list, numbers that are not finite are null.
+
+    arguments: parsed command line with
+        output, a path that ends in .txt, .csv or .nc and is written, or None: standard output;
+        format of standard output, "text", "csv" or "json"; not used with a path.
     data: dataset for netCDF, whose ``long_name`` are the meanings of the variables in the text.
     frame: pandas DataFrame, the same as a table, one row for each state.
     heading: first lines of the text; csv and json have none.
@@ -69,10 +73,11 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
 def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
     """Return a table as aligned columns below a heading, or a single row as one line for each number.
 
-    frame: pandas DataFrame, the table; without rows the heading stands alone.
+    frame: pandas DataFrame, the table, whose columns are called "NAME [UNIT]"; without rows the heading stands alone.
     heading: first lines.
-    meanings: name of a column without its unit -> meaning, after the number of a single row; None: always columns.
-    Returns the text, which ends with a line break.
+    meanings: name of a column without its unit -> meaning, which stands after its number where the table has a single
+        row; None: a single row is written as columns too.
+    Returns the text, which ends with a line break; numbers have ten digits, and missing ones of columns are blank.
     """
     if frame.empty:
         return f"{heading}\n"

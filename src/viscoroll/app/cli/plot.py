@@ -24,8 +24,10 @@ _SPEEDS = 301
 def plot(arguments: Namespace) -> None:
     """Draw the content of a file and write the figure.
 
-    arguments: parsed command line with what, path of the file, a .nc, .toml or .zarr; output, path of the figure, whose
-        suffix is the format: .png, .pdf or .svg.
+    arguments: parsed command line with
+        what, path of a .nc (result, table, material), a .toml (scene, cylinder, material) or a .zarr (results of a
+        run);
+        output, path of the figure that is written; its suffix is the format: .png, .pdf or .svg.
     Raises ParameterError for another suffix, FileError for a file that cannot be read or written.
     """
     from ...core.plots.style import save
@@ -39,7 +41,10 @@ def plot(arguments: Namespace) -> None:
 
 
 def _figure_of_netcdf(path: str) -> Any:
-    """Return the matplotlib figure of a result or of a material.
+    """Return the matplotlib figure of the content of a netCDF file.
+
+    Of a material, which has an attribute ``schema``, it shows the moduli; of the results of many motions, which have a
+    dimension ``motion``, a summary; else the result itself.
 
     path: path of a netCDF file.
     Raises FileError for a file that does not exist, cannot be read, or is no netCDF.
@@ -66,8 +71,10 @@ def _figure_of_netcdf(path: str) -> Any:
 def _figure_of_toml(path: str) -> Any:
     """Return the matplotlib figure of what a TOML file describes.
 
-    Of a scene or cylinder it is the contact in free rolling over speed, from a thirtieth of the speed of the first
-    extremum of M to thirty times that of the last; of a file without them it is the material, else the base.
+    Of a scene or cylinder it is the contact in free rolling at 301 speeds, from a thirtieth of the speed of the first
+    extremum of M to thirty times that of the last; where M has no extremum, as of elastic bodies, from a thirtieth of
+    the unit of speed (R/T_ref, 1 of a scene) to thirty times it.  Of a file without them it is the material, else the
+    base.
 
     path: path of a TOML file with [scene], [cylinder], preset or [material].
     Raises FileError for a file that cannot be read, ParameterError for an unknown preset.

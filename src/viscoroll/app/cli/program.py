@@ -69,9 +69,10 @@ class _StoreOnce(argparse.Action):
         The signature is that of ``argparse.Action``.
 
         parser: not used.
-        namespace: values of all arguments; its ``stored`` is the set of those that have a value.
-        values: the value.
-        name: name of the option; None of a positional argument.
+        namespace: values of all arguments, which is changed: the value becomes its attribute ``self.dest``, whose name
+            is added to its set ``stored``.
+        values: the value, after its conversion.
+        name: name of the option; None of a positional argument, which may be stored again.
         Raises ArgumentError for the second value of an option.
         """
         stored = vars(namespace).setdefault("stored", set())
@@ -99,7 +100,11 @@ def _convert_argument(kind: type, words: str, text: str) -> Any:
 def parser() -> Parser:
     """Return the parser of the whole command line, with a subparser for each command of :data:`.arguments.COMMANDS`.
 
-    The namespace that it returns has the arguments of the command, and ``run``, the function that takes it.
+    A command of two words, as "tables law", has a subparser below that of its first word.  The help of each command is
+    that of :data:`.help_texts.HELP`.
+
+    Returns a :class:`Parser`.  The namespace that its ``parse_args`` returns has the arguments of the command, and
+    ``run``, the function that takes the namespace and returns an exit code or None.
     """
     program = Parser(
         prog="viscoroll",
@@ -132,8 +137,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the program; its errors and warnings are printed, each in one line, on standard error.
 
     argv: arguments, without the name of the program; None: those of the process.
-    Returns the exit code: 0 success, 1 a check failed, 2 an error, 130 an interrupt by SIGINT, 141 a standard output
-    that was closed by its reader.
+    Returns the exit code: 0 success, 1 a check failed, 2 an error (of the package, a missing library, memory, or a file
+    or standard output that cannot be written), 130 an interrupt by SIGINT, 141 a standard output that was closed by its
+    reader.  Other exceptions are faults of the program, and go on.
     """
     if sys.stdout is None:  # closed by the shell
         sys.stdout = io.StringIO()
@@ -162,7 +168,7 @@ def _run(argv: Sequence[str]) -> int:
     """Parse the arguments and run the command.
 
     argv: the words of the command line without the name of the program.
-    Returns the exit code of the command, 0 or 1; 0 after --help and --version.
+    Returns the exit code of the command, 0 or 1 (perhaps as a truth value); 0 after --help and --version.
     Raises what the command raises; UsageError where the line does not parse; ParameterError for a wrong
     $VISCOROLL_THREADS.
     """
@@ -189,7 +195,7 @@ def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
 
 
 def _print_error(error: object) -> int:
-    """Print an error in one line on standard error and return its exit code, 2.
+    """Print an error in one line on standard error, after "viscoroll: error:", and return its exit code, 2.
 
     error: an exception, or its text.
     """

@@ -23,14 +23,15 @@ _RUN = option("run_file", metavar="RUN.toml", help="a run file")
     option("--threads", type=int, help="number of threads, or of local processes (default: number of cores)"),
 )  # fmt: skip
 def ensemble(arguments: Namespace) -> None:
-    """Roll the motions of a run file and print their summaries; without a store estimate time and memory.
+    """Roll the motions of a run file and print the summary of all; without a store estimate time and memory.
 
-    Blocks of motions that the store already has are not computed again.
+    Blocks of motions that the store already has are not computed again; where there are any, their number is printed.
 
     arguments: parsed command line with
         run_file, path of a TOML file;
-        output, folder of the results, which is written, or None: a trial alone;
-        cluster, "local", "tcp://host:port" or None for threads of this process;
+        output, folder of the results (.zarr), which is made or completed, or None: a few motions are rolled as a trial,
+        the estimate is printed, and nothing is written;
+        cluster, "local", "tcp://host:port" of a dask scheduler, or None for threads of this process;
         threads, number of threads or of local processes, or None for that of the cores.
     Raises ParameterError for values that are not allowed, as cluster without output; FileError for a file that cannot
     be read or written.
@@ -57,8 +58,9 @@ def ensemble(arguments: Namespace) -> None:
 def verify(arguments: Namespace) -> int:
     """Compare the files of a results store with their SHA-256 and print the verdict.
 
-    arguments: parsed command line with store, folder of the results.
-    Returns True, exit code 1, if a file differs or is missing, else False, exit code 0.
+    arguments: parsed command line with store, path of the folder of the results.
+    Returns True, exit code 1, if a file differs or is missing, else False, exit code 0; the verdict is printed in both
+    cases.
     Raises FileError for a folder that is no store.
     """
     verdict = vr.runs.verify(arguments.store)
@@ -75,11 +77,15 @@ def verify(arguments: Namespace) -> int:
 def sensitivity(arguments: Namespace) -> None:
     """Compute the Sobol indices of a run file, and print or write them.
 
+    The heading of a text has the numbers of base points and motions, of motions that ended early, and the reasons why a
+    result has no indices.
+
     arguments: parsed command line with
         run_file, path of a TOML file;
         n, number of base points, which is rounded up to a power of two;
-        output, path or None (standard output), and format, as of :func:`.output.deliver`; beside a file the table is
-        printed too.
+        output, path of a .txt, .csv or .nc file that is written, or None: standard output; beside a file the table is
+        printed as text too;
+        format of standard output without a file, "text", "csv" or "json".
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ...io.runs.sensitivity import sobol_indices, table

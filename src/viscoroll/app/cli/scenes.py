@@ -23,8 +23,10 @@ _V_HELP = "velocity of the axis, any sign"
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
     """Return the options that commands on a contact have in common.
 
-    kind: function that converts the text of a speed or creepage, as ``float`` or :func:`.arguments.numbers`.
-    Returns four options for :func:`.arguments.command`: (scene, --V, --delta, --omega).
+    kind: function that converts the text of a speed or creepage: ``float``, for one number, or
+        :func:`.arguments.numbers`, for one or several.
+    Returns four options for :func:`.arguments.command`: (scene, --V, --delta, --omega).  Scene and --V are required;
+    delta and omega are None where they are not given.
     """
     return (
         SCENE,
@@ -36,16 +38,18 @@ def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
 
 @command("contact", *_speeds(numbers), TABLE)
 def contact(arguments: Namespace) -> None:
-    """Print or write the state of the contact for all pairs of speed and creepage.
+    """Print or write the state of the contact for all pairs of speed and creepage (or angular velocity).
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
         V, speeds, a number or (n,), in m/s of a cylinder, dimensionless of a scene;
-        delta, creepages, a number or (m,), dimensionless, or None where omega is given;
-        omega, angular velocities, a number or (m,), in rad/s of a cylinder, or None where delta is given;
-        output, path or None (standard output), and format, as of :func:`.output.deliver`.
-    Two vectors give n x m states.
-    Raises ParameterError for values that are not allowed, and for both or none of delta and omega; FileError for a file
+        delta, creepages, a number or (m,), dimensionless, or None;
+        omega, angular velocities, a number or (m,), in rad/s of a cylinder, dimensionless of a scene, or None;
+        output, path of a .txt, .csv or .nc file that is written, or None: standard output;
+        format of standard output, "text", "csv" or "json".
+    Exactly one of delta and omega must be given.  A vector of speeds and one of creepages give n x m states, those of
+    the first speed first; a vector and a number one state for each element; two numbers one.
+    Raises ParameterError for both or none of delta and omega, and for values that are not allowed; FileError for a file
     that cannot be read or written.
     """
     import numpy as np
@@ -59,10 +63,19 @@ def contact(arguments: Namespace) -> None:
 def stress(arguments: Namespace) -> None:
     """Print or write pressure and shear stress at 101 positions from one end of the contact to the other.
 
-    arguments: parsed command line with scene, path of a TOML file or name of a preset; V, speed, and delta, creepage,
-        or omega, angular velocity, the other None: numbers, in SI units of a cylinder, else dimensionless; output, path
-        or None (standard output), and format, as of :func:`.output.deliver`.
-    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
+    The positions are equidistant and ascend in x, so that they go from the trailing to the leading end for V >= 0, and
+    from the leading to the trailing end for V < 0.
+
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V, speed, a number, in m/s of a cylinder, dimensionless of a scene;
+        delta, creepage, a number, dimensionless, or None;
+        omega, angular velocity, a number, in rad/s of a cylinder, dimensionless of a scene, or None;
+        output, path of a .txt, .csv or .nc file that is written, or None: standard output;
+        format of standard output, "text", "csv" or "json".
+    Exactly one of delta and omega must be given.
+    Raises ParameterError for both or none of delta and omega, and for values that are not allowed; FileError for a file
+    that cannot be read or written.
     """
     import numpy as np
 
@@ -87,12 +100,16 @@ def stress(arguments: Namespace) -> None:
 def roll(arguments: Namespace) -> None:
     """Integrate a motion without a drive, and print or write it.
 
+    The summary of the motion, which says how it ended, is the heading of a text; where a file is written it is printed
+    on standard output too.
+
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
-        V0 and omega0, speed and angular velocity at the start, and t, output times, a number or (n,): in SI units of a
-        cylinder, else dimensionless;
-        output, path or None (standard output), and format, as of :func:`.output.deliver`; beside a file the summary of
-        the motion is printed.
+        V0, speed of the axis at the start, a number, in m/s of a cylinder, dimensionless of a scene;
+        omega0, angular velocity at the start, a number, in rad/s of a cylinder, dimensionless of a scene;
+        t, output times, a number or (n,), in s of a cylinder, dimensionless of a scene;
+        output, path of a .txt, .csv or .nc file that is written, or None: standard output;
+        format of standard output, "text", "csv" or "json".
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     with warnings.catch_warnings():
@@ -116,13 +133,19 @@ def roll(arguments: Namespace) -> None:
 def steady(arguments: Namespace) -> None:
     """Print or write the equilibria of rolling under each load, and why a load has none.
 
-    The reasons, of at most three loads, stand above the table; where the output is a file, csv or json they are
-    warnings.
+    The reasons stand above the table, of at most three loads, and then the number of the others; where the output is a
+    file, csv or json they are warnings (ModelWarning), one for each.
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
-        force, torque, V, in SI units of a cylinder, else dimensionless, and slope, rad: numbers, (n,) or None;
-        output, path or None (standard output), and format, as of :func:`.output.deliver`.
+        force on the axis along V, in N/m of a cylinder, dimensionless of a scene;
+        torque along omega, in N m/m of a cylinder, dimensionless of a scene;
+        slope, angle in rad, positive if +V points downhill;
+        V, prescribed speed, in m/s of a cylinder, dimensionless of a scene;
+        output, path of a .txt, .csv or .nc file that is written, or None: standard output;
+        format of standard output, "text", "csv" or "json".
+    Each of force, torque, slope and V is a number, (n,) with one n for all vectors, or None where it is not given: a
+    force, torque or slope of 0, and a speed that is not prescribed.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     import numpy as np
@@ -145,10 +168,13 @@ def steady(arguments: Namespace) -> None:
     option("--omega", type=float, help="angular velocity; without it the assumption on creepage is not checked"),
 )  # fmt: skip
 def validity(arguments: Namespace) -> None:
-    """Print which assumptions of the model hold.
+    """Print which assumptions of the model hold, a line for each, on standard output.
 
-    arguments: parsed command line with scene, path of a TOML file or name of a preset; V, speed of the axis, and omega,
-        angular velocity, or None: numbers, in SI units of a cylinder, else dimensionless.
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V, speed of the axis, a number, in m/s of a cylinder, dimensionless of a scene;
+        omega, angular velocity, a number, in rad/s of a cylinder, dimensionless of a scene, or None: the assumption on
+        creepage is then not checked.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read.
     """
     print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

@@ -17,9 +17,10 @@ _GRID = (".nc", ".cdf", ".csv", ".txt", ".mat")
 
 
 def _low_high(text: str) -> tuple[float, ...]:
-    """Convert an argument LOW:HIGH to a tuple of its numbers; their count and order are checked later.
+    """Convert an argument LOW:HIGH to a tuple of its numbers; :func:`viscoroll.tables.law` checks count and order.
 
     text: the argument.
+    Returns the numbers between the colons, of which there may be more or fewer than two.
     Raises ArgumentTypeError for a part that is no number.
     """
     try:
@@ -29,7 +30,7 @@ def _low_high(text: str) -> tuple[float, ...]:
 
 
 def _print_size(path: Path) -> None:
-    """Print the name and the size of a written file.
+    """Print the name and the size of a written file, in kB of 1000 bytes, on standard output.
 
     path: path of the file.
     """
@@ -49,8 +50,9 @@ def law(arguments: Namespace) -> None:
 
     arguments: parsed command line with
         file, path of a TOML file or of the netCDF of a material, or None;
-        alpha, (low, high) of alpha, dimensionless, in place of file, or None;
+        alpha, (low, high) of alpha, dimensionless, for the law of every alpha between, or None;
         output, path that is written; its suffix is the format: .nc, .cdf, .h or .json.
+    Exactly one of file and alpha must be given.
     Raises ParameterError for both or none of file and alpha, or a range out of bounds; FileError for a file that cannot
     be read or written.
     """
@@ -76,9 +78,10 @@ def build(arguments: Namespace) -> None:
 
     arguments: parsed command line with
         scene, path of a TOML file or name of a preset;
-        V, delta and alpha, nodes of the axes, each a number or (n,), alpha None without a third axis; V is in m/s of a
-        cylinder, dimensionless of a scene, delta and alpha are dimensionless;
-        method, "table" or "direct";
+        V, nodes of the axis of speed, > 0, a number or (n,), in m/s of a cylinder, dimensionless of a scene;
+        delta, nodes of the axis of creepage, a number or (m,), dimensionless;
+        alpha, nodes of a third axis, a number or (k,), dimensionless, of a scene only, or None: two axes;
+        method, "table", the law of the scene, or "direct", roots of the equations of the paper;
         output, path that is written; its suffix is the format: .nc, .cdf, .csv, .txt or .mat.
     Raises ParameterError for nodes or a method that are not allowed, FileError for a file that cannot be read or
     written.
@@ -104,7 +107,11 @@ def info(arguments: Namespace) -> None:
 def validate(arguments: Namespace) -> int:
     """Check a table file at random points and print the differences.
 
-    arguments: parsed command line with file, path of a law or a grid; n, number of points.
+    The points are the same in every call: their seed is 0.
+
+    arguments: parsed command line with
+        file, path of a law or a grid;
+        n, number of points.
     Returns True, exit code 1, if an error is larger than the file states, else False, exit code 0.
     Raises ParameterError for n, FileError for a file that cannot be read or is no table.
     """
@@ -122,7 +129,8 @@ def export(arguments: Namespace) -> None:
 
     arguments: parsed command line with
         file, path of a folder with the results of a run, or of a law or a grid;
-        output, path that is written; its suffix is the format, .nc for results.
+        output, path that is written; its suffix is the format: .nc of results, .nc, .cdf, .h or .json of a law, .nc,
+        .cdf, .csv, .txt or .mat of a grid.
     Raises ParameterError for a suffix that the content does not have; FileError for a file that cannot be read or
     written.
     """
@@ -148,10 +156,11 @@ def export(arguments: Namespace) -> None:
 def fmu(arguments: Namespace) -> None:
     """Build an FMU of a cylinder or a law, and print the size of the file.
 
-    Of a dimensionless scene the FMU has the law alone, with a warning.
+    The numbers of a cylinder become the start values of the FMU.  Of a dimensionless scene the FMU has the law alone,
+    and a ModelWarning says that its other numbers are not used.
 
     arguments: parsed command line with
-        file, path of a TOML file with a cylinder, a material or a scene, of a law, or of the netCDF of a material;
+        file, path of a TOML file with a cylinder, a material or a scene, or of the netCDF (.nc) of a law or a material;
         model, "Roller" or "ContactElement";
         fmi, version of the standard, 2 or 3;
         output, path of the FMU that is written.

@@ -34,10 +34,11 @@ def warm_up(arguments: Namespace) -> None:
 
 
 def _calls() -> dict[str, Callable[[], Any]]:
-    """Return small calls that together use all kernels: name -> call.
+    """Return small calls that together use all kernels.
 
-    Motions use the kernels of contacts, and all motions have one integrator.  A call takes no arguments; its result is
-    not used.
+    Motions use the kernels of contacts, and all motions have one integrator.
+
+    Returns a dict, name for the progress bar -> function without arguments, whose result is not used.
     """
     from ...motion import flow
 

@@ -45,7 +45,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     path : file to write, with the suffix .fmu by custom; a file of that name is replaced.
     model : "Roller", from drive force and torque to v, omega and x: co-simulation with its own step-size control, and
         model exchange; or "ContactElement", from v, omega and load to force, torque and moments: model exchange.
-    version : version of the FMI standard, 2 or 3.
+    version : version of the FMI standard, the int 2 or 3.
 
     Raises
     ------
@@ -109,9 +109,10 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
 def _contact_length_of_cover(table: LawTable) -> float:
     """Return the contact length at rest for which the law of a cover holds, so that the FMU can refuse any other.
 
-    It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.
+    It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.  The length is
+    the thickness of the cover in m, divided by that in units of the contact length at rest.
 
-    table: a law, with ``cover`` and ``pair``, each None where it has none.
+    table: :class:`LawTable`, a law, with ``cover`` and ``pair``, each None where it has none.
     Returns the length in m; 0.0 if the FMU need not check it.
     """
     if table.cover is None or table.pair is None:
@@ -123,10 +124,13 @@ def _contact_length_of_cover(table: LawTable) -> float:
 def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, l0: float) -> dict[str, float]:
     """Return the start value of each variable that can be set, for the description and the library of the FMU.
 
+    A value comes from the Cylinder if there is one, else from the law (T_ref, E_prime), else from variables.csv.
+
     variables: variables of the model.
     given: argument ``given`` of :func:`build`; the numbers of a Cylinder become start values, for 1 m of its width.
-    table: law of ``given``, which has T_ref (s) and, of SI materials, E_prime (Pa).
-    l0: contact length at rest of a cover in m, or 0.0; the load at the start is the one that makes it.
+    table: :class:`LawTable`, law of ``given``, which has T_ref (s) and, of SI materials, a ``pair`` with E_prime (Pa).
+    l0: contact length at rest of a cover in m, or 0.0; without a Cylinder the load at the start is the one that makes
+        it, at the default radius.
     Returns name -> value in the unit of the variable, of the variables whose default start is not None.
     Raises ParameterError for a Cylinder with arrays.
     """
@@ -149,7 +153,7 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
     """Write all that ``cc fmu.c`` needs beside law.h, and return the token.
 
     folder: where law.h is, and fmu.c, vr_roll.h, the headers of the standard, stubs.h and model.h are written.
-    headers: folder of the headers of the standard.
+    headers: folder with the headers of the standard, of both versions.
     model: "Roller" or "ContactElement".
     version: version of the FMI standard, the int 2 or 3.
     constants: C text of model.h, to which the token is added.
@@ -178,6 +182,8 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
 
     variables: variables of the model, in the order of their references, which start with 1.
     starts: name -> start value in the unit of the variable; 0.0 stands for those that it does not have.
+    Returns an enum of n_NAME, the references, and COUNT, their number; and the arrays NAMES, KINDS and START, of COUNT
+    elements each, the first for time.
     """
     rows = [("time", 0, 0.0)]
     rows += [(v.name, 0 if v.start is None else 1 + v.positive, starts.get(v.name, 0.0)) for v in variables]

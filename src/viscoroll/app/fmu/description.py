@@ -29,7 +29,8 @@ def model_description(version: int, name: str, starts: dict[str, float], token: 
     name: name of the model, a key of MODELS: "Roller" or "ContactElement".
     starts: name -> start value of the variables that can be set, in their units.
     token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.
-    title: title of the law.
+    title: title of the law, which the description of the model ends with.
+    Returns the text of the XML file, with its declaration.
     """
     model = MODELS[name]
     root = Element(
@@ -86,6 +87,8 @@ def _add_variable(
 ) -> None:
     """Add a variable to modelDescription.xml.
 
+    A parameter is "tunable", if it must be above 0, else "fixed" (the speeds at the start); all others are continuous.
+
     parent: :class:`Element`, element ModelVariables.
     version: version of the FMI standard, the int 2 or 3.
     variable: variable to add; a name der_NAME makes it the rate of the variable NAME.
@@ -111,6 +114,9 @@ def _add_variable(
 def _add_structure(parent: Element, version: int, model: Model, references: dict[str, str]) -> None:
     """Add the lists of outputs, of rates of the states, and of initial unknowns, which are the two together.
 
+    A model without states has no list of rates.  In FMI 2 a list is an element with an Unknown for each member; in FMI
+    3 the members stand in ModelStructure themselves.
+
     parent: :class:`Element`, element ModelStructure.
     version: version of the FMI standard, the int 2 or 3.
     model: :class:`Model`, the model.
@@ -134,7 +140,8 @@ def _add_structure(parent: Element, version: int, model: Model, references: dict
 def build_description(name: str) -> str:
     """Return the text of sources/buildDescription.xml of FMI 3.0, by which a tool compiles the sources itself.
 
-    name: name of the model and of its library.
+    name: name of the model and of its library, "Roller" or "ContactElement".
+    Returns the text of the XML file, with its declaration.
     """
     root = Element("fmiBuildDescription", fmiVersion="3.0")
     configuration = SubElement(root, "BuildConfiguration", modelIdentifier=name)

@@ -52,7 +52,8 @@ def _read_model(name: str, text: str, *states: str) -> Model:
     """Return a model with its variables, which are read from variables.csv.
 
     name: "Roller" or "ContactElement".
-    text, states: as fields of :class:`Model`.
+    text, states: as fields of :class:`Model`; without states the model is one for model exchange alone.
+    Returns the :class:`Model`, with the rows of its name and those of "both", in the order of the file.
     """
     with (files(__package__) / "variables.csv").open(encoding="utf-8") as file:
         variables = msgspec.convert([*csv.reader(file)][1:], list[Variable], strict=False)
