@@ -47,7 +47,8 @@ def _figure_of_netcdf(path: str) -> Any:
     dimension ``motion``, a summary; else the result itself.
 
     path: path of a netCDF file.
-    Raises FileError for a file that does not exist, cannot be read, or is no netCDF.
+    Raises FileError for a file that does not exist, cannot be read, or is no netCDF; ParameterError for a dataset that
+    is no result, or has a single state.
     """
     import xarray as xr
 

@@ -14,7 +14,9 @@ from .arguments import command
 
 @command("warmup")
 def warm_up(arguments: Namespace) -> None:
-    """Compile all kernels into the cache by small calls, with a progress bar, and print their number and the time.
+    """Compile all kernels into the cache by small calls, with a progress bar on standard error.
+
+    Their number, the folder of the cache and the time are printed.  Kernels that the cache has are loaded only.
 
     arguments: parsed command line, not used.
     """

@@ -187,8 +187,8 @@ def thinned(data: _Data) -> _Data:
     on average stays so.
 
     data : a :class:`Curve` or a :class:`Relaxation`, ascending.
-    Returns a curve of the same class with one point for each of the 500 bins that has points; ``data`` itself if it has
-    no more than :data:`MOST_POINTS` points.
+    Returns a curve of the same class, ascending, with one point for each of the 500 bins that has points; ``data``
+    itself if it has no more than :data:`MOST_POINTS`, 1000, points.
     """
     if data[0].size <= MOST_POINTS:
         return data

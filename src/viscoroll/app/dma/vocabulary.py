@@ -113,9 +113,11 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
 def _quantity(name: str) -> tuple[str, str] | None:
     """Return quantity and mode of a column by its name without unit.
 
-    name : words of the heading, in any case, with signs such as ' or the Greek letters.
+    name : words of the heading, in any case, with signs such as ' or the Greek letters; of single letters T is a
+        temperature, and t a time, which is no quantity here.
     Returns (quantity, mode): a key of :data:`UNITS`; and "tension", "shear", or "" where the name does not say it.
-    None if a word is not in the vocabulary, the words together name no quantity, or both modes are named.
+    None if a word is not in the vocabulary, the words together name no quantity, both modes are named, or the text has
+    a sign of a unit, % or °.
     """
     if re.search("[%°º]", name):  # of a unit
         return None

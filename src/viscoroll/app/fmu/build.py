@@ -201,7 +201,7 @@ def _stubs(source: str, header: str, version: int) -> str:
     """Return C definitions of the functions of the standard that fmu.c leaves out, which an FMU must have all the same.
 
     A change of mode returns OK; a function that gets or sets values returns OK for none and an error for some; every
-    other one returns an error, or NULL.
+    other one returns an error, or NULL where it returns no status; void functions do nothing.
 
     source: text of fmu.c.
     header: text of the standard's header of function types.

@@ -28,7 +28,8 @@ def report(fit: Any) -> str:
     data.
 
     fit : a :class:`viscoroll.app.identification.Identification`.
-    Returns a text of several lines.  The first call computes the profiles of the intervals, about as long as the fit.
+    Returns a text of several lines, without a line break at its end.  The first call computes the profiles of the
+    intervals, which take about as long as the fit for each unknown.
     """
     width = max(map(len, fit.values))
     rows = []
@@ -122,7 +123,10 @@ def _products(found: list[Any]) -> str:
 
 
 def _product_text(product: Any) -> str:
-    """Return a product as text, as "E T_ref^0.5 = 1200 (95%: -2 % to +2 %)", the largest exponent first.
+    """Return a product as text, as "E T_ref^0.5 = 1200 (95%: -2 % to +2 %)", the exponent of largest absolute value
+    first.
+
+    The value is in SI units without their names, the ends of the interval are relative to it.
 
     product : a :class:`.profile.Product`; its interval is at the level 0.95.
     """
