@@ -231,9 +231,9 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     scale: :class:`.scale.Scale` of the roller, a unit for each quantity, numbers or, of many cylinders, (n,).  With
         that of a scene ``value`` is returned itself, unchecked.
     Returns a new value of the same kind: a float for a number (an array (n,) of many cylinders), an array, a
-    :class:`Schedule` (with values (n, k) of many cylinders), a :class:`Feedback` whose gains are divided by the unit of
-    the load over that of the speed, or a function.  Such a function takes the dimensionless time and returns
-    dimensionless arrays; the values of the caller's function are checked when it is called.
+    :class:`Schedule` (with values (n, k) of many cylinders), a :class:`Feedback`, whose gains are multiplied by the
+    unit of the speed and divided by that of the load, or a function.  Such a function takes the dimensionless time and
+    returns dimensionless arrays; the values of the caller's function are checked when it is called.
 
     Raises
     ------

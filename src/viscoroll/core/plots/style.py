@@ -75,7 +75,8 @@ def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, fl
     x, y: points of the curve, (n,).
     band: lowest and highest measured |x|; None: the curve has the style ``line`` everywhere.
     line: keyword arguments of ``Axes.plot``, the style of the line.
-    Returns the lines of matplotlib, one without a band, else the solid and the dashed one.
+    Returns the lines of matplotlib: one without a band; else the solid and the dashed one, of which only the first has
+    the label, and either may be without points.
     """
     if band is None:
         return list(axes.plot(x, y, **line))
@@ -90,7 +91,8 @@ def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, fl
 def spaced_by_factors(x: NDArray[Any]) -> bool:
     """Whether the numbers ``x``, any order, are spaced more evenly on a logarithmic axis than on a linear one.
 
-    False for fewer than three different numbers, and where one is not > 0.
+    The spacing of the different numbers is compared by its relative standard deviation, linear and logarithmic.  The
+    result is False for fewer than three different numbers, where one is not > 0, and where both spacings are as even.
     """
     points = np.unique(x)
     if points.size < 3 or points[0] <= 0.0:
@@ -123,6 +125,9 @@ def small_legend(axes: Any, **options: Any) -> None:
 def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
     """Plot quantiles over time: pairs of levels as bands, the middle one of an odd number as a line, with a legend.
 
+    A line at 0 is drawn too, and the axis is extended upwards to make room for the legend, which is left out without
+    levels.
+
     axes: axes of matplotlib, drawn into.
     t: times, (n,).
     levels: probabilities, 0 to 1, ascending, (k,).
@@ -147,7 +152,8 @@ def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
 
     name: name of the quantity, as "V".
     units: unit as "m s-1"; "1" of a dimensionless one, which is left out.
-    symbol: LaTeX without $, where the table of symbols has none; "": the name is written.
+    symbol: LaTeX without $, where the table of symbols has none; "": the name is written, with blanks for "_".
+    Returns a text as "$V$, m s$^{-1}$".  A symbol that is a ratio, as p/E', is cut at "/" if there is a unit.
     """
     symbol = SYMBOLS[name].latex if name in SYMBOLS else symbol
     # A symbol such as p/E' stands for a ratio; in SI units the quantity is p.
@@ -171,7 +177,7 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
     Parameters
     ----------
     figure : figure of matplotlib.
-    path : path of the file, whose suffix chooses the format.
+    path : path of the file, whose suffix, in small or capital letters, chooses the format; it is replaced if it exists.
 
     Raises
     ------
