@@ -40,8 +40,9 @@ class Band(NamedTuple):
 
 
 class Prediction(Values):
-    """Quantities of a record by name, as ``.Q``, each with ``.value``, ``.low`` and ``.high``, arrays over the points
-    of the record in SI units.
+    """Quantities of a record by name, as ``.Q``, each a :class:`Band` with ``.value``, ``.low`` and ``.high``.
+
+    The three are arrays over the points of the record, in SI units.
     """
 
     def __getattr__(self, name: str) -> Band:
@@ -60,21 +61,23 @@ class Identification(Result):
     values : name of each unknown -> its value, SI.
     stderr : name -> standard deviation of the value, SI, by the slopes at the best fit, limited by the ranges; infinite
         for an unknown that changes no residual.
-    correlations : of the coordinates of the unknowns, (n, n), in the order of ``values``.
-    chi2, dof : sum of the squared residuals over sigma, and its expectation, the degrees of freedom; of robust fits
-        outliers count less.
+    correlations : of the coordinates of the unknowns (logarithms of the values, or of brake, drag, nu and unknowns of
+        records the values), (unknowns, unknowns), in the order of ``values``.
+    chi2 : sum of the squared residuals, each divided by sigma, those of priors included; of robust fits outliers count
+        less.  0 of a plan.
+    dof : its expectation, the degrees of freedom: number of points and priors minus number of unknowns, >= 0.
     sigma : "QUANTITY of RECORD" -> standard deviation of each point, as given or as estimated, SI, (points,).
-    minima : list of (chi2, name -> value) of all minima near the best, the best first.
-    does_not_act : names of unknowns that do not change what was measured.
-    undetermined : names of unknowns whose interval is wider than a factor of e^2 or than half their range, and of
-        those that are correlated with these beyond 0.95; :meth:`products` gives the products that are determined.
+    minima : list of (chi2, name -> value) of the minima whose chi2 is less than 15 above the least, the best first.
+    does_not_act : names of unknowns that do not change what was measured; they stay at their start.
+    undetermined : names of unknowns whose interval at 0.95 is wider than a factor of e^2 or than half their range, and
+        of those whose correlation with these is beyond +-0.95; :meth:`products` gives the products that are determined.
     noise : "QUANTITY of RECORD" -> ``.rms`` of the residuals over sigma, ``.lag``, their lag-1 correlation,
         ``.allowed``, the largest one of noise, and ``.is_noise``; of robust fits rms and lag as a tenth of outliers
         changes them little.
     misfit : names "QUANTITY of RECORD" whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1,
         or, of robust fits, above what noise and a tenth of outliers give.  Intervals mean nothing then.
     predicted : name of each record -> :class:`Prediction` of the best fit.
-    records : the data by name.
+    records : the data: name -> record, with arrays in SI units.
     planned : whether the records have no values: standard deviations and intervals are those to expect.
 
     Examples
@@ -92,6 +95,9 @@ class Identification(Result):
 
         problem : :class:`Problem`, the least squares, with its standard deviations as estimated at the best minimum.
         found : list of :class:`Minimum`, the minima of chi2, the best first, at least one.
+
+        The attributes of the class are set but for ``predicted`` and ``undetermined``, which are computed when they are
+        first used.
         """
         self._problem, self._likelihood, (u, self.chi2) = problem, Likelihood(problem, found), found[0]
         self.values = problem.values(u)
@@ -110,7 +116,10 @@ class Identification(Result):
 
     @cached_property
     def predicted(self) -> dict[str, Prediction]:
-        """The best fit to each record with its bands at the level 0.95: name of the record -> :class:`Prediction`."""
+        """The best fit to each record with its bands at the level 0.95: name of the record -> :class:`Prediction`.
+
+        The bands are from slopes, as of :meth:`predict` with ``draws`` = 0.
+        """
         return {record_name: self._predict(record, record_name, _LEVEL) for record_name, record in self.records.items()}
 
     def _delta_chi2(self, level: float = _LEVEL) -> float:
@@ -120,6 +129,7 @@ class Identification(Result):
         and of the F distribution with (1, dof) where any sigma is estimated.
 
         level : confidence level, in (0, 0.9999].
+        Returns the rise, > 0, a float.
         Raises ParameterError for another level.
         """
         from scipy import stats
@@ -131,9 +141,11 @@ class Identification(Result):
     def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
         """Return the interval of each unknown by its profile: (low, high), None on a side that is open.
 
-        All other unknowns are free while one is varied, until chi2 has risen as ``level`` asks: 3.84 at 0.95 where
-        sigma was given, by F where it was estimated.  A side is open where it does not rise so far up to the end of the
-        range.  If another branch is found beyond an end, the interval includes it.
+        One unknown is varied while all others are fitted to each of its values, until chi2 is above its minimum by the
+        quantile of ``level``: of the chi-squared distribution with one degree of freedom, 3.84 at 0.95, or, where any
+        sigma was estimated, of the F distribution with (1, ``dof``).  A side is open where chi2 does not rise so far up
+        to the end of the range.  If another branch of the fit is found beyond an end, the interval includes it, and all
+        between.
 
         Parameters
         ----------
@@ -142,7 +154,7 @@ class Identification(Result):
         Returns
         -------
         dict of str to (float or None, float or None)
-            Name of the unknown -> (low, high) of its interval, SI units; None on a side that is open, (None, None) of
+            Name of each unknown -> (low, high) of its interval, SI units; None on a side that is open, (None, None) of
             an unknown that does not act.
 
         Raises
@@ -168,7 +180,10 @@ class Identification(Result):
 
     @cached_property
     def undetermined(self) -> tuple[str, ...]:
-        """Names of the unknowns whose interval at 0.95 is wide, and of those that are correlated with them."""
+        """Names of the unknowns whose interval at 0.95 is wide, and of those that are correlated with them.
+
+        The limits are those of the class.  Unknowns that do not act are not among them; () where all are determined.
+        """
         return tuple(self._problem.names[i] for i in self._likelihood.undetermined(self._delta_chi2()))
 
     def products(self, level: float = _LEVEL) -> list[Product]:
@@ -176,13 +191,26 @@ class Identification(Result):
         intervals.
 
         First the products that hold over the whole intervals are returned; their exponents are those on which all
-        points that fit agree best, and their intervals are profiles.  Then follow products with much narrower intervals
-        that hold near the values found only, by the slopes there.
+        points that fit agree best, and their intervals are profiles.  Then follow products that hold near the values
+        found only, by the slopes there, if their intervals are narrower than a third of the narrowest one before.
 
-        level : confidence level, in (0, 0.9999].
-        Returns a list of :class:`.profile.Product` with ``.powers``, ``.value``, ``.low`` and ``.high``, the best
-        determined first; it is empty where fewer than two unknowns are undetermined, or no product is narrow.
-        Raises ParameterError for another level.
+        Parameters
+        ----------
+        level : confidence level of the intervals of the products, in (0, 0.9999]; which unknowns are undetermined is
+            decided at 0.95.
+
+        Returns
+        -------
+        list[Product]
+            :class:`.profile.Product`, each with ``.powers`` (name -> exponent), ``.value`` (at the best fit, of SI
+            values), ``.low`` and ``.high`` (both divided by ``value``) and ``.near`` (whether it holds near the values
+            found only); of either kind the best determined first.  It is empty where fewer than two unknowns are
+            undetermined, or no product has an interval of at most a factor of e.
+
+        Raises
+        ------
+        ParameterError
+            For another level.
         """
         return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 
@@ -192,23 +220,26 @@ class Identification(Result):
         Parameters
         ----------
         record : a :class:`Resistance`, :class:`Traction` or :class:`Coastdown` with coordinates, and load and
-            temperature; a motion needs V0, which may be another than those fitted.  Its values are not used.
-        draws : number of random values of the unknowns to take the bands from, at most 100000; 0: from slopes, which
-            takes two computations an unknown.  Either by the normal law within the ranges: of what is undetermined a
-            band is a guess.
+            temperature if they differ from those of the cylinder; a motion needs numbers for V0 and t0, and for omega0
+            a number or "rolling", which may be others than those fitted.  Its values are not used.
+        draws : number of random values of the unknowns to take the bands from, at most 100000; those outside of the
+            ranges are drawn again, 50 times on average at most, and without any inside the band has no width.  0: the
+            band is from slopes, symmetric about the value, and takes two computations an unknown.  Both suppose the
+            normal law: of what is undetermined a band is a guess.
         level : confidence level of the bands, in (0, 0.9999].
         seed : seed of the draws, >= 0.
 
         Returns
         -------
         Prediction
-            ``.M`` and ``.F``, ``.Q``, or ``.V``, ``.omega`` and ``.x``, as of the kind of record, each with ``.value``,
-            ``.low`` and ``.high`` over its points, SI.
+            ``.M`` and ``.F`` of a Resistance, ``.Q`` of a Traction, or ``.V``, ``.omega`` and ``.x`` of a Coastdown,
+            each with ``.value``, ``.low`` and ``.high`` over its points, SI.
 
         Raises
         ------
         ParameterError
-            What is no record, a motion without V0, omega0 or t0, draws, level or seed out of range.
+            What is no record; a motion without V0, or with an omega0 or a t0 that is unknown; draws, level or seed out
+            of range; a temperature without a shift.
 
         Examples
         --------
@@ -233,18 +264,24 @@ class Identification(Result):
     def _predict(self, record: Record, record_name: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
         """Predict the quantities of a record, with confidence bands.
 
-        record : the record.
+        The unknowns are taken to be normal about the best fit, with the covariance of its slopes.
+
+        record : :class:`.records.Record`, the record.
         record_name : name of the record among the data, which its own unknowns bear, as V0:NAME; "" of a record that
             was not fitted.
         level : confidence level of the bands, in (0, 0.9999].
-        draws : number of random values of the unknowns from which the bands are taken; 0: from slopes at the best fit.
-            Draws outside of the ranges are rejected, so that there may be fewer.
-        seed : seed of the draws, >= 0.
+        draws : number of random values of the unknowns, of whose predictions the ends of the bands are quantiles.  Of
+            50 candidates for each those within the ranges are taken, at most ``draws``, so that there may be fewer;
+            where there are none the ends are the value itself.  0: the bands are from slopes at the best fit, the value
+            -+ its standard deviation times sqrt(:meth:`_delta_chi2`).
+        seed : seed of the draws, >= 0; not used for slopes.
         Returns the :class:`Prediction`, of all ``QUANTITIES`` of the record in SI units.
+        Raises ParameterError for another level, and ViscorollError where the model fails at the values.
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 
         def predict(u: Floats) -> Floats:
+            """Return the quantities at the coordinates u, SI, shape (quantities, *shape of the points)."""
             values = problem.predicted(record, u, record_name)
             return np.array([values[name] for name in record.QUANTITIES])
 
@@ -267,9 +304,11 @@ class Identification(Result):
     def residuals(self, values: Mapping[str, float]) -> Floats:
         """Return the residuals at values of the unknowns, for optimisers and samplers of other packages.
 
-        A residual is predicted minus measured value, divided by sigma; a motion that fails has residuals of 1e6.
+        A residual is predicted minus measured value, divided by sigma (of a plan, the value predicted at the start
+        counts as measured).  Where the values make no cylinder or no motion, all residuals of the data are 1e6,
+        which is also their largest absolute value elsewhere.
 
-        values : name -> value of unknowns, SI; others are at their start.
+        values : name -> value of unknowns, SI; others are at their start, not at the best fit.
         Returns a vector, (residuals,), dimensionless: of the records in their order, then one for each prior.
         Raises ParameterError for unknown names, and for values that the unknown cannot have.
         """
@@ -278,9 +317,12 @@ class Identification(Result):
     def jacobian(self, values: Mapping[str, float]) -> Floats:
         """Return the derivatives of :meth:`residuals` by the values, by central differences.
 
-        values : name -> value of unknowns, SI; others are at their start.
+        At an end of the range of an unknown the difference is one-sided; outside of its range it is that to the end of
+        the range, which is no derivative.
+
+        values : name -> value of unknowns, SI; others are at their start, not at the best fit.
         Returns an array, (residuals, unknowns), in one over the SI unit of each unknown, in the order of
-        ``self.values``.
+        ``self.values``; the column of an unknown that does not act is (nearly) 0.
         Raises ParameterError as :meth:`residuals` does.
         """
         J = self._problem.jacobian(self._coordinates(values))
@@ -289,7 +331,7 @@ class Identification(Result):
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
         """Return the coordinates of the unknowns that belong to values.
 
-        values : name -> value of unknowns, SI; others are at their start.
+        values : name -> value of unknowns, SI or with a unit; others are at their start.
         Returns a vector, (unknowns,): the logarithm of each value, or of linear unknowns the value in their unit.
         Raises ParameterError for unknown names, and for values that the unknown cannot have, as negative ones; values
         outside of the range of the search are allowed.
@@ -302,7 +344,11 @@ class Identification(Result):
         return np.array(found)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return title and rows of the short summary: value and standard deviation of each unknown, and chi2."""
+        """Return title and rows of the short summary.
+
+        The rows are :class:`SummaryRow`: one for each unknown with its value and standard deviation ("inf" where it
+        does not act), in SI units without their names, and the last with chi2 and the degrees of freedom.
+        """
         title = f"Identification of {len(self.values)} unknowns from {self._problem.y.size} points"
         rows = [SummaryRow(name, f"{value:.6g} +- {self.stderr[name]:.2g}") for name, value in self.values.items()]
         return title, [*rows, SummaryRow("chi2", f"{self.chi2:.1f} of {self.dof}")]

@@ -51,9 +51,9 @@ def identify(
         half-space as base_E, base_E_1; brake, a constant torque of the bearing, N m/m, and drag, a torque for each unit
         of omega, N m s/m, both >= 0; V0, omega0 and t0 of a record "run" as "V0:run".  E multiplies the whole
         relaxation curve and T_ref all its times: with mu they are all unknowns of a material that a DMA has measured.
-    data : records, :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.  All have values, or none has (a
-        plan): then the result states the standard deviations to expect if the cylinder, without a bearing, is the
-        truth.
+    data : list of records, :class:`Resistance`, :class:`Traction` and :class:`Coastdown`, or one record.  All have
+        values, or none has (a plan): then the result states the standard deviations to expect if the cylinder, without
+        a bearing, is the truth.
     prior : name -> (value, standard deviation) of unknowns that are known roughly beforehand, SI, None without; the
         standard deviation is that of the natural logarithm, dimensionless, but for brake, drag, nu and unknowns of
         records, of which it is that of the value, SI.
@@ -62,8 +62,8 @@ def identify(
         bodies differ {"material": ..., "base": ...}.
     robust : let outliers count less, as |r| in place of r^2, of data and prior.
     starts : number of searches, >= 1, the first from the cylinder, the others from points spread over the ranges; of a
-        plan only the first.
-    seed : seed of these points.
+        plan only the first.  Two more are made where the first one ends far from the cylinder.
+    seed : seed of these points, >= 0.
     progress : draw a progress bar if it takes longer than a second.
 
     Returns
@@ -74,9 +74,11 @@ def identify(
     Raises
     ------
     ParameterError
-        An unknown name, a range that does not contain the start value, more unknowns than points, records without
-        standard deviations where values are missing, records with and without values, two records of one name, a
-        temperature of a record without ``shift``.
+        Arguments of other types; a cylinder with arrays; an unknown name; a range that does not ascend or does not
+        contain the start value; no unknowns, or more of them than points and priors together (less one, where a
+        standard deviation is estimated); no records, a plan without standard deviations, records with and without
+        values, two records of one name; an open V0 or omega0 of which the record has no data; a temperature of a record
+        without ``shift``; a prior of what is no unknown; ``starts`` or ``seed`` out of range.
 
     Examples
     --------
@@ -119,8 +121,8 @@ def identify(
 def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
     """Return the records by name; those without a name get that of their kind, as "resistance", then "resistance 2".
 
-    data : records, all with values or all without.
-    Returns name -> record, in the order of ``data``.
+    data : what the caller gave, which should be records, all with values or all without.
+    Returns a dict, name -> :class:`Record`, in the order of ``data``, at least one.
     Raises ParameterError for what is no record, no records, two records of one name, a plan without sigma, and a
     mixture of data and plans.
     """
@@ -146,14 +148,17 @@ def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:
 def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> list[Minimum]:
     """Return the best minimum of chi2, and other minima that are nearly as good and lie in other valleys of chi2.
 
-    The standard deviations of ``problem`` that were not given are estimated on the way, and are those of the best
-    minimum at the end.
+    All searches but the first are rough at first; those that come within 60 of the least chi2 go on to the minimum.
+    The standard deviations of ``problem`` that were not given are estimated on the way, in place: those of the first
+    minimum weigh the searches, and those of the best minimum, at the end, weigh the chi2 that is returned.
 
-    problem : :class:`Problem`, the least squares.
-    count : number of searches, the first from the start of the problem; if that goes far, two more are added.
-    seed : seed of the other starts.
+    problem : :class:`Problem`, the least squares; its ``sigma`` is changed.
+    count : number of searches, >= 1, the first from the start of the problem; if that goes more than 0.6 in any
+        coordinate, two more are added (:func:`_starts_across_valley`).
+    seed : seed of the other starts, >= 0.
     progress : whether a progress bar is drawn on standard error, after one second.
-    Returns a list of :class:`.problem.Minimum`, the best first, each with chi2 less than 15 above it.
+    Returns a list of :class:`.problem.Minimum`, at least one, the best first, then in ascending order those whose chi2
+    is less than 15 above it, one for each valley.
     """
     from tqdm import tqdm
 
@@ -176,12 +181,14 @@ _chi2 = attrgetter("chi2")
 
 
 def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats]:
-    """Yield starts in a Latin hypercube over the ranges; unknowns of records, as V0, stay at their start.
+    """Yield starts in a Latin hypercube over the ranges of the coordinates.
+
+    Unknowns of records, as V0, and those that do not act stay at their start.
 
     problem : :class:`Problem`, the least squares.
     count : number of starts plus 1, as the first search began from the start of the problem; 1: nothing is yielded.
-    seed : seed of the hypercube.
-    Yields coordinates of a start, (unknowns,).
+    seed : seed of the hypercube, >= 0.
+    Yields coordinates of a start, (unknowns,), ``count`` - 1 times; nothing where no other unknown acts.
     """
     from scipy.stats import qmc
 
@@ -196,12 +203,14 @@ def _latin_hypercube(problem: Problem, count: int, seed: int) -> Iterator[Floats
 def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
     """Return two starts of a search, on either side of a minimum along the direction that the data determine least.
 
-    Other valleys of chi2 lie beyond ridges across that direction.
+    Other valleys of chi2 lie beyond ridges across that direction.  It is the right singular vector of the weighted
+    slopes with the least singular value.
 
     problem : :class:`Problem`, the least squares.
     u : coordinates of the minimum, (unknowns,).
-    Returns two vectors of coordinates within the ranges, (unknowns,) each; [] where the minimum is within 0.6 of the
-    start in every coordinate, and is then taken to be the only one.
+    Returns two vectors of coordinates, (unknowns,) each, 3 from the minimum in the coordinate that changes most, or at
+    the ends of the ranges; [] where the minimum is within 0.6 of the start in every coordinate, and is then taken to be
+    the only one.
     """
     if np.abs(u - problem.start).max() < _NEAR:
         return []
@@ -214,11 +223,12 @@ def _starts_across_valley(problem: Problem, u: Floats) -> list[Floats]:
 def _in_same_valley(problem: Problem, first: Minimum, other: Minimum) -> bool:
     """Return whether chi2 has no ridge between two minima, so that they count as one.
 
-    At three points between them chi2 is minimised with the coordinate that differs most fixed and all others free; a
-    ridge is a minimum 0.5 above the higher of the two.
+    At a half, a quarter and three quarters of the way chi2 is minimised with the coordinate that differs most fixed and
+    all others free; a minimum that is 0.5 or more above the higher of the two shows a ridge.
 
     problem : :class:`Problem`, the least squares.
-    first, other : the minima; True if their coordinates are the same to 0.01.
+    first, other : :class:`Minimum`, the two minima.
+    Returns True also if all coordinates are the same to 0.01, without a search.
     """
     difference = other.u - first.u
     largest = int(np.argmax(np.abs(difference)))

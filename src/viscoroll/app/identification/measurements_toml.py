@@ -48,8 +48,13 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     Raises
     ------
     FileError
-        A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with its line.
-        A file of data that cannot be read, or without a column.
+        A file that cannot be read, a misspelt key, a value of the wrong type or out of range, with its line; a [scene]
+        in place of a [cylinder]; no [unknown] or no [[data]].  A file of data that cannot be read, or without a column.
+
+    Warns
+    -----
+    ModelWarning
+        Columns of a file of data that are left out.
 
     Examples
     --------
@@ -73,10 +78,16 @@ def _record(path: Path, content: Any) -> Record:
     """Return the record of one [[data]].
 
     path : path of the TOML file, from whose folder files of data are found.
-    content : the section: kind ("resistance", "traction" or "coastdown"), file, and perhaps decimal, encoding, columns
-        (name -> heading), units (name -> unit) and fields of the record, in SI units; "unknown" stands for None.
-    Returns a :class:`Resistance`, :class:`Traction` or :class:`Coastdown`.
-    Raises FileError for unknown keys, wrong types, values that make no record, and as :func:`_columns` does.
+    content : the section as the TOML reader gives it, a dict:
+        kind, "resistance", "traction" or "coastdown";
+        file, path of the data, relative to the folder of the TOML file;
+        decimal, "." or ",", and encoding, both optional, "" for what the file shows;
+        columns, name -> heading, and units, name -> unit, both optional;
+        fields of the record but coordinates and quantities, as sigma, load or V0, in SI units, all optional; "unknown"
+        stands for None.
+    Returns a :class:`Resistance`, :class:`Traction` or :class:`Coastdown`, a plan where the file has no quantity.
+    Raises FileError for unknown keys, wrong types, values that make no record, and as :func:`_columns` does, whose
+    ParameterError becomes a FileError too.
     """
     kind = _KINDS.get(str(content.get("kind"))) if isinstance(content, dict) else None
     if kind is None:
@@ -97,15 +108,18 @@ def _record(path: Path, content: Any) -> Record:
 def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     """Read coordinates and quantities from a file of data, in SI units.
 
-    path : path of the file.
-    kind : class of the record, whose names the columns have where the section names none.
-    section : the [[data]], with ``columns``, ``units``, ``decimal`` and ``encoding``.
-    Returns name of each coordinate, and of each quantity that the file has -> values, SI, (n,).
+    path : path of the file of data.
+    kind : class of the record, whose names of coordinates and quantities the columns have where the section names none.
+    section : the [[data]] with its attributes ``columns``, name -> heading; ``units``, name -> unit in place of that of
+        the file; ``decimal`` and ``encoding``, "" for what the file shows.
+    Returns a dict, name of each coordinate, and of each quantity that the file has -> values, SI, (n,); columns without
+    a unit are taken in SI units.
 
     Raises
     ------
     FileError
-        A file that cannot be read; a column that is missing; columns that are not understood where none is a quantity.
+        A file that cannot be read; a coordinate, or a column that the section names, that is missing; other columns
+        where none is a quantity, since one of them may be; a cell that is no number.
     ParameterError
         A column whose unit has another dimension.
 

@@ -47,9 +47,9 @@ _AT_BOUND = 1e-6
 class Column(NamedTuple):
     """The residuals of one quantity of a record; its text is "QUANTITY of RECORD".
 
-    record, quantity : names.
-    at : rows of the residuals, of ``Problem.y`` and of ``Problem.sigma``.
-    estimated : whether its standard deviation is estimated from the residuals.
+    record, quantity : names of the record and of the quantity, as "run" and "V".
+    at : rows of the residuals, of ``Problem.y`` and of ``Problem.sigma``, a slice.
+    estimated : whether its standard deviation was not given, and is estimated from the residuals.
     """
 
     record: str
@@ -64,14 +64,17 @@ class Column(NamedTuple):
 class Noise(NamedTuple):
     """Statistics of the residuals of a column, by which a model that is inadequate shows.
 
-    rms : root mean square of the residuals over sigma, dimensionless.
-    lag : lag-1 correlation of the residuals in the order of the coordinates, as of the times.
+    rms : root mean square of the residuals over sigma, dimensionless; 0 of a plan.
+    lag : lag-1 correlation of the residuals in the order of the coordinates, as of the times, in [-1, 1]; 0 of a single
+        point and of a plan.
     allowed : largest lag-1 correlation of noise: three standard deviations, 3/sqrt(points).
-    is_noise : whether rms and lag are within three standard deviations of noise; residuals far below sigma may
-        correlate, and an estimated sigma makes any rms right.
+    is_noise : whether lag rms^2 <= ``allowed``, so that residuals far below sigma may correlate, and, where sigma was
+        given, rms is at most 1 + 3/sqrt(2 points).  A negative lag and a small rms count as noise, and an estimated
+        sigma makes any rms right.
 
-    Of a robust fit ``rms`` is the median of the absolute residuals over that of normal noise, and ``lag`` is the
-    correlation of the weighted residuals, which are below 1: few outliers change neither much.
+    Of a robust fit ``rms`` is the median of the absolute residuals over that of normal noise, at most 1.134 + 3.5/
+    sqrt(points), and ``lag`` is the correlation of the weighted residuals r/sqrt(1 + r^2), which are below 1: few
+    outliers change neither much.
     """
 
     rms: float
@@ -91,16 +94,17 @@ class Problem:
     """The least squares of an identification: chi2 over the coordinates of the unknowns.
 
     The coordinate of an unknown is the logarithm of its value, or of linear unknowns the value in a unit
-    (:class:`.unknowns.Unknown`).
+    (:class:`.unknowns.Unknown`); it is dimensionless.
 
-    cylinder, unknowns, records, robust, shifts : as given.
+    cylinder, unknowns, records, robust, shifts : as given to ``__init__``.
     planned : whether the records have no values.
     names : names of the unknowns.
     start, low, high : coordinates of start and bounds, shape (unknowns,).
-    y, sigma : all data and their standard deviations, SI, one column after the other, shape (n,); those of a plan are
-        the predictions at the start.
-    columns : the columns of y.
-    points : number of data and priors.
+    y : all data, SI, one column after the other, shape (n,); of a plan the predictions at the start.
+    sigma : their standard deviations, SI, shape (n,).  Those that were not given begin at 1e-3 of the standard
+        deviation of the values of their column; :meth:`estimate_sigma` changes them.
+    columns : list of :class:`Column`, the columns of y.
+    points : number of residuals: n data, and one for each prior.
     active : indices of the unknowns that are varied, ascending; the others change no residual and stay at their start.
     """
 
@@ -110,11 +114,13 @@ class Problem:
     ) -> None:  # fmt: skip
         """Collect the data of all records and find the active unknowns.
 
-        cylinder : cylinder with the values that are fixed.
+        cylinder : :class:`Cylinder` with the values that are fixed.
         unknowns : list of :class:`Unknown`, with start, range and prior.
-        records : name -> record; all of them have values, or none.
+        records : name -> :class:`.records.Record`; all of them have values, or none.
         robust : whether outliers count less.
-        shifts : "material" or "base" -> shift factor a_T over temperature in degrees Celsius.
+        shifts : "material" or "base" -> function of the temperature in degrees Celsius that returns a_T; {} where no
+            record has a temperature.
+        Raises ViscorollError where the records are a plan and the start makes no cylinder or no motion.
         """
         self.cylinder, self.unknowns, self.records, self.shifts = cylinder, unknowns, records, shifts
         self.robust, self.names = robust, [unknown.name for unknown in unknowns]
@@ -137,12 +143,13 @@ class Problem:
         self.active = self._find_active()
 
     def _find_active(self) -> list[int]:
-        """Return the unknowns that change a residual at the start or at one of four other points, drawn over the
-        ranges.
+        """Return the unknowns that change the residuals at the start or at one of four other points, drawn over the
+        middle half of the ranges with a fixed seed.
 
-        Others would make the least squares singular.
+        An unknown changes them if the vector of their derivatives by its coordinate has a norm of at least 0.01; one
+        with a prior nearly always does, since its prior is a residual.  Others would make the least squares singular.
 
-        Returns indices of these unknowns, ascending.
+        Returns a list of the indices of these unknowns, ascending; [] where none acts.
         """
         rng, middle = np.random.default_rng(0), 0.5 * (self.low + self.high)
         others = middle + 0.25 * (self.high - self.low) * rng.uniform(-1.0, 1.0, (4, middle.size))
@@ -162,21 +169,26 @@ class Problem:
     def predicted(self, record: Record, u: Floats, record_name: str = "") -> dict[str, Floats]:
         """Return the prediction of a record.
 
-        record : the record.
+        record : :class:`.records.Record`, the record, of these data or another one.
         u : coordinates of the unknowns, (unknowns,).
-        record_name : name of the record, by which its own unknowns are found; "" of a record that was not fitted.
+        record_name : name of the record, by which its own unknowns are found, as V0 by "V0:NAME"; "" of a record that
+            was not fitted, which must have numbers for them.
         Returns quantity -> values, SI units, in the shape of the coordinates of the record; of a motion also "slips",
         truth values.
+        Raises ViscorollError where the coordinates make no cylinder or no motion.
         """
         values = self.values(u)
         own = {name.removesuffix(f":{record_name}"): value for name, value in values.items()}
         return record.model(cylinder_of(self.cylinder, values, record, self.shifts), own)
 
     def _predict_all(self, u: bytes) -> Floats:
-        """Return the predictions of all data, in the order of ``y``; the last 16 results are kept.
+        """Return the predictions of all data, in the order of ``y``.
 
-        u : coordinates of the unknowns as bytes, which the cache can look up.
-        Returns values in SI units, shape (n,); all are NaN where the coordinates make no cylinder or no motion.
+        It is called through ``self._model``, a cache of the last 16 results.  Warnings are suppressed, since a search
+        passes through values of which the model warns.
+
+        u : coordinates of the unknowns, (unknowns,), as the bytes of the float64 array, which the cache can look up.
+        Returns values in SI units, shape (n,); all n are NaN where any record makes no cylinder or no motion.
         """
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
@@ -186,11 +198,11 @@ class Problem:
         return np.full(self.y.size, np.nan)
 
     def residuals(self, u: Floats) -> Floats:
-        """Return the residuals, predicted minus measured value over sigma, of the data, then of the priors.
+        """Return the residuals: (predicted - measured)/sigma of the data, then (u - mean)/sd of each prior.
 
         u : coordinates of the unknowns, (unknowns,).
-        Returns shape (points,), dimensionless; each is :data:`FAILED` where there is no prediction, and is not beyond
-        it.
+        Returns shape (points,), dimensionless.  Residuals of the data are within -+:data:`FAILED`, 1e6, and that number
+        where there is no prediction; those of priors are not limited.
         """
         r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAILED), -FAILED, FAILED)
         return np.append(r, ((u - self._mean) / self._sd)[self._has_prior])
@@ -201,10 +213,12 @@ class Problem:
         """Return the derivatives of a function of the coordinates by some of them, by differences within the ranges.
 
         function : function that takes coordinates, (unknowns,), and returns an array, as the residuals, (points,).
-        u : coordinates at which the derivatives are taken, (unknowns,).
+        u : coordinates at which the derivatives are taken, (unknowns,); for a coordinate outside of its range the
+            difference is that to the end of the range, which may be far.
         which : indices of the coordinates by which they are taken.
-        step : step of central differences; any other step than :data:`_STEP` is taken to one side.  At a bound a step
-            ends there.
+        step : length of a step of a coordinate.  :data:`_STEP`, the default, is taken to both sides; any other one
+            upwards alone, and downwards too where the upper end of the range is nearer than the step.  A step ends at
+            the end of the range.
         Returns shape (points, which); of a function whose result has several axes these are in reverse order, before
         that of ``which``.
         """
@@ -233,9 +247,9 @@ class Problem:
         return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
 
     def weighted(self, u: Floats) -> tuple[Floats, Floats]:
-        """Return the residuals and their derivatives, each row multiplied by the square root of its weight in chi2.
+        """Return the residuals r and their derivatives, each row multiplied by the square root of its weight.
 
-        The weight is 1, in a robust fit 1/sqrt(1 + r^2).
+        The weight is 1, in a robust fit 1/sqrt(1 + r^2): with it the slope of chi2 is that of ordinary least squares.
 
         u : coordinates of the unknowns, shape (unknowns,).
         Returns (residuals, (points,); derivatives with respect to the coordinates, (points, unknowns)), dimensionless.
@@ -248,11 +262,14 @@ class Problem:
         """Find the minimum of chi2 near a point, within the ranges, by the least squares of SciPy.
 
         u : coordinates of the point, (unknowns,); those outside of the ranges are moved to their ends.
-        fixed : powers p of the combination sum(p u) that keeps its value at u, (unknowns,); None: all coordinates are
-            free.
+        fixed : powers p of the combination sum(p u) that keeps its value at u, (unknowns,).  A single coordinate (one
+            power that is not 0) is left out of the search; a combination of several is kept by a residual of large
+            weight, as far as the ranges allow.  None: all active coordinates are free.
         tolerance : relative tolerance of chi2, coordinates and gradient.
-        steps : largest number of evaluations of the residuals; beyond it the best point found is returned.
-        Returns the :class:`Minimum`; unknowns that are not active stay at u.
+        steps : largest number of evaluations of the residuals, those for derivatives not counted; beyond it the best
+            point found is returned.
+        Returns the :class:`Minimum`, whose chi2 is without the residual of large weight.  Unknowns that are not active
+        stay at u; where no coordinate is free all do.
         """
         from scipy.optimize import least_squares
 
@@ -285,12 +302,15 @@ class Problem:
         return Minimum(whole, self.cost(whole))
 
     def estimate_sigma(self, best: Minimum) -> Minimum:
-        """Estimate each standard deviation that was not given from its residuals and fit again, until both converge.
+        """Estimate the standard deviations that were not given from their residuals and fit again, in turns.
 
-        ``sigma`` is changed in place; there are at most 20 rounds, and none where all standard deviations were given.
+        A column has one standard deviation: the root mean square of its residuals, corrected for the active unknowns,
+        or in a robust fit their median absolute value over that of normal noise.  The rounds end when no standard
+        deviation changes by 0.1 %, at the latest after 20; there are none where all standard deviations were given.
+        ``sigma`` is changed in place.
 
         best : :class:`Minimum`, minimum with the present standard deviations.
-        Returns the minimum with the estimated ones; ``best`` itself if none is estimated.
+        Returns the :class:`Minimum` with the estimated ones; ``best`` itself if none is estimated.
         """
         estimated = [column for column in self.columns if column.estimated]
         for _ in range(_ROUNDS if estimated else 0):
@@ -309,7 +329,7 @@ class Problem:
         """Return statistics of the residuals of each column, by which a model that is inadequate shows.
 
         u : coordinates of the unknowns, (unknowns,).
-        Returns "QUANTITY of RECORD" -> :class:`Noise`.
+        Returns a dict, "QUANTITY of RECORD" -> :class:`Noise`, in the order of ``columns``.
         """
         found, r = {}, self.residuals(u)
         for column in self.columns:

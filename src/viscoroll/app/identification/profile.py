@@ -53,11 +53,14 @@ _SHARPER = 1.0 / 3.0
 class Profile(NamedTuple):
     """The confidence interval of a combination of coordinates, sum(powers u), by a profile of chi2.
 
-    ends : [lower, upper end] of the combination, in its units; None on a side that is open.
-    limited_by : for each end the names of unknowns whose range, not the data, limits it; [] of an open side.
-    pieces : whether another branch of the fit continued the interval.
-    best : the point with the least chi2 that was met.
-    within : all points met that fit (chi2 within the bound above the best), coordinates, shape (k, unknowns).
+    ends : [lower, upper end] of the combination itself, not of its distance from the best; dimensionless.  None on a
+        side that is open: chi2 stays below the bound up to the end of the ranges.
+    limited_by : two lists, one for each end, of the names of unknowns whose range, not the data, limits that end; [] of
+        an open side, and where the data alone limit it.
+    pieces : whether another branch of the fit continued the interval; chi2 may then be above the bound inside it.
+    best : :class:`.problem.Minimum`, the point with the least chi2 that was met, perhaps below that of the best fit.
+    within : coordinates of all points met whose chi2 is at most the bound above that of the best fit, shape (k,
+        unknowns), k >= 1, since the best fit is one of them.
     """
 
     ends: list[float | None]
@@ -70,10 +73,14 @@ class Profile(NamedTuple):
 class Product(NamedTuple):
     """A product of powers of unknowns that the data determine where they cannot tell these apart.
 
-    powers : name of unknown -> exponent; those of brake, drag, V0, omega0 and t0 hold near the values found.
-    value : value of the product, of SI values.
-    low, high : ends of its interval, divided by ``value``.
-    near : whether this holds by slopes, within about a fifth of the values found, and other exponents farther off.
+    Attributes
+    ----------
+    powers : name of unknown -> exponent, of the unknowns whose power is not 0.  Exponents of unknowns with a linear
+        coordinate (brake, drag, nu, V0, omega0 and t0) hold near the values found only.
+    value : value of the product at the best fit, of SI values.
+    low, high : ends of its interval, divided by ``value``, dimensionless: low <= 1 <= high.
+    near : True: the interval is by the slopes at the best fit, and the product holds within about a fifth of the values
+        found; farther off other exponents hold.  False: the interval is a profile.
     """
 
     powers: dict[str, float]
@@ -86,21 +93,26 @@ class Product(NamedTuple):
 class Likelihood:
     """chi2 about the best of the minima: covariance, intervals, and products of unknowns.
 
-    problem : the least squares.
-    best : the best minimum.
+    Coordinates are those of :class:`.unknowns.Unknown`, dimensionless: logarithms of values, or values in a unit.
+
+    problem : :class:`.problem.Problem`, the least squares.
+    best : :class:`.problem.Minimum`, the best minimum.
     cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns).
-    sd : standard deviations of the coordinates, shape (unknowns,).
-    correlations : correlations of the coordinates, shape (unknowns, unknowns).
-    others : other minima and the start of the fit, (unknowns,) each, from which other branches of the fit are searched.
-    ends : points at the ends of all intervals, (unknowns,) each, further starts of that search; empty until an interval
-        is open.
+    sd : standard deviations of the coordinates, shape (unknowns,); of an unknown that does not act that of a uniform
+        distribution over its range.
+    correlations : correlations of the coordinates, shape (unknowns, unknowns), 1 on the diagonal.
+    others : coordinates of other minima and of the start of the fit, (unknowns,) each, from which other branches of the
+        fit are searched; those within 1e-6 of the best are left out.
+    ends : coordinates of points at the ends of all intervals, (unknowns,) each, further starts of that search; empty
+        until :meth:`axes` meets an open interval.
     """
 
     def __init__(self, problem: Problem, found: list[Minimum]) -> None:
         """Compute the covariance at the best minimum.
 
-        To the inverse covariance of the data that of a uniform distribution over the range of each unknown is added,
-        which bounds the standard deviation of what the data leave open.
+        To the inverse covariance of the data, J^T J of the weighted slopes, the inverse variance 12/(high - low)^2 of a
+        uniform distribution over the range of each coordinate is added: it bounds the standard deviation of what the
+        data leave open.
 
         problem : :class:`Problem`, the least squares.
         found : list of :class:`Minimum`, the best first, at least one.
@@ -118,12 +130,15 @@ class Likelihood:
         """Return the interval of a combination of coordinates within which chi2 rises by no more than a bound.
 
         The combination is the sum of the coordinates, each times its power.  As most coordinates are logarithms of
-        unknowns, it is the logarithm of a product of powers.  The range in which chi2 is below the bound may consist of
-        several pieces; therefore the search continues beyond the ends of the first one, from other minima, the start,
-        and the ends of other unknowns.  Results are kept until ``ends`` changes.
+        unknowns, it is the logarithm of a product of powers.  chi2 at a value of the combination is its minimum over
+        everything else.  The range in which chi2 is below the bound may consist of several pieces, so that an end of
+        the first piece need not be the end of the interval: :meth:`ProfileWalk.profile` therefore searches beyond it,
+        from ``others`` and ``ends``.  A result is kept for the next call with the same arguments, until ``ends``
+        changes.
 
-        powers : powers of the coordinates, shape (unknowns,).
-        delta_chi2 : the bound: largest chi2 minus that of the best minimum, dimensionless, > 0.
+        powers : powers of the coordinates, shape (unknowns,), at least one of them not 0; those of unknowns that do not
+            act are 0.
+        delta_chi2 : the bound: chi2 at an end of the interval minus chi2 of the best minimum, dimensionless, > 0.
         Returns the :class:`Profile`.
         """
         return self._profiles(delta_chi2, *powers.tolist())
@@ -131,11 +146,12 @@ class Likelihood:
     def axes(self, delta_chi2: float) -> dict[int, Profile]:
         """Return the profile of each active unknown by itself.
 
-        Where a side is open, all are computed again with the ends of the others as further starts, which ``ends``
-        keeps.
+        The first time that any side of any interval is open, the two outermost points of each interval are added to
+        ``ends``, and all profiles are computed again with these further starts; later calls do not repeat this.
 
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        Returns index of the unknown -> :class:`Profile`, whose ends are those of its coordinate.
+        Returns a dict, index of the unknown -> :class:`Profile`, whose ends are those of its coordinate; unknowns that
+        do not act are not in it.
         """
         found = {i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active}
         if self.ends or not any(None in profile.ends for profile in found.values()):
@@ -149,10 +165,12 @@ class Likelihood:
     def undetermined(self, delta_chi2: float) -> list[int]:
         """Return the indices of unknowns with a wide interval, and of those that are correlated with them.
 
-        An interval of a coordinate is wide above 2 (a factor of e^2) or half of the range; correlated is beyond 0.95.
+        An interval of a coordinate is wide if it is longer than 2 (a factor of e^2 of a value whose coordinate is a
+        logarithm) or than half of the range; an open side counts up to the end of the range.  Two unknowns are
+        correlated if the absolute value of their correlation is above 0.95.
 
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        Returns the indices, ascending; [] where all are determined.
+        Returns a list of indices, ascending, without unknowns that do not act; [] where all others are determined.
         """
         wide = []
         for i, profile in self.axes(delta_chi2).items():
@@ -165,12 +183,14 @@ class Likelihood:
     def products(self, which: list[int], delta_chi2: float) -> list[Product]:
         """Return the products of powers of undetermined unknowns that the data determine.
 
-        They are found by the points that fit, or if those give none by the slopes at the best; then those are added
-        that hold near the best alone but are much narrower.
+        Their exponents are found by the points that fit, or, if those give no product, by the slopes at the best fit;
+        their intervals are profiles.  Then products by the slopes are added whose intervals by the slopes are narrower
+        than a third of the narrowest interval before (any, if there is none): they hold near the best fit alone.
 
-        which : indices of the undetermined unknowns.
+        which : indices of the undetermined unknowns, ascending, as of :meth:`undetermined`.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        Returns a list of :class:`Product`; [] for fewer than two unknowns, or where no product is determined.
+        Returns a list of :class:`Product`, those with ``near`` False first, the best determined first in each part; []
+        for fewer than two unknowns, or where no product is determined.
         """
         if len(which) < 2:
             return []
@@ -188,9 +208,10 @@ class Likelihood:
 
         family : powers of the coordinates of each product, shape (unknowns,) each, the best determined first.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        near : whether intervals are by slopes at the best, else by profiles.
-        Returns a list of :class:`Product`, in the order of the family, [] where the first is open or wider than a
-        factor of e.
+        near : True: an interval is the best value -+ sqrt(delta_chi2) standard deviations by the slopes at the best
+            fit; False: it is a profile.  The products get the same ``near``.
+        Returns a list of :class:`Product`, in the order of the family, whose intervals are at most a factor of e wide;
+        [] where that of the first is open or wider.
         """
         found, values = [], self.problem.values(self.best.u)
         for powers in family:
@@ -209,12 +230,14 @@ class Likelihood:
     def _combinations_by_points(self, which: list[int], delta_chi2: float) -> Iterator[Floats]:
         """Yield combinations of unknowns on which the points that fit agree best, by their principal axes.
 
-        Exponents are rounded as far as the points keep nearly the same spread.
+        A simple exponent is easier to read than an exact one: powers are rounded to whole numbers, halves, tenths or
+        hundredths, the coarsest with which the range of the combination over the points at most doubles, or to
+        hundredths where it does so with none.
 
         which : indices of the unknowns among all, ascending.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0: within it points fit.
-        Yields powers of the coordinates, shape (unknowns,), the largest 1 and those of other unknowns 0; the best
-        determined combination first.
+        Yields as many combinations as ``which`` has indices, the best determined first: powers of the coordinates,
+        shape (unknowns,), that of largest absolute value 1, and those of unknowns outside of ``which`` 0.
         """
         axes = self.axes(delta_chi2)
         within = np.concatenate([axes[i].within for i in which])[:, which]
@@ -229,7 +252,8 @@ class Likelihood:
         """Yield combinations of unknowns by the principal axes of their covariance, the best determined first.
 
         which : indices of the unknowns among all, ascending.
-        Yields powers of the coordinates, shape (unknowns,), rounded to 0.01, the largest 1.
+        Yields as many combinations as ``which`` has indices: powers of the coordinates, shape (unknowns,), rounded to
+        0.01, that of largest absolute value 1, and those of unknowns outside of ``which`` 0.
         """
         for v in np.linalg.eigh(self.cov[np.ix_(which, which)])[1].T:
             yield np.round(v / v[np.argmax(np.abs(v))], 2) @ np.eye(self.best.u.size)[which]
@@ -239,13 +263,15 @@ class ProfileWalk:
     """A profile of chi2: minima with a combination of coordinates fixed, each from the one before.
 
     The combination at a point u is sum(powers u); its distance is this minus the same at the best minimum, signed.
+    Coordinates, combination and distance are dimensionless.
 
-    likelihood, problem, best : chi2 about the best minimum, the least squares, and the best minimum.
+    likelihood, problem, best : :class:`Likelihood`, chi2 about the best minimum; :class:`.problem.Problem`, the least
+        squares; :class:`.problem.Minimum`, the best minimum.
     powers : powers of the combination, shape (unknowns,).
     delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
     sd : standard deviation of the combination by slopes.
     slope : change of the coordinates with the combination, along the covariance, shape (unknowns,).
-    visited : minima that were found.
+    visited : list of :class:`.problem.Minimum`, all minima that were found, the best one first.
     """
 
     def __init__(self, likelihood: Likelihood, powers: Floats, delta_chi2: float) -> None:
@@ -268,7 +294,8 @@ class ProfileWalk:
         return float(self.powers @ (u - self.best.u))
 
     def shift_to(self, d: float, u: Floats) -> Floats:
-        """Return a point moved along the covariance to a distance of the combination from that at the best minimum.
+        """Return a point moved along the covariance until its combination has a given distance from that at the best
+        minimum.
 
         d : the distance, signed.
         u : coordinates of the point, (unknowns,).
@@ -280,26 +307,29 @@ class ProfileWalk:
         """Return the minimum of chi2 with the combination fixed, and add it to ``visited``.
 
         d : distance of the combination from that at the best minimum, signed.
-        u : coordinates from which the search starts, moved to that distance, (unknowns,).
+        u : coordinates from which the search starts, (unknowns,); they are moved to that distance first.
+        Returns the :class:`.problem.Minimum`, within the ranges, to a relative tolerance of 1e-5, or the best point
+        that 30 evaluations found.
         """
         self.visited.append(self.problem.minimize(self.shift_to(d, u), self.powers, _TOLERANCE, _EVALUATIONS))
         return self.visited[-1]
 
     def is_below(self, minimum: Minimum, part: float = 1.0) -> bool:
-        """Return whether the rise of chi2 from the best minimum to another is below a part of the bound ``delta_chi2``.
+        """Return whether the rise of chi2 from the best minimum to another point is below part * ``delta_chi2``.
 
-        minimum : the other minimum.
-        part : factor of the bound, dimensionless.
+        minimum : :class:`.problem.Minimum`, the other point with its chi2; only its chi2 is used.
+        part : factor of the bound, dimensionless, > 0.
         """
         return minimum.chi2 - self.best.chi2 < part * self.delta_chi2
 
     def profile(self) -> Profile:
         """Find both ends of the interval, by minima of chi2 with the combination fixed.
 
-        On each side the search goes on beyond the end, at most three times, where another branch of the fit continues
-        the interval.
+        On each side the search goes on beyond the end where another branch of the fit continues the interval, at most
+        three times; the end is then that of the last branch.
 
-        Returns the :class:`Profile`.
+        Returns the :class:`Profile`.  A side on which chi2 stays below the bound up to the end of the ranges has the
+        end None.
         """
         problem, ends, limits, pieces = self.problem, [], [], False
         for near, far in ((problem.low, problem.high), (problem.high, problem.low)):
@@ -318,9 +348,13 @@ class ProfileWalk:
     def find_end(self, reach: float, start: Minimum) -> tuple[float | None, Minimum]:
         """Find the distance of the combination at which chi2 has risen to the bound.
 
-        reach : distance of the bound of the ranges from the best minimum; its sign is that of the side.
+        The search goes from the start in steps until chi2 is above the bound, then by Brent's method; the root of the
+        rise of chi2 meets that of the bound to about 0.3 %.  All minima on the way are added to ``visited``.
+
+        reach : distance of the end of the ranges from the best minimum, signed: the search goes towards it.
         start : :class:`Minimum`, a minimum at which chi2 is below the bound.
-        Returns (the signed distance, None if chi2 stays below up to ``reach``; the minimum there).
+        Returns (the signed distance, or None if chi2 stays below the bound up to ``reach``; the :class:`Minimum` found
+        nearest to it, or that at ``reach``).
         """
         from scipy.optimize import brentq
 
@@ -328,10 +362,10 @@ class ProfileWalk:
         step, found = min(goal * self.sd, _FIRST_STEP), {d: start}
 
         def excess(d: float) -> float:  # the root of the rise is proportional to the distance near the best
-            """Return the root of the rise of chi2 at the distance d minus the root of the bound; 0.0 where they are
-            nearly equal.
+            """Return the root of the rise of chi2 at the distance d minus the root of the bound, dimensionless.
 
-            The root of the rise is proportional to the distance near the best.
+            A minimum that is not in ``found`` yet is computed, from a point on the line through the two nearest ones,
+            and added.  A rise below 0 counts as 0; the result is 0.0 where the two roots are equal to 0.3 %.
             """
             if d not in found:
                 b, *more = sorted(found, key=lambda b: abs(d - b))
@@ -353,11 +387,16 @@ class ProfileWalk:
         return end, found[min(found, key=lambda d: abs(d - end))]
 
     def search_beyond(self, d: float, reach: float) -> list[Minimum]:
-        """Search other minima of chi2 that continue the interval between one of its ends and the bound of the ranges.
+        """Search other minima of chi2 that continue the interval between one of its ends and the end of the ranges.
+
+        Starts are the points of ``likelihood.others`` and ``likelihood.ends``, moved to the end of the interval or
+        beyond it; those at which chi2 is more than 1000 bounds above the best are left out.  All minima found are added
+        to ``visited``.
 
         d : signed distance of the combination at the end of the interval from that at the best minimum.
-        reach : the same at the bound of the ranges.
-        Returns the minima whose rise of chi2 is below _LOWER delta_chi2, the farthest from the best last; [] if none.
+        reach : the same at the end of the ranges.
+        Returns a list of :class:`Minimum` whose rise of chi2 is below 0.98 of the bound, the farthest from the best
+        last; [] if none.
         """
         found, problem = [], self.problem
         starts = [(u, _BEYOND) for u in self.likelihood.others] + [(u, _BEYOND[:1]) for u in self.likelihood.ends]
@@ -373,10 +412,12 @@ class ProfileWalk:
     def limiting_bounds(self, u: Floats) -> list[str]:
         """Return the names of unknowns at a bound beyond which chi2 would fall, with the combination fixed.
 
-        Such a bound, not the data, limits the interval.
+        Such a bound, not the data, limits the interval.  Unknowns of the combination itself are left out.
 
-        u : coordinates at the end of an interval, (unknowns,); whether chi2 would fall is decided by its slopes there.
-        Returns a list of names, [] where no unknown lies at a bound.
+        u : coordinates at the end of an interval, (unknowns,).
+        Returns a list of names, of those unknowns without whose bound chi2 would fall by more than 2 % of
+        ``delta_chi2``, all other unknowns free, by the slopes at u; [] where no unknown lies at a bound, or none limits
+        the interval.
         """
         problem = self.problem
         if not (at := [i for i in problem.at_bounds(u) if not self.powers[i]]):

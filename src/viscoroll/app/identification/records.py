@@ -42,13 +42,13 @@ class Record:
     It is the base of :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.
 
     COORDINATES : names of the coordinates of the points, as V or t.
-    QUANTITIES : names of what may be measured at the points; a record that has none of them is a plan, about the
-        first.
+    QUANTITIES : names of what may be measured at the points; a record that has none of them is a plan: a test that is
+        to be made, whose accuracy is computed before.
     LABEL : kind of record, its name in messages.
-    sigma : as given, then quantity -> standard deviations in its SI unit, in the shape of the points; None in place of
-        these where they are to be estimated.
+    sigma : as given by the caller a number, an array, a dict or None; after ``__post_init__`` a dict, quantity ->
+        standard deviations in its SI unit, in the shape of the points, or None where they are to be estimated.
     load, temperature, name : as of :class:`Resistance`.
-    labels : labels of xarray or pandas of the arrays that were given; None without.
+    labels : :class:`Labels` of xarray or pandas of the arrays that were given; None without.
     """
 
     #: names of places and of what may be measured there, the first what a plan is about
@@ -66,13 +66,19 @@ class Record:
     def __post_init__(self) -> None:
         """Check the fields, convert them to SI units, and replace them by the results.
 
-        Coordinates and values become arrays of one shape, at least one-dimensional.  ``sigma``, given as one number,
-        array or mapping, becomes a dict: quantity -> array of that shape, or None where it is to be estimated.
-        ``load``, ``temperature``, and ``m``, ``V0``, ``omega0`` of those records that have them, become floats; None
-        and omega0 = "rolling" stay.
-        Raises ParameterError for values that are not finite, of another unit, of no points, or of shapes that do not go
-        together, for sigma, load or m <= 0, for a quantity in sigma that the record does not have, and for a name that
-        is no text or has a colon.
+        Coordinates and values become float64 arrays of one shape, at least one-dimensional; quantities that were not
+        measured stay None.  ``sigma`` is given as a number or an array, of the one quantity that was measured, as a
+        dict, quantity -> number or array, or as None.  It becomes a dict: of data quantity -> array of that shape, or
+        None where the standard deviation is to be estimated, for every quantity measured; of a plan for those given
+        alone, so that it is {} where none is.  ``load`` (N/m), ``temperature`` (degrees Celsius), and ``m`` (kg/m),
+        ``V0`` (m/s), ``omega0`` (rad/s) of a :class:`Coastdown`, become floats; None and omega0 = "rolling" stay.
+        ``labels`` is set to those of the arrays, or None.
+
+        Raises ParameterError for values that are not numbers, not finite, of another unit, of no points, or of shapes
+        that do not broadcast; for values or sigma at more points than the coordinates have; for sigma, load or m that
+        are not > 0; for temperature, V0 or omega0 that is no finite number; for one sigma where several quantities are
+        measured, and for a quantity in sigma that the record does not have or did not measure; for a name that is no
+        text or has a colon.
         """
         if not isinstance(self.name, str) or ":" in self.name:
             raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
@@ -108,11 +114,13 @@ class Record:
     def _sigmas(self) -> dict[str, Any]:
         """Return the standard deviations by quantity, from a single one or from a mapping.
 
-        A single one is of the quantity that is measured or, in a plan, of the first quantity.
+        A single one (a number, or an array over the points) is of the quantity that is measured or, in a plan, of the
+        first of :attr:`QUANTITIES`.
 
-        Returns quantity -> standard deviation as given, a number, an array or one with a unit; {} where none is given.
-        Raises ParameterError for a single one where several quantities are measured, and for a quantity that the record
-        does not have.
+        Returns a dict, quantity -> standard deviation as given and not checked, a number, an array or one with a unit;
+        quantities without one are left out, {} where none is given.
+        Raises ParameterError for a single one where several quantities are measured, and for a quantity that was not
+        measured or, in a plan, that the record does not have.
         """
         among, given = self.measured or self.QUANTITIES, {} if self.sigma is None else self.sigma
         if not isinstance(given, Mapping):
@@ -145,12 +153,13 @@ class Record:
         return {}
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Return all :attr:`QUANTITIES` of the record as the model predicts them.
+        """Return all :attr:`QUANTITIES` of the record as the model predicts them; each kind of record does this itself.
 
-        cylinder : the cylinder with the present values of the unknowns.
+        cylinder : :class:`Cylinder` with the present values of the unknowns.
         values : name -> value of the unknowns of bearing and record, without the name of the record: "brake" in N m/m,
             "drag" in N m s/m, "V0", "omega0", "t0"; those that are missing are 0 or as the record has them.
-        Returns quantity -> values in SI units, in the shape of the points of the record.
+        Returns a dict, quantity -> values in SI units, in the shape of the points of the record.
+        Raises NotImplementedError here, in the base class.
         """
         raise NotImplementedError
 
@@ -194,11 +203,13 @@ class Resistance(Record):
     F: Numbers | None = None
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Predict rolling moment and pulling force, the torque of the bearing included.
+        """Predict rolling moment and pulling force of free rolling, the torque of the bearing included.
+
+        The moment is M of the contact at delta = 0, plus sign(V) brake + drag V/R; it is 0 at V = 0.
 
         Parameters
         ----------
-        cylinder : the cylinder with the present values of the unknowns.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
         values : name -> value of "brake", N m/m, and "drag", N m s/m, each 0 where it is missing; other names are not
             used.
 
@@ -243,11 +254,11 @@ class Traction(Record):
     Q: Numbers | None = None
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
-        """Predict the traction.
+        """Predict the traction, the Q of the contact at the speeds and creepages of the record.
 
         Parameters
         ----------
-        cylinder : the cylinder with the present values of the unknowns.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
         values : not used: bearing and record have no unknowns that change the traction.
 
         Returns
@@ -303,7 +314,8 @@ class Coastdown(Record):
     def __post_init__(self) -> None:
         """Check times and t0 beside all that every record checks; t0 becomes a float or a pair of floats, s.
 
-        Raises ParameterError for times that fall or are no vector, and for a t0 that is neither a number nor a pair.
+        Raises ParameterError as :meth:`Record.__post_init__` does, for times that fall (equal ones are allowed) or are
+        no vector, and for a t0 that is neither one finite number nor two; whether two ascend is checked by the fit.
         """
         super().__post_init__()
         t: Any = self.t
@@ -322,10 +334,10 @@ class Coastdown(Record):
         """Return the unknowns of the release with their initial values.
 
         R : radius of the cylinder, m.
-        Returns name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high) where the record
-        leaves it open, None where it gives it), in s, m/s and rad/s.  A t0 that is open starts at 0, or at the end of
-        its range nearest to 0.
-        Raises ParameterError where an open start does not show in the data.
+        Returns a dict, name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high) where the
+        record leaves it open, None where it gives it), in s, m/s and rad/s.  A t0 that is open starts at 0, or at the
+        end of its range nearest to 0; V0 and omega0 as :meth:`_first` says.
+        Raises ParameterError where V0 or omega0 is open and the record has no data that show it.
         """
         ends: Any = np.ravel(self.t0)
         found: InitialValues = {"t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)}
@@ -335,15 +347,16 @@ class Coastdown(Record):
         return found
 
     def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
-        """Estimate the speed at the release of the cylinder from the first data.
+        """Estimate the speed or the angular velocity at the release of the cylinder from the first data.
 
-        It is the first measured value.  If V was not measured, V is R omega of a roller that rolls, or the slope of the
-        first tenth of x, of at least three points.
+        It is the first measured value of V or omega.  Where V was not measured, V0 is R times the first omega, if
+        ``omega0`` is "rolling" and omega was measured, else the slope of a straight line through the first tenth of x,
+        at least three points, or all if there are fewer.
 
         name : "V0" or "omega0".
-        R : radius of the cylinder, m.
+        R : radius of the cylinder, m; used only to make V of omega.
         Returns (speed, (lowest, highest value that it may have)), m/s or rad/s.  The range extends to either side of
-        the speed by the largest |V| or |omega| that was measured, and of a slope of x by its absolute value.
+        the speed by the largest |V|, R |omega| or |omega| that was measured, and of a slope of x by its absolute value.
         Raises ParameterError where none of these was measured.
         """
         data: Any = self.V if name == "V0" else self.omega
@@ -360,11 +373,14 @@ class Coastdown(Record):
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict V, omega and x, and for each point whether it is in full slip.
 
+        Before the time t0 of the release V and omega are those at the release, and x is 0.
+
         Parameters
         ----------
-        cylinder : the cylinder with the present values of the unknowns.
-        values : name -> value of "brake", N m/m, and "drag", N m s/m, and of "V0", "omega0" and "t0" in place of those
-            of the record; other names are not used.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
+        values : name -> value of "brake", N m/m, and "drag", N m s/m, which are 0 where they are missing, and of "V0",
+            "omega0" and "t0" in place of those of the record; where these are missing the record must have numbers, or
+            "rolling" as omega0, which is V0/R.  Other names are not used.
 
         Returns
         -------

@@ -43,8 +43,11 @@ def _heading(fit: Any) -> str:
     """Return the first line of the report: number of unknowns and points, and chi2 or the estimated standard
     deviations.
 
-    fit : a :class:`viscoroll.app.identification.Identification`. Of a plan the line says that the standard deviations
-    are those to expect.  Beside a chi2 that is not robust it has p, the probability that noise gives a larger one.
+    Of a plan it says that the standard deviations are those to expect.  Where any standard deviation was estimated it
+    lists the estimates, that of the first point of each column.  Else it has chi2 and the degrees of freedom and,
+    unless the fit is robust or has no degree of freedom, p, the probability that noise gives a larger chi2.
+
+    fit : a :class:`viscoroll.app.identification.Identification`.
     """
     from scipy import stats
 
@@ -61,6 +64,8 @@ def _heading(fit: Any) -> str:
 def _noise(fit: Any) -> Iterator[str]:
     """Yield a sentence for each quantity of a record whose residuals are no noise, as ``fit.misfit`` names them.
 
+    A sentence has the lag-1 correlation, its limit, and the rms of the residuals; none is yielded where all are noise.
+
     fit : a :class:`viscoroll.app.identification.Identification`.
     """
     for name in fit.misfit:
@@ -74,10 +79,11 @@ def _noise(fit: Any) -> Iterator[str]:
 
 
 def _limits(fit: Any) -> Iterator[str]:
-    """Yield sentences on what the data do not determine.
+    """Yield sentences on what the data do not determine; none where they determine all unknowns.
 
-    They are on unknowns that do not act, that cannot be separated or are open, intervals that ranges limit, further
-    minima, motions with few points in full slip, and correlations above 0.9, in this order.
+    They are on unknowns that do not act; unknowns that cannot be separated, or a single one that is undetermined; what
+    :func:`_interval_limits` says; further minima; motions with few points in full slip; and correlations beyond +-0.9,
+    but for pairs of unknowns that the first two name: in this order.
 
     fit : a :class:`viscoroll.app.identification.Identification`.
     """
@@ -100,8 +106,9 @@ def _limits(fit: Any) -> Iterator[str]:
 def _products(found: list[Any]) -> str:
     """Return a sentence on the products of unknowns that the data determine.
 
-    found : list of :class:`.profile.Product`, of :meth:`viscoroll.app.identification.Identification.products`; of an
-        empty list the sentence says that there is none.
+    found : list of :class:`.profile.Product`, of :meth:`viscoroll.app.identification.Identification.products`.
+    Returns a sentence with the products that hold over the whole intervals, then those that hold near the values found;
+    with the latter alone if there are no others, and one that says so if there are none at all.
     """
     sure, near = (
         " and ".join(_product_text(product) for product in found if product.near is by_slopes)
@@ -126,9 +133,11 @@ def _product_text(product: Any) -> str:
 
 
 def _interval_limits(fit: Any) -> Iterator[str]:
-    """Yield sentences on ends of intervals that are set by ranges, not by the data.
+    """Yield sentences on intervals at 0.95 that the data do not limit, and on faults that their profiles show.
 
-    Others are on intervals with several branches, a better fit that the profiles met, and best values at a bound.
+    For each unknown that acts they are on ends that are open, several branches of the fit in the interval, and a point
+    of the profile whose chi2 is more than 0.1 below that of the best fit.  Then follow unknowns that are at an end of
+    their range at the best fit, and unknowns whose range limits the interval of another one.
 
     fit : a :class:`viscoroll.app.identification.Identification`.
     """
@@ -157,9 +166,10 @@ def _values_text(values: dict[str, float]) -> str:
 
 
 def _phases(fit: Any) -> Iterator[str]:
-    """Yield a sentence for each motion that has some, but fewer than five, points in full slip, on which mu rests.
+    """Yield a sentence for each motion with one to four points in full slip, which alone determine mu.
 
-    fit : a :class:`viscoroll.app.identification.Identification`; nothing is yielded where mu is no unknown.
+    fit : a :class:`viscoroll.app.identification.Identification`; nothing is yielded where mu is no unknown, and for
+        records that are no motions.
     """
     for record_name, record in fit.records.items() if "mu" in fit.values else ():
         slips = int(np.sum(fit._problem.predicted(record, fit._likelihood.best.u, record_name).get("slips", 0)))
@@ -172,9 +182,11 @@ def as_dataset(fit: Any) -> xr.Dataset:
     """Return an identification as a dataset, for files.
 
     fit : a :class:`viscoroll.app.identification.Identification`.
-    Returns a dataset with value, stderr and the 95 % interval (low, high; NaN on a side that is open) over ``unknown``,
-    correlation over (``unknown``, ``other``), and for each record "RECORD NAME" of coordinates and data, "RECORD NAME
-    fit" and "RECORD NAME sigma", over "RECORD point".  Attributes: title, source, report, chi2, dof.
+    Returns a dataset of xarray, in SI units.  Over ``unknown``: value, stderr (infinite for an unknown that does not
+    act), and low and high of the 95 % interval, NaN on a side that is open.  Over (``unknown``, ``other``):
+    correlation.  Over "RECORD point", for each record, with its name for RECORD and that of a coordinate or quantity
+    for NAME: "RECORD NAME" of coordinates and data (a plan has no data), and "RECORD NAME fit" and "RECORD NAME sigma"
+    of each quantity that was measured or planned.  Attributes: title, source, report (the text), chi2, dof.
     """
     import xarray as xr
 
@@ -204,10 +216,12 @@ def as_json(fit: Any) -> dict[str, Any]:
     """Return the content of the report as numbers and texts that JSON has.
 
     fit : a :class:`viscoroll.app.identification.Identification`.
-    Returns a dict: chi2, dof, planned, does_not_act, undetermined, misfit, minima, source; "unknowns", name -> value,
-    stderr and interval (95 %; None on a side that is open, and as stderr of an unknown that does not act); "says", the
-    sentences of the report; "products", "correlations", "noise"; and "sigma", the first standard deviation of each
-    quantity of a record.
+    Returns a dict, in SI units: chi2, dof, planned, does_not_act, undetermined, misfit and minima, as of the fit;
+    "source", name and version of this package; "unknowns", name -> {"value", "stderr", "interval"} (the interval at 95
+    %, two numbers, None on a side that is open; stderr None of an unknown that does not act); "says", a list of the
+    sentences of the report on noise and limits; "products", a list of dicts with the fields of
+    :class:`.profile.Product`; "correlations", a list of rows; "noise", "QUANTITY of RECORD" -> a dict with the fields
+    of :class:`.problem.Noise`; and "sigma", "QUANTITY of RECORD" -> standard deviation of the first point.
     """
     fields = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}

@@ -88,18 +88,19 @@ def unknowns_of(
 ) -> list[Unknown]:
     """Return the unknowns that the caller requests, and those that records leave open, as a list of :class:`Unknown`.
 
-    cylinder : the cylinder from whose inputs the search starts.
+    cylinder : :class:`Cylinder`, from whose inputs the search starts; brake and drag start at 0.
     requested : name -> range (low, high), in SI units or with units.
-    records : name -> record; its open starts become unknowns "V0:NAME", with the range of the record unless requested.
-    priors : name -> (value, standard deviation of the coordinate); the latter in SI units of linear unknowns, of others
-        of the logarithm.
-    Returns them in the order of ``requested``, then of the records.
+    records : name -> :class:`Record`; V0, omega0 and t0 that a record leaves open become unknowns "V0:NAME" and so on,
+        with the range of the record unless requested.
+    priors : name -> (value, standard deviation); the latter in the SI unit of linear unknowns, of others that of the
+        natural logarithm of the value.
+    Returns them in the order of ``requested``, then of the records; [] where nothing is requested or left open.
 
     Raises
     ------
     ParameterError
-        An unknown name, a range that does not contain the start, a cylinder with arrays; a prior of what is no
-        unknown.
+        An unknown name; a range that does not ascend or does not contain the start; a cylinder with arrays; an open V0
+        or omega0 of which the record has no data; a prior of what is no unknown, or that is none.
     """
     starts = {name: getattr(cylinder, name) for name in _OF_CYLINDER} | _BEARING
     for section, body in _bodies(cylinder).items():
@@ -119,10 +120,12 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     """Check range and prior of an unknown, and return it as :class:`Unknown`.
 
     name : name of the unknown.
-    start : start value, SI.
+    start : start value, SI; it may be at an end of the range.
     span : range of the unknown, (low, high), in SI units or with units.
     prior : (value, standard deviation) known beforehand, or None.  The latter is of the natural logarithm of the value,
         of linear unknowns (brake, drag, nu, those of records) in their SI unit.
+    Returns an :class:`Unknown`; without a prior its ``mean`` is 0 and its ``sd`` infinite.  Its ``unit`` is None, of
+    linear unknowns the larger of |start| and a tenth of the width of the range.
     Raises ParameterError for a range that does not ascend or does not contain the start, and for a prior that is none.
     """
     low, high = _check_pair("unknown", name, span)
@@ -146,6 +149,7 @@ def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
         message.
     name : name of the unknown.
     numbers : the pair; a range may have units, a prior may not.
+    Returns [low, high], or [value, standard deviation].
     Raises ParameterError for another number of them, values out of bounds, and for a range that does not ascend.
     """
     bounds = Unknown.bounds(name)
@@ -163,14 +167,14 @@ def cylinder_of(
 ) -> Cylinder:
     """Return the cylinder with other values, at the load and the temperature of a record.
 
-    cylinder : cylinder with the values that are fixed.
+    cylinder : :class:`Cylinder` with the values that are fixed.
     values : name -> value of unknowns, SI; those of bearing and records are not used, and what is missing stays as it
         is.
-    record : record whose load and mass replace those of the cylinder, and to whose temperature its materials are
-        shifted;
-        None: no record.
-    shifts : "material" or "base" -> a_T over temperature in degrees Celsius, needed where the record has a temperature.
-    Returns ``cylinder`` itself where nothing changes.
+    record : :class:`Record`, whose load and mass replace those of the cylinder (and of ``values``) if it has them, and
+        to whose temperature, if it has one, the materials are shifted; None: no record.
+    shifts : "material" or "base" -> function of the temperature in degrees Celsius that returns a_T; needed of each
+        viscoelastic body where the record has a temperature, not of elastic ones (alpha = 1) and rigid ones.
+    Returns the :class:`Cylinder`; ``cylinder`` itself where nothing changes.
 
     Raises
     ------
@@ -194,8 +198,9 @@ def cylinder_of(
 def _bodies(cylinder: Cylinder) -> dict[str, Material]:
     """Return the bodies that deform; a rigid one has no unknowns.
 
-    cylinder : the cylinder; its half-space is another body only where its material is.
-    Returns "material" or "base" -> :class:`Material`.
+    cylinder : :class:`Cylinder`.
+    Returns a dict, "material" (the cylinder) or "base" (the half-space, if it has a material of its own) ->
+    :class:`Material`.
     """
     bodies = zip(_PREFIX, (cylinder.pair.cylinder, cylinder.pair.base), strict=True)
     return {section: body for section, body in bodies if not (body is None or body.is_rigid)}
@@ -205,7 +210,8 @@ def _inputs(body: Material) -> dict[str, float]:
     """Return all inputs of a body that may be unknown, by name: E (Pa), nu, T_ref (s), and E_1, tau_1, ... of its
     modes.
 
-    Strengths and times of modes are dimensionless, divided by E and T_ref; mode 1 is the longest.
+    Strengths and times of modes are dimensionless, divided by E and T_ref; mode 1 is that of the longest time.  An
+    elastic body has no modes.
     """
     series = {"E": body.prony.E.tolist(), "tau": body.prony.tau.tolist()}
     modes = {f"{name}_{n}": value for name, column in series.items() for n, value in enumerate(column, 1)}
@@ -216,12 +222,13 @@ def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) ->
     """Return a material in which unknowns have other values.
 
     With other modes the material is no longer the one that was measured: ``measured`` becomes None.  With another T_ref
-    its measured band is shifted.
+    alone its measured band, if it has one, is shifted; with another E or nu alone it stays.
 
-    body : the material.
+    body : :class:`Material`.
     prefix : prefix of the names of its unknowns, "" or "base_".
-    values : name -> value of unknowns, of other bodies too; SI, modes divided by E and T_ref.
-    Returns ``body`` itself where no value differs.
+    values : name -> value of unknowns, of other bodies too, which are not used; SI, modes divided by E and T_ref.
+    Returns the :class:`Material`; ``body`` itself where no value differs.
+    Raises ParameterError for values that make no material.
     """
     old = _inputs(body)
     new = {name: values.get(prefix + name, value) for name, value in old.items()}
