@@ -85,7 +85,10 @@ def thread_count(threads: int | None = None) -> int:
 
 
 def _environment_threads() -> int | None:
-    """Return ``$VISCOROLL_THREADS``, None where it is not set; raise ParameterError unless it is an integer >= 1."""
+    """Return ``$VISCOROLL_THREADS`` as an int >= 1; None where it is not set, or empty.
+
+    Raises ParameterError for any other text.
+    """
     if not (given := os.environ.get("VISCOROLL_THREADS")):
         return None
     with suppress(ValueError):

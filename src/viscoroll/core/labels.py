@@ -43,10 +43,10 @@ class Labels(NamedTuple):
         return self.wrap(name, values, further) if fits else values
 
     def renamed_coords(self, names: tuple[str, ...], prefix: str) -> tuple[tuple[str, ...], dict[str, Any]]:
-        """Return axes and coordinates for a dataset in which variables have the names of some axes or coordinates.
+        """Rename those axes and coordinates whose names the variables of a dataset have already.
 
-        names: names of the variables.
-        prefix: word put before an axis or a coordinate of the same name, as "given" for given_V.
+        names: names of the variables of the dataset.
+        prefix: word that is put before such an axis or coordinate, as "given" for given_V; others keep their names.
         Returns (names of the axes; dict from the name of a coordinate to (its axes, its values)), as xarray takes
         them.
         """

@@ -238,7 +238,11 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
 
 
 def _title_unit(title: Any) -> str | None:
-    """Return the unit in a title of a column, as of "V [km/h]"; None if there is none that pint knows."""
+    """Return the unit in brackets at the end of a title of a column, "km/h" of "V [km/h]".
+
+    title: name of an array or a series; what is no text, as None, gives None.
+    Returns None too if there are no brackets, or if they contain a unit of 1 or a text that pint does not know.
+    """
     found = _TITLE_UNIT.search(title) if isinstance(title, str) else None
     if found is None or found[1].strip() in _DIMENSIONLESS:
         return None

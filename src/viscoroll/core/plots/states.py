@@ -133,8 +133,8 @@ def motion(data: xr.Dataset) -> Figure:
     data: dataset of one motion, with ``t``, ``V``, ``omega``, ``x`` and ``regime``; ``force`` and ``torque`` are left
         out where they are missing or 0; corners of a schedule of NAME are in ``drive_NAME_time`` and ``drive_NAME``;
         the attribute ``status`` is in the title.  In SI units each quantity has its own panel, else V and omega share
-        one.
-    Returns the figure of matplotlib.
+        one, as force and torque do.
+    Returns the :class:`matplotlib.figure.Figure`.
     """
     loads = [name for name in ("force", "torque") if name in data and data[name].values.any()]
     rows = [["V", "omega"], ["x"], *([loads] if loads else [])]

@@ -39,7 +39,7 @@ def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2,
 
     title: text on top of the figure.
     rows, columns: numbers of rows and columns of axes.
-    height: of the figure, inches; its width is ``WIDTH``.
+    height: height of the figure, inches; its width is ``WIDTH``.
     options: keyword arguments of ``Figure.subplots``.
     Returns (figure; its axes as of ``Figure.subplots``: one for a single row and column, a vector for one row or one
     column, else an array (rows, columns); with ``squeeze=False`` always such an array).
@@ -56,9 +56,9 @@ def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[
 
     title: text on top of the figure.
     count: number of axes, >= 1.
-    height: of each row, inches.
+    height: height of each row of axes, inches; the figure has 0.8 inches more, for its title.
     options: keyword arguments of ``Figure.subplots``, as ``sharex``.
-    Returns (figure, list of its ``count`` axes).
+    Returns (figure; list of its ``count`` axes, row by row).  Of an odd number above 1 the last place stays empty.
     """
     columns = min(2, count)
     rows = -(-count // columns)
@@ -102,7 +102,13 @@ def spaced_by_factors(x: NDArray[Any]) -> bool:
 
 
 def log_ticks(axis: Any) -> None:
-    """Set labels of a logarithmic ``axis`` that do not overlap: 1, 2, 5 as digits below two decades, else powers."""
+    """Set labels of a logarithmic axis that do not overlap.
+
+    If its range is less than two decades, ticks at 1, 2 and 5 times powers of ten are labelled by digits, else
+    matplotlib's powers of ten stay.  Minor ticks have no labels.
+
+    axis: x or y axis of matplotlib, whose range is set already; changed.
+    """
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
