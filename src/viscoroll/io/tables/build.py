@@ -68,10 +68,10 @@ def build(
     -------
     xarray.Dataset
         beta and Q over (V, delta) or (V, delta, alpha); lam, epsilon, M, its parts in both bodies, delta_star and zeta
-        over V (and alpha); units, symbols, equations in the attributes.  Nodes have the bits of :func:`contact`.  ``spline_error`` of a
-        field is the largest absolute error of :func:`interpolate`, ``linear_error`` that of linear interpolation in
-        the untransformed axes, over 10^5 random points in random cells; ``spline_error_at`` and ``linear_error_at``
-        name the point, as in "V = 0.31, delta = 0.0042".
+        over V (and alpha); units, symbols, equations in the attributes.  Nodes have the bits of :func:`contact`.
+        ``spline_error`` of a field is the largest absolute error of :func:`interpolate`, ``linear_error`` that of
+        linear interpolation in the untransformed axes, over 10^5 random points in random cells; ``spline_error_at`` and
+        ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".
 
     Raises
     ------
