@@ -27,15 +27,14 @@ _BLOCKS_IN_QUEUE = 8
 
 
 def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
-    """Return a function that gives the elements of a block of a broadcast array, without the whole broadcast array in
-    memory.
+    """Return a function that reads blocks of a broadcast array, so that the whole of it is never in memory.
 
     array: numbers that broadcast to ``shape``.
     shape: shape to which all arrays of the work broadcast.
-    Returns a function (start, stop) -> vector of the elements ``start`` to ``stop`` - 1 of the flattened broadcast
-    array, (stop - start,); of a single number always that number, (1,).  Vectors are views where ``array`` is
-    contiguous and of that shape, else copies, and read-only, because a kernel is compiled again for each kind of
-    array.
+    Returns a function (start, stop) -> the elements ``start`` to ``stop`` - 1 of the broadcast and flattened array, in
+    C order, a vector (stop - start,).  If ``array`` has a single element the vector is always (1,), that element.
+    Vectors are views if ``array`` is contiguous and of that shape, else copies.  All are contiguous and read-only,
+    because numba compiles a kernel again for each kind of array.
     """
     if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
         vector = broadcast_vector(array, array.shape)
@@ -43,9 +42,7 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     whole = np.broadcast_to(array, shape)
 
     def read_block(start: int, stop: int) -> Floats:
-        """Return the elements ``start`` to ``stop`` - 1 of the flattened array, (stop - start,), or (1,) of a single
-        number.
-        """
+        """Return a read-only copy of the elements ``start`` to ``stop`` - 1 of the flattened array, a vector."""
         iterator: Any = np.nditer  # the stubs of numpy lack the flag "contig"
         flags = ["external_loop", "buffered", "ranged"]
         chunks = iterator(whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start)
@@ -63,8 +60,8 @@ def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 
     array: numbers that broadcast to ``shape``.
     shape: shape of the result before it is flattened.
-    Returns a vector with the number of elements of ``shape``, a view where possible; of a single number (1,), for any
-    shape.
+    Returns a vector with as many elements as ``shape`` has, a view where possible, else a copy; if ``array`` has a
+    single element it is (1,), for any shape.
     """
     whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
     vector = whole.reshape(-1).view()
@@ -75,18 +72,23 @@ def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 def thread_count(threads: int | None = None) -> int:
     """Return the number of threads: ``threads``, else ``$VISCOROLL_THREADS``, else that of the available cores.
 
-    threads: a whole number >= 1; None: as the environment has it.
+    threads: a whole number >= 1; None: the environment variable, if it is set and not empty, else all cores that this
+        process may use.
+    Returns an int >= 1.
 
     Raises
     ------
     ParameterError
-        If either is not a whole number >= 1.
+        If the one that is used is not a whole number >= 1.
     """
     return check_integer("threads", threads, 1) if threads is not None else _environment_threads() or available_cores()
 
 
 def _environment_threads() -> int | None:
-    """Return ``$VISCOROLL_THREADS``, None where it is not set; raise ParameterError unless it is an integer >= 1."""
+    """Return ``$VISCOROLL_THREADS`` as an int >= 1; None where it is not set, or empty.
+
+    Raises ParameterError for any other text.
+    """
     if not (given := os.environ.get("VISCOROLL_THREADS")):
         return None
     with suppress(ValueError):
@@ -96,7 +98,7 @@ def _environment_threads() -> int | None:
 
 
 def available_cores() -> int:
-    """Return the number of cores that this process may use."""
+    """Return the number of cores that this process may use, or of the machine where the system does not tell; >= 1."""
     if hasattr(os, "process_cpu_count"):  # Python 3.13
         return os.process_cpu_count() or 1
     if hasattr(os, "sched_getaffinity"):
@@ -108,7 +110,10 @@ _cancellation = threading.local()
 
 
 def cancel_with(event: threading.Event) -> None:
-    """Let :func:`run_blocks` of this thread raise CancelledError before its next block once ``event`` is set."""
+    """Let :func:`run_blocks` of this thread raise CancelledError before its next block once ``event`` is set.
+
+    It has no effect on calls with several workers or a progress bar.
+    """
     _cancellation.event = event
 
 
@@ -126,9 +131,10 @@ def run_blocks(
     ----------
     work : function (start, stop) -> None, which computes the elements ``start`` to ``stop`` - 1 of a block and writes
         them where they belong.  Several threads call it at the same time; its exceptions are raised here.
-    count : number of elements, >= 0.
-    block : elements of a block; the last one may have fewer.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.
+    count : number of elements, >= 0; ``work`` is not called for 0.
+    block : number of elements of a block, >= 1; the last block may have fewer.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.  No more are used than
+        there are blocks; one worker without a progress bar is the calling thread itself.
     progress : title of a progress bar on standard error, which appears after one second; None: no bar.
 
     Raises
@@ -160,13 +166,15 @@ def run_blocks(
 
 
 def _submit_all(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int) -> None:
-    """Run all blocks on a pool, and await them in order.
+    """Run all blocks on a pool, await them in order, and return when all are done.
 
-    After an error no further block starts, and the error of the first block that failed is raised.
-    pool: :class:`Executor`, threads.
+    When a block has failed no further blocks are submitted, those that wait are cancelled, and its exception is raised;
+    of several that failed, that of the first in the order of blocks.
+
+    pool: :class:`concurrent.futures.Executor`, of threads.
     work: function (start, stop) -> None.
-    edges: (start, stop) of each block.
-    most: blocks that wait at the same time.
+    edges: (start, stop) of each block, an iterable that is consumed as blocks are submitted.
+    most: largest number of blocks that are submitted and not yet awaited.
     """
     waiting: deque[Future[None]] = deque()
     try:

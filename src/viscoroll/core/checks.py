@@ -33,12 +33,14 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
 
     Returns
     -------
-    array of the shape of ``value``, finite
+    array
+        float64, of the shape of ``value``, () of a number; all elements are finite.  It may be ``value`` itself.
 
     Raises
     ------
     ParameterError
-        If it is not numeric, not finite, beyond a bound, or of another dimension.
+        If it is not numeric (texts, truth values, complex numbers, masked arrays), not finite, beyond a bound, or its
+        unit is of another dimension.
     """
     return check_array_extent(name, value, **bounds)[0]
 
@@ -61,13 +63,14 @@ def check_array_extent(
 
     Returns
     -------
-    array : float64, of the shape of ``value``, finite, in ``unit``.
-    extent : (smallest, largest element); (0, 0) if the array is empty.
+    array : float64, of the shape of ``value``, () of a number, finite, in ``unit``; it may be ``value`` itself.
+    extent : (smallest, largest element), in ``unit``; (0.0, 0.0) if the array is empty.
 
     Raises
     ------
     ParameterError
-        If it is not numeric, not finite, beyond a bound, or of another dimension.
+        If it is not numeric, not finite, beyond a bound, or its unit is of another dimension.  The message states the
+        first wrong element, its index and the number of further ones.
     """
     if type(value) is float and above < value < high and low <= value:
         return np.asarray(value), (value, value)
@@ -92,9 +95,9 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
 
     name: name of the argument.
     value: what a caller gave.
-    unit: unit of the argument, a text or an object that has units by name.
+    unit: unit of the argument, a text or an object that has units by name; not used for a value without a unit.
     bounds: low, above and high of the range, for the words of the error alone.
-    Returns an array of the shape of ``value``.
+    Returns a float64 array of the shape of ``value``, which is ``value`` itself if that is such an array.
     Raises ParameterError for a value that is not numeric (texts, truth values, complex numbers, ragged lists), a
     masked array, and a unit of another dimension.
     """
@@ -121,9 +124,10 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
 def _first_wrong(array: Floats, wrong: Booleans) -> str:
     """Return the first wrong element of an array, its index, and the number of further ones, in words for an error.
 
-    array: numbers.
+    array: numbers, of any shape, at least one.
     wrong: mask of the same shape, true for at least one element.
-    Returns a text as "nan at row 3, and 2 more"; of a single number that number alone.
+    Returns a text as "nan at row 3, and 2 more", of several axes as "nan at (0, 3)", all indices from 0; if the array
+    has a single element, that number alone.
     """
     if array.size == 1:
         return str(array.item())
@@ -153,12 +157,18 @@ def check_number(
     unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a
         dimensionless number, or an object that has units by name.
     low, high : smallest and largest allowed value, in ``unit``; infinite by default.
-    above : number that the value must exceed, in ``unit``.
+    above : number that the value must exceed, in ``unit``; -infinite by default.
+
+    Returns
+    -------
+    float
+        The finite number, in ``unit``.
 
     Raises
     ------
     ParameterError
-        If it is not one finite number, if it is outside these limits, or if its unit has another dimension.
+        If it is not one finite number (an array with axes is refused, even of one element), if it is outside these
+        limits, or if its unit has another dimension.
     """
     if type(value) is float and above < value < high and low <= value:
         return value
@@ -172,7 +182,7 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
     """Return the common shape of arrays, by numpy's rule of broadcasting.
 
     arrays: arrays by the name that an error states; those without axes fit every shape.
-    Returns the shape; () if no array has axes.
+    Returns the shape; () if no array has axes, or none is given.
 
     Raises
     ------
@@ -208,6 +218,11 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     value : what a caller gave; an int or an integer of numpy is accepted, a truth value or a float is not.
     low, high : smallest and largest allowed value; ``high`` is infinite by default.
 
+    Returns
+    -------
+    int
+        The number, as an int of Python.
+
     Raises
     ------
     ParameterError
@@ -233,8 +248,12 @@ def check_bool(name: str, value: Any) -> bool:
 
     Parameters
     ----------
-    name : name of the argument.
+    name : name of the argument, for the error.
     value : what a caller gave.
+
+    Returns
+    -------
+    bool
 
     Raises
     ------

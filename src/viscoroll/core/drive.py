@@ -49,9 +49,10 @@ class Schedule:
     units: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the fields, make them read-only arrays, and keep their units.
+        """Check the fields, make them read-only arrays of float64, and keep the units that they were given in.
 
-        Raises ParameterError as the class states.
+        Both must be (k,) or (n, k), k >= 1, with equal k, and equal n where both have it; in each row times are >= 0,
+        do not decrease, and no time occurs more than twice.  Raises ParameterError where that does not hold.
         """
         for name, low in (("times", 0.0), ("values", -np.inf)):
             _check_field(self, name, low)
@@ -100,9 +101,10 @@ class Feedback:
     units: dict[str, str] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
-        """Check the fields; a value that is a schedule or a function is checked with its motion.
+        """Check the fields, make each a float or a read-only array, and keep the units that they were given in.
 
-        Raises ParameterError as the class states.
+        A value that is a schedule or a function stays; it is checked with its motion.  Gains may be numbers or (n,).
+        Raises ParameterError for numbers that are not finite, and for gains of more axes.
         """
         if not (callable(self.value) or isinstance(self.value, Schedule)):
             _check_field(self, "value", -np.inf)
@@ -231,9 +233,9 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     scale: :class:`.scale.Scale` of the roller, a unit for each quantity, numbers or, of many cylinders, (n,).  With
         that of a scene ``value`` is returned itself, unchecked.
     Returns a new value of the same kind: a float for a number (an array (n,) of many cylinders), an array, a
-    :class:`Schedule` (with values (n, k) of many cylinders), a :class:`Feedback` whose gains are divided by the unit of
-    the load over that of the speed, or a function.  Such a function takes the dimensionless time and returns
-    dimensionless arrays; the values of the caller's function are checked when it is called.
+    :class:`Schedule` (with values (n, k) of many cylinders), a :class:`Feedback`, whose gains are multiplied by the
+    unit of the speed and divided by that of the load, or a function.  Such a function takes the dimensionless time and
+    returns dimensionless arrays; the values of the caller's function are checked when it is called.
 
     Raises
     ------

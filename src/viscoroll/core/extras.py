@@ -9,7 +9,7 @@ from .errors import MissingDependencyError
 
 
 def import_extra(package: str, extra: str) -> Any:
-    """Return a module of an optional package, imported now.
+    """Import a module of an optional package, and return it.
 
     package: name of the module and of the distribution that has it, as "fmpy".
     extra: extra of viscoroll that installs it, as in ``pip install 'viscoroll[EXTRA]'``, for the error.

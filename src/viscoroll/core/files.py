@@ -29,9 +29,11 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 @contextmanager
 def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
-    """Raise an OSError of the body of the ``with`` as FileError, which gives the reason of the system.
+    """Raise an OSError of the body of the ``with`` as FileError, which gives the system's reason; a context manager.
 
-    path: path of the file or folder.
+    Other exceptions pass unchanged.
+
+    path: path of the file or folder, for the message.
     problem: what fails, in words, as "cannot be read".
     remedy: further words, which follow the reason; "" without.
     """
@@ -43,7 +45,7 @@ def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
 
 @contextmanager
 def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
-    """Give a temporary path beside ``path``, and rename it to ``path`` when the body of the ``with`` ends.
+    """Give a temporary path beside ``path``, and rename that file to ``path`` when the body of the ``with`` ends.
 
     The body must write a file at the temporary path.  The file and its folder are synced to disk.  After an exception
     ``path`` is as it was, and the temporary file is deleted.  A process that is killed may leave a temporary file,
@@ -51,7 +53,7 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     The temporary name has the suffix of ``path``, from which writers infer a format.
 
     path: path of the file to write or to replace.
-    Yields the temporary path.
+    Yields the temporary path, at which no file is yet.
 
     Raises
     ------
@@ -81,7 +83,10 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
 
 
 def _sync(path: Path) -> None:
-    """Write the file or folder at ``path`` from the buffers of the system to the disk."""
+    """Write the file or folder at ``path`` from the buffers of the system to the disk; not a folder of Windows.
+
+    Raises OSError if the system cannot.
+    """
     folder = path.is_dir()
     if folder and os.name == "nt":
         return  # Windows cannot open folders
@@ -109,7 +114,7 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
     Parameters
     ----------
     path : path of the file.
-    max_bytes : a larger file is refused.
+    max_bytes : largest size of the file in bytes, with its seal; a larger one is refused before it is read.
     kind : noun for the file that is expected, without its article, for errors.
     remedy : advice for a damaged file, for its error.
 
@@ -158,7 +163,7 @@ def write_dataset(
     ----------
     dataset : dataset to write; it is composed in memory.
     path : path of the file, which is replaced if it exists.
-    encoding : encoding of variables by name, as xarray takes it.  Default: no fill values (CF forbids them for
+    encoding : encoding of variables by name, as xarray takes it.  None or {}: no fill values (CF forbids them for
         coordinates), arrays of numbers compressed and with Fletcher-32 checksums.
     sealed : whether the file ends with a seal, the SHA-256 of all bytes before it.
 

@@ -18,8 +18,10 @@ class Labels(NamedTuple):
     """Labels that the arguments of a call have in common.
 
     shape : shape of the arguments, broadcast.
-    wrap : function (name, values, names of further axes after those of ``shape``) -> the values with labels.
-    dims, coords : axes and coordinates as xarray has them, for pandas too; each coordinate is (its axes, its values).
+    wrap : function (name of the result, values, names of further axes after those of ``shape``) -> the values as an
+        array of xarray, or a series or data frame of pandas.
+    dims : names of the axes, as many as ``shape`` has.
+    coords : name of a coordinate -> (names of its axes, its values), as xarray has them, for pandas too.
     """
 
     shape: tuple[int, ...]
@@ -28,21 +30,23 @@ class Labels(NamedTuple):
     coords: dict[str, Any]
 
     def apply(self, name: str, values: Any, *further: str) -> Any:
-        """Return values with labels, or as they are if their shape is not that of the arguments.
+        """Return values with the labels of the arguments.
 
-        name: name of the result.
-        values: array.
+        name: name of the result, which the labelled array gets.
+        values: array whose first axes are those of the arguments.
         further: names of its axes after those of the arguments.
+        Returns an array of xarray, or a series of pandas, with one further axis a data frame.  ``values`` itself is
+        returned if its shape is another one, and with pandas if there are several further axes.
         """
         shape = np.shape(values)
         fits = shape[: len(self.shape)] == self.shape and len(shape) == len(self.shape) + len(further)
         return self.wrap(name, values, further) if fits else values
 
     def renamed_coords(self, names: tuple[str, ...], prefix: str) -> tuple[tuple[str, ...], dict[str, Any]]:
-        """Return axes and coordinates for a dataset in which variables have the names of some axes or coordinates.
+        """Rename those axes and coordinates whose names the variables of a dataset have already.
 
-        names: names of the variables.
-        prefix: word put before an axis or a coordinate of the same name, as "given" for given_V.
+        names: names of the variables of the dataset.
+        prefix: word that is put before such an axis or coordinate, as "given" for given_V; others keep their names.
         Returns (names of the axes; dict from the name of a coordinate to (its axes, its values)), as xarray takes
         them.
         """
@@ -53,9 +57,9 @@ class Labels(NamedTuple):
     def axis_coords(self, dim: str) -> dict[str, Any]:
         """Return the coordinates of arguments with one axis, for a dataset in which that axis is named ``dim``.
 
-        dim: new name of the axis, and of its own coordinate.
-        Returns a dict from a name to (``dim``, values, attributes), as xarray takes them; the old name is the
-        long_name.
+        dim: new name of the axis, and of the coordinate that had the axis' old name; others keep their names.
+        Returns a dict from a name to (``dim``, values, {"long_name": old name}), as xarray takes them; {} without
+        coordinates.
         """
         (own,) = self.dims[:1]
         return {
@@ -73,13 +77,15 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
 
     Parameters
     ----------
-    given : name -> what a caller gave; functions of time, schedules and feedbacks stay.
-    units : unit of each argument by name, as a :class:`.scale.Scale`.
+    given : name -> what a caller gave: numbers, arrays, values with units or labels, functions of time, schedules and
+        feedbacks.
+    units : object with a method ``unit``, which gives the unit of each argument by name, as a :class:`.scale.Scale`.
 
     Returns
     -------
-    plain : name -> value without labels and unit.
-    labels : None where no argument has any.
+    plain : name -> value without labels and unit, of the same kind; labelled arrays are broadcast to their common
+        shape.  It may be ``given`` itself, if no argument has a label or a unit.
+    labels : the :class:`Labels` of the arguments; None where no argument has any.
 
     Raises
     ------
@@ -114,10 +120,11 @@ def _loaded_type(module: str, name: str) -> Any:
 
 
 def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
-    """Broadcast arrays of xarray, and separate their values from their labels.
+    """Broadcast arrays of xarray by the names of their axes, and separate their values from their labels.
 
-    arrays: name of an argument -> array; at least one.
-    Returns (name -> values, all of the broadcast shape; labels).
+    arrays: name of an argument -> array of xarray; at least one.
+    Returns (name -> values, all of the broadcast shape, perhaps read-only views; :class:`Labels`, whose ``coords`` are
+    without coordinates that have no axis).
     Raises ParameterError if coordinates differ.
     """
     import xarray as xr
@@ -141,9 +148,10 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
 def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     """Separate the values of series of pandas from their labels.
 
-    series: name of an argument -> series; at least one.
-    Returns (name -> values, (n,); labels, which make series of results, and data frames of results with one more
-    axis).
+    series: name of an argument -> series of pandas; at least one.
+    Returns (name -> values, (n,); :class:`Labels`, which make series of results, and data frames of results with one
+    more axis).  The axis of these labels has the name of the index, "index" of one without a name, "state" of an index
+    of several levels, each of which is a coordinate.
     Raises ParameterError if the indices differ.
     """
     import pandas as pd

@@ -44,7 +44,7 @@ def has_no_unit(value: Any) -> bool:
 
 
 def to_unit(name: str, value: Any, target: str) -> Any:
-    """Return a value in the unit of its argument, without that unit.
+    """Convert a value that a caller gave with a unit to the unit of its argument.
 
     Parameters
     ----------
@@ -54,12 +54,14 @@ def to_unit(name: str, value: Any, target: str) -> Any:
 
     Returns
     -------
-    value : unchanged if it has no unit; else numbers in ``target``, with the labels of xarray and pandas.
+    value : ``value`` itself if it has no unit, of whatever type it is; else numbers in ``target``, in a container of
+        the same kind, with the labels of xarray and pandas.
 
     Raises
     ------
     ParameterError
-        A unit of another dimension, or an unknown one.
+        A unit of another dimension, an unknown one, or one of unclear meaning (:func:`convert`); what
+        :func:`split_unit` refuses.
     """
     if has_no_unit(value):
         return value
@@ -77,10 +79,12 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
 
     Labels of xarray and pandas stay.  All elements of a list, or of an array of objects, are converted to the unit of
     the first.
+
     name: name of the argument, for errors.
-    value: what a caller gave: a number, an array, a list, a quantity, a duration, an array of xarray, a series.
-    Returns (numbers in the same kind of container; their unit as a text, None without unit).  Durations are in "s".  A
-    value of another type is returned as it is, with None.
+    value: what a caller gave: a number, an array, a list, a quantity of pint, astropy or unyt, a duration, an array of
+        xarray, a series or an index of pandas.
+    Returns (numbers in the same kind of container, a list of a tuple; their unit as a text).  Without a unit it is
+    (``value``, None), of whatever type the value is.  Durations are numbers in "s".
 
     Raises
     ------
@@ -116,9 +120,10 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
 
     name: name of the argument, for errors.
     value: number, array, or list of these, perhaps with labels, which stay.
-    unit: their unit, as "km/h".
+    unit: their unit, as "km/h"; "", "1", "-" and "dimensionless" of a ratio.
     target: wanted unit, as "m s-1"; "1" of a dimensionless number, "rad" of an angle.
-    Returns float64 of the same shape; ``value`` itself if the units are equal.
+    Returns ``value`` itself if the texts of the units are equal or both mean a ratio.  Else numbers in ``target``: a
+    float, a float64 array of the same shape with its labels, or a list of these.
     Raises ParameterError for a unit that is unknown, of another dimension or of unclear meaning (Hz for other
     arguments than an angular velocity, percent of an angle, differences of temperature), and for numbers that are not
     numeric.
@@ -146,8 +151,10 @@ def _as_floats(name: str, value: Any) -> Any:
     """Return the numbers of a quantity as doubles, with labels.
 
     name: name of the argument, for the error.
-    value: a number or an array, perhaps with labels.
-    Raises ParameterError if they are not numeric, or an integer is beyond the doubles.
+    value: a number (int, float, Decimal, Fraction), or an array, perhaps with labels.
+    Returns a float of a number, else a new float64 array, of the same type as ``value``.
+    Raises ParameterError if they are not numeric (texts, truth values, complex numbers), or an integer is beyond the
+    doubles.
     """
     kind = getattr(getattr(value, "dtype", None), "kind", "")
     try:
@@ -166,12 +173,12 @@ def is_real(value: Any) -> bool:
 
 
 def unit_error(name: str, unit: str, target: str, known: bool = True) -> ParameterError:
-    """Return the error of an argument in a unit that cannot be converted.
+    """Return the ParameterError, not raised, of an argument in a unit that cannot be converted.
 
     name: name of the argument.
-    unit: unit that was found.
-    target: unit of the argument.
-    known: whether pint knows the unit.
+    unit: unit that was found, of which 40 characters are quoted.
+    target: unit of the argument, "1" of a dimensionless number.
+    known: whether pint knows the unit; if not, the message says so.
     """
     allowed = "a number without dimension" if target == "1" else f"in {target}, or in another unit of that dimension"
     found = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
@@ -187,8 +194,9 @@ def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
     """Split the unit from the elements of a list; elements in other units than the first are converted.
 
     name: name of the argument, for errors.
-    values: the list.
-    Returns (list of numbers; unit of the first element, None without unit).
+    values: the list or tuple, whose elements may be lists, quantities or numbers.
+    Returns (new list of numbers, all in the unit of the first element; that unit, None if no element has one, and of an
+    empty list).
     Raises ParameterError for truth values, for numbers with and without a unit, and for units of different dimensions.
     """
     parts = [split_unit(name, value) for value in values]
@@ -204,11 +212,13 @@ def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
 def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     """Split the unit from an array of xarray, a series or an index of pandas.
 
-    The unit is that of the elements, of the attribute ``units``, or in the title of a column, as results write it.
-    Elements with a unit are converted to the stated one.
+    The unit is stated by the attribute ``units``, else by the title of a column, as "V [m s-1]"; elements with a unit
+    of their own are converted to the stated one.  Without such a statement the unit is that of the elements.
+
     name: name of the argument, for errors.
     value: the array, series or index; not changed.
-    Returns (array or series with its labels, without attributes, of an index plain numbers; unit, None without unit).
+    Returns (numbers; unit).  Without a unit that is (``value`` itself, None); else the numbers are a new array or
+    series with its labels and without attributes, of an index a plain array.
     Raises ParameterError where the unit of the elements is of another dimension than the stated one.
     """
     is_xarray = hasattr(value, "dims")
@@ -228,7 +238,11 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
 
 
 def _title_unit(title: Any) -> str | None:
-    """Return the unit in a title of a column, as of "V [km/h]"; None if there is none that pint knows."""
+    """Return the unit in brackets at the end of a title of a column, "km/h" of "V [km/h]".
+
+    title: name of an array or a series; what is no text, as None, gives None.
+    Returns None too if there are no brackets, or if they contain a unit of 1 or a text that pint does not know.
+    """
     found = _TITLE_UNIT.search(title) if isinstance(title, str) else None
     if found is None or found[1].strip() in _DIMENSIONLESS:
         return None

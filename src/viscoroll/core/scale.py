@@ -63,9 +63,9 @@ DIMENSIONS = {name: dimension for dimension in _TABLE for name in dimension.name
 def dimension_powers(dimension: str) -> dict[str, int]:
     """Return the powers of the factors of a dimension or a unit.
 
-    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1"; an integer after a symbol is its power, and all
-        symbols after a "/" are divisors.
-    Returns a dict from symbol to power, without the symbols whose powers cancel.
+    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1"; an integer after a symbol is its power, with or
+        without "^" between, and all symbols after the first "/" are divisors.  The symbol "l0" ends with a digit.
+    Returns a dict from symbol to power, an int other than 0: symbols whose powers cancel are left out; {} of "".
     """
     found: dict[str, int] = {}
     for n, part in enumerate(dimension.split("/")):
@@ -105,9 +105,11 @@ class Scale(dict[str, Any]):
     def __missing__(self, name: str) -> Any:
         """Compute the unit of a quantity at its first use, and keep it.
 
+        Python calls it for ``scale[name]`` where the dict has no entry.
+
         name: name of the quantity, as "V".
-        Returns the factor by which a dimensionless value becomes one in SI units, a number or an array of many
-        cylinders; 1 for a ratio, for a name that the table of dimensions does not have, and for a scene.
+        Returns the factor by which a dimensionless value is multiplied to be in SI units, a float, or an array (n,) of
+        many cylinders; 1.0 for a ratio, for a name that the table of dimensions does not have, and for a scene.
         """
         numerator, denominator = 1.0, 1.0
         for factor, power in _POWERS.get(name, {}).items():

@@ -53,11 +53,16 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
 def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
     """Return a section as an instance of a class, its keys and types checked at any depth.
 
+    Unknown keys of the section and its subsections are refused first; then msgspec converts the content, and its error
+    is put into words.
+
     path: path of the file, for errors.
     name: name of the section, for errors.
-    content: content of the section, as tomllib reads it.
+    content: content of the section, as tomllib reads it; not changed.
     kind: the class, of msgspec or a dataclass, whose fields are the keys.
-    Raises FileError with the line of the first key that is unknown, missing, of the wrong type or out of range.
+    Returns a new instance of ``kind``.
+    Raises FileError with the line of the first key that is unknown, missing, of the wrong type or out of range; also
+    for a section that is no table.
     """
     _check_all_keys(path, name, content, kind)
     try:
@@ -86,8 +91,8 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
 def _list_choices(kind: Any, keys: list[str]) -> str:
     """Return the texts that a key may have, as ``'linear', 'log'``, for an error; "" if it is not a choice of texts.
 
-    kind: class of the section, whose annotations state the choices.
-    keys: path of the key in it, from the outermost subsection to the key.
+    kind: class of the section, whose annotations state the choices as ``Literal``.
+    keys: path of the key in it, from the outermost subsection to the key; a key that the class does not have gives "".
     """
     for key in keys:
         sections = (each for each in (kind, *get_args(kind)) if hasattr(each, "__struct_fields__"))
@@ -96,9 +101,11 @@ def _list_choices(kind: Any, keys: list[str]) -> str:
 
 
 def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
-    """Refuse keys that a section or its subsections do not have; raises FileError with the line of the key.
+    """Raise FileError, with the line of the key, for keys that a section or its subsections do not have.
 
-    path, name: path of the file and name of the section.
+    A subsection is a table at a key whose type is, or may be, a struct or dataclass; other tables are not searched.
+
+    path, name: path of the file and name of the section, as "material.prony", for errors.
     content: keys and values of the section.
     kind: struct or dataclass whose fields are the allowed keys.
     """
@@ -112,11 +119,11 @@ def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
 
 
 def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
-    """Refuse an unknown key of a section; the error states its line and the most similar allowed key.
+    """Refuse an unknown key of a section; the error states its line and a similar allowed key if there is one.
 
-    path: path of the file.
+    path: path of the file, for the error.
     name: name of the section, "" for the top level.
-    content: content of the section, as tomllib reads it.
+    content: content of the section, as tomllib reads it; subsections are not searched.
     allowed: keys that the section may have.
     Raises FileError for an unknown key, and for content that is no section.
     """
@@ -131,11 +138,13 @@ def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> No
 
 @contextmanager
 def as_section_error(path: Any, name: str, key: str = "") -> Iterator[None]:
-    """Raise a ParameterError of the body of the ``with`` as FileError of a section, with its line.
+    """Raise a ParameterError of the body of the ``with`` as FileError of a section, with its line; a context manager.
 
-    path: path of the file.
+    Other exceptions pass unchanged.
+
+    path: path of the file, which is read again for the line.
     name: name of the section.
-    key: key that is at fault; "": the name of the parameter.
+    key: key that is at fault; "": the name of the parameter in the error is taken for the key.
     """
     try:
         yield
@@ -144,12 +153,12 @@ def as_section_error(path: Any, name: str, key: str = "") -> Iterator[None]:
 
 
 def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
-    """Return the error of a key of a section, with the number of its line if that is found.
+    """Return the FileError, not raised, of a key of a section, with the number of its line if that is found.
 
     path: path of the file, which is read again for the line.
     name: name of the section, "" for the top level.
-    key: key in the section, "" for the section itself.
-    problem: what is wrong, in words.
+    key: key in the section, "" for the section itself; the message states it only as far as ``problem`` does.
+    problem: what is wrong, in words, which end the message.
     """
     line = None
     with suppress(OSError, UnicodeDecodeError):
@@ -164,7 +173,9 @@ def find_line(text: str, name: str, key: str) -> int | None:
     text: content of the file, TOML.
     name: name of the section, as "material.prony", "" for the top level; an inline table counts as a section.
     key: key in the section, "" for the section itself.
-    Returns the number from 1; of the header of the section where the key is not found, None where that is missing too.
+    Returns the number, from 1, of the first line that sets the key or is the header of that subsection; if there is
+    none, that of the header of the section, or of the line of an inline table of that name; None where these are
+    missing too.
     """
     full = f"{name}.{key}" if name else key
     plain = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]")

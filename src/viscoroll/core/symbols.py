@@ -58,10 +58,13 @@ _MEANINGS = {
 
 
 def attributes(name: str, si: bool = False) -> dict[str, str]:
-    """Return the attributes of a quantity in a dataset: long_name, units, and of most symbol and equation.
+    """Return the attributes of a quantity in a dataset.
 
-    name: quantity.
+    name: name of the quantity in code, as "delta_star".
     si: whether it is in SI units, else dimensionless.
+    Returns a dict with long_name ("" of an unknown name) and units ("1" of a dimensionless quantity and of an unknown
+    name).  It also has symbol (LaTeX) and equation ("" for none) if the table of symbols has the name, unless the
+    quantity is in SI units and has a dimension, as symbols stand for dimensionless quantities.
     """
     found = {"long_name": describe_quantity(name, si), "units": si_unit(name) if si else "1"}
     if name in SYMBOLS and not (si and name in DIMENSIONS):
@@ -72,9 +75,10 @@ def attributes(name: str, si: bool = False) -> dict[str, str]:
 def describe_quantity(name: str, si: bool = False) -> str:
     """Return the meaning of a quantity in words, as for long_name of a dataset; "" where it is not known.
 
-    name: quantity, or a slope as "dQ_dV".
-    si: whether it is in SI units; forces and moments are then "per length of the cylinder".  Else the words end with
-        the unit by which the quantity is divided.
+    name: name of the quantity in code, or of a slope as "dQ_dV".
+    si: whether it is in SI units; a quantity whose unit is per m, as a force in N/m, ends with "per length of the
+        cylinder" then.  Else the words end with the unit by which the quantity is divided, as ", divided by R".  A
+        ratio has no such ending in either case.
     """
     if name in SYMBOLS:
         text = SYMBOLS[name].long_name

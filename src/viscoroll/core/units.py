@@ -46,7 +46,7 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
 
     Returns
     -------
-    factor, offset : floats; the offset is 0 unless the units are temperatures.
+    factor, offset : floats, the offset in ``target``; it is 0 unless the units are temperatures with different zeros.
 
     Raises
     ------

@@ -43,8 +43,10 @@ _BITS = 52
 class Sample(dict[str, Floats]):
     """Draws of each quantity by name, (n,), with the seed and the design that give them again.
 
-    seed : seed, a whole number in [0, 2^63).
-    design : "random", "latin" or "sobol".
+    Attributes
+    ----------
+    seed : seed of the draws, a whole number in [0, 2^63).
+    design : design of the draws: "random", "latin" or "sobol".
 
     Examples
     --------

@@ -44,11 +44,15 @@ _INITIAL_SYMBOLS = {"V0": "$V_0$", "omega0": r"$\omega_0$"}
 
 
 def distributions(data: xr.Dataset) -> Figure:
-    """Draw a row for each quantity: its quantiles over time, and its histogram at the last time.
+    """Draw a row for each quantity: its quantiles over time on the left, its histogram at the last time on the right.
 
-    data: :class:`xr.Dataset`, the summaries of a run or of an ensemble, with NAME_quantiles over (quantile, t) or over
-        quantile, and NAME_histogram; without histograms the quantiles alone are drawn.
-    Returns the figure.  A quantity without times, or with a single one, has the fraction of motions below each value.
+    Of a quantity that is one number per motion, or where there is a single output time, the left panel shows the
+    fraction of motions below each quantile.
+
+    data: :class:`xr.Dataset`, the summaries of a run or of an ensemble: NAME_quantiles over (quantile, t) or over
+        quantile, with the attribute units; NAME_histogram, NAME_bin_low and NAME_bin_high; attribute motions, and of a
+        run design and seed, for the title.  If no quantity has a histogram there is no right column.
+    Returns the :class:`matplotlib.figure.Figure`; without quantities it has one empty row.
     """
     about, levels = data.attrs, data["quantile"].values
     names = [str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")]
@@ -78,8 +82,11 @@ def distributions(data: xr.Dataset) -> Figure:
 def _draw_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
     """Draw the histogram of a quantity at the last time.
 
-    axes: axes of matplotlib, drawn into; the title states how many motions lie beyond the ends, or that there is none,
-        and the axis of counts is logarithmic where one bar has nearly all motions.
+    The tails, a thousandth of the motions at either end, are left out; the title states how many motions that are, if
+    any.  Where one bar has more than 90 % of the motions the axis of counts is logarithmic.  If no motion has a value
+    the panel is empty and its title is "no values".
+
+    axes: axes of matplotlib, drawn into.
     data: summaries of motions, with NAME_histogram (bins,) or (bins, times), NAME_bin_low and NAME_bin_high (bins,).
     name: name of the quantity, NAME.
     """
@@ -98,11 +105,13 @@ def _draw_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
 
 
 def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
-    """Combine bins to bars of equal width, without the tails; one bar if all values are nearly equal.
+    """Combine bins to bars of equal width, without a thousandth of the motions at either end.
 
-    low, high: ends of the bins, ascending, (bins,).
-    counts: motions in each bin, (bins,), of which a bar gets the fraction that it overlaps.
-    Returns (edges of the bars, (bars + 1,); numbers of motions, (bars,), which need not be whole).
+    low, high: ends of the bins, ascending, (bins,), in the unit of the quantity.
+    counts: motions in each bin, (bins,), at least one in all; a bar gets the fraction of a bin that it overlaps.
+    Returns (edges of the bars, (bars + 1,); numbers of motions, (bars,), which need not be whole).  There are 80 bars,
+    or two times the root of the number of motions if that is less.  If the bins together are too narrow for matplotlib
+    there is one bar, about the value, as wide as its magnitude but at least 1.
     """
     reached = np.cumsum(counts) / max(counts.sum(), 1)
     first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
@@ -118,11 +127,12 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
 def sobol_bars(indices: xr.Dataset) -> Figure:
     """Draw first-order and total index of every input with its confidence interval, a panel for each quantity.
 
-    Quantities over time are shown at the last time with indices.  Inputs have one order, the largest total index first.
+    Quantities over time are shown at the last time with indices.  All panels have the inputs in one order: the input
+    with the largest total index of any quantity first.
 
-    indices: indices of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file: of each
+    indices: dataset of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file: of each
         quantity NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or (input,), dimensionless.
-    Returns the figure.
+    Returns the :class:`matplotlib.figure.Figure`.
     """
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
     shown = [_last_indices(indices, name) for name in names]
@@ -147,10 +157,10 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 
 
 def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
-    """Return the Sobol indices of a quantity at the last time that has any.
+    """Return the Sobol indices of a quantity at the last time that has any, or those of a quantity without times.
 
     indices: Sobol indices of a run, a dataset with NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or
-        (input,).
+        (input,), finite at one time at least.
     name: name of the quantity, NAME.
     Returns (title of the panel; dict from "S1", "S1_conf", "ST" and "ST_conf" to values over the inputs, (inputs,)).
     """

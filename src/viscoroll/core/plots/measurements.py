@@ -21,8 +21,11 @@ _POINTS = 400
 def master_curve(material: Any) -> Figure:
     """Draw E', E'' and tan delta over angular frequency on the left, E(t) on the right, in Pa, rad/s and s.
 
-    material: a :class:`Material`; its curves are dashed outside the band in which it was measured.
-    Returns the figure; of an elastic material without E'' and tan delta.
+    The axis reaches two decades beyond the shortest and the longest time of the material.
+
+    material: a :class:`Material`.  If it has a record of its measurement, curves are dashed outside the measured band;
+        else each curve has a style of its own.
+    Returns the :class:`matplotlib.figure.Figure`; of an elastic material it has no E'' and tan delta.
     Raises ParameterError for a rigid body, which has no curves.
     """
     if material.is_rigid:
@@ -51,8 +54,9 @@ def master_curve(material: Any) -> Figure:
 def series_fit(fit: Any) -> Figure:
     """Draw measured moduli as points and the series that was fitted to them as curves, on logarithmic axes.
 
-    fit: a :class:`viscoroll.Fit` (over angular frequency, rad/s) or a :class:`viscoroll.RelaxationFit` (over time, s).
-    Returns the figure.
+    fit: a :class:`viscoroll.Fit` (E' and E'' over angular frequency, rad/s) or a :class:`viscoroll.RelaxationFit` (the
+        relaxation modulus over time, s), in the unit of its data.
+    Returns the :class:`matplotlib.figure.Figure`; its title states the number of modes and the misfit.
     """
     x, *columns = fit.data
     fine = np.geomspace(x[0], x[-1], _POINTS)
@@ -69,9 +73,12 @@ def series_fit(fit: Any) -> Figure:
 def identification(fit: Any) -> Figure:
     """Draw a column for each quantity of a record: data and prediction band on top, residuals below.
 
-    fit: a :class:`viscoroll.app.identification.fit.Identification`.  Residuals are (fit - data)/sigma; of a planned
-        identification, which has no data, there are none.
-    Returns the figure.
+    Residuals are (fit - data)/sigma, dimensionless.  A record over several coordinates is drawn over its last one, with
+    a vertical line for each point's prediction band.
+
+    fit: a :class:`viscoroll.app.identification.fit.Identification`.  Of a planned one, which has no data, neither data
+        nor residuals are drawn.
+    Returns the :class:`matplotlib.figure.Figure`.
     """
     shown = fit._problem.columns
     figure, grid = new_figure(

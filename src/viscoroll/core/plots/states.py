@@ -47,11 +47,13 @@ def varied_axes(data: xr.Dataset) -> list[str]:
 
 
 def field_curves(data: xr.Dataset) -> Figure:
-    """Draw each field of a dataset over its first varied axis, with a curve for some values of the second.
+    """Draw each field of a dataset over its first axis of several values, with curves for at most four of the second.
 
-    data: fields of the contact over axes such as V and delta, of which at least one has several values.  Further axes
-        are at their middle, which the title states.
-    Returns the figure, with at most :data:`_MAX_PANELS` fields.
+    data: fields of the contact over axes such as V and delta, of which at least one has several values.  Third and
+        further axes are at their middle, which the title states.  Over V curves are dashed outside the measured band,
+        if the attribute :data:`..symbols.MEASURED` states it.
+    Returns the :class:`matplotlib.figure.Figure`, with the first :data:`_MAX_PANELS` of those fields that depend on the
+    first axis.  Its axis is logarithmic if the values are spaced by factors.
     """
     first, *others = varied_axes(data)
     title, band = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
@@ -86,8 +88,8 @@ def field_curves(data: xr.Dataset) -> Figure:
 def stresses(data: xr.Dataset) -> Figure:
     """Draw pressure and shear stress along the contact.
 
-    data: dataset with ``x``, ``p`` and ``tau``; along other axes than that of x the first state is drawn.
-    Returns the figure.
+    data: dataset with ``x``, ``p`` and ``tau``; of several states, along other axes than that of x, the first is drawn.
+    Returns the :class:`matplotlib.figure.Figure`.
     """
     figure, axes = new_figure("Pressure and shear stress along the contact")
     data = data.isel(dict.fromkeys(set(data.dims) - {data["x"].dims[0]}, 0))
@@ -103,9 +105,10 @@ def stresses(data: xr.Dataset) -> Figure:
 def equilibria(data: xr.Dataset) -> Figure:
     """Draw the speeds of all equilibria over the load, stable (filled) or not (open).
 
-    data: dataset of steady rolling, as of ``Steady.to_xarray``.  The load is the first of slope, force and torque that
-        varies, else the force.
-    Returns the figure; the axis of speeds is logarithmic beyond the least speed where they differ by more than 100.
+    data: dataset of steady rolling, as of ``Steady.to_xarray``.  The load on the axis is the first of slope, force and
+        torque that varies, else the force.  Entries whose V is NaN, where there are fewer equilibria, are left out.
+    Returns the :class:`matplotlib.figure.Figure`.  If the magnitudes of the speeds, rest apart, differ by a factor of
+    more than 100, their axis is logarithmic on both sides of a linear part between plus and minus the least magnitude.
     """
     loads = (name for name in ("slope", "force", "torque") if name in data and np.ptp(_finite(data[name])) > 0.0)
     load = next(loads, "force")
@@ -130,8 +133,8 @@ def motion(data: xr.Dataset) -> Figure:
     data: dataset of one motion, with ``t``, ``V``, ``omega``, ``x`` and ``regime``; ``force`` and ``torque`` are left
         out where they are missing or 0; corners of a schedule of NAME are in ``drive_NAME_time`` and ``drive_NAME``;
         the attribute ``status`` is in the title.  In SI units each quantity has its own panel, else V and omega share
-        one.
-    Returns the figure of matplotlib.
+        one, as force and torque do.
+    Returns the :class:`matplotlib.figure.Figure`.
     """
     loads = [name for name in ("force", "torque") if name in data and data[name].values.any()]
     rows = [["V", "omega"], ["x"], *([loads] if loads else [])]
@@ -155,13 +158,15 @@ def motion(data: xr.Dataset) -> Figure:
 
 
 def _add_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
-    """Return a quantity of a motion over time, to which the corners and both sides of the jumps of its schedule are
-    added, so that a curve shows them between output times.
+    """Add the corners and both sides of the jumps of a schedule to a quantity of a motion over time, for its curve.
 
-    Loads beside the schedule, as a feedback and that of the slope, have no jumps.
+    Without them a curve through the output times would show a jump as a slope.  The quantity is the schedule plus other
+    loads, as a feedback and that of the slope, which have no jumps and are interpolated to the corners.  Output times
+    at a jump are replaced by its two sides.
     data: :class:`xr.Dataset`, the motion; a schedule of NAME is in ``drive_NAME_time`` and ``drive_NAME``.
-    name: name of the quantity, NAME; without a schedule it stays as it is.
-    Returns (times, values), (k,) each, times ascending, in the units of ``data``.
+    name: name of the quantity, NAME.
+    Returns (times, values), (k,) each, times ascending, in the units of ``data``: those of ``data`` itself without a
+    schedule, and if all output times are at jumps.
     """
     t, values = data["t"].values, data[name].values
     if f"drive_{name}_time" not in data:

@@ -39,7 +39,7 @@ def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2,
 
     title: text on top of the figure.
     rows, columns: numbers of rows and columns of axes.
-    height: of the figure, inches; its width is ``WIDTH``.
+    height: height of the figure, inches; its width is ``WIDTH``.
     options: keyword arguments of ``Figure.subplots``.
     Returns (figure; its axes as of ``Figure.subplots``: one for a single row and column, a vector for one row or one
     column, else an array (rows, columns); with ``squeeze=False`` always such an array).
@@ -56,9 +56,9 @@ def new_panels(title: str, count: int, height: float, **options: bool) -> tuple[
 
     title: text on top of the figure.
     count: number of axes, >= 1.
-    height: of each row, inches.
+    height: height of each row of axes, inches; the figure has 0.8 inches more, for its title.
     options: keyword arguments of ``Figure.subplots``, as ``sharex``.
-    Returns (figure, list of its ``count`` axes).
+    Returns (figure; list of its ``count`` axes, row by row).  Of an odd number above 1 the last place stays empty.
     """
     columns = min(2, count)
     rows = -(-count // columns)
@@ -75,7 +75,8 @@ def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, fl
     x, y: points of the curve, (n,).
     band: lowest and highest measured |x|; None: the curve has the style ``line`` everywhere.
     line: keyword arguments of ``Axes.plot``, the style of the line.
-    Returns the lines of matplotlib, one without a band, else the solid and the dashed one.
+    Returns the lines of matplotlib: one without a band; else the solid and the dashed one, of which only the first has
+    the label, and either may be without points.
     """
     if band is None:
         return list(axes.plot(x, y, **line))
@@ -90,7 +91,8 @@ def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, fl
 def spaced_by_factors(x: NDArray[Any]) -> bool:
     """Whether the numbers ``x``, any order, are spaced more evenly on a logarithmic axis than on a linear one.
 
-    False for fewer than three different numbers, and where one is not > 0.
+    The spacing of the different numbers is compared by its relative standard deviation, linear and logarithmic.  The
+    result is False for fewer than three different numbers, where one is not > 0, and where both spacings are as even.
     """
     points = np.unique(x)
     if points.size < 3 or points[0] <= 0.0:
@@ -100,7 +102,13 @@ def spaced_by_factors(x: NDArray[Any]) -> bool:
 
 
 def log_ticks(axis: Any) -> None:
-    """Set labels of a logarithmic ``axis`` that do not overlap: 1, 2, 5 as digits below two decades, else powers."""
+    """Set labels of a logarithmic axis that do not overlap.
+
+    If its range is less than two decades, ticks at 1, 2 and 5 times powers of ten are labelled by digits, else
+    matplotlib's powers of ten stay.  Minor ticks have no labels.
+
+    axis: x or y axis of matplotlib, whose range is set already; changed.
+    """
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     low, high = axis.get_view_interval()
@@ -122,6 +130,9 @@ def small_legend(axes: Any, **options: Any) -> None:
 
 def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> None:
     """Plot quantiles over time: pairs of levels as bands, the middle one of an odd number as a line, with a legend.
+
+    A line at 0 is drawn too, and the axis is extended upwards to make room for the legend, which is left out without
+    levels.
 
     axes: axes of matplotlib, drawn into.
     t: times, (n,).
@@ -147,7 +158,8 @@ def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
 
     name: name of the quantity, as "V".
     units: unit as "m s-1"; "1" of a dimensionless one, which is left out.
-    symbol: LaTeX without $, where the table of symbols has none; "": the name is written.
+    symbol: LaTeX without $, where the table of symbols has none; "": the name is written, with blanks for "_".
+    Returns a text as "$V$, m s$^{-1}$".  A symbol that is a ratio, as p/E', is cut at "/" if there is a unit.
     """
     symbol = SYMBOLS[name].latex if name in SYMBOLS else symbol
     # A symbol such as p/E' stands for a ratio; in SI units the quantity is p.
@@ -171,7 +183,7 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
     Parameters
     ----------
     figure : figure of matplotlib.
-    path : path of the file, whose suffix chooses the format.
+    path : path of the file, whose suffix, in small or capital letters, chooses the format; it is replaced if it exists.
 
     Raises
     ------

@@ -45,7 +45,8 @@ def about(run: Run) -> dict[str, Any]:
 def _software() -> dict[str, str]:
     """Return the versions of the packages that the bits of a result depend on, and a digest of the kernels.
 
-    Returns "viscoroll", "numpy", "scipy", "numba" -> version, and "kernels" -> digest of their sources.
+    Returns a dict with the versions of "viscoroll", "numpy", "scipy" and "numba", and as "kernels" a hash of the
+    sources of the compiled functions, 16 hexadecimal digits.
     """
     import numba
     import scipy

@@ -96,7 +96,7 @@ def damaged(root: Path, record: Record) -> list[str]:
 
 
 def _digest(path: Path) -> str | None:
-    """Return the SHA-256 of a file in hexadecimal digits; None if it cannot be read.
+    """Return the SHA-256 of a file, 64 hexadecimal digits; None if it is missing or cannot be read.
 
     path: path of the file.
     """

@@ -95,6 +95,11 @@ class RunResults(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return the summaries: moments, quantiles, histograms, and how the motions ended.
 
+        It is the dataset ``summaries`` itself, not a copy, in the units of the run file.  It has for each quantity NAME
+        the variables NAME_counted, NAME_mean, NAME_std, NAME_min, NAME_max, NAME_quantiles and NAME_histogram with its
+        bins, over t if the quantity has a value at each output time; and ``ended``, the number of motions with each
+        status.
+
         Examples
         --------
         >>> import viscoroll as vr

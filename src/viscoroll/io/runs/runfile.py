@@ -225,9 +225,16 @@ class Run:
         return -(-self.settings.n // self.block)
 
     def edges(self, block: int) -> tuple[int, int]:
-        """Return (index of the first motion of a block, index of the one after its last), counted over the run.
+        """Return the range of the motions of a block, counted over the run.
 
-        block: number of the block, from 0 to ``blocks`` - 1.  The last block ends at n and may be shorter.
+        Parameters
+        ----------
+        block : number of the block, from 0 to ``blocks`` - 1.
+
+        Returns
+        -------
+        start, stop : index of the first motion of the block, and of the first one after it; the last block ends at the
+            number of all motions, and may be shorter than the others.
 
         Examples
         --------

@@ -93,9 +93,10 @@ class Store:
         return stop - start
 
     def _remove_old_end(self) -> None:
-        """Remove the summaries of fewer motions, their record first, so that the store is not finished any more.
+        """Remove the summaries of another number of motions, their record first: the store is then not finished.
 
-        Nothing is removed if there are none, or they are of this number of motions.  Raises FileError if that fails.
+        Nothing is removed if there is no readable record of summaries, or it states the number of motions of this run.
+        Raises FileError if a file cannot be removed.
         """
         own = _record_path(self.root, "end")
         end = read_record(own)
@@ -154,7 +155,8 @@ class Store:
     def finish(self) -> None:
         """Merge the summaries of all blocks and write them with the consolidated metadata; the store is then finished.
 
-        Temporary files of killed processes are removed.
+        All blocks must be stored.  Their records are read, not their motions, so that memory does not grow with the
+        number of motions.  Temporary files of killed processes are removed.
         Raises FileError if the record of a block is missing or damaged, or writing fails.
         """
         dataset = summary_dataset(

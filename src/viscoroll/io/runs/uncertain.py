@@ -143,7 +143,8 @@ class _Reader:
         """Return the frozen distribution of scipy.stats that a table names, with its parameters, not truncated.
 
         number: the uncertain number, for errors.
-        table: its table of TOML: distribution, its shapes, loc and scale; truncate is ignored.
+        table: its table of TOML: distribution, the name of a continuous distribution of scipy.stats; all of its shape
+            parameters by name; loc and scale, which may be left out (0 and 1); truncate is ignored.
         Raises FileError for a name that is no continuous distribution, unknown, missing or non-numeric parameters, or
         some that it does not allow.
         """

@@ -50,10 +50,10 @@ def build(
 
     Parameters
     ----------
-    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or a law of half-spaces, of
-        :func:`viscoroll.load_law` or :func:`viscoroll.io.tables.law`.  A law is taken with kappa = mu = 1: the axis V
-        then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa M.  The dataset of a layer or of
-        every alpha is refused.  All parameters are numbers, no arrays.
+    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or a law, of :func:`viscoroll.load_law`
+        or, of half-spaces, the dataset of :func:`viscoroll.io.tables.law`.  A law is taken with kappa = mu = 1: the
+        axis V then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa M.  The dataset of a layer
+        or of every alpha is refused.  All parameters are numbers, no arrays.
     V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_epsilon or in m/s; for V < 0 see the signs
         of Eqs. (17), (18).
     delta : creepages, (n,), dimensionless, any sign, strictly increasing.
@@ -67,11 +67,11 @@ def build(
     Returns
     -------
     xarray.Dataset
-        beta and Q over all axes; lam, epsilon, M, its parts in both bodies, delta_star and zeta over V (and alpha);
-        units, symbols, equations in the attributes.  Nodes have the bits of :func:`contact`.  ``spline_error`` of a
-        field is the largest absolute error of :func:`interpolate`, ``linear_error`` that of linear interpolation in
-        the untransformed axes, over 10^5 random points in random cells; ``spline_error_at`` and ``linear_error_at``
-        name the point, as in "V = 0.31, delta = 0.0042".
+        beta and Q over (V, delta) or (V, delta, alpha); lam, epsilon, M, its parts in both bodies, delta_star and zeta
+        over V (and alpha); units, symbols, equations in the attributes.  Nodes have the bits of :func:`contact`.
+        ``spline_error`` of a field is the largest absolute error of :func:`interpolate`, ``linear_error`` that of
+        linear interpolation in the untransformed axes, over 10^5 random points in random cells; ``spline_error_at`` and
+        ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".
 
     Raises
     ------
