@@ -16,6 +16,7 @@ from refusals import refused
 import viscoroll as vr
 from data.reference import layer as elastic_layer
 from pipeline.evidence.prove import layer
+from viscoroll.io.tables.check import check_table
 from viscoroll.materials.law.cover_rows import solve_at_speed
 from viscoroll.materials.law.cover_solve import CoverModes, solve
 
@@ -232,9 +233,12 @@ def test_a_law_of_a_roller_on_disk(tmp_path):
     dataset = vr.tables.law(roller)
     for save, name in ((vr.tables.save, "law.nc"), (vr.tables.export, "law.json")):
         save(dataset, tmp_path / name)
+    assert all("speeds, against solves" in check.meaning for check in check_table(dataset, 3, 0))
     content, law = json.loads((tmp_path / "law.json").read_text()), vr.load_law(tmp_path / "law.nc")
     assert all(np.array_equal(content[name], dataset[name].values) for name in ("lam", "limit", "free"))
     assert law.pair == roller.pair
+    for what in (law, dataset):  # delta_0 does not vary with mu: no grid holds every kappa and mu
+        refused(lambda what=what: vr.tables.build(what, [0.1], delta=[0.0]), "what = ", "a law of half-spaces")
     loaded = roller.replace(material=law, base=None)
     assert loaded.contact(1.0, delta=1e-3).as_dict() == roller.contact(1.0, delta=1e-3).as_dict()
     refused(lambda: loaded.replace(load=2.1e3).contact(1.0, delta=0.0), "material", "thickness/l0 = 0.5", "0.49")

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from places import DATA, ROOT
 
 import viscoroll as vr
-from viscoroll.app.dma.spectrum import FLOOR
+from viscoroll.app.dma.curve import Curve
+from viscoroll.app.dma.spectrum import FLOOR, _minimize
 
 PYVISCO = DATA / "materials/pyvisco_freq_user_master.csv"
 #: a rubber of ten modes over eight decades, times in s
@@ -375,6 +376,11 @@ def test_what_the_contact_sees_of_the_data():
     assert close(found.value, cylinder.validity(V).measured.value, 1e-14)
     assert found.holds.any()
     assert not found.holds[[0, -1]].any()
+
+
+def test_a_search_ends_where_every_logarithm_is_at_its_bound():
+    start = np.log([E, STRENGTHS[0], TAU[0]])
+    assert np.array_equal(_minimize(Curve(*curve(WHOLE)), start, start, start, 10), start)
 
 
 def test_what_was_measured_stays_with_the_material():

@@ -444,6 +444,12 @@ INTERVAL = 0.02
 IDENTIFIED_DRIVEN = 1e-4
 #: Slopes at a step of their own against differences at another: the truncation of both.
 IDENTIFIED_SLOPES = 1e-5
+#: Outside of a range slopes are one-sided: a step of 3e-4 times half the second derivative.
+IDENTIFIED_OUTSIDE = 1e-3
+#: A product of powers computed a second time: a few roundings.
+PRODUCT = 1e-14
+#: Rise of chi2 at the ends of an interval of 95 %.
+CHI2_95 = 3.841
 #: A standard deviation from some 40 residuals: three of its own.
 SIGMA = 0.4
 #: Standard deviations to expect against those of a fit: its values are off by a standard deviation or two.

@@ -1,5 +1,7 @@
 """From synthetic measurements back to the parameters, and what is said where they do not hold them."""
 
+import itertools
+
 import numpy as np
 import pytest
 import tolerances as tol
@@ -20,6 +22,7 @@ from experiments import (
 )
 
 import viscoroll as vr
+from viscoroll.app.identification.report import _product_text
 
 V = HUMP
 M = roller().contact(V, delta=0.0, fields="M").M
@@ -87,7 +90,7 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
 
     width = high - low
     for end, inward in ((low, 1.0), (high, -1.0)):
-        assert rise(end + inward * tol.INTERVAL * width) < 3.841 < rise(end - inward * tol.INTERVAL * width)
+        assert rise(end + inward * tol.INTERVAL * width) < tol.CHI2_95 < rise(end - inward * tol.INTERVAL * width)
 
 
 def test_slow_rolling_tells_a_product_alone():
@@ -215,6 +218,30 @@ def test_motions_that_fail_are_far_off_and_end_no_fit(monkeypatch):
     fit = vr.identify(roller(mu=0.4), ranges("mu", "E"), data, starts=4)
     assert abs(fit.values["mu"] - TRUTH["mu"]) < 5.0 * fit.stderr["mu"]
     assert fit.residuals({"mu": 0.5}).max() == fit.residuals({"mu": 0.1}).max() == 1e6
+
+
+def test_slopes_outside_of_a_range_are_those_of_the_residuals():
+    """Not the secants to the ends of the ranges, which are far."""
+    fit = vr.identify(roller(), ranges("mu", "E"), [thrown(), traction()], starts=1)
+    for name, factor in itertools.product(("mu", "E"), (0.5, 2.0)):
+        low, high = ranges(name)[name]
+        at = fit.values | {name: (low if factor < 1.0 else high) * factor}
+        step = 1e-4 * at[name]
+        up, down = (fit.residuals(at | {name: at[name] + sign * step}) for sign in (1.0, -1.0))
+        column = fit.jacobian(at)[:, [*fit.values].index(name)]
+        expected = (up - down) / (2.0 * step)
+        assert close(column, expected, tol.IDENTIFIED_OUTSIDE, scale=np.abs(expected).max()), (name, factor)
+
+
+def test_a_product_with_a_negative_speed_is_real():
+    t = np.linspace(0.0, 5.0, 40)
+    run = vr.Coastdown(t, roller().roll(-4.0, -40.0, t).V, sigma=5e-3, omega0=-40.0, name="run")
+    fit = vr.identify(roller(), ranges("E") | {"V0:run": (-5.0, -3.0)}, [run], starts=1)
+    powers = np.array([1.0 if name == "E" else 0.5 for name in fit.values])
+    (product,) = fit._likelihood._bounded_products([powers], tol.CHI2_95, near=True)
+    name, exponent = next((name, p) for name, p in product.powers.items() if name != "E")
+    assert close(product.value, fit.values["E"] ** product.powers["E"] * abs(fit.values[name]) ** exponent, tol.PRODUCT)
+    assert f"|{name}|^" in _product_text(product, fit.values)
 
 
 def test_slopes_are_those_of_the_residuals():

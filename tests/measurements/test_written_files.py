@@ -9,6 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
+from viscoroll.io.measurements.headings import readings
 
 f, w, S, L = rubbers.FREQUENCY, rubbers.OMEGA, rubbers.STORAGE, rubbers.LOSS
 #: unit -> how many of it are an SI unit, "" where the name needs none
@@ -92,3 +93,8 @@ def test_any_file_is_read_right(tmp_path, file):
     assert close(found.loss, L, tol.DMA_DIGITS)
     assert (found.temperature is not None) == warm
     assert found.mode == "tension"
+
+
+@pytest.mark.parametrize("heading", ["log10(f/Hz)", "log10(f) [Hz]", "lg f (Hz)", "log10 f/Hz"])
+def test_the_unit_of_a_logarithm_has_no_blank(heading):
+    assert ("f", "Hz", True) in readings(heading)

@@ -15,6 +15,7 @@ from run_files import CERTAIN, FILES, PAPER, run_of
 
 import viscoroll as vr
 from viscoroll.io.runs import export_netcdf, open_run, roll_inputs, run_ensemble, verify
+from viscoroll.io.runs.columns import attributes
 from viscoroll.io.runs.evaluate import block_inputs, roll_block
 from viscoroll.io.runs.identity import identity
 from viscoroll.io.runs.rollers import roller_of
@@ -297,3 +298,11 @@ def test_a_cylinder_of_its_own_numbers_on_a_base_that_is_uncertain(read):
     values, motions = roll_block(run, 0)
     for i in range(5):
         assert close(motions.V[i], alone(run, values, i).V, tol.MOTION_RTOL * run.settings.rtol)
+
+
+@pytest.mark.parametrize("name", ["E", "nu", "temperature", "thickness", "tau_2"])
+def test_numbers_of_a_material_have_a_meaning(name):
+    own, base = (attributes(prefix + name, si=True) for prefix in ("", "base_"))
+    assert own["long_name"]
+    assert base["long_name"] == "base: " + own["long_name"].removesuffix(" of the cylinder")
+    assert base["units"] == own["units"]

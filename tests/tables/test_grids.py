@@ -3,6 +3,7 @@
 import csv
 import gzip
 import re
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -20,11 +21,15 @@ from viscoroll.io.tables.check import NODES_ALLOWED, check_table
 from viscoroll.materials.law.table import law_table
 
 V, DELTA, ALPHA = np.geomspace(1e-2, 2.0, 21), np.linspace(-0.04, 0.04, 33), np.array([1.0, 2.0, 4.0, 8.0, 16.0])
+#: A thin rubber cover on a steel core, on concrete: delta_0 is an eighth of delta_star.
+RUBBER = vr.Material(E=2e6, nu=0.5, prony=vr.Prony(E=[2.0, 6.0], tau=[0.1, 1e-3]), thickness=0.012)
+COVERED = vr.Cylinder(R=0.1, m=60.0, material=RUBBER, base=vr.Material.elastic(E=3e10, nu=0.2), mu=0.6, j=0.5)
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), vr.Prony([0.3, 0.6], [1e-2, 1e-3]), 0.3)
 WHAT = {
     "scene": vr.presets.PAPER_SECTION_5,
     "alphas": vr.presets.PAPER_SECTION_5,
     "cylinder": vr.presets.RUBBER_CYLINDER,
+    "cover": COVERED,
     "law": law_table(PAIR),
 }
 
@@ -51,8 +56,8 @@ def alphas():
 
 
 def exact(name, points, fields):
-    if name == "cylinder":
-        return vr.presets.RUBBER_CYLINDER.contact(points["V"], delta=points["delta"], fields=fields).as_dict()
+    if isinstance(WHAT[name], vr.Cylinder):
+        return WHAT[name].contact(points["V"], delta=points["delta"], fields=fields).as_dict()
     scene = vr.presets.PAPER_SECTION_5.replace(alpha=points["alpha"]) if name == "alphas" else WHAT[name]
     scene = vr.Scene(kappa=1.0, mu=1.0, material=PAIR) if name == "law" else scene
     return vr.contact(scene, points["V"], delta=points["delta"], fields=fields).as_dict()
@@ -61,20 +66,20 @@ def exact(name, points, fields):
 def test_nodes_are_the_contact(name, table):
     points = {axis: table[axis].values for axis in schema.axes_of(table)}
     grid = dict(zip(points, np.meshgrid(*points.values(), indexing="ij"), strict=True))
-    for field, values in exact(name, grid, schema.VOLUME).items():
-        assert np.array_equal(table[field].values, values), field
-    for field, values in exact(name, grid, schema.PLANE).items():
-        assert np.array_equal(table[field].values, values[:, 0]), field
+    assert ("delta_0" in table) == (name == "cover")
+    for field, values in exact(name, grid, schema.fields_of(table)).items():
+        nodes = values if field in schema.VOLUME else values[:, 0]
+        assert np.array_equal(table[field].values, nodes), field
 
 
 def test_what_it_says(name, table):
     for variable in table.variables.values():
         assert all(variable.attrs[key] for key in ("long_name", "units", "symbol", "reference"))
     assert (table.Q.attrs["units"], table.V.attrs["units"]) == (
-        ("N m-1", "m s-1") if name == "cylinder" else ("1", "1")
+        ("N m-1", "m s-1") if isinstance(WHAT[name], vr.Cylinder) else ("1", "1")
     )
     assert table.attrs["history"].endswith("made by a test")
-    assert ("material" in table.attrs) == (name in ("cylinder", "law"))
+    assert ("material" in table.attrs) == (name in ("cylinder", "cover", "law"))
     assert ("alpha" in table.attrs) == (name in ("scene", "law"))
 
 
@@ -82,7 +87,7 @@ def test_stated_errors_are_those_of_other_points(name, table):
     random, count = np.random.default_rng(5), 20_000
     points = {axis: random.uniform(*table[axis].values[[0, -1]], count) for axis in schema.axes_of(table)}
     points["V"] = np.exp(random.uniform(*np.log(V[[0, -1]]), count)).clip(V[0], V[-1])
-    truth = exact(name, points, schema.VOLUME + schema.PLANE)
+    truth = exact(name, points, schema.fields_of(table))
     found = vr.tables.interpolate(table, **points)
     linear = table.interp({axis: xr.DataArray(values) for axis, values in points.items()})
     for field in schema.fields_of(table):
@@ -162,6 +167,15 @@ def test_creep_nodes_lie_around_the_edge_of_full_slip():
     star, steps = grid.delta_star.values.ravel(), np.diff(nodes)
     inside = (nodes[:-1] >= star.min()) & (nodes[1:] <= star.max())
     assert steps[inside].mean() < np.diff(even.delta).mean()
+
+
+def test_creep_nodes_of_a_cover_reach_full_slip_on_both_sides():
+    """Of a thin cover full slip begins at delta_0 +- delta_star, farther from 0 than delta_star."""
+    thin = COVERED.replace(material=replace(RUBBER, thickness=0.004), mu=0.1)
+    found = thin.contact(V, delta=0.0)
+    assert np.max(np.abs(found.delta_0) / found.delta_star) > 0.1
+    grid = vr.tables.build(thin, V, delta=vr.tables.creep_nodes(thin, V, 41))
+    assert (np.abs(grid.Q[:, [0, -1]]) == thin.mu * thin.load).all()
 
 
 # --- files ---

@@ -49,6 +49,8 @@ _MEANINGS = {
     "loss_half_space": "power lost: half-space",
     "loss_cylinder": "power lost: cylinder",
     "length": "contact length",
+    "thickness": "thickness of the layer",
+    "temperature": "temperature of the material",
     "V0": "initial velocity of the axis",
     "omega0": "initial angular velocity",
     "count": "number of equilibria",

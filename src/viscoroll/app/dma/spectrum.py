@@ -164,6 +164,7 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     logs : start, logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 + 2 modes,).
     low, high : bounds of the logarithms, of the same shape, perhaps infinite; a start outside is moved to the bound.
+        The iteration ends where each logarithm is at a bound beyond which the sum would decrease.
     calls : largest number of evaluations of the residuals, >= 1; with 1 the start is returned.
     Returns the logarithms at the minimum, or the best ones found when the calls are used up, (1 + 2 modes,).
     """
@@ -173,6 +174,8 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
     for _ in range(calls - 1):
         downhill = -(slopes.T @ errors)
         free = ~((logs <= low) & (downhill < 0.0) | (logs >= high) & (downhill > 0.0))
+        if not free.any():
+            break
         normal = _normal_matrix(slopes[:, free])
         np.fill_diagonal(normal, (1.0 + damping) * normal.diagonal() + np.finfo(float).tiny)
         step = np.zeros_like(logs)

@@ -202,10 +202,10 @@ class Identification(Result):
         Returns
         -------
         list[Product]
-            :class:`.profile.Product`, each with ``.powers`` (name -> exponent), ``.value`` (at the best fit, of SI
-            values), ``.low`` and ``.high`` (both divided by ``value``) and ``.near`` (whether it holds near the values
-            found only); of either kind the best determined first.  It is empty where fewer than two unknowns are
-            undetermined, or no product has an interval of at most a factor of e.
+            :class:`.profile.Product`, each with ``.powers`` (name -> exponent), ``.value`` (at the best fit, of the
+            magnitudes of SI values), ``.low`` and ``.high`` (both divided by ``value``) and ``.near`` (whether it holds
+            near the values found only); of either kind the best determined first.  It is empty where fewer than two
+            unknowns are undetermined, or no product has an interval of at most a factor of e.
 
         Raises
         ------
@@ -317,8 +317,7 @@ class Identification(Result):
     def jacobian(self, values: Mapping[str, float]) -> Floats:
         """Return the derivatives of :meth:`residuals` by the values, by central differences.
 
-        At an end of the range of an unknown the difference is one-sided; outside of its range it is that to the end of
-        the range, which is no derivative.
+        At an end of the range of an unknown, and outside of its range, the difference is one-sided, towards the range.
 
         values : name -> value of unknowns, SI; others are at their start, not at the best fit.
         Returns an array, (residuals, unknowns), in one over the SI unit of each unknown, in the order of

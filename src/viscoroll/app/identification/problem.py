@@ -213,21 +213,20 @@ class Problem:
         """Return the derivatives of a function of the coordinates by some of them, by differences within the ranges.
 
         function : function that takes coordinates, (unknowns,), and returns an array, as the residuals, (points,).
-        u : coordinates at which the derivatives are taken, (unknowns,); for a coordinate outside of its range the
-            difference is that to the end of the range, which may be far.
+        u : coordinates at which the derivatives are taken, (unknowns,), perhaps outside of the ranges.
         which : indices of the coordinates by which they are taken.
         step : length of a step of a coordinate.  :data:`_STEP`, the default, is taken to both sides; any other one
             upwards alone, and downwards too where the upper end of the range is nearer than the step.  A step ends at
-            the end of the range.
+            the end of the range; from a coordinate outside of its range there is only the step towards it.
         Returns shape (points, which); of a function whose result has several axes these are in reverse order, before
         that of ``which``.
         """
         columns = []
         for i in which:
             up, down = u.copy(), u.copy()
-            up[i] = min(u[i] + step, self.high[i])
+            up[i] = min(u[i] + step, max(self.high[i], u[i]))
             if step == _STEP or up[i] < u[i] + step:
-                down[i] = max(u[i] - step, self.low[i])
+                down[i] = max(u[i] - step, min(self.low[i], u[i]))
             columns.append((function(up) - function(down)) / (up[i] - down[i]))
         return np.array(columns).T
 

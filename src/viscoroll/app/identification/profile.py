@@ -77,7 +77,7 @@ class Product(NamedTuple):
     ----------
     powers : name of unknown -> exponent, of the unknowns whose power is not 0.  Exponents of unknowns with a linear
         coordinate (brake, drag, nu, V0, omega0 and t0) hold near the values found only.
-    value : value of the product at the best fit, of SI values.
+    value : value of the product at the best fit, of the magnitudes of SI values, as V0 may be negative.
     low, high : ends of its interval, divided by ``value``, dimensionless: low <= 1 <= high.
     near : True: the interval is by the slopes at the best fit, and the product holds within about a fifth of the values
         found; farther off other exponents hold.  False: the interval is a profile.
@@ -223,7 +223,7 @@ class Likelihood:
                 unknown.name: p * (values[unknown.name] / unknown.slope(values[unknown.name]))
                 for unknown, p in zip(self.problem.unknowns, powers.tolist(), strict=True) if p
             }  # fmt: skip
-            value = math.prod(values[name] ** p for name, p in exponents.items())
+            value = math.prod(abs(values[name]) ** p for name, p in exponents.items())
             found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near))
         return found
 

@@ -91,7 +91,7 @@ def _limits(fit: Any) -> Iterator[str]:
     yield from (f"the data do not depend on {name}" for name in fit.does_not_act)
     *names, last = fit.undetermined or ("",)
     if names:
-        yield f"{', '.join(names)} and {last} cannot be separated by these data: {_products(fit.products())}"
+        yield f"{', '.join(names)} and {last} cannot be separated by these data: {_products(fit)}"
     elif last:
         yield f"{last} is not determined by these data"
     yield from _interval_limits(fit)
@@ -104,15 +104,16 @@ def _limits(fit: Any) -> Iterator[str]:
             yield f"{names[k]} and {names[i]} are correlated: {fit.correlations[i, k]:+.4f}"
 
 
-def _products(found: list[Any]) -> str:
+def _products(fit: Any) -> str:
     """Return a sentence on the products of unknowns that the data determine.
 
-    found : list of :class:`.profile.Product`, of :meth:`viscoroll.app.identification.Identification.products`.
+    fit : a :class:`viscoroll.app.identification.Identification`.
     Returns a sentence with the products that hold over the whole intervals, then those that hold near the values found;
     with the latter alone if there are no others, and one that says so if there are none at all.
     """
+    found = fit.products()
     sure, near = (
-        " and ".join(_product_text(product) for product in found if product.near is by_slopes)
+        " and ".join(_product_text(product, fit.values) for product in found if product.near is by_slopes)
         for by_slopes in (False, True)
     )
     if not found:
@@ -122,16 +123,18 @@ def _products(found: list[Any]) -> str:
     return text + more * bool(near)
 
 
-def _product_text(product: Any) -> str:
+def _product_text(product: Any, values: dict[str, float]) -> str:
     """Return a product as text, as "E T_ref^0.5 = 1200 (95%: -2 % to +2 %)", the exponent of largest absolute value
     first.
 
     The value is in SI units without their names, the ends of the interval are relative to it.
 
     product : a :class:`.profile.Product`; its interval is at the level 0.95.
+    values : name -> value of the unknowns, SI; the name of a negative one is put between bars, as "|V0|^0.5".
     """
     powers = sorted(product.powers.items(), key=lambda item: -abs(item[1]))
-    text = " ".join(name if p == 1.0 else f"{name}^{p:.3g}" for name, p in powers)
+    names = {name: f"|{name}|" if values[name] < 0.0 else name for name in product.powers}
+    text = " ".join(names[name] if p == 1.0 else f"{names[name]}^{p:.3g}" for name, p in powers)
     low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (product.low, product.high))
     return f"{text} = {product.value:.4g} (95%: {low} to {high})"
 

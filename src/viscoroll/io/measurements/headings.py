@@ -68,7 +68,7 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     if found := _LOGARITHM.fullmatch(heading.strip()):
         heading, log = found["of"], True
         if inner := _PARENTHESES.fullmatch(heading):
-            heading = inner[1] + " " + inner[2]
+            heading = f"{inner[1]} {inner[2]}".rstrip()
     ways = [(heading, "")]
     for group in reversed([*_BRACKETS.finditer(heading)]):
         ways.append((heading[: group.start()].rstrip(" /") + " " + heading[group.end() :], group[1] or group[2] or ""))

@@ -37,7 +37,7 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
         return about | {"long_name": f"given: {about['long_name']}" + f", value {corner}" * bool(corner)}
     if name.startswith(PREFIXES["base"]):
         about = attributes(name.removeprefix(PREFIXES["base"]), si)
-        return about | {"long_name": f"base: {about['long_name']}"}
+        return about | {"long_name": f"base: {about['long_name'].removesuffix(' of the cylinder')}"}
     letter, _, index = name.partition("_")
     if letter in _SERIES and index.isdecimal():
         return {"long_name": _SERIES[letter].format(index), "units": "1"}

@@ -12,6 +12,7 @@ from ...contact_law.contact import contact
 from ...core.array_types import Floats
 from ...core.errors import ParameterError, described_error, shape_error
 from ...cylinder import Cylinder
+from ...materials.cover import Cover
 from ...materials.law.netcdf import bodies_as_toml, parse_law
 from ...materials.law.table import LawTable
 from ...materials.law_file import dataset_content
@@ -50,10 +51,11 @@ def build(
 
     Parameters
     ----------
-    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or a law, of :func:`viscoroll.load_law`
-        or, of half-spaces, the dataset of :func:`viscoroll.io.tables.law`.  A law is taken with kappa = mu = 1: the
-        axis V then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa M.  The dataset of a layer
-        or of every alpha is refused.  All parameters are numbers, no arrays.
+    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or the law of half-spaces, of
+        :func:`viscoroll.load_law` or the dataset of :func:`viscoroll.io.tables.law`.  A law is taken with kappa = mu =
+        1: the axis V then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa M.  The law of a
+        layer has no such scale, since delta_0 does not vary with mu: it is refused, as is the law of every alpha.  All
+        parameters are numbers, no arrays.
     V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_epsilon or in m/s; for V < 0 see the signs
         of Eqs. (17), (18).
     delta : creepages, (n,), dimensionless, any sign, strictly increasing.
@@ -68,10 +70,10 @@ def build(
     -------
     xarray.Dataset
         beta and Q over (V, delta) or (V, delta, alpha); lam, epsilon, M, its parts in both bodies, delta_star and zeta
-        over V (and alpha); units, symbols, equations in the attributes.  Nodes have the bits of :func:`contact`.
-        ``spline_error`` of a field is the largest absolute error of :func:`interpolate`, ``linear_error`` that of
-        linear interpolation in the untransformed axes, over 10^5 random points in random cells; ``spline_error_at`` and
-        ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".
+        over V (and alpha), and of a layer delta_0; units, symbols, equations in the attributes.  Nodes have the bits of
+        :func:`contact`. ``spline_error`` of a field is the largest absolute error of :func:`interpolate`,
+        ``linear_error`` that of linear interpolation in the untransformed axes, over 10^5 random points in random
+        cells; ``spline_error_at`` and ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".
 
     Raises
     ------
@@ -127,16 +129,16 @@ def build(
 def _roller_of(what: Any) -> Scene | Cylinder:
     """Return the roller of a grid: a scene or a cylinder itself, of a law the scene with kappa = mu = 1.
 
-    what: a :class:`Scene`, a :class:`Cylinder`, a :class:`LawTable`, or the dataset of a law of half-spaces.
-    Raises ParameterError for anything else (the datasets of a layer and of every alpha too), and for a roller whose
+    what: a :class:`Scene`, a :class:`Cylinder`, a :class:`LawTable` of half-spaces, or the dataset of one.
+    Raises ParameterError for anything else (the law of a layer or of every alpha too), and for a roller whose
     parameters are arrays; FileError for a dataset of a law that is incomplete.
     """
     if getattr(what, "attrs", {}).get(schema.KIND) == "law":
         what = parse_law(dataset_content(what), "law")
-    if isinstance(what, LawTable):
+    if isinstance(what, LawTable) and what.cover is None:
         what = Scene(kappa=1.0, mu=1.0, material=what)
     if not isinstance(what, Scene | Cylinder):
-        raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law")
+        raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law of half-spaces")
     if shape := (what if isinstance(what, Scene) else what.scene()).shape:
         raise shape_error("what", shape, "one scene or cylinder whose parameters are numbers")
     return what
@@ -155,7 +157,9 @@ def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: s
     """
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
-    fields = _evaluate(roller, plane, schema.PLANE, method)
+    scene = roller.scene() if isinstance(roller, Cylinder) else roller
+    names = schema.PLANE if isinstance(scene.material, Cover) else schema.PLANE[:-1]
+    fields = _evaluate(roller, plane, names, method)
     volume = _evaluate(roller, grid, schema.VOLUME, method)
     return volume | {name: np.take(values, 0, axis=1) for name, values in fields.items()}
 
@@ -206,7 +210,7 @@ def errors_at(
     linear: whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V, delta and ln alpha.
     Raises OutOfTableError for a point outside of an axis.
     """
-    exact = _evaluate(roller, points, schema.VOLUME + schema.PLANE)
+    exact = _evaluate(roller, points, schema.fields_of(table))
     found = Interpolant(table, linear)(**points)
     return {name: np.abs(found[name] - exact[name]) for name in schema.fields_of(table)}
 

@@ -11,7 +11,7 @@ from ... import __version__
 from ...core.checks import check_integer
 from ...core.errors import FileError
 from ...materials.law.netcdf import parse_axis, parse_law
-from ...materials.law_file import AXIS, KIND, dataset_content, stated_errors
+from ...materials.law_file import AXIS, COVER, KIND, dataset_content, stated_errors
 from ...scene import Scene
 from . import schema
 from .build import RELATIVE_FIELDS, differences, errors_at, random_points
@@ -122,7 +122,12 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     content = dataset_content(table)
     read = parse_axis if content.attributes[KIND] == AXIS else parse_law
     errors = measured_errors(read(content, source), count, seed)
-    meaning = f"relative; {count} places, against the formulas of the modes"
+    references = {
+        AXIS: "points shared by the alphas, against the formulas of the modes",
+        COVER: "speeds, against solves with more terms",
+    }
+    reference = references.get(content.attributes[KIND], "points, against the formulas of the modes")
+    meaning = f"relative; {count} {reference}"
     return [
         Check(f"{table.attrs['title']}: {name}", errors[name], SAMPLE_RATIO * stated + ROUNDING, meaning)
         for name, stated in stated_errors(table).items()

@@ -15,12 +15,13 @@ from ...scene import Scene
 
 #: Largest number of nodes of a grid: 400 MB a field, more than any look-up block reads.
 MAX_NODES = 50_000_000
-#: Fraction of the nodes of creepage that lie in equal steps; the others lie as densely as the values of delta_star.
+#: Fraction of the nodes of creepage that lie in equal steps; the others lie as densely as the onsets of full slip.
 #: Of fractions from 0.3 to 1 it has the smallest error of Q and beta in the grid of the paper.
 _EVEN_FRACTION = 0.5
-#: Largest creepage divided by the largest delta_star: some nodes lie beyond, so that the ends of the spline are flat.
+#: Largest creepage divided by the largest one at which full slip begins: some nodes lie beyond, so that the ends of the
+#: spline are flat.
 _END_RATIO = 1.1
-#: Points at which the density of delta_star is integrated; more move no node by a thousandth of a step.
+#: Points at which the density of the onsets is integrated; more move no node by a thousandth of a step.
 _DENSITY_POINTS = 20_001
 
 
@@ -61,7 +62,9 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
 
 
 def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: ArrayLike | None = None) -> Floats:
-    """Return nodes of creepage for a grid, dense where full slip begins: around +-delta_star(V, alpha) of its speeds.
+    """Return nodes of creepage for a grid, dense where full slip begins.
+
+    It begins at delta = +-delta_star(V, alpha), of a layer at delta_0 +- delta_star.
 
     Parameters
     ----------
@@ -76,8 +79,8 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     -------
     array of shape (count,)
         Creepages, dimensionless, ascending, symmetric about 0, which is one of them.  Half of the nodes lie in equal
-        steps, half as densely as the values of delta_star at all (V, alpha).  The ends are +-1.1 times the largest
-        delta_star: there the whole contact slips.
+        steps, half as densely as the values of delta_star at all (V, alpha), of a layer those of |delta_star +-
+        delta_0|.  The ends are +-1.1 times the largest of these values: there the whole contact slips.
 
     Raises
     ------
@@ -96,9 +99,10 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     roller: Any = what if alpha is None else what.replace(alpha=increasing("alpha", alpha, low=1.0))
     speeds = increasing("V", V, above=0.0)
     speeds = speeds if alpha is None else speeds[:, np.newaxis]
-    star = np.sort(np.ravel(roller.contact(speeds, delta=0.0, fields="delta_star").delta_star))
-    creep = np.linspace(0.0, _END_RATIO * star[-1], _DENSITY_POINTS)
-    below = np.searchsorted(star, creep) / star.size
+    found = roller.contact(speeds, delta=0.0, fields=("delta_star", "delta_0"))
+    edges = np.sort(np.abs([found.delta_star + found.delta_0, found.delta_star - found.delta_0]), axis=None)
+    creep = np.linspace(0.0, _END_RATIO * edges[-1], _DENSITY_POINTS)
+    below = np.searchsorted(edges, creep) / edges.size
     fraction = _EVEN_FRACTION * np.linspace(0.0, 1.0, _DENSITY_POINTS) + (1.0 - _EVEN_FRACTION) * below
     half = np.interp(np.linspace(0.0, 1.0, count // 2 + 1), fraction, creep)
     return np.concatenate([-half[:0:-1], half])

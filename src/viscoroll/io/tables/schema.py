@@ -21,13 +21,13 @@ if TYPE_CHECKING:
     import xarray as xr
 
 #: Version of the schema that this package writes.
-SCHEMA_VERSION = "1.3"
+SCHEMA_VERSION = "1.4"
 #: Global attribute with the kind of a file.
 KIND = "viscoroll_table"
 #: Kinds of grids; all but the first are of versions before 1.0.
 KINDS = ("grid", "atlas", "literal", "material")
-#: Fields over V (and alpha): they do not depend on the creepage.
-PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta")
+#: Fields over V (and alpha): they do not depend on the creepage.  The last one, delta_0, is that of a layer alone.
+PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
 #: Fields over V and delta (and alpha).
 VOLUME = ("beta", "Q")
 #: Fields of a file of kind "atlas".
@@ -35,11 +35,12 @@ _ATLAS_FIELDS = ("beta", "Q_over_mu", "lam", "epsilon", "kappa_M", "kappa_delta_
 
 #: Attribute ``comment`` of a grid.
 COMMENT = (
-    "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, delta_star and beta are "
-    "even in V; M, its two parts and Q(V, delta) are odd. beta is even in delta, Q odd. beta has a kink at "
-    "|delta| = delta_star(V), beyond which the whole contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. "
+    "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, delta_star, delta_0 and beta "
+    "are even in V; M, its two parts and Q(V, delta) are odd. Let d = delta - delta_0(V), where delta_0 is 0 in a "
+    "grid without this field. beta is even in d, Q odd. beta has a kink at |d| = delta_star(V), beyond which the whole "
+    "contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. "
     "A grid is for plots and for look-up blocks of other programs. Do not use it where the onset of full slip, "
-    "|delta| = delta_star, decides a result: look-up smooths the kink, and spline_error and linear_error of Q and "
+    "|d| = delta_star, decides a result: look-up smooths the kink, and spline_error and linear_error of Q and "
     "beta, which are absolute, occur there. The file of a law (viscoroll tables law) is exact at every V, delta, "
     "kappa and mu, and has a tenth of the size; law.nc of make tables holds every alpha."
 )
