@@ -230,7 +230,7 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
         if section not in content:
             raise section_error(other, "", "material", _NO_MATERIAL)
         if isinstance(content[section], dict) and "file" in content[section]:
-            raise section_error(other, section, "file", "file: must not name a file again")
+            raise section_error(other, section, "file", "file: the file of a material must not name another file")
         return _parse_material(other, section, content[section])
     except FileError as error:
         raise section_error(path, name, "file", str(error)) from error
