@@ -64,7 +64,8 @@ class Cylinder(Methods):
     ParameterError
         Where a value is not finite or out of range, has a unit of another dimension, both or neither of material and E,
         nu, T_epsilon, T_sigma are given, shapes do not broadcast, or the bodies do not go together: both are rigid or
-        layers, or ``material`` is a dimensionless law.  What the scene does not allow is refused at its first use.
+        layers, a layer on the cylinder is thicker than R, or ``material`` is a dimensionless law.  What
+        the scene does not allow is refused at its first use.
 
     Notes
     -----
@@ -145,7 +146,19 @@ class Cylinder(Methods):
                 raise shape_error("T_epsilon", values["T_epsilon"].shape, "a number or a vector (n,)")
             refuse_short_retardation(values["T_epsilon"], values["T_sigma"])
         if material is not None or base is not None:
-            _ = self.pair  # refuses what the materials do not allow
+            self._refuse_thick_layer(self.pair.cylinder.thickness)  # the pair refuses what the materials do not allow
+
+    def _refuse_thick_layer(self, thickness: Any) -> None:
+        """Raise ParameterError where a layer on the cylinder is thicker than R, as one whose thickness is in mm.
+
+        thickness: of the layer, m, a number or (n,); None: the cylinder has none, which is right.
+        """
+        if thickness is None:
+            return
+        broadcast_shape(thickness=np.asarray(thickness), R=np.asarray(self.R))
+        if (np.asarray(thickness) > self.R).any():
+            found = f"of the layer on the cylinder is {format_value(thickness)} m"
+            raise described_error("thickness", found, f"at most R = {format_value(self.R)} m")
 
     @property
     def _sls_parameters(self) -> bool:
