@@ -246,8 +246,9 @@ def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: 
         relative = 0.0 if quantity == "temperature" else _ROUND_PI if quantity.endswith("frequency") else AVERAGED
         allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (quantity == "temperature")
         agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
-        both = f"{alike[0].heading!r} and {column.heading!r}"
-        table.require(agrees, f"{both} contradict each other: choose by columns={{{quantity!r}: ...}}")
+        same = column.heading == alike[0].heading
+        advice = "rename or remove one in the file" if same else f"choose by columns={{{quantity!r}: ...}}"
+        table.require(agrees, f"{alike[0].heading!r} and {column.heading!r} contradict each other: {advice}")
         others[column.heading] = f"agrees with {alike[0].heading!r}"
     return first
 

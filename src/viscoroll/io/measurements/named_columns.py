@@ -59,7 +59,8 @@ def find_column(table: Table, name: str) -> int | None:
     found = exact or [n for n, heading in enumerate(table.headings) if _is_named(heading, name)]
     if len(found) > 1:
         headings = " and ".join(repr(table.headings[n]) for n in found)
-        raise FileError(table.path, f"columns {headings} are both named {name!r}: name one of them with its unit")
+        advice = "rename or remove one in the file" if exact else "name one of them with its unit"
+        raise FileError(table.path, f"columns {headings} are both named {name!r}: {advice}")
     return found[0] if found else None
 
 
