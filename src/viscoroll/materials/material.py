@@ -115,6 +115,7 @@ class Material(FromPrograms):
         Returns
         -------
         Material
+            With one relaxation time T_sigma and ``instant`` = E T_epsilon/T_sigma.
 
         Raises
         ------
@@ -173,6 +174,7 @@ class Material(FromPrograms):
         Returns
         -------
         Material
+            With E infinite, nu = 0.5 and no modes.
 
         Raises
         ------
@@ -433,6 +435,7 @@ class Material(FromPrograms):
         Returns
         -------
         Material
+            Equal to the one that was written.
 
         Raises
         ------

@@ -143,6 +143,7 @@ class Prony(OneOrMany):
         Returns
         -------
         Prony
+            With these modes of creep; those of relaxation, ``E`` and ``tau``, are computed at their first use.
 
         Raises
         ------
@@ -179,6 +180,7 @@ class Prony(OneOrMany):
         Returns
         -------
         Prony
+            One material, with empty ``E``, ``tau``, ``J`` and ``T``.
 
         Examples
         --------

@@ -146,7 +146,7 @@ def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) 
     seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
     weight: weights of the poles, (..., poles).
     constant: the constant, (..., 1).
-    Returns (..., zeros).
+    Returns the value of the sum at the point of each zero, (..., zeros), in the unit of the constant.
     """
     return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
 

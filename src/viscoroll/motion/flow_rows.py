@@ -58,7 +58,7 @@ class Nodes:
 
         slopes : values of the integrand at the nodes, (..., rows, nodes).
         half : half the length of each row, (rows,) or (..., rows).
-        Returns the integrals, (...).
+        Returns one integral for each function, (...), a number for slopes of shape (rows, nodes).
         """
         return (_multiply(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
 

@@ -198,9 +198,10 @@ def bessel(v: Floats, order: int) -> Floats:
 
     They are the Chebyshev coefficients of cos(v x) (even n) and of sin(v x) (odd n), but for the factor 2 from n = 1
     on, by a discrete sum long enough for aliases to vanish.
-    v: arguments >= 0, (n,), at least one.
+
+    v: arguments, dimensionless, >= 0, (n,), at least one.
     order: highest order, >= 0.
-    Returns (order + 1, n).
+    Returns the values, dimensionless, a new array (order + 1, n): row k is (-1)^(k//2) J_k(v).
     """
     count = (int(v.max() + 0.5 * order) + 24) & ~1
     phi = (np.arange(count // 2) + 0.5) * (math.pi / count)
@@ -224,13 +225,15 @@ def _decay_nodes() -> tuple[Floats, Floats]:
 
 
 def _decays(beta: Floats, order: int) -> Floats:
-    """Return the memory of the Chebyshev series of an exponential behind the front edge, for each creep mode.
+    """Return the memory that each creep mode has of the surface ahead of the front edge, for each term of the series.
 
-    It is D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx, which goes to 1 for large beta.
+    It is D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx.  The power is the n-th term of the
+    Chebyshev series continued beyond the front edge, x = 1; D_n goes to 1 for large beta.
+
     beta: b_j z, rates of creep times the half contact length over V, dimensionless, > 0, (modes,); above 1e12 the value
         at 1e12 is taken, as nothing then changes.
     order: highest n, at most 100.
-    Returns D_n for n from 0, (order + 1, modes).
+    Returns D_n, dimensionless, in (0, 1], a new array (order + 1, modes): row n is that of the n-th term.
     """
     beta = np.minimum(beta, _LARGE_BETA)
     x, weights = _decay_nodes()

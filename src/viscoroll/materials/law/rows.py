@@ -150,9 +150,9 @@ def row_range(slowest: Any, fastest: Any) -> tuple[Any, Any]:
 def _multiply(values: Floats, matrix: Floats) -> Floats:
     """Return ``values @ matrix``, summed in the order of the terms, so that every machine finds the same bits.
 
-    values: [..., term].
-    matrix: [term, column].
-    Returns [..., column].
+    values: factors on the left, (..., terms), at least one term.
+    matrix: factors on the right, (terms, columns).
+    Returns the products, a new array (..., columns).
     """
     product = values[..., :1] * matrix[0]
     for k in range(1, len(matrix)):

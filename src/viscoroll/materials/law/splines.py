@@ -22,7 +22,9 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
 
     Returns
     -------
-    scipy.interpolate.NdBSpline over all axes, or ``values`` itself without axes.
+    scipy.interpolate.NdBSpline
+        Over all axes, in their order; it takes points (..., axes) and returns values (...).  Without axes ``values``
+        itself.
 
     Raises
     ------
