@@ -58,7 +58,7 @@ numbers: setup figures benchmark ## measure again what README and docs state, an
 	-$(RUN) -m pipeline.evidence.measure.identification
 	$(RUN) -m pipeline.evidence.document
 	for name in geometry rolling-equilibria wheel-spin reversal slope; do cp out/figures/$$name.png docs/figures/; done
-	$(BIN)/viscoroll sensitivity docs/examples/sensitivity.toml -o out/sensitivity.nc
+	$(BIN)/viscoroll sensitivity src/viscoroll/datasets/sensitivity.toml -o out/sensitivity.nc
 	$(BIN)/viscoroll plot out/sensitivity.nc -o docs/figures/sensitivity.png
 
 prove: setup ## law and motions against enclosures and extended precision: data/results/proofs.json (about 15 minutes)

@@ -173,7 +173,8 @@ def write_law(app: Any, error: Exception | None) -> None:
     """The law that live.md computes with, as a script, for a page that is opened from a disk may not fetch."""
     if error is None:
         path = Path(app.outdir) / "_static/rubber.json"
-        viscoroll.io.tables.export(viscoroll.io.tables.law(read_law_source(HERE / "examples/rubber.toml")), path)
+        law = viscoroll.io.tables.law(read_law_source(viscoroll.datasets.path("rubber.toml")))
+        viscoroll.io.tables.export(law, path)
         path.with_suffix(".js").write_text(f"const RUBBER = {path.read_text(encoding='utf-8')};\n", encoding="utf-8")
 
 

@@ -3,8 +3,7 @@
 import re
 from pathlib import Path
 
-from places import DOCS
-
+import viscoroll as vr
 from viscoroll.io.runs import read_run
 
 PAPER = 'preset = "paper-section-5"\n'
@@ -71,7 +70,7 @@ prony = { E = [2.0, 6.0], tau = [1.0, 1e-3] }
 T_ref = 3.0
 """
 LOADED = SERIES + PAPER_ROLLER + "load = U(300.0, 100.0)\n" + SLOW
-RUBBER = (DOCS / "examples/rubber-sensitivity.toml").read_text().replace("20_000", "12")
+RUBBER = vr.datasets.path("rubber-sensitivity.toml").read_text().replace("20_000", "12")
 RUBBER = re.sub("#.*", "", RUBBER).replace("rtol =", 'fields = ["V", "omega", "x"]\nkeep = "all"\nrtol =')
 CERTAIN = RUBBER[: RUBBER.index("[material]")] + "[material]\nE = 3e6\nnu = 0.5\n" + RUBBER[RUBBER.index("[start]") :]
 SOFT_BASE = """

@@ -125,6 +125,16 @@ def test_a_full_disk(tmp_path):
     assert done.stdout == f"{path}: cannot be written (File too large)\n" * 15
 
 
+def test_samples_are_copied_and_a_file_of_the_user_stays(tmp_path):
+    copies = vr.datasets.copy_files(tmp_path / "a/b")
+    assert vr.datasets.copy_files(tmp_path / "a/b") == copies
+    assert all(copy.read_bytes() == vr.datasets.path(copy.name).read_bytes() for copy in copies)
+    (tmp_path / "own").mkdir()
+    (tmp_path / "own/rubber.toml").write_text("mine")
+    refused(lambda: vr.datasets.copy_files(tmp_path / "own"), "rubber.toml: exists", error=vr.FileError)
+    assert [file.read_text() for file in (tmp_path / "own").iterdir()] == ["mine"]
+
+
 def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path):
     path = tmp_path / "file"
     path.write_text("as it was")

@@ -119,7 +119,7 @@ def test_help_imports_nothing_heavy():
     ],
 )
 def test_standard_output_that_takes_nothing(redirected, code, error):
-    show = [*PROGRAM, "material", "show", str(ROOT / "docs/examples/rubber.toml")]
+    show = [*PROGRAM, "material", "show", str(vr.datasets.path("rubber.toml"))]
     command = ["bash", "-c", f"{shlex.join(show)} {redirected}"]
     done = subprocess.run(command, check=False, capture_output=True, text=True)
     assert (done.returncode, done.stderr) == (code, error)
@@ -151,8 +151,6 @@ def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
 def test_example_of_help_runs(run, tables, here, monkeypatch, command):
     (here / "data").mkdir()
     (here / "data" / "tables").symlink_to(tables)
-    (here / "docs").symlink_to(ROOT / "docs")
-    (here / "src").symlink_to(ROOT / "src")
     (here / "run.toml").write_text(UNCERTAIN)
     _, *examples = run(*command.split(), "--help").partition("example:")[2].split("\n  viscoroll ")
     for example in examples:

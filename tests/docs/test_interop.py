@@ -284,7 +284,7 @@ def test_a_roller_of_c_refuses_what_is_no_number(roller, place, bad):
 def test_the_roller_of_the_page(tmp_path):
     """The program of docs/loading/README.md against roll, for the pair of its file."""
     need("command -v cc")
-    law = vr.tables.law(read_law_source(ROOT / "docs/examples/rubber.toml"))
+    law = vr.tables.law(read_law_source(vr.datasets.path("rubber.toml")))
     vr.tables.export(law, tmp_path / "rubber.h")
     vr.tables.save(law, tmp_path / "rubber.nc")
     shutil.copy(HEADERS / "vr_roll.h", tmp_path)

@@ -6,9 +6,10 @@ import sys
 import time
 
 import pytest
-from places import DOCS, kept
+from places import kept
 from processes import made
 
+import viscoroll as vr
 from viscoroll.io.runs import read_run, run_ensemble
 
 
@@ -17,7 +18,7 @@ def test_a_cluster_gives_the_same_files(tmp_path):
     pytest.importorskip("distributed")
     import psutil
 
-    text = (DOCS / "examples/ensemble.toml").read_text().replace("20_000", "1_200\nblock = 100")
+    text = vr.datasets.path("ensemble.toml").read_text().replace("20_000", "1_200\nblock = 100")
     (tmp_path / "run.toml").write_text(text)
     alone, store = tmp_path / "alone.zarr", tmp_path / "store.zarr"
     run_ensemble(read_run(tmp_path / "run.toml"), alone)

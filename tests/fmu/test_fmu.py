@@ -375,7 +375,7 @@ def test_program(tmp_path, capsys):
     capsys.readouterr()
     assert main(["fmu", str(scene), "-o", str(roller)]) == 0
     assert "kappa, mu, gamma and j of the dimensionless scene are not used" in capsys.readouterr().err
-    toml = "docs/examples/rubber.toml"
+    toml = "src/viscoroll/datasets/rubber.toml"
     assert main(["fmu", toml, "-o", str(roller), "--model", "ContactElement"]) == 0
     assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}["load"] == "2000.0"
 
@@ -388,6 +388,6 @@ def test_what_is_missing_is_told(tmp_path, monkeypatch, capsys, missing):
         monkeypatch.setitem(sys.modules, "fmpy", None)
     with pytest.raises(MissingDependencyError, match=f"{missing}.* is not installed"):
         fmu.build(11.0, tmp_path / "a.fmu")
-    assert main(["fmu", "docs/examples/rubber.toml", "-o", str(tmp_path / "a.fmu")]) == 2
+    assert main(["fmu", "src/viscoroll/datasets/rubber.toml", "-o", str(tmp_path / "a.fmu")]) == 2
     assert capsys.readouterr().err.count("\n") == 1
     assert not list(tmp_path.iterdir())

@@ -11,7 +11,7 @@ import viscoroll as vr
 from viscoroll.app import cli
 from viscoroll.app.identification.measurements_toml import read_measurements
 
-EXAMPLE = ROOT / "docs/examples/measured.toml"
+EXAMPLE = ROOT / "src/viscoroll/datasets/measured.toml"
 
 
 @pytest.fixture

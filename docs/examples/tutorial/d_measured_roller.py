@@ -7,16 +7,13 @@ coast-down, launched at some 4 m/s without rotation, gave V over t.  Both contai
 the bearing.  ``identify`` estimates modulus, relaxation time, friction and bearing.
 """
 
-from pathlib import Path
-
 import matplotlib.pyplot as plt
 import numpy as np
 
 import viscoroll as vr
 
-examples = Path("..")  # docs/examples of the source tree
-V, M = np.loadtxt(examples / "drum.csv", delimiter=",", skiprows=1).T  # m/s, N m/m
-t, speed = np.loadtxt(examples / "launch.csv", delimiter=",", skiprows=1).T  # s, m/s
+V, M = np.loadtxt(vr.datasets.path("drum.csv"), delimiter=",", skiprows=1).T  # m/s, N m/m
+t, speed = np.loadtxt(vr.datasets.path("launch.csv"), delimiter=",", skiprows=1).T  # s, m/s
 data = [
     vr.Resistance(V, M, sigma=0.01, name="drum"),
     vr.Coastdown(t, speed, omega0=0.0, sigma=5e-3, name="coast-down"),

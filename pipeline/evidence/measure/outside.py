@@ -31,7 +31,7 @@ from ..results import run
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 #: of which law, on the page and in the programs
-RUBBER = ROOT / "docs/examples/rubber.toml"
+RUBBER = ROOT / "src/viscoroll/datasets/rubber.toml"
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: live.md without its theme: sets a slider, and times the redraw with its layout
 PAGE = """<!DOCTYPE html><link rel="stylesheet" href="viscoroll.css"><pre id="found"></pre><div id="law"></div>

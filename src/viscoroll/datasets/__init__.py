@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from os import PathLike
 from pathlib import Path
 
-from ..core.errors import ParameterError
+from ..core.errors import FileError, ParameterError
+from ..core.files import as_file_error, write_bytes
 
-__all__ = ["path"]
+__all__ = ["copy_files", "path"]
 
 _FOLDER = Path(__file__).parent
 
@@ -16,11 +18,15 @@ def path(name: str) -> Path:
 
     Parameters
     ----------
-    name : name of the file, one of these three.
+    name : name of the file, one of these.
         ``"dma.csv"``: storage and loss modulus of a rubber over frequency, 0.01 to 100 Hz, with 0.5 % noise.
         ``"dma_export.csv"``: storage modulus and tan delta as an instrument writes them, with semicolons and decimal
         commas, 0.1 to 100 Hz.
         ``"run.toml"``: a run file of 16 motions with uncertain speed and friction.
+        ``"rubber.toml"``: a rubber roller on steel, with both materials.
+        ``"ensemble.toml"``, ``"sensitivity.toml"``, ``"rubber-sensitivity.toml"``: run files of 20 000 motions.
+        ``"measured.toml"``, with ``"drum.csv"`` and ``"launch.csv"``: rolling resistance and a motion of a rubber
+        roller, made with noise from known parameters, to identify these.
 
     Returns
     -------
@@ -37,7 +43,46 @@ def path(name: str) -> Path:
     >>> vr.datasets.path("dma.csv").name
     'dma.csv'
     """
-    names = sorted(file.name for file in _FOLDER.iterdir() if file.suffix in (".csv", ".toml"))
+    names = _names()
     if name not in names:
         raise ParameterError("name", repr(name), f"one of {', '.join(names)}")
     return _FOLDER / name
+
+
+def copy_files(folder: str | PathLike[str]) -> list[Path]:
+    """Copy all sample files into a folder, which is made if it does not exist.
+
+    Parameters
+    ----------
+    folder : path of the folder.  A file of the same name and content stays as it is.
+
+    Returns
+    -------
+    list of pathlib.Path
+        The copies, in the order of their names.
+
+    Raises
+    ------
+    FileError
+        A file of the same name with other content, which then stays, as no file is written; a folder that cannot be
+        made or written to.
+
+    Examples
+    --------
+    >>> vr.datasets.copy_files("samples")[0].name
+    'dma.csv'
+    """
+    content = {Path(folder) / name: path(name).read_bytes() for name in _names()}
+    with as_file_error(folder, "cannot be written"):
+        Path(folder).mkdir(parents=True, exist_ok=True)
+        for copy in content:
+            if copy.exists() and copy.read_bytes() != content[copy]:
+                raise FileError(copy, "exists with other content: name another folder")
+    for copy, text in content.items():
+        write_bytes(copy, text)
+    return [*content]
+
+
+def _names() -> list[str]:
+    """Return the names of all sample files, in alphabetical order."""
+    return sorted(file.name for file in _FOLDER.iterdir() if file.suffix in (".csv", ".toml"))

@@ -51,7 +51,8 @@ Call it again to complete an interrupted run, or to extend the store after n was
 Without -o it prints the estimated size, memory and time of the run.
 
 example:
-  viscoroll ensemble docs/examples/ensemble.toml""",
+  viscoroll samples
+  viscoroll ensemble samples/ensemble.toml""",
     "verify": """\
 Check every file of a results store against its SHA-256.
 
@@ -70,7 +71,8 @@ Print moduli, relaxation modes and creep modes of the materials of a file.
 The values are those at the temperature that the file states.
 
 example:
-  viscoroll material show docs/examples/rubber.toml""",
+  viscoroll samples
+  viscoroll material show samples/rubber.toml""",
     "material fit": """\
 Fit a material to DMA data.
 
@@ -81,7 +83,8 @@ If the misfit exceeds --misfit or 5 %, the exit code is 1 and no file is written
 file is written, and the source of the data in it states the misfit.
 
 example:
-  viscoroll material fit src/viscoroll/datasets/dma.csv --nu 0.49 -o rubber.toml""",
+  viscoroll samples
+  viscoroll material fit samples/dma.csv --nu 0.49 -o rubber.toml""",
     "identify": """\
 Identify friction, modulus, relaxation times and moduli, and bearing friction, from measurements.
 
@@ -93,7 +96,8 @@ which of them the data do not determine.  The file has [cylinder], perhaps [mate
              Q, t, omega, x, or by columns = { M = NAME }; sigma, load, temperature, name; V0, omega0, t0, m
 
 example:
-  viscoroll identify docs/examples/measured.toml --plot fit.png""",
+  viscoroll samples
+  viscoroll identify samples/measured.toml --plot fit.png""",
     "tables law": """\
 Write the contact law of a material, pair, cover or range of alpha to a file.
 
@@ -102,7 +106,8 @@ or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the la
 every alpha of a range.
 
 example:
-  viscoroll tables law docs/examples/rubber.toml -o rubber.h""",
+  viscoroll samples
+  viscoroll tables law samples/rubber.toml -o rubber.h""",
     "tables build": """\
 Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
@@ -140,12 +145,21 @@ ContactElement: inputs v, omega, load, outputs force, torque, moments; for model
 Both provide exact directional derivatives.
 
 example:
-  viscoroll fmu docs/examples/rubber.toml -o roller.fmu""",
+  viscoroll samples
+  viscoroll fmu samples/rubber.toml -o roller.fmu""",
     "plot": """\
 Draw a result file, a scene, a material, or the results of a run.
 
 For a netCDF file the command draws its result, for a scene file the contact law over speed, for a file with only
 a [material] moduli and relaxation, and for a results store the summaries.""",
+    "samples": """\
+Copy the sample files of the documentation into a folder.
+
+They are scene files, run files and measurements, which the examples of other commands read.
+
+example:
+  viscoroll samples
+  viscoroll contact samples/rubber.toml --V 0.5 --delta 0.01""",
     "warmup": """\
 Compile all kernels in advance, so that the first calls do not wait.
 

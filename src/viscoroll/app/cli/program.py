@@ -16,7 +16,7 @@ from ... import __version__
 from ...core.errors import Interrupted, ViscorollError
 
 # each of these modules adds its commands to the table, in this order
-from . import scenes, runs, measured, tables, plot, warmup, doctor  # noqa: F401  # isort: skip
+from . import scenes, runs, measured, tables, plot, samples, warmup, doctor  # noqa: F401  # isort: skip
 from .arguments import COMMANDS
 from .help_texts import HELP
 

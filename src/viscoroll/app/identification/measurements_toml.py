@@ -59,7 +59,7 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     Examples
     --------
     >>> from viscoroll.app.identification.measurements_toml import read_measurements
-    >>> vr.identify(**read_measurements("docs/examples/measured.toml"))  # doctest: +SKIP
+    >>> vr.identify(**read_measurements(vr.datasets.path("measured.toml")))  # doctest: +SKIP
     """
     cylinder, content = read_roller(path, tuple(_SECTIONS)), {"prior": {}} | read_toml(path)
     if not isinstance(cylinder, Cylinder):
