@@ -120,14 +120,18 @@ example:
 Print the contents of a table file: functions or grid, stated errors, material and provenance.
 
 example:
-  viscoroll tables info data/tables/rubber.nc""",
+  viscoroll samples
+  viscoroll tables law samples/rubber.toml -o rubber.nc
+  viscoroll tables info rubber.nc""",
     "tables validate": """\
 Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 
 The exit code is 1 if an error is larger than the file states.
 
 example:
-  viscoroll tables validate data/tables/rubber.nc""",
+  viscoroll samples
+  viscoroll tables law samples/rubber.toml -o rubber.nc
+  viscoroll tables validate rubber.nc""",
     "export": """\
 Convert the results of a run, or a table, to another file format.
 
@@ -135,7 +139,9 @@ A results store (STORE.zarr) becomes .nc with summaries and stored motions.  A l
 A grid becomes .nc, .cdf, .csv, .txt or .mat.
 
 example:
-  viscoroll export data/tables/rubber.nc -o rubber.h""",
+  viscoroll samples
+  viscoroll tables law samples/rubber.toml -o rubber.nc
+  viscoroll export rubber.nc -o rubber.h""",
     "fmu": """\
 Build an FMU of a cylinder, for Modelica tools and others.
 
