@@ -244,21 +244,23 @@ def assess_creep(delta: Any, full_slip: Any) -> Assumption:
     )  # fmt: skip
 
 
-def assess_inertia(wave_ratio: Any, unknown: Sequence[str] = ()) -> Assumption:
+def assess_inertia(wave_ratio: Any, unknown: Sequence[str] = (), decides: bool = True) -> Assumption:
     """Compare the speed with the shear wave speed: far below it the inertia of the deforming bodies is negligible.
 
     wave_ratio: speed divided by the shear wave speed, >= 0, any shape; None where no density is known.
-    unknown: names of the bodies without a density, for the sentence; not used for None.
-    Returns the assumption ``quasistatic``, whose value is the ratio; it holds where that is at most 0.2, and is
-    undecided for None.
+    unknown: names of the bodies without a density, for the sentence.
+    decides: whether the density of the softest body is known; if not, waves in it may be slower than the known ones.
+    Returns the assumption ``quasistatic``, whose value is the ratio; it holds where that is at most 0.2.  It is
+    undecided for None, and without ``decides`` unless every ratio is above 0.2.
     """
-    if wave_ratio is None:
-        return UNKNOWN.quasistatic
+    missing = "".join(f"; the density of {body} is not known" for body in unknown)
+    if wave_ratio is None or not (decides or np.all(wave_ratio > WAVE_LIMIT)):
+        return UNKNOWN.quasistatic._replace(sentence=UNKNOWN.quasistatic.sentence + missing)
     return Assumption(
         wave_ratio <= WAVE_LIMIT, wave_ratio,
-        f"the speed is {100.0 * _largest(wave_ratio):.2g} % of the shear wave speed; up to "
+        f"the speed is {100.0 * _largest(wave_ratio):.3g} % of the shear wave speed; up to "
         f"{100.0 * WAVE_LIMIT:g} % is allowed, where the load is within 10 % of the static one"
-        + "".join(f"; the density of {body} is not known" for body in unknown),
+        + missing,
     )  # fmt: skip
 
 

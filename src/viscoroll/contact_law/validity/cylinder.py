@@ -44,10 +44,12 @@ class WaveRatio(NamedTuple):
     ratio : speed divided by the shear wave speed, >= 0, in the shape to which speed and moduli broadcast; None where no
         density is known.
     unknown : names of the bodies whose density is not known, as "the cylinder"; without rigid bodies.
+    decides : whether the density of the softest body, by its long-time shear modulus, is known.
     """
 
     ratio: Any
     unknown: list[str]
+    decides: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -160,23 +162,28 @@ class BodyData:
         """Return the ratio of a speed to the slowest shear wave of both bodies, by their long-time shear moduli.
 
         speed: the speed, m/s, >= 0, any shape that broadcasts with G.
-        density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
-        Returns a :class:`WaveRatio`: the largest ratio of the bodies whose density is known, in the broadcast shape (0
-        for a rigid one and at speed 0), None if there is none, and the names of the other bodies, without rigid ones.
-        Like bodies of one material count as one, "the material".
+        density: density of the cylinder, and of the base where they are alike or the cylinder is rigid, kg/m^3; None:
+            as the materials have it.
+        Returns a :class:`WaveRatio`: the largest ratio of the bodies whose density is known, in the broadcast shape,
+        None if there is none; the names of the other bodies; and whether the softest body is among the known ones.
+        Rigid bodies do not count.  Like bodies of one material count as one, "the material".
         """
         bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, density)]
         if self.pair is not None:
             first, second = self.pair.cylinder, self.pair.half_space
             own = first.density if density is None else density
-            bodies = [("the cylinder", first.G, own), ("the base", second.G, second.density)]
+            other = density if density is not None and np.all(np.isinf(first.G)) else second.density
+            bodies = [("the cylinder", first.G, own), ("the base", second.G, other)]
             if self.pair.like:
                 bodies = [("the material", first.G, second.density if own is None else own)]
+            bodies = [body for body in bodies if not np.all(np.isinf(body[1]))]
         # In this order of factors V = 0 gives 0 for every density.
         with np.errstate(over="ignore"):
             ratios = [speed * np.sqrt(1.0 / G) * math.sqrt(rho) for _, G, rho in bodies if rho is not None]
-        unknown = [name for name, G, rho in bodies if rho is None and not np.all(np.isinf(G))]
-        return WaveRatio(np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None, unknown)
+        unknown = [name for name, _, rho in bodies if rho is None]
+        *_, decisive = min(bodies, key=lambda body: np.min(body[1], initial=np.inf))
+        largest = np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None
+        return WaveRatio(largest, unknown, decisive is not None)
 
     def extend_validity(self, report: Validity, lam: Any, V: Any, omega: Any, density: float | None) -> Validity:
         """Add the assumptions that need quantities in SI units to the report of a state.
@@ -185,8 +192,10 @@ class BodyData:
         lam: contact length divided by l0, dimensionless, in the shape of the state.
         V, omega: speeds, m/s and rad/s, any sign, arrays that broadcast with lam; omega may be None.  Compared with the
             waves is the larger of |V| and |omega| R, without omega |V|.
-        density: density of the cylinder, and of the base where they are alike, kg/m^3; None: as the materials have it.
-        Returns a copy of the report with ``quasistatic`` (undecided without any density), ``bodies``, ``measured``
+        density: density of the cylinder, and of the base where they are alike or the cylinder is rigid, kg/m^3; None:
+            as the materials have it.
+        Returns a copy of the report with ``quasistatic`` (undecided without the density that decides), ``bodies``,
+        ``measured``
         (undecided without a measured material) and ``plane``, which states the plane and is always undecided.
         Raises ParameterError for a density that is not one finite number > 0.
         """

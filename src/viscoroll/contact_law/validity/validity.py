@@ -35,8 +35,8 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
         R/T_ref, where T_ref is its unit of time.
     omega : angular velocity, any sign, broadcasts with V; of a Scene multiplied by T_ref; None: the creepage is not
         known, and ``creep`` is not decided.
-    density : density of a Cylinder, and of the base where they are alike, kg/m^3; default: as the materials have it;
-        without it the speed of shear waves is not known.
+    density : density of a Cylinder, and of the base where they are alike or the cylinder is rigid, kg/m^3; default: as
+        the materials have it; without that of the softer body the slowest shear wave is not known.
 
     Returns
     -------
@@ -47,8 +47,8 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
         omega, unless the body beside a layer relaxes too; of a layer ``thick``, with half the contact length divided by
         its thickness.  For a Cylinder ``quasistatic`` compares the speed of the axis, and that of the circumference
         where omega is given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long times, of the
-        bodies whose density is known; ``bodies`` has Dundurs' constant, ``measured`` the transit frequency in 1/s if a
-        material has measured data.  ``plane`` is not decided.
+        bodies whose density is known, and is undecided without that of the softer one; ``bodies`` has Dundurs'
+        constant, ``measured`` the transit frequency in 1/s if a material has measured data.  ``plane`` is not decided.
 
     Raises
     ------
