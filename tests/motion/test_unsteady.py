@@ -91,6 +91,16 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     assert f"the last state was t = {m.t[-2]:.6g} in partial slip, V = {m.V[-2]:.6g}" in m.message
 
 
+def test_the_last_state_is_told_where_the_last_step_cannot_be_repeated():
+    """Cut at its end, the last step of this start from a standstill is given up earlier."""
+    prony = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
+    roller = vr.Cylinder(R=0.05, m=9.0, material=vr.Material(E=3e6, nu=0.49, prony=prony, T_ref=3.0), mu=0.6)
+    with pytest.warns(RuntimeWarning, match="too slow for the unsteady correction"):
+        m = roller.roll(0.05, 1.0, np.linspace(0.0, 20.0, 201), unsteady=True, rested=True)
+    last = np.flatnonzero(m.regime >= 0)[-1]
+    assert f"the last state was t = {m.t[last]:.6g} s in partial slip, V = {m.V[last]:.6g} m" in m.message
+
+
 def test_it_ends_there_at_any_tolerance():
     """The end of the range of N is told from that of the stick zone, however closely either is met."""
     scene = vr.Scene(alpha=7.0, kappa=8.819364017569045, mu=0.035796649013264355, gamma=4660.73125, j=0.6964318)

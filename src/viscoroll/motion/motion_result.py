@@ -14,6 +14,7 @@ from ..contact_law.contact import contact
 from ..contact_law.validity.assumptions import Validity
 from ..contact_law.validity.validity import validity
 from ..core.array_types import Floats
+from ..core.drive import Feedback, Schedule
 from ..core.errors import MotionStatus, ParameterError
 from ..core.results import SummaryRow, Values
 from .checks import SPEED_RANGE, output_times
@@ -116,14 +117,21 @@ class Motion(RollResult):
     def _last_reached(self) -> Motion:
         """Return the motion at the end of its last step alone, for one that was given up before its last output time.
 
-        It is integrated anew to that time.  Returns a :class:`Motion` with one output time, (1,).
+        It is integrated anew to that time.  If the last step, which is cut there, is given up before it, the last
+        output time that was reached or the end of an earlier step is taken.
+
+        Returns a :class:`Motion` with one output time, (1,).
         """
-        reached = float(self._step_ends.max(initial=0.0))
+        outputs = self.t[self.regime >= 0] / self.scale["t"]
+        times = np.union1d(np.append(self._step_ends, 0.0), outputs)
         # A last step that is cut at this end may take more steps than one that was not.
         limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
-        return integrate_motion(
-            self._problem._replace(end=reached, limits=limits), np.array([reached * self.scale["t"]])
-        )
+        for reached in times[::-1].tolist():
+            problem = self._problem._replace(end=reached, limits=limits)
+            last = integrate_motion(problem, np.array([reached * self.scale["t"]]))
+            if np.isfinite(last.V[0]):
+                break
+        return last
 
     @property
     def power_force(self) -> Floats:
@@ -225,7 +233,7 @@ class Motion(RollResult):
         ]
         for name, given in self.drive.given.items():
             title = f"prescribed {name}" if name in ("V", "omega") else name  # V and omega have rows of their own above
-            rows.append(SummaryRow(title, "a function of t" if callable(given) else f"{given!s:.60}", self._unit(name)))
+            rows.append(SummaryRow(title, _describe_load(given, self._unit(name))))
         if not np.isnan(self.onset_time):
             rows.append(SummaryRow("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t")))
         if self.switches:
@@ -329,6 +337,27 @@ def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
         onset_time=onset_time * T, rest_time=rest_time * T, status=MotionStatus(int(status)), steps=int(steps),
         reversals=noted[noted[:, 1] < 0.0, 0] * T, drive_error=problem.drive_error, _problem=problem,
     )  # fmt: skip
+
+
+def _describe_load(given: Any, unit: str) -> str:
+    """Return a text on a load or speed as it was given: its value with the unit, and the gains of a feedback.
+
+    given: a number, a :class:`Schedule`, a function of t, or a :class:`Feedback` of one of these, in the unit.
+    unit: its unit, "" of a dimensionless one.
+    Returns for example "0.5 N m m-1"; "4 corners, 0 to 1 N m m-1" of a schedule, with its smallest and largest value;
+    "a function of t"; and "0.5 N m m-1 - 0.1 omega" of a feedback, without gains that are 0.
+    """
+    value = given.value if isinstance(given, Feedback) else given
+    if callable(value):
+        text = "a function of t"
+    elif isinstance(value, Schedule):
+        text = f"{value.times.size} corners, {value.values.min():.6g} to {value.values.max():.6g} {unit}".rstrip()
+    else:
+        text = f"{value!s:.60} {unit}".rstrip()
+    gains = {name: getattr(given, name) for name in ("V", "omega")} if isinstance(given, Feedback) else {}
+    return text + "".join(
+        f" {'-' if gain < 0.0 else '+'} {abs(gain):.6g} {name}" for name, gain in gains.items() if gain
+    )
 
 
 def _describe_values(t: NDArray, values: NDArray) -> str:
