@@ -134,7 +134,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     present = [name for name, column in columns.items() if column is not None]
     for name in (*kind.COORDINATES, *section.columns):
         if name not in present:
-            raise missing_column(table, headings[name])
+            raise missing_column(table, headings[name], f": write columns = {{ {name} = HEADING }}")
     others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]
     if others and not set(present) & set(kind.QUANTITIES):
         name = kind.QUANTITIES[0]

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ... import __version__
+from .records import ROLLING
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -88,7 +89,10 @@ def _limits(fit: Any) -> Iterator[str]:
 
     fit : a :class:`viscoroll.app.identification.Identification`.
     """
-    yield from (f"the data do not depend on {name}" for name in fit.does_not_act)
+    for name in fit.does_not_act:
+        rolling = name == "mu" and any(getattr(each, "omega0", None) == ROLLING for each in fit.records.values())
+        advice = ": omega0 was taken as V0/R, without slip; give omega0 if the cylinder was launched with another"
+        yield f"the data do not depend on {name}{advice * rolling}"
     *names, last = fit.undetermined or ("",)
     if names:
         yield f"{', '.join(names)} and {last} cannot be separated by these data: {_products(fit)}"

@@ -64,15 +64,15 @@ def find_column(table: Table, name: str) -> int | None:
     return found[0] if found else None
 
 
-def missing_column(table: Table, name: str) -> FileError:
+def missing_column(table: Table, name: str, advice: str = "") -> FileError:
     """Return the error where no column of a table has a name; it lists the headings of the table. It is not raised.
 
     table: :class:`Table`, table with headings.
     name: the name that the user gives.
+    advice: words that end the message.
     """
-    return FileError(
-        table.path, f"has no column {name!r}, but {', '.join(table.headings)}{suggestion(name, table.headings)}"
-    )
+    found = f"{', '.join(table.headings)}{suggestion(name, table.headings)}"
+    return FileError(table.path, f"has no column {name!r}, but {found}{advice}")
 
 
 def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:
