@@ -46,10 +46,14 @@ class CreepSection(msgspec.Struct):
 
 
 class FileSection(msgspec.Struct, kw_only=True):
-    """Section [material] or [base] that names a netCDF or TOML file; thickness, shift and temperature as below."""
+    """Section [material] or [base] that names a netCDF or TOML file.
+
+    thickness, density, wlf, arrhenius, temperature : as of :class:`MaterialSection`; they replace those of the file.
+    """
 
     file: str
     thickness: float | None = None
+    density: float | None = None
     wlf: WLF | None = None
     arrhenius: Arrhenius | None = None
     temperature: float | None = None
@@ -76,7 +80,6 @@ class MaterialSection(FileSection, kw_only=True):
     creep: CreepSection | None = None
     T_ref: float | None = None
     name: str = ""
-    density: float | None = None
     measured: Measured | None = None
     reference: float | None = None
 
@@ -191,8 +194,9 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
 
     path, name: path of the file, against which a path in the section is taken, and name of the section.
     content: keys and values of the section, as tomllib reads them.
-    Returns the :class:`Material`: of the section itself, or of the file that it names with the thickness of the section
-    if that is given; shifted if the section has a ``temperature``, else as at its reference.
+    Returns the :class:`Material`: of the section itself, or of the file that it names, with the thickness and the
+    density of the section where these are given; shifted if the section has a ``temperature``, else as at its
+    reference.
     Raises FileError, with the line of the key, for a key or value that is wrong, a temperature without a shift, and a
     file that the section names and that is wrong.
     """
@@ -202,8 +206,8 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
             material = _make_material(path, name, section)
         else:
             material = _read_other_file(path, name, Path(path).parent / section.file)
-            if section.thickness is not None:
-                material = replace(material, thickness=section.thickness)
+            values = {"thickness": section.thickness, "density": section.density}
+            material = replace(material, **{key: value for key, value in values.items() if value is not None})
         shift, temperature = _shift_of(path, name, section), section.temperature
         if temperature is None:
             return material
