@@ -127,7 +127,9 @@ def test_a_full_disk(tmp_path):
 
 def test_samples_are_copied_and_a_file_of_the_user_stays(tmp_path):
     copies = vr.datasets.copy_files(tmp_path / "a/b")
+    written = [copy.stat().st_mtime_ns for copy in copies]
     assert vr.datasets.copy_files(tmp_path / "a/b") == copies
+    assert [copy.stat().st_mtime_ns for copy in copies] == written
     assert all(copy.read_bytes() == vr.datasets.path(copy.name).read_bytes() for copy in copies)
     (tmp_path / "own").mkdir()
     (tmp_path / "own/rubber.toml").write_text("mine")

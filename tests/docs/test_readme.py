@@ -3,6 +3,7 @@
 import re
 import shlex
 import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -131,24 +132,15 @@ def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):
                 continue
             for line in code.splitlines():
                 command, *words = shlex.split(line, comments=True)
-                if words == ["samples"]:
-                    assert cli.main([*words, str(tmp_path / "as they are")]) == 0
-                    for file in (tmp_path / "as they are").iterdir():
-                        (tmp_path / "samples").mkdir(exist_ok=True)
-                        (tmp_path / "samples" / file.name).write_text(file.read_text().replace("n = 20_000", "n = 64"))
-                elif command == "viscoroll" and "--cluster" not in words:
+                if words == ["samples"] and Path("samples").exists():  # which are smaller now
+                    continue
+                if command == "viscoroll" and "--cluster" not in words:
                     assert cli.main(words + ["-n", "16"] * (words[0] == "sensitivity")) == 0, line
+                for file in Path("samples").iterdir() if words == ["samples"] else ():
+                    file.write_text(file.read_text().replace("n = 20_000", "n = 64"))
     assert "mm" in capsys.readouterr().out
     made = {path.name for path in tmp_path.iterdir()}
-    assert made == {
-        "samples",
-        "as they are",
-        "results.zarr",
-        "results.png",
-        "results.nc",
-        "sensitivity.png",
-        "sensitivity.nc",
-    }
+    assert made == {"samples", "results.zarr", "results.png", "results.nc", "sensitivity.png", "sensitivity.nc"}
 
 
 def test_forms_of_an_input_are_read(tmp_path):

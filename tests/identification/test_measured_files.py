@@ -5,13 +5,12 @@ import json
 import pytest
 from calls import names_in
 from experiments import FILE, measurements
-from places import ROOT
 
 import viscoroll as vr
 from viscoroll.app import cli
 from viscoroll.app.identification.measurements_toml import read_measurements
 
-EXAMPLE = ROOT / "src/viscoroll/datasets/measured.toml"
+EXAMPLE = vr.datasets.path("measured.toml")
 
 
 @pytest.fixture

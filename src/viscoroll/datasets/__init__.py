@@ -72,14 +72,16 @@ def copy_files(folder: str | PathLike[str]) -> list[Path]:
     >>> vr.datasets.copy_files("samples")[0].name
     'dma.csv'
     """
-    content = {Path(folder) / name: path(name).read_bytes() for name in _names()}
+    content = {Path(folder) / name: (_FOLDER / name).read_bytes() for name in _names()}
     with as_file_error(folder, "cannot be written"):
         Path(folder).mkdir(parents=True, exist_ok=True)
-        for copy in content:
-            if copy.exists() and copy.read_bytes() != content[copy]:
-                raise FileError(copy, "exists with other content: name another folder")
-    for copy, text in content.items():
-        write_bytes(copy, text)
+        present = {copy: copy.read_bytes() for copy in content if copy.exists()}
+    for copy, found in present.items():
+        if found != content[copy]:
+            raise FileError(copy, "exists with other content: name another folder")
+    for copy in content:
+        if copy not in present:
+            write_bytes(copy, content[copy])
     return [*content]
 
 

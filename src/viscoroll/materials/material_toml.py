@@ -48,7 +48,8 @@ class CreepSection(msgspec.Struct):
 class FileSection(msgspec.Struct, kw_only=True):
     """Section [material] or [base] that names a netCDF or TOML file.
 
-    thickness, density, wlf, arrhenius, temperature : as of :class:`MaterialSection`; they replace those of the file.
+    thickness, density : as of :class:`MaterialSection`; they replace those of the file.
+    wlf, arrhenius, temperature : as of :class:`MaterialSection`; they shift the material of the file.
     """
 
     file: str

@@ -347,14 +347,15 @@ def _describe_load(given: Any, unit: str) -> str:
     Returns for example "0.5 N m m-1"; "4 corners, 0 to 1 N m m-1" of a schedule, with its smallest and largest value;
     "a function of t"; and "0.5 N m m-1 - 0.1 omega" of a feedback, without gains that are 0.
     """
-    value = given.value if isinstance(given, Feedback) else given
+    value, gains = given, {}
+    if isinstance(given, Feedback):
+        value, gains = given.value, {"V": given.V, "omega": given.omega}
     if callable(value):
         text = "a function of t"
     elif isinstance(value, Schedule):
         text = f"{value.times.size} corners, {value.values.min():.6g} to {value.values.max():.6g} {unit}".rstrip()
     else:
         text = f"{value!s:.60} {unit}".rstrip()
-    gains = {name: getattr(given, name) for name in ("V", "omega")} if isinstance(given, Feedback) else {}
     return text + "".join(
         f" {'-' if gain < 0.0 else '+'} {abs(gain):.6g} {name}" for name, gain in gains.items() if gain
     )

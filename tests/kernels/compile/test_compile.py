@@ -428,16 +428,7 @@ def test_a_client_of_dask_is_told(untold, capsys, monkeypatch):
 
 def test_numba_switched_off_is_one_line():
     """Vectors of four are machine code alone."""
-    done = python(
-        "-m",
-        "viscoroll",
-        "contact",
-        "src/viscoroll/datasets/rubber.toml",
-        "--V",
-        0.5,
-        "--delta",
-        0.01,
-        NUMBA_DISABLE_JIT="1",
-    )
+    rubber = "src/viscoroll/datasets/rubber.toml"
+    done = python("-m", "viscoroll", "contact", rubber, "--V", 0.5, "--delta", 0.01, NUMBA_DISABLE_JIT="1")
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert "NUMBA_DISABLE_JIT = 1: must be 0" in done.stderr

@@ -168,15 +168,15 @@ class BodyData:
         None if there is none; the names of the other bodies; and whether the softest body is among the known ones.
         Rigid bodies do not count.  Like bodies of one material count as one, "the material".
         """
-        bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, density)]
+        bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, None)]
         if self.pair is not None:
             first, second = self.pair.cylinder, self.pair.half_space
-            own = first.density if density is None else density
-            other = density if density is not None and np.all(np.isinf(first.G)) else second.density
-            bodies = [("the cylinder", first.G, own), ("the base", second.G, other)]
+            bodies = [("the cylinder", first.G, first.density), ("the base", second.G, second.density)]
             if self.pair.like:
-                bodies = [("the material", first.G, second.density if own is None else own)]
+                bodies = [("the material", first.G, second.density if first.density is None else first.density)]
             bodies = [body for body in bodies if not np.all(np.isinf(body[1]))]
+        if density is not None:
+            bodies[0] = (*bodies[0][:2], density)
         # In this order of factors V = 0 gives 0 for every density.
         with np.errstate(over="ignore"):
             ratios = [speed * np.sqrt(1.0 / G) * math.sqrt(rho) for _, G, rho in bodies if rho is not None]

@@ -12,7 +12,6 @@ from ...contact_law.contact import contact
 from ...core.array_types import Floats
 from ...core.errors import ParameterError, described_error, shape_error
 from ...cylinder import Cylinder
-from ...materials.cover import Cover
 from ...materials.law.netcdf import bodies_as_toml, parse_law
 from ...materials.law.table import LawTable
 from ...materials.law_file import dataset_content
@@ -158,7 +157,7 @@ def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: s
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
     scene = roller.scene() if isinstance(roller, Cylinder) else roller
-    names = schema.PLANE if isinstance(scene.material, Cover) else schema.PLANE[:-1]
+    names = tuple(name for name in schema.PLANE if name != "delta_0" or scene.cover is not None)
     fields = _evaluate(roller, plane, names, method)
     volume = _evaluate(roller, grid, schema.VOLUME, method)
     return volume | {name: np.take(values, 0, axis=1) for name, values in fields.items()}

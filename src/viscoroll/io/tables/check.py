@@ -11,7 +11,7 @@ from ... import __version__
 from ...core.checks import check_integer
 from ...core.errors import FileError
 from ...materials.law.netcdf import parse_axis, parse_law
-from ...materials.law_file import AXIS, COVER, KIND, dataset_content, stated_errors
+from ...materials.law_file import AXIS, COVER, KIND, LAW, dataset_content, stated_errors
 from ...scene import Scene
 from . import schema
 from .build import RELATIVE_FIELDS, differences, errors_at, random_points
@@ -26,6 +26,12 @@ if TYPE_CHECKING:
 NODES_ALLOWED = 1e-12
 #: Ratio by which the error in a random sample may exceed the stated error, which is the largest of another sample.
 SAMPLE_RATIO = 2.0
+#: Kind of the file of a law -> points at which it is checked, and the reference.
+_REFERENCES = {
+    LAW: "points, against the formulas of the modes",
+    AXIS: "points shared by the alphas, against the formulas of the modes",
+    COVER: "speeds, against solves with more terms",
+}
 #: Rounding error of a value, added to the stated error.
 ROUNDING = 2e-15
 
@@ -120,14 +126,10 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     if not is_law(table):
         return _check_grid(table, count, seed, source)
     content = dataset_content(table)
-    read = parse_axis if content.attributes[KIND] == AXIS else parse_law
+    kind = content.attributes[KIND]
+    read = parse_axis if kind == AXIS else parse_law
     errors = measured_errors(read(content, source), count, seed)
-    references = {
-        AXIS: "points shared by the alphas, against the formulas of the modes",
-        COVER: "speeds, against solves with more terms",
-    }
-    reference = references.get(content.attributes[KIND], "points, against the formulas of the modes")
-    meaning = f"relative; {count} {reference}"
+    meaning = f"relative; {count} {_REFERENCES[kind]}"
     return [
         Check(f"{table.attrs['title']}: {name}", errors[name], SAMPLE_RATIO * stated + ROUNDING, meaning)
         for name, stated in stated_errors(table).items()

@@ -26,7 +26,7 @@ SCHEMA_VERSION = "1.4"
 KIND = "viscoroll_table"
 #: Kinds of grids; all but the first are of versions before 1.0.
 KINDS = ("grid", "atlas", "literal", "material")
-#: Fields over V (and alpha): they do not depend on the creepage.  The last one, delta_0, is that of a layer alone.
+#: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
 #: Fields over V and delta (and alpha).
 VOLUME = ("beta", "Q")
