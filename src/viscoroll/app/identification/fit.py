@@ -42,7 +42,8 @@ class Band(NamedTuple):
 class Prediction(Values):
     """Quantities of a record by name, as ``.Q``, each a :class:`Band` with ``.value``, ``.low`` and ``.high``.
 
-    The three are arrays over the points of the record, in SI units.
+    The three are arrays over the points of the record, in SI units, of xarray or pandas where those of the record are;
+    NaN at times that a motion did not reach.
     """
 
     def __getattr__(self, name: str) -> Band:
@@ -233,13 +234,14 @@ class Identification(Result):
         -------
         Prediction
             ``.M`` and ``.F`` of a Resistance, ``.Q`` of a Traction, or ``.V``, ``.omega`` and ``.x`` of a Coastdown,
-            each with ``.value``, ``.low`` and ``.high`` over its points, SI.
+            each with ``.value``, ``.low`` and ``.high`` over its points, SI; NaN at times that the motion does not
+            reach.
 
         Raises
         ------
         ParameterError
             What is no record; a motion without V0, or with an omega0 or a t0 that is unknown; draws, level or seed out
-            of range; a temperature without a shift.
+            of range; a temperature without a shift; values of the record that make no contact or no motion.
 
         Examples
         --------
@@ -275,7 +277,9 @@ class Identification(Result):
             where there are none the ends are the value itself.  0: the bands are from slopes at the best fit, the value
             -+ its standard deviation times sqrt(:meth:`_delta_chi2`).
         seed : seed of the draws, >= 0; not used for slopes.
-        Returns the :class:`Prediction`, of all ``QUANTITIES`` of the record in SI units.
+        Returns the :class:`Prediction`, of all ``QUANTITIES`` of the record in SI units, with its coordinates and
+        labels.  Where the value is NaN, at points that a motion did not reach, the band from slopes is NaN too;
+        quantiles are of the draws that are not NaN.
         Raises ParameterError for another level, and ViscorollError where the model fails at the values.
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
@@ -305,8 +309,9 @@ class Identification(Result):
         """Return the residuals at values of the unknowns, for optimisers and samplers of other packages.
 
         A residual is predicted minus measured value, divided by sigma (of a plan, the value predicted at the start
-        counts as measured).  Where the values make no cylinder or no motion, all residuals of the data are 1e6,
-        which is also their largest absolute value elsewhere.
+        counts as measured); robust fits weigh it later, not here.  Where the values make no cylinder or no motion, all
+        residuals of the data are 1e6, and so are those at times that a motion does not reach; elsewhere they are within
+        -+1e6.
 
         values : name -> value of unknowns, SI; others are at their start, not at the best fit.
         Returns a vector, (residuals,), dimensionless: of the records in their order, then one for each prior.

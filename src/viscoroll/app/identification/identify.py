@@ -157,8 +157,9 @@ def _find_minima(problem: Problem, count: int, seed: int, progress: bool) -> lis
         coordinate, two more are added (:func:`_starts_across_valley`).
     seed : seed of the other starts, >= 0.
     progress : whether a progress bar is drawn on standard error, after one second.
-    Returns a list of :class:`.problem.Minimum`, at least one, the best first, then in ascending order those whose chi2
-    is less than 15 above it, one for each valley.
+    Returns a list of :class:`.problem.Minimum`, at least one: first the best one before the last estimate of standard
+    deviations, minimised again after it; then in ascending order of chi2 those whose chi2 is less than 15 above it, one
+    for each valley.  The others keep their coordinates, with the chi2 that the last standard deviations give there.
     """
     from tqdm import tqdm
 

@@ -219,7 +219,7 @@ class Problem:
             upwards alone, and downwards too where the upper end of the range is nearer than the step.  A step ends at
             the end of the range; from a coordinate outside of its range there is only the step towards it.
         Returns shape (points, which); of a function whose result has several axes these are in reverse order, before
-        that of ``which``.
+        that of ``which``; (0,) where ``which`` is empty.
         """
         columns = []
         for i in which:
@@ -264,11 +264,12 @@ class Problem:
         fixed : powers p of the combination sum(p u) that keeps its value at u, (unknowns,).  A single coordinate (one
             power that is not 0) is left out of the search; a combination of several is kept by a residual of large
             weight, as far as the ranges allow.  None: all active coordinates are free.
-        tolerance : relative tolerance of chi2, coordinates and gradient.
+        tolerance : ``ftol``, ``xtol`` and ``gtol`` of :func:`scipy.optimize.least_squares`, dimensionless: the relative
+            changes of chi2 and coordinates and the scaled gradient at which the search ends.
         steps : largest number of evaluations of the residuals, those for derivatives not counted; beyond it the best
             point found is returned.
         Returns the :class:`Minimum`, whose chi2 is without the residual of large weight.  Unknowns that are not active
-        stay at u; where no coordinate is free all do.
+        stay at u, or at the end of their range nearest to it; where no coordinate is free all do.
         """
         from scipy.optimize import least_squares
 
@@ -303,13 +304,14 @@ class Problem:
     def estimate_sigma(self, best: Minimum) -> Minimum:
         """Estimate the standard deviations that were not given from their residuals and fit again, in turns.
 
-        A column has one standard deviation: the root mean square of its residuals, corrected for the active unknowns,
-        or in a robust fit their median absolute value over that of normal noise.  The rounds end when no standard
-        deviation changes by 0.1 %, at the latest after 20; there are none where all standard deviations were given.
-        ``sigma`` is changed in place.
+        A column has one standard deviation: the root mean square of its residuals, divided by the root of 1 - (number
+        of active unknowns)/(number of all residuals), which is taken as at least 0.1; in a robust fit their median
+        absolute value over that of normal noise.  The rounds end when no standard deviation changes by 0.1 %, at the
+        latest after 20; there are none where all standard deviations were given.  ``sigma`` is changed in place.
 
         best : :class:`Minimum`, minimum with the present standard deviations.
-        Returns the :class:`Minimum` with the estimated ones; ``best`` itself if none is estimated.
+        Returns the :class:`Minimum` of the last round, with the standard deviations estimated in it; ``best`` itself if
+        none is estimated.
         """
         estimated = [column for column in self.columns if column.estimated]
         for _ in range(_ROUNDS if estimated else 0):
@@ -326,6 +328,9 @@ class Problem:
 
     def noise(self, u: Floats) -> dict[str, Noise]:
         """Return statistics of the residuals of each column, by which a model that is inadequate shows.
+
+        The residuals of a column are put into the order of the coordinates of its record first, of a traction by speed,
+        then by creepage; those of equal coordinates stay in the order given.
 
         u : coordinates of the unknowns, (unknowns,).
         Returns a dict, "QUANTITY of RECORD" -> :class:`Noise`, in the order of ``columns``.

@@ -75,8 +75,9 @@ class Product(NamedTuple):
 
     Attributes
     ----------
-    powers : name of unknown -> exponent, of the unknowns whose power is not 0.  Exponents of unknowns with a linear
-        coordinate (brake, drag, nu, V0, omega0 and t0) hold near the values found only.
+    powers : name of unknown -> exponent, of the unknowns whose power of the coordinate is not 0.  Exponents of unknowns
+        with a linear coordinate (brake, drag, nu, V0, omega0 and t0) hold near the values found only; such an exponent
+        is 0 where the best value is 0.
     value : value of the product at the best fit, of the magnitudes of SI values, as V0 may be negative.
     low, high : ends of its interval, divided by ``value``, dimensionless: low <= 1 <= high.
     near : True: the interval is by the slopes at the best fit, and the product holds within about a fifth of the values
@@ -98,8 +99,8 @@ class Likelihood:
     problem : :class:`.problem.Problem`, the least squares.
     best : :class:`.problem.Minimum`, the best minimum.
     cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns).
-    sd : standard deviations of the coordinates, shape (unknowns,); of an unknown that does not act that of a uniform
-        distribution over its range.
+    sd : standard deviations of the coordinates, shape (unknowns,); of an unknown that does not act nearly that of a
+        uniform distribution over its range.
     correlations : correlations of the coordinates, shape (unknowns, unknowns), 1 on the diagonal.
     others : coordinates of other minima and of the start of the fit, (unknowns,) each, from which other branches of the
         fit are searched; those within 1e-6 of the best are left out.
@@ -147,11 +148,12 @@ class Likelihood:
         """Return the profile of each active unknown by itself.
 
         The first time that any side of any interval is open, the two outermost points of each interval are added to
-        ``ends``, and all profiles are computed again with these further starts; later calls do not repeat this.
+        ``ends``, and all profiles are computed again with these further starts; later calls, also with another bound,
+        do not repeat this.
 
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        Returns a dict, index of the unknown -> :class:`Profile`, whose ends are those of its coordinate; unknowns that
-        do not act are not in it.
+        Returns a dict, index of the unknown -> :class:`Profile`, whose ends are those of its coordinate, in ascending
+        order of the indices; unknowns that do not act are not in it, so that it is {} where none acts.
         """
         found = {i: self.profile(np.eye(self.best.u.size)[i], delta_chi2) for i in self.problem.active}
         if self.ends or not any(None in profile.ends for profile in found.values()):
@@ -170,7 +172,7 @@ class Likelihood:
         correlated if the absolute value of their correlation is above 0.95.
 
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        Returns a list of indices, ascending, without unknowns that do not act; [] where all others are determined.
+        Returns a list of indices, ascending, without unknowns that do not act; [] where no interval is wide.
         """
         wide = []
         for i, profile in self.axes(delta_chi2).items():
@@ -183,14 +185,17 @@ class Likelihood:
     def products(self, which: list[int], delta_chi2: float) -> list[Product]:
         """Return the products of powers of undetermined unknowns that the data determine.
 
-        Their exponents are found by the points that fit, or, if those give no product, by the slopes at the best fit;
-        their intervals are profiles.  Then products by the slopes are added whose intervals by the slopes are narrower
-        than a third of the narrowest interval before (any, if there is none): they hold near the best fit alone.
+        A product is determined if its interval is closed on both sides and at most a factor of e long, which is 1 in
+        the combination of coordinates.  Combinations are tried from the best determined one on, up to the first that
+        does not meet this.  Their exponents are found by the points that fit, or, if those give no product, by the
+        slopes at the best fit; the intervals are profiles.  Then the products are added that meet the same criterion
+        with exponents and intervals by the slopes, and whose ``high - low`` is below a third of the least one before
+        (any, if there is none): they hold near the best fit alone.
 
         which : indices of the undetermined unknowns, ascending, as of :meth:`undetermined`.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-        Returns a list of :class:`Product`, those with ``near`` False first, the best determined first in each part; []
-        for fewer than two unknowns, or where no product is determined.
+        Returns a list of :class:`Product`, those with ``near`` False first, each part in the order in which the
+        combinations are tried; [] for fewer than two unknowns, or where no product is determined.
         """
         if len(which) < 2:
             return []
@@ -206,12 +211,14 @@ class Likelihood:
         """Return the products of a family whose intervals are narrow, up to the first product with an open or wide
         interval.
 
-        family : powers of the coordinates of each product, shape (unknowns,) each, the best determined first.
+        family : powers of the coordinates of each product, shape (unknowns,) each, the best determined first; those of
+            unknowns that do not act are 0.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
         near : True: an interval is the best value -+ sqrt(delta_chi2) standard deviations by the slopes at the best
             fit; False: it is a profile.  The products get the same ``near``.
-        Returns a list of :class:`Product`, in the order of the family, whose intervals are at most a factor of e wide;
-        [] where that of the first is open or wider.
+        Returns a list of :class:`Product`, in the order of the family, whose intervals are closed and at most 1 long in
+        the combination of coordinates, a factor of e of the product; [] where that of the first is open or longer.  An
+        exponent is the power times d ln(value)/du at the best fit.
         """
         found, values = [], self.problem.values(self.best.u)
         for powers in family:
@@ -230,9 +237,11 @@ class Likelihood:
     def _combinations_by_points(self, which: list[int], delta_chi2: float) -> Iterator[Floats]:
         """Yield combinations of unknowns on which the points that fit agree best, by their principal axes.
 
+        The points are those of ``Profile.within`` of the profiles of the unknowns ``which``.
+
         A simple exponent is easier to read than an exact one: powers are rounded to whole numbers, halves, tenths or
-        hundredths, the coarsest with which the range of the combination over the points at most doubles, or to
-        hundredths where it does so with none.
+        hundredths, the coarsest with which the range (largest minus smallest value) of the combination over the points
+        is at most twice that of the exact powers, or to hundredths where it is so with none.
 
         which : indices of the unknowns among all, ascending.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0: within it points fit.
@@ -267,10 +276,10 @@ class ProfileWalk:
 
     likelihood, problem, best : :class:`Likelihood`, chi2 about the best minimum; :class:`.problem.Problem`, the least
         squares; :class:`.problem.Minimum`, the best minimum.
-    powers : powers of the combination, shape (unknowns,).
+    powers : powers of the combination, shape (unknowns,), not all 0; 0 of unknowns that do not act.
     delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
-    sd : standard deviation of the combination by slopes.
-    slope : change of the coordinates with the combination, along the covariance, shape (unknowns,).
+    sd : standard deviation of the combination by slopes, sqrt(powers cov powers) with the covariance of ``likelihood``.
+    slope : change of the coordinates with the combination, (cov powers)/sd^2, shape (unknowns,).
     visited : list of :class:`.problem.Minimum`, all minima that were found, the best one first.
     """
 
@@ -278,8 +287,9 @@ class ProfileWalk:
         """Begin at the best minimum.
 
         likelihood : :class:`Likelihood`, chi2 about the best minimum.
-        powers : powers of the combination whose profile is computed, (unknowns,).
+        powers : powers of the combination whose profile is computed, (unknowns,), not all 0.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
+        All attributes of the class are set; ``visited`` holds the best minimum alone.
         """
         self.likelihood, self.problem, self.best = likelihood, likelihood.problem, likelihood.best
         self.powers, self.delta_chi2, along = powers, delta_chi2, likelihood.cov @ powers
@@ -309,7 +319,7 @@ class ProfileWalk:
         d : distance of the combination from that at the best minimum, signed.
         u : coordinates from which the search starts, (unknowns,); they are moved to that distance first.
         Returns the :class:`.problem.Minimum`, within the ranges, to a relative tolerance of 1e-5, or the best point
-        that 30 evaluations found.
+        that 30 evaluations found; its distance may differ from d where the ranges do not allow d.
         """
         self.visited.append(self.problem.minimize(self.shift_to(d, u), self.powers, _TOLERANCE, _EVALUATIONS))
         return self.visited[-1]
@@ -328,8 +338,9 @@ class ProfileWalk:
         On each side the search goes on beyond the end where another branch of the fit continues the interval, at most
         three times; the end is then that of the last branch.
 
-        Returns the :class:`Profile`.  A side on which chi2 stays below the bound up to the end of the ranges has the
-        end None.
+        Returns the :class:`Profile`, which describes the fields.  A side on which chi2 stays below the bound up to the
+        end of the ranges has the end None, also where the best fit is at that end; ``within`` has the points in the
+        order in which they were found, the best fit first.
         """
         problem, ends, limits, pieces = self.problem, [], [], False
         for near, far in ((problem.low, problem.high), (problem.high, problem.low)):
@@ -352,9 +363,10 @@ class ProfileWalk:
         rise of chi2 meets that of the bound to about 0.3 %.  All minima on the way are added to ``visited``.
 
         reach : distance of the end of the ranges from the best minimum, signed: the search goes towards it.
-        start : :class:`Minimum`, a minimum at which chi2 is below the bound.
-        Returns (the signed distance, or None if chi2 stays below the bound up to ``reach``; the :class:`Minimum` found
-        nearest to it, or that at ``reach``).
+        start : :class:`Minimum`, a minimum at which chi2 is below the bound, so that its root is more than 0.3 % below
+            that of the bound.
+        Returns (the signed distance, or None if chi2 is still below the bound at ``reach``; of the minima found the
+        :class:`Minimum` nearest to that distance, or that at ``reach``).
         """
         from scipy.optimize import brentq
 
@@ -364,8 +376,11 @@ class ProfileWalk:
         def excess(d: float) -> float:  # the root of the rise is proportional to the distance near the best
             """Return the root of the rise of chi2 at the distance d minus the root of the bound, dimensionless.
 
-            A minimum that is not in ``found`` yet is computed, from a point on the line through the two nearest ones,
-            and added.  A rise below 0 counts as 0; the result is 0.0 where the two roots are equal to 0.3 %.
+            A minimum that is not in ``found`` yet is computed and added to ``found``; its search starts on the line
+            through the two nearest ones, or from the only one.  A rise below 0 counts as 0; the result is 0.0 where the
+            two roots are equal to 0.3 %.
+
+            d : signed distance of the combination from that at the best minimum.
             """
             if d not in found:
                 b, *more = sorted(found, key=lambda b: abs(d - b))
@@ -389,14 +404,15 @@ class ProfileWalk:
     def search_beyond(self, d: float, reach: float) -> list[Minimum]:
         """Search other minima of chi2 that continue the interval between one of its ends and the end of the ranges.
 
-        Starts are the points of ``likelihood.others`` and ``likelihood.ends``, moved to the end of the interval or
-        beyond it; those at which chi2 is more than 1000 bounds above the best are left out.  All minima found are added
-        to ``visited``.
+        Starts are the points of ``likelihood.others``, moved to the end of the interval and to 15, 40 and 80 % of the
+        way from there to the end of the ranges, and those of ``likelihood.ends``, moved to the end of the interval;
+        each point that lies beyond the end of the interval is also a start as it is.  Starts at which chi2 is 1000
+        bounds or more above the best are left out.  All minima found are added to ``visited``.
 
         d : signed distance of the combination at the end of the interval from that at the best minimum.
         reach : the same at the end of the ranges.
-        Returns a list of :class:`Minimum` whose rise of chi2 is below 0.98 of the bound, the farthest from the best
-        last; [] if none.
+        Returns a list of :class:`Minimum` whose rise of chi2 is below 0.98 of the bound, in ascending order of the
+        absolute distance of the combination, so that the farthest from the best is last; [] if there is none.
         """
         found, problem = [], self.problem
         starts = [(u, _BEYOND) for u in self.likelihood.others] + [(u, _BEYOND[:1]) for u in self.likelihood.ends]
@@ -415,9 +431,10 @@ class ProfileWalk:
         Such a bound, not the data, limits the interval.  Unknowns of the combination itself are left out.
 
         u : coordinates at the end of an interval, (unknowns,).
-        Returns a list of names, of those unknowns without whose bound chi2 would fall by more than 2 % of
-        ``delta_chi2``, all other unknowns free, by the slopes at u; [] where no unknown lies at a bound, or none limits
-        the interval.
+        Returns a list of names, ascending by index, of those unknowns without whose bound chi2 would fall by more than
+        2 % of ``delta_chi2``, by the slopes at u.  Each is tried by itself: the unknowns that act and lie at no bound
+        are free, but for the first of the combination, which is held for it.  [] where no unknown outside of the
+        combination lies at a bound, or none limits the interval.
         """
         problem = self.problem
         if not (at := [i for i in problem.at_bounds(u) if not self.powers[i]]):

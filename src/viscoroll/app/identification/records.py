@@ -26,7 +26,7 @@ ROLLING = "rolling"
 OF_RECORDS = ("V0", "omega0", "t0")
 #: number of a record -> its lower bound
 _NUMBERS = {"load": 0.0, "m": 0.0, "temperature": -math.inf, "V0": -math.inf, "omega0": -math.inf}
-#: name -> initial value, and range where the record leaves it open
+#: name -> initial value, and range (of t0 as an array of two) where the record leaves it open
 InitialValues = dict[str, tuple[float, tuple[float, float] | None]]
 #: relative tolerance of a free motion
 _RTOL = 1e-8
@@ -66,13 +66,13 @@ class Record:
     def __post_init__(self) -> None:
         """Check the fields, convert them to SI units, and replace them by the results.
 
-        Coordinates and values become float64 arrays of one shape, at least one-dimensional; quantities that were not
-        measured stay None.  ``sigma`` is given as a number or an array, of the one quantity that was measured, as a
-        dict, quantity -> number or array, or as None.  It becomes a dict: of data quantity -> array of that shape, or
-        None where the standard deviation is to be estimated, for every quantity measured; of a plan for those given
-        alone, so that it is {} where none is.  ``load`` (N/m), ``temperature`` (degrees Celsius), and ``m`` (kg/m),
-        ``V0`` (m/s), ``omega0`` (rad/s) of a :class:`Coastdown`, become floats; None and omega0 = "rolling" stay.
-        ``labels`` is set to those of the arrays, or None.
+        Coordinates and values become float64 arrays of one shape, at least one-dimensional, which may be read-only
+        views; quantities that were not measured stay None.  ``sigma`` is given as a number or an array, of the one
+        quantity that was measured, as a dict, quantity -> number or array, or as None.  It becomes a dict: of data
+        quantity -> array of that shape, or None where the standard deviation is to be estimated, for every quantity
+        measured; of a plan for those given alone, so that it is {} where none is.  ``load`` (N/m), ``temperature``
+        (degrees Celsius), and ``m`` (kg/m), ``V0`` (m/s), ``omega0`` (rad/s) of a :class:`Coastdown`, become floats;
+        None and omega0 = "rolling" stay.  ``labels`` is set to those of the arrays, or None.
 
         Raises ParameterError for values that are not numbers, not finite, of another unit, of no points, or of shapes
         that do not broadcast; for values or sigma at more points than the coordinates have; for sigma, load or m that
@@ -147,8 +147,8 @@ class Record:
         """Return the start values V0, omega0 and t0 of the motion, which a fit may need; :class:`Coastdown` has them.
 
         R : radius of the cylinder, m; not used here.
-        Returns {}: other records have no motion.  :class:`Coastdown` returns name -> (initial value; (low, high) where
-        the record does not give it, else None), in SI units.
+        Returns {}: other records have no motion.  :meth:`Coastdown.initial_values` returns name -> (initial value; low
+        and high where the record does not give it, else None), in SI units.
         """
         return {}
 
@@ -157,9 +157,11 @@ class Record:
 
         cylinder : :class:`Cylinder` with the present values of the unknowns.
         values : name -> value of the unknowns of bearing and record, without the name of the record: "brake" in N m/m,
-            "drag" in N m s/m, "V0", "omega0", "t0"; those that are missing are 0 or as the record has them.
+            "drag" in N m s/m, "V0" in m/s, "omega0" in rad/s, "t0" in s; those that are missing are 0 or as the record
+            has them.
         Returns a dict, quantity -> values in SI units, in the shape of the points of the record.
-        Raises NotImplementedError here, in the base class.
+        Raises NotImplementedError here, in the base class; each kind of record ViscorollError where the values make no
+        contact or no motion.
         """
         raise NotImplementedError
 
@@ -205,7 +207,8 @@ class Resistance(Record):
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict rolling moment and pulling force of free rolling, the torque of the bearing included.
 
-        The moment is M of the contact at delta = 0, plus sign(V) brake + drag V/R; it is 0 at V = 0.
+        The moment is M of the contact at delta = 0, plus sign(V) brake + drag V/R, and the force is this moment over R;
+        both are 0 at V = 0.
 
         Parameters
         ----------
@@ -335,8 +338,9 @@ class Coastdown(Record):
 
         R : radius of the cylinder, m.
         Returns a dict, name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high) where the
-        record leaves it open, None where it gives it), in s, m/s and rad/s.  A t0 that is open starts at 0, or at the
-        end of its range nearest to 0; V0 and omega0 as :meth:`_first` says.
+        record leaves it open, None where it gives it), in s, m/s and rad/s.  The (low, high) of V0 and omega0 is a
+        tuple, that of t0 an array, (2,), whose order is not checked here.  A t0 that is open starts at 0 limited to its
+        range: low where low > 0, high where high < 0.  V0 and omega0 start as :meth:`_first` says.
         Raises ParameterError where V0 or omega0 is open and the record has no data that show it.
         """
         ends: Any = np.ravel(self.t0)
@@ -386,7 +390,12 @@ class Coastdown(Record):
         -------
         dict[str, Floats]
             Arrays over the times, (n,), by name: "V" in m/s, "omega" in rad/s, "x" in m, "slips" as truth values,
-            False before the release.
+            False before the release.  V, omega and x are NaN, and slips False, at times that the motion did not reach.
+
+        Raises
+        ------
+        ParameterError
+            Values that make no motion, as infinite ones.
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0

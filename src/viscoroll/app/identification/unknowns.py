@@ -247,6 +247,8 @@ def _replace_values(body: Material, prefix: str, values: Mapping[str, float]) ->
 def _series(strengths: tuple[float, ...], times: tuple[float, ...]) -> Prony:
     """Return a series, the same object for the same values, so that its table of the law is made once.
 
-    strengths, times : of each mode, divided by E and T_ref, as tuples that the cache can look up.
+    strengths, times : of each mode, divided by E and T_ref, as tuples that the cache can look up; equally many.
+    Returns the :class:`Prony`; the last 256 are kept.
+    Raises ParameterError for numbers that make no series.
     """
     return Prony(strengths, times)
