@@ -65,7 +65,7 @@ class Curve(NamedTuple):
     def responses(self, tau: Floats) -> Floats:
         """Return the responses of modes of strength 1, z^2/(1 + z^2) and z/(1 + z^2) with z = omega tau.
 
-        tau : times of the modes, s, shape (modes,).
+        tau : times of the modes, s, > 0, shape (modes,), which may be empty.
         Returns them dimensionless, shape (2, n, modes): row 0 of the storage, row 1 of the loss modulus, at the n
         points.
         """
@@ -74,10 +74,10 @@ class Curve(NamedTuple):
         return np.array([z * loss, loss])
 
     def slopes(self, tau: Floats, responses: Floats) -> Floats:
-        """Return the derivatives of the responses by ln tau.
+        """Return the derivatives of the responses by ln tau, 2 L^2 and L (1 - 2 S).
 
         tau : times of the modes, s, shape (modes,); not used, as the responses suffice.
-        responses : what :meth:`responses` returns for these times, shape (2, n, modes).
+        responses : what :meth:`responses` returns for these times, S in row 0 and L in row 1, shape (2, n, modes).
         Returns the derivatives, dimensionless, shape (2, n, modes), row 0 of the storage, row 1 of the loss modulus.
         """
         storage, loss = responses
@@ -119,15 +119,15 @@ class Relaxation(NamedTuple):
     def responses(self, tau: Floats) -> Floats:
         """Return the responses of modes of strength 1, exp(-t/tau).
 
-        tau : times of the modes, s, shape (modes,).
-        Returns them dimensionless, shape (1, n, modes).
+        tau : times of the modes, s, > 0, shape (modes,), which may be empty.
+        Returns them dimensionless, shape (1, n, modes), at the n times.
         """
         return np.exp(-self.t[:, None] / tau)[None]
 
     def slopes(self, tau: Floats, responses: Floats) -> Floats:
         """Return the derivatives of the responses by ln tau, (t/tau) exp(-t/tau).
 
-        tau : times of the modes, s, shape (modes,).
+        tau : times of the modes, s, > 0, shape (modes,).
         responses : what :meth:`responses` returns for these times, shape (1, n, modes).
         Returns the derivatives, dimensionless, shape (1, n, modes).
         """
@@ -143,8 +143,8 @@ class KramersKronig(NamedTuple):
     omega : angular frequency, rad/s, ascending, shape (n,).
     ratio : E''/((pi/2) dE'/d ln omega), dimensionless, shape (n,); infinite where E' does not rise, NaN where the
         neighbours of a point are all of one frequency, so that there is no slope.
-    median : median of the ratios that are not NaN, NaN if all are; near 1 where the spectrum is broad and the data are
-        sound.
+    median : median of the ratios that are not NaN, infinite ones included, NaN if all are; near 1 where the spectrum is
+        broad and the data are sound.
     """
 
     omega: Floats
@@ -187,8 +187,8 @@ def thinned(data: _Data) -> _Data:
     on average stays so.
 
     data : a :class:`Curve` or a :class:`Relaxation`, ascending.
-    Returns a curve of the same class, ascending, with one point for each of the 500 bins that has points; ``data``
-    itself if it has no more than :data:`MOST_POINTS`, 1000, points.
+    Returns a curve of the same class, ascending, with one point for each of the 500 bins that has points, which divide
+    the range of the data in equal ratios; ``data`` itself if it has no more than :data:`MOST_POINTS`, 1000, points.
     """
     if data[0].size <= MOST_POINTS:
         return data
@@ -205,13 +205,14 @@ def kramers_kronig(curve: Curve) -> KramersKronig:
 
     It shows whether storage and loss modulus can be of one material.  The form is exact for a power law in the limit of
     small exponents, and good where E' bends little within a decade (H. C. Booij and G. P. J. M. Thoone, Rheologica Acta
-    21, 15-24, 1982, doi:10.1007/BF01520702).  The slope is that of a straight line in ln E' over ln omega through the
-    neighbours of a point: those within a quarter of a decade, and at least the five nearest.
+    21, 15-24, 1982, doi:10.1007/BF01520702).  A straight line in ln E' over ln omega is fitted to the neighbours of a
+    point, those within a quarter of a decade, and at least the five nearest, itself included: the slope is its slope
+    times its modulus at the point.
 
     curve : :class:`Curve`, storage and loss modulus, n points, which may be fewer than five.
     Returns :class:`KramersKronig`: the measured divided by the computed loss modulus at each point, infinite where the
-    storage modulus does not rise and NaN where all neighbours are of one frequency, and the median of those that are
-    not NaN, which is NaN if all are.
+    line does not rise and NaN where all neighbours are of one frequency, and the median of those that are not NaN,
+    which is NaN if all are.
     """
     x, y = np.log(curve.omega), np.log(curve.storage)
     ratio, nearest = np.empty_like(x), min(_NEIGHBOURS, x.size) - 1

@@ -94,7 +94,7 @@ class SeriesFit(Result):
         """Return the misfit of each modulus in words, as "0.35% in E', 0.80% in E''".
 
         digits : number of digits after the decimal point of the per cent, an int >= 0.
-        Returns a text, of two parts for storage and loss, of one for relaxation.
+        Returns a text, of two parts for storage and loss, parted by a comma, of one for relaxation.
         """
         pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
         return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
@@ -160,8 +160,8 @@ class SeriesFit(Result):
         ----------
         nu : Poisson's ratio, constant in time.
         name : name of the material, free text.
-        density : density, kg/m^3; None: not known.
-        thickness : thickness of the layer, m; None for a half-space.
+        density : density, kg/m^3, > 0; None: not known.
+        thickness : thickness of the layer, m, > 0; None for a half-space.
 
         Returns
         -------
@@ -237,8 +237,9 @@ class SeriesFit(Result):
     def _moduli(self, x: ArrayLike) -> Floats:
         """Return the moduli of the fit, in the unit of the data.
 
-        x : angular frequencies, rad/s, or of a fit of relaxation times, s, > 0, of any shape; not checked.
-        Returns shape (2, *x.shape), storage and loss, or (1, *x.shape), relaxation.
+        x : angular frequencies, rad/s, or of a fit of relaxation times, s, > 0, of any shape; neither sign nor unit is
+            checked.
+        Returns shape (2, *x.shape), storage and loss, or (1, *x.shape), relaxation; NaN where x is NaN.
         """
         points = np.asarray(x, np.float64)
         data = self.data._replace(**{self.data._fields[0]: points.ravel()})
@@ -308,7 +309,7 @@ class Fit(SeriesFit):
 
         They are E' and E'', or G' and G'' where ``mode`` is "shear".
 
-        omega : angular frequencies, rad/s, of any shape.
+        omega : angular frequencies, rad/s, > 0, not checked, of any shape, also outside of the data.
         Returns (storage, loss), each of the shape of ``omega``.
 
         Examples
@@ -357,7 +358,8 @@ class RelaxationFit(SeriesFit):
     def modulus(self, t: ArrayLike) -> Floats:
         """Return the relaxation modulus of the fit, E(t) or of shear G(t), in the unit of the data.
 
-        t : times, s, of any shape, which the result has too.
+        t : times, s, > 0, not checked, of any shape, also outside of the data.
+        Returns the modulus, of the shape of ``t``.
 
         Examples
         --------

@@ -40,7 +40,8 @@ class Shifts(NamedTuple):
 
     temperature : temperature of each curve, ascending, degrees Celsius, (curves,); the median of those of its points.
     a_T : ratio of times at this temperature to those at the reference, by which frequencies are multiplied, (curves,).
-    reference : degrees Celsius; a_T is 1 there.
+    reference : temperature of the master curve, degrees Celsius, at which a_T is 1; it need not be one of
+        ``temperature``.
     mismatch : between each curve and its warmer neighbour, root mean square of the differences of ln E' and ln E''
         after the shift, (curves - 1,); NaN where the factors were given.
     freedom : between the same, decades over which the shift may be moved before the mismatch rises by 0.01 (1 % of the
@@ -85,7 +86,7 @@ def master_curve(
     tuple
         (The master curve, a :class:`Curve` of all n points at the reference temperature, sorted by frequency; the
         :class:`Shifts` of the temperatures, whose ``mismatch`` and ``freedom`` are NaN where the shifts were given.)
-        Of a single temperature the factor is 1, unless a shift is given and the reference is another.
+        Of a single temperature the factor is 1, unless ``shift`` is a function and the reference another temperature.
 
     Raises
     ------
@@ -93,8 +94,8 @@ def master_curve(
         Moduli or frequencies that are not > 0 and finite, or fewer than 3 points; temperatures of another number than
         points or curves; temperatures that drift, so that sweeps cannot be told apart; a reference more than 0.5 K
         outside of the temperatures where the overlap gives the shifts, or with listed factors at none of them; a curve
-        of a single frequency; neighbouring curves that do not overlap; shift factors of another number than the curves,
-        not > 0, or that rise with the temperature.
+        of a single frequency, where the overlap gives the shifts; neighbouring curves that do not overlap; shift
+        factors of another number than the curves, not > 0, or larger at the highest temperature than at the lowest.
 
     Warns
     -----
@@ -217,8 +218,10 @@ def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
     method.
 
     cold, warm : :class:`_LogCurve`, curve of the lower and of the higher temperature.
-    Returns the :class:`_Alignment`, of three NaN where no shift leaves enough overlap (:func:`_mismatch`).  Its
-    ``freedom`` is measured in the steps of the search, 0.05 in ln omega.
+    Returns the :class:`_Alignment`, of three NaN where no shift leaves enough overlap (:func:`_mismatch`).  Of equal
+    mismatches in the search the most negative shift is refined.  ``freedom`` is measured in the steps of the search, at
+    most 0.05 in ln omega, between the nearest steps on either side whose mismatch is more than 0.01 above the least, or
+    the ends of the search.
     """
     from scipy.optimize import minimize_scalar
 

@@ -44,8 +44,8 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
     modes : number of modes to fit, an int >= 1; the target then decides the returned flag alone.  The spectrum has
         fewer where no grid has as many modes with a strength > 0, or where one is lost as another is left out.  None:
         as few as the target needs.
-    Returns (the :class:`Spectrum`, which may have no mode; (shortest, longest time) of its grid, s; whether every row
-    has a misfit <= target).
+    Returns (the :class:`Spectrum`, times descending, which may have no mode; (shortest, longest time) of its grid, s,
+    within which its times lie; whether every row has a misfit <= target).
 
     Raises
     ------
@@ -108,8 +108,8 @@ def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, t
 def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
     """Return times of modes between two ends, from the longest down, both ends among them.
 
-    ends : (shortest, longest) time, s.
-    density : number of times in a decade; the number of all is rounded, and at least 2.
+    ends : (shortest, longest) time, s, > 0.
+    density : number of times in a decade, > 0; the number of all is rounded, and at least 2.
     Returns times in equal ratios, descending, s, shape (times,).
     """
     decades = math.log10(ends[1] / ends[0])
@@ -145,9 +145,10 @@ def _leave_out_mode(
     spectrum : :class:`Spectrum`, spectrum of the data from which a mode is left out, of at least one mode.
     ends : (shortest, longest) time that is allowed, s.
     good : function of a spectrum that returns whether it is acceptable; None: any is.
-    Returns the candidate with the least misfit as it is, if it is acceptable; else the first of the three best ones
-    that is acceptable after its times are refined; None if none of them is.  With ``good`` None it is the best one,
-    refined.  Modes without strength are left out too, so that more than one may be missing.
+    Returns the candidate with the least misfit as it is, its times not refined, if it is acceptable; else the first of
+    the three with the least misfits, in this order, that is acceptable after its times are refined; None if none of
+    them is.  With ``good`` None it is the one with the least misfit, refined.  Misfits are compared by :func:`_size`.
+    Modes without strength are left out too, so that more than one may be missing.
     """
     tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):
@@ -164,7 +165,8 @@ def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
 
     spectrum : :class:`Spectrum`, the spectrum, of n modes, n >= 1; means are of the logarithms of its times, weighted
         by strength.
-    Returns a list of 2 n - 1 arrays of times, s, descending, shape (n - 1,) each.
+    Returns a list of 2 n - 1 arrays of times, s, descending, shape (n - 1,) each: first those with one left out, then
+    those with a mean, both from the longest time on.
     """
     tau, strength = spectrum.tau, spectrum.strength
     without = [np.delete(tau, n) for n in range(tau.size)]

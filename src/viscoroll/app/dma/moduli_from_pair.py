@@ -36,9 +36,9 @@ def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Num
         last digits, (n,) each, of those that the file has; all in Pa or all in 1/Pa, tan delta dimensionless.
     Returns (storage, loss), (n,) each, in the unit of the columns: compliances of compliances.  Signs are not checked
     here: a negative or infinite value stays.
-    Raises FileError, with the line, where a further column differs by more than 1 % beside its rounding, where a
-    magnitude is not above the storage or loss beside it, or where the digits of the file leave storage or loss
-    uncertain by more than 5 %.
+    Raises FileError, with the line, where a further column differs by more than 1 % beside the rounding of all three;
+    of a pair of a magnitude and storage or loss also where the magnitude is not above the other, or where the digits of
+    the file leave the modulus that is computed uncertain by more than 5 %.
     """
     storage, loss = PAIRS[pair](*(columns[name].values for name in pair))
     exact = {"storage": storage, "loss": loss, "tan delta": loss / storage, "modulus": np.hypot(storage, loss)}

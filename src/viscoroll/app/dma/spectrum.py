@@ -98,8 +98,10 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     tau : times of modes, s, > 0, in any order, shape (modes,), which may be empty.
-    Returns the :class:`Spectrum`, its times descending; its long-time modulus is at least :data:`FLOOR`, 1 %, of the
-    lowest storage or relaxation modulus, and its number of modes may be smaller than that of ``tau``, down to 0.
+    Returns the :class:`Spectrum`, its times descending, all strengths > 0; its long-time modulus is at least
+    :data:`FLOOR`, 1 %, of the lowest storage or relaxation modulus, and its number of modes may be smaller than that of
+    ``tau``, down to 0.
+    Raises RuntimeError, from SciPy, where the non-negative least squares do not end in 100 (1 + modes) iterations.
     """
     from scipy.optimize import nnls
 
@@ -127,7 +129,7 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     """Refine a spectrum by varying its times too, then fit the strengths on the times found.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    spectrum : :class:`Spectrum`, spectrum from which the search starts, all strengths > 0.
+    spectrum : :class:`Spectrum`, spectrum from which the search starts, with all strengths and its E > 0.
     ends : (shortest, longest) time that is allowed, s; times outside are moved to the ends.
     calls : largest number of evaluations of the residuals, >= 1; when they are used up the best times so far are taken.
     Returns the refined :class:`Spectrum`, from which modes without strength are left out; ``spectrum`` itself if it has
@@ -164,9 +166,11 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     logs : start, logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 + 2 modes,).
     low, high : bounds of the logarithms, of the same shape, perhaps infinite; a start outside is moved to the bound.
-        The iteration ends where each logarithm is at a bound beyond which the sum would decrease.
     calls : largest number of evaluations of the residuals, >= 1; with 1 the start is returned.
-    Returns the logarithms at the minimum, or the best ones found when the calls are used up, (1 + 2 modes,).
+    The iteration ends where a step changes the sum by at most 1e-14 of it, and where each logarithm is at a bound
+    beyond which the sum would decrease.
+    Returns the logarithms at the minimum, or the best ones found when the calls are used up, (1 + 2 modes,), within the
+    bounds.
     """
     logs = np.clip(logs, low, high)
     errors, slopes = _residuals(data, np.exp(logs)), _slopes(logs, data)
@@ -198,8 +202,8 @@ def _normal_matrix(slopes: Floats) -> Floats:
 
     It keeps BLAS from starting threads, which would take longer than the product.
 
-    slopes : derivatives of the residuals, shape (residuals, unknowns); at least one unknown.
-    Returns shape (unknowns, unknowns).
+    slopes : derivatives of the residuals, dimensionless, shape (residuals, unknowns); at least one unknown.
+    Returns the product, dimensionless, shape (unknowns, unknowns), a new array.
     """
     rows = max(1, _ONE_THREAD // slopes.shape[1] ** 2)
     parts = (slopes[n : n + rows] for n in range(0, slopes.shape[0], rows))

@@ -45,7 +45,7 @@ class ExtendedGridFit(NamedTuple):
 
     @property
     def M_change(self) -> float:
-        """Largest relative change of M at these speeds; NaN where there are none."""
+        """Largest relative change of M at these speeds; NaN where there are none, and NaN or infinite where M is 0."""
         return float(np.abs(self.M / self.M_fit - 1.0).max()) if self.V.size else float("nan")
 
 
@@ -62,8 +62,8 @@ def fit_on_extended_grid(
     prony : :class:`Prony`, series of the fit, strengths divided by E, times over T_ref.
     E, T_ref : long-time modulus of the fit, in the unit of the data, and unit of its times, s.
     grid : (shortest, longest) time of its grid, s.
-    decades : number of decades by which the grid becomes wider on either side; of a :class:`Relaxation` the shortest
-        time stays at least half the first time of the data.
+    decades : number of decades by which the grid becomes wider on either side, > 0; of a :class:`Relaxation` the
+        shortest time stays at least half the first time of the data.
     Returns the :class:`ExtendedGridFit`, with the rolling moment of both fits at speeds of which the data tell, at the
     same load and radius: kappa of the wider fit is sqrt(its E / E) times that of the fit.
     """
@@ -81,7 +81,8 @@ def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats
 
     prony : :class:`Prony`, series of the fit.
     slow, fast : lowest and highest angular frequency of the data, times T_ref, dimensionless.
-    Returns (kappa V, kappa M), (n,) each, dimensionless, in ascending order of V, four speeds a decade; n may be 0.
+    Returns (kappa V, kappa M), (n,) each, dimensionless, in ascending order of V, about four speeds a decade; n may be
+    0.  They are computed with kappa = 1 and mu = 1.
     """
     low, high = np.log10(slow / np.sqrt(prony.alpha)), np.log10(fast)
     V = np.logspace(low, high, 2 + int(_SPEEDS * (high - low)))

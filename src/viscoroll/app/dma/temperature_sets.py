@@ -35,14 +35,16 @@ class Sets(NamedTuple):
 def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], Integers | None]:
     """Return measured moduli as flat columns, with a temperature for each point.
 
-    temperature : temperature of all points, one number; of each point, (n,); or of each curve, (curves,); degrees
-        Celsius.
-    *columns : omega, storage and loss, three, each (n,), or each a list of ``curves`` vectors, one a curve; with units
-        or without.
-    Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, in rad/s and the unit
-    of the moduli (Pa, if they have units), not checked; index of the first point of each curve, (curves,), or None
-    where the columns are no lists).
-    Raises ParameterError for shapes that do not go together, and for temperatures that are no finite numbers.
+    temperature : of columns of points one number for all of them, or (n,), number i of point i; of lists of curves
+        (curves,), number k of vector k of each column, also if it is the only one; degrees Celsius.
+    *columns : omega, storage and loss, three, each a column of points, (n,), or each a list or tuple of ``curves``
+        vectors, those of curve k equally long; with units or without.  They count as lists of curves if omega is a list
+        or tuple whose first element is a vector.
+    Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, curve after curve, in
+    rad/s and the unit of the moduli (Pa, if they have units); index of the first point of each curve, (curves,), or
+    None of columns of points).  Whether the columns are numbers, finite and > 0, is not checked here, nor their type.
+    Raises ParameterError for shapes that do not go together, for a unit of another dimension, and for temperatures that
+    are no finite numbers.
     """
     given = check_array("temperature", temperature, unit="degC")
     columns = tuple(to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
@@ -72,7 +74,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
     first : index of the first point of each curve, (curves,), as of :func:`points_of`; None: each set counts as a
         curve, in the order in which their first points come.
-    Returns the :class:`Sets`.
+    Returns the :class:`Sets`; several curves may be of one set.
 
     Raises
     ------
@@ -102,8 +104,8 @@ def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
 
     temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
     unshifted : temperatures at which the given shift is 1, degrees Celsius; empty, or NaN, where none is known.
-    Returns a temperature, degrees Celsius: the first of ``unshifted`` between the lowest and the highest set, else the
-    temperature of the middle set, of an even number the warmer one.
+    Returns a temperature, degrees Celsius: the first of ``unshifted`` between the lowest and the highest set, both
+    included, else the temperature of the middle set, of an even number the warmer one of the two.
     """
     low, high = temperatures[0], temperatures[-1]
     return next((T for T in unshifted if low <= T <= high), float(temperatures[temperatures.size // 2]))
@@ -132,8 +134,8 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     base : reference, degrees Celsius; None: the temperature of the coldest set whose factor is 1 to 1e-9, else that of
         the middle set, of an even number the warmer one.
     Returns (factors of the sets, dimensionless, (sets,), divided by that of the reference; reference, degrees Celsius).
-    Raises ParameterError for factors that are not > 0, of another number than the curves, or different at one
-    temperature, and for a reference that is within 0.5 K of none of the sets.
+    Raises ParameterError for factors that are not finite and > 0, of another number than the curves, or different for
+    curves of one set, and for a reference that is within 0.5 K of none of the sets.
     """
     factors, temperatures = check_array("shift", shift), sets.temperature
     if not (factors > 0.0).all():

@@ -112,7 +112,8 @@ def _contact_length_of_cover(table: LawTable) -> float:
     It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is free.  The length is
     the thickness of the cover in m, divided by that in units of the contact length at rest.
 
-    table: :class:`LawTable`, a law, with ``cover`` and ``pair``, each None where it has none.
+    table: :class:`LawTable`, a law, with ``cover`` and ``pair`` (in SI units), each None where it has none, and
+        ``material``, which of a cover has the ``thickness`` in units of the contact length at rest.
     Returns the length in m; 0.0 if the FMU need not check it.
     """
     if table.cover is None or table.pair is None:
@@ -131,8 +132,8 @@ def _start_values(variables: tuple[Variable, ...], given: Any, table: LawTable, 
     table: :class:`LawTable`, law of ``given``, which has T_ref (s) and, of SI materials, a ``pair`` with E_prime (Pa).
     l0: contact length at rest of a cover in m, or 0.0; without a Cylinder the load at the start is the one that makes
         it, at the default radius.
-    Returns name -> value in the unit of the variable, of the variables whose default start is not None.
-    Raises ParameterError for a Cylinder with arrays.
+    Returns name -> value in the unit of the variable, of all variables whose ``start`` is not None, in their order.
+    Raises ParameterError for a Cylinder with arrays, whose message has the first such name.
     """
     starts = {variable.name: variable.start for variable in variables if variable.start is not None}
     values: dict[str, Any] = {"T_ref": table.T_ref}
@@ -153,7 +154,7 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
     """Write all that ``cc fmu.c`` needs beside law.h, and return the token.
 
     folder: where law.h is, and fmu.c, vr_roll.h, the headers of the standard, stubs.h and model.h are written.
-    headers: folder with the headers of the standard, of both versions.
+    headers: folder with the headers of the standard, of both versions, as fmpy brings them.
     model: "Roller" or "ContactElement".
     version: version of the FMI standard, the int 2 or 3.
     constants: C text of model.h, to which the token is added.
@@ -178,12 +179,14 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
 def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> str:
     """Return the C text of the variables: their references, names, kinds and start values; reference 0 is time.
 
-    Kinds are 0 (cannot be set), 1 (any finite number) and 2 (above 0).
+    The kind says what values a variable may be set to: 0, it cannot be set, if its ``start`` is None, as of time; else
+    2, numbers above 0, if it is ``positive``, and 1, any finite number, if not.
 
-    variables: variables of the model, in the order of their references, which start with 1.
+    variables: :class:`.variables.Variable` of the model, in the order of their references, which start with 1; only
+        name, start and positive are read.
     starts: name -> start value in the unit of the variable; 0.0 stands for those that it does not have.
-    Returns an enum of n_NAME, the references, and COUNT, their number; and the arrays NAMES, KINDS and START, of COUNT
-    elements each, the first for time.
+    Returns an enum of n_NAME, the references, and COUNT, their number with time; and the arrays NAMES, KINDS and START,
+    of COUNT elements each, in the order of the references, the first for time.
     """
     rows = [("time", 0, 0.0)]
     rows += [(v.name, 0 if v.start is None else 1 + v.positive, starts.get(v.name, 0.0)) for v in variables]
@@ -227,7 +230,9 @@ def _compile(compiler: str, source: Path, library: Path) -> None:
     compiler: path of cc.
     source: path of fmu.c, beside the headers.
     library: file to write.
-    Raises FileError with the compiler's message if that fails.
+    Returns nothing; the library is written, linked with the mathematical library.
+    Raises FileError, with the first 200 characters of the compiler's message, if the compiler ends with another code
+    than 0.
     """
     result = subprocess.run(
         [compiler, *_FLAGS, str(source), "-lm", "-o", str(library)], capture_output=True, text=True, check=False
