@@ -27,7 +27,8 @@ def doctor(arguments: Namespace) -> int:
 
     arguments: parsed command line, not used.
     Returns True, exit code 1, if a required package or llvmlite is missing, else False, exit code 0; a faulty cache and
-    missing optional libraries are only printed.
+    missing optional libraries are only printed.  Of a viscoroll that is not installed as a package, whose requirements
+    are not known, llvmlite alone is examined.
     Raises ParameterError for a wrong $VISCOROLL_THREADS.
     """
     required = (_version("viscoroll") and metadata.requires("viscoroll")) or ()

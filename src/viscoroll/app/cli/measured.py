@@ -26,7 +26,8 @@ def show(arguments: Namespace) -> None:
 
     arguments: parsed command line with file, path of a TOML file with [material] or [base], or of the netCDF of a
         material.
-    Raises FileError for a file that cannot be read.
+    Returns None.
+    Raises FileError for a file that cannot be read, or that has no material.
     """
     import pandas as pd
 
@@ -176,6 +177,7 @@ def identify(arguments: Namespace) -> None:
         robust, whether outliers count less;
         output, path of the report that is written, .txt (the text printed), .json or .nc, or None;
         plot, path of the figure that is written, .png, .pdf or .svg, or None.
+    Returns None, exit code 0, also where the report warns of the model or the data.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ..identification.measurements_toml import read_measurements

@@ -47,8 +47,9 @@ def contact(arguments: Namespace) -> None:
         omega, angular velocities, a number or (m,), in rad/s of a cylinder, dimensionless of a scene, or None;
         output, path of a .txt, .csv or .nc file that is written, or None: standard output;
         format of standard output, "text", "csv" or "json".
-    Exactly one of delta and omega must be given.  A vector of speeds and one of creepages give n x m states, those of
-    the first speed first; a vector and a number one state for each element; two numbers one.
+    Exactly one of delta and omega must be given.  A vector of speeds and one of creepages (or angular velocities) give
+    n x m states, those of the first speed first; a vector and a number one state for each element; two numbers one.
+    Returns None; a state has V, delta or omega, and the default fields of :func:`viscoroll.contact`.
     Raises ParameterError for both or none of delta and omega, and for values that are not allowed; FileError for a file
     that cannot be read or written.
     """
@@ -74,6 +75,8 @@ def stress(arguments: Namespace) -> None:
         output, path of a .txt, .csv or .nc file that is written, or None: standard output;
         format of standard output, "text", "csv" or "json".
     Exactly one of delta and omega must be given.
+    Returns None; each position has x, V, delta or omega, the pressure p and the shear stress tau (of a cover p alone),
+    in SI units of a cylinder, as of :func:`viscoroll.stress`.
     Raises ParameterError for both or none of delta and omega, and for values that are not allowed; FileError for a file
     that cannot be read or written.
     """
@@ -110,6 +113,8 @@ def roll(arguments: Namespace) -> None:
         t, output times, a number or (n,), in s of a cylinder, dimensionless of a scene;
         output, path of a .txt, .csv or .nc file that is written, or None: standard output;
         format of standard output, "text", "csv" or "json".
+    Returns None.  The output has a row for each time with the quantities of a :class:`viscoroll.Motion`; times that the
+    motion did not reach have NaN.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     with warnings.catch_warnings():
@@ -146,6 +151,8 @@ def steady(arguments: Namespace) -> None:
         format of standard output, "text", "csv" or "json".
     Each of force, torque, slope and V is a number, (n,) with one n for all vectors, or None where it is not given: a
     force, torque or slope of 0, and a speed that is not prescribed.
+    Returns None.  The table has a row for each equilibrium of each load, with the quantities of
+    :func:`viscoroll.steady`, and none for a load without an equilibrium; in a .nc file there is NaN in its place.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     import numpy as np
@@ -175,6 +182,7 @@ def validity(arguments: Namespace) -> None:
         V, speed of the axis, a number, in m/s of a cylinder, dimensionless of a scene;
         omega, angular velocity, a number, in rad/s of a cylinder, dimensionless of a scene, or None: the assumption on
         creepage is then not checked.
+    Returns None, exit code 0, also where an assumption does not hold.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read.
     """
     print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))

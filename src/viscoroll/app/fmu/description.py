@@ -27,7 +27,7 @@ def model_description(version: int, name: str, starts: dict[str, float], token: 
 
     version: version of the FMI standard, the int 2 or 3.
     name: name of the model, a key of MODELS: "Roller" or "ContactElement".
-    starts: name -> start value of the variables that can be set, in their units.
+    starts: name -> start value of the variables that can be set, in their units; others get no start.
     token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.
     title: title of the law, which the description of the model ends with.
     Returns the text of the XML file, with its declaration.
@@ -89,11 +89,13 @@ def _add_variable(
 
     A parameter is "tunable", if it must be above 0, else "fixed" (the speeds at the start); all others are continuous.
 
-    parent: :class:`Element`, element ModelVariables.
+    parent: :class:`Element`, element ModelVariables, to which a Float64 (FMI 3) or a ScalarVariable with a Real (FMI 2)
+        is added.
     version: version of the FMI standard, the int 2 or 3.
-    variable: variable to add; a name der_NAME makes it the rate of the variable NAME.
+    variable: :class:`.variables.Variable` to add, of which name, causality, unit, positive and text are read; a name
+        der_NAME makes it the rate of the variable NAME.
     references: name -> value reference, a number as text, of all variables of the model.
-    starts: name -> start value, in the unit of the variable, of those that can be set.
+    starts: name -> start value, in the unit of the variable, of those that can be set; others get no start.
     """
     varies = "continuous" if variable.causality != "parameter" else "tunable" if variable.positive else "fixed"
     about = {
@@ -115,12 +117,13 @@ def _add_structure(parent: Element, version: int, model: Model, references: dict
     """Add the lists of outputs, of rates of the states, and of initial unknowns, which are the two together.
 
     A model without states has no list of rates.  In FMI 2 a list is an element with an Unknown for each member; in FMI
-    3 the members stand in ModelStructure themselves.
+    3 the members stand in ModelStructure themselves.  Outputs are in the order of the variables, rates in that of the
+    states, initial unknowns in ascending order of their references.
 
-    parent: :class:`Element`, element ModelStructure.
+    parent: :class:`Element`, element ModelStructure, to which they are added.
     version: version of the FMI standard, the int 2 or 3.
-    model: :class:`Model`, the model.
-    references: name -> value reference, a number as text.
+    model: :class:`Model`, of which the states and the name and causality of the variables are read.
+    references: name -> value reference, a number as text, of all variables.
     """
     outputs = [references[variable.name] for variable in model.variables if variable.causality == "output"]
     rates = [references[f"der_{state}"] for state in model.states]
