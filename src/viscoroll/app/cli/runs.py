@@ -33,6 +33,7 @@ def ensemble(arguments: Namespace) -> None:
         the estimate is printed, and nothing is written;
         cluster, "local", "tcp://host:port" of a dask scheduler, or None for threads of this process;
         threads, number of threads or of local processes, or None for that of the cores.
+    Returns None, exit code 0, also where motions ended early.
     Raises ParameterError for values that are not allowed, as cluster without output; FileError for a file that cannot
     be read or written.
     """
@@ -86,6 +87,8 @@ def sensitivity(arguments: Namespace) -> None:
         output, path of a .txt, .csv or .nc file that is written, or None: standard output; beside a file the table is
         printed as text too;
         format of standard output without a file, "text", "csv" or "json".
+    Returns None.  The table has a row for each quantity, time and input that has indices: first-order index S1 and
+    total index ST, dimensionless, and the half-widths of their 95 % confidence intervals, S1_conf and ST_conf.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ...io.runs.sensitivity import sobol_indices, table

@@ -93,9 +93,10 @@ def build(arguments: Namespace) -> None:
 
 @command("tables info", FILE)
 def info(arguments: Namespace) -> None:
-    """Print what a table file contains, on standard output.
+    """Print the summary of a table file on standard output: its functions or axes and fields, their errors, its origin.
 
     arguments: parsed command line with file, path of a law or a grid.
+    Returns None; the lines are those of :func:`viscoroll.tables.info`.
     Raises FileError for a file that cannot be read or is no table.
     """
     print(vr.tables.info(arguments.file))
@@ -107,13 +108,15 @@ def info(arguments: Namespace) -> None:
 def validate(arguments: Namespace) -> int:
     """Check a table file at random points and print the differences.
 
-    The points are the same in every call: their seed is 0.
+    A law is compared with the formulas of its relaxation modes, that of a cover with solves of the contact, and a grid
+    with the law.  The points are the same in every call: their seed is 0.
 
     arguments: parsed command line with
         file, path of a law or a grid;
-        n, number of points.
+        n, number of random points, a whole number >= 1.
     Returns True, exit code 1, if an error is larger than the file states, else False, exit code 0.
-    Raises ParameterError for n, FileError for a file that cannot be read or is no table.
+    Raises ParameterError for n, FileError for a file that cannot be read or is no table, and for a grid of a material
+    or a cylinder.
     """
     from ...io.tables.check import Report, check_table
 
