@@ -17,7 +17,8 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
     """Print or write a result by its ``to_xarray`` and ``to_pandas``.
 
     In the table codes, as those of regimes, are replaced by their meanings, and rows of equilibria that a load does not
-    have (V is NaN) are left out.  The dataset, for a .nc file, stays as it is.
+    have (V is NaN) are left out; of a single row the column "state" is left out.  The dataset, for a .nc file, stays as
+    it is.
 
     arguments: parsed command line with output and format, as of :func:`deliver`.
     result: a result of the library that has both methods, as of ``contact``, ``roll`` or ``steady``.

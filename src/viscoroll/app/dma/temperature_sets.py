@@ -42,7 +42,8 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
         or tuple whose first element is a vector.
     Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, curve after curve, in
     rad/s and the unit of the moduli (Pa, if they have units); index of the first point of each curve, (curves,), or
-    None of columns of points).  Whether the columns are numbers, finite and > 0, is not checked here, nor their type.
+    None of columns of points).  Whether the columns are numbers, finite and > 0, is not checked here, nor whether each
+    curve has points, which :func:`sets_of` needs.
     Raises ParameterError for shapes that do not go together, for a unit of another dimension, and for temperatures that
     are no finite numbers.
     """
@@ -72,8 +73,8 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     set.
 
     temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
-    first : index of the first point of each curve, (curves,), as of :func:`points_of`; None: each set counts as a
-        curve, in the order in which their first points come.
+    first : index of the first point of each curve, each < n, (curves,), as of :func:`points_of`; None: each set counts
+        as a curve, in the order in which their first points come.
     Returns the :class:`Sets`; several curves may be of one set.
 
     Raises

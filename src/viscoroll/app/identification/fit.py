@@ -192,8 +192,9 @@ class Identification(Result):
         intervals.
 
         First the products that hold over the whole intervals are returned; their exponents are those on which all
-        points that fit agree best, and their intervals are profiles.  Then follow products that hold near the values
-        found only, by the slopes there, if their intervals are narrower than a third of the narrowest one before.
+        points that fit agree best (or, if these give none, those of the slopes at the best fit), and their intervals
+        are profiles.  Then follow products that hold near the values found only, by the slopes there, if their ``high -
+        low`` is below a third of the least one before, or there is none before.
 
         Parameters
         ----------
@@ -206,7 +207,7 @@ class Identification(Result):
             :class:`.profile.Product`, each with ``.powers`` (name -> exponent), ``.value`` (at the best fit, of the
             magnitudes of SI values), ``.low`` and ``.high`` (both divided by ``value``) and ``.near`` (whether it holds
             near the values found only); of either kind the best determined first.  It is empty where fewer than two
-            unknowns are undetermined, or no product has an interval of at most a factor of e.
+            unknowns are undetermined, or no product has an interval that is closed and at most a factor of e long.
 
         Raises
         ------

@@ -173,8 +173,8 @@ class Problem:
         u : coordinates of the unknowns, (unknowns,).
         record_name : name of the record, by which its own unknowns are found, as V0 by "V0:NAME"; "" of a record that
             was not fitted, which must have numbers for them.
-        Returns quantity -> values, SI units, in the shape of the coordinates of the record; of a motion also "slips",
-        truth values.
+        Returns quantity -> values, SI units, in the shape of the coordinates of the record, NaN at times that a motion
+        does not reach; of a motion also "slips", truth values.
         Raises ViscorollError where the coordinates make no cylinder or no motion.
         """
         values = self.values(u)
@@ -188,7 +188,8 @@ class Problem:
         passes through values of which the model warns.
 
         u : coordinates of the unknowns, (unknowns,), as the bytes of the float64 array, which the cache can look up.
-        Returns values in SI units, shape (n,); all n are NaN where any record makes no cylinder or no motion.
+        Returns values in SI units, shape (n,), NaN at times that a motion does not reach; all n are NaN where any
+        record makes no cylinder or no motion.
         """
         # warnings: of what the search passes through
         with np.errstate(all="ignore"), warnings.catch_warnings(), suppress(ViscorollError, ArithmeticError):
@@ -201,8 +202,8 @@ class Problem:
         """Return the residuals: (predicted - measured)/sigma of the data, then (u - mean)/sd of each prior.
 
         u : coordinates of the unknowns, (unknowns,).
-        Returns shape (points,), dimensionless.  Residuals of the data are within -+:data:`FAILED`, 1e6, and that number
-        where there is no prediction; those of priors are not limited.
+        Returns shape (points,), dimensionless.  Residuals of the data are within -+:data:`FAILED`, 1e6, and +1e6 where
+        the prediction is NaN; those of priors, in the order of the unknowns, are not limited.
         """
         r = np.clip(np.nan_to_num((self._model(u.tobytes()) - self.y) / self.sigma, nan=FAILED), -FAILED, FAILED)
         return np.append(r, ((u - self._mean) / self._sd)[self._has_prior])

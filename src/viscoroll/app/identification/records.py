@@ -360,7 +360,9 @@ class Coastdown(Record):
         name : "V0" or "omega0".
         R : radius of the cylinder, m; used only to make V of omega.
         Returns (speed, (lowest, highest value that it may have)), m/s or rad/s.  The range extends to either side of
-        the speed by the largest |V|, R |omega| or |omega| that was measured, and of a slope of x by its absolute value.
+        the speed by the largest |V|, R |omega| or |omega| that was measured, and of a slope of x by its absolute value;
+        it has no width where these are 0.  Where the first times are all one, the slope is that of least norm, with a
+        RankWarning of numpy.
         Raises ParameterError where none of these was measured.
         """
         data: Any = self.V if name == "V0" else self.omega

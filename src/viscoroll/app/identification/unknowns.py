@@ -212,6 +212,9 @@ def _inputs(body: Material) -> dict[str, float]:
 
     Strengths and times of modes are dimensionless, divided by E and T_ref; mode 1 is that of the longest time.  An
     elastic body has no modes.
+
+    body : :class:`Material` without arrays, of which E, nu, T_ref and the E and tau of ``prony`` are read.
+    Returns a dict, name -> float, in this order, strengths before times.
     """
     series = {"E": body.prony.E.tolist(), "tau": body.prony.tau.tolist()}
     modes = {f"{name}_{n}": value for name, column in series.items() for n, value in enumerate(column, 1)}
