@@ -77,7 +77,7 @@ class Curve(NamedTuple):
         """Return the derivatives of the responses by ln tau, 2 L^2 and L (1 - 2 S).
 
         tau : times of the modes, s, shape (modes,); not used, as the responses suffice.
-        responses : what :meth:`responses` returns for these times, S in row 0 and L in row 1, shape (2, n, modes).
+        responses : result of :meth:`responses` for these times, S in row 0 and L in row 1, shape (2, n, modes).
         Returns the derivatives, dimensionless, shape (2, n, modes), row 0 of the storage, row 1 of the loss modulus.
         """
         storage, loss = responses
@@ -128,7 +128,7 @@ class Relaxation(NamedTuple):
         """Return the derivatives of the responses by ln tau, (t/tau) exp(-t/tau).
 
         tau : times of the modes, s, > 0, shape (modes,).
-        responses : what :meth:`responses` returns for these times, shape (1, n, modes).
+        responses : result of :meth:`responses` for these times, shape (1, n, modes).
         Returns the derivatives, dimensionless, shape (1, n, modes).
         """
         return (self.t[:, None] / tau) * responses

@@ -72,7 +72,7 @@ def fit_prony(
         returns, alone: its moduli, temperatures, mode and source are then taken.  With ``temperature`` a list of
         curves, one vector each, is allowed too.
     storage, loss : storage and loss modulus at them, > 0, (n,), both in one unit; lists where ``omega`` is one.
-    modes : number of modes, an int from 1 to 64; fewer are returned only where the grids of times give no more modes a
+    modes : number of modes, an int from 1 to 64; fewer are returned only where the least squares give no more modes a
         strength > 0.  Default: as few as ``misfit`` needs, or, where no grid reaches it, as few as come within 5 % of
         the least misfit.
     misfit : root mean square of the relative errors that E' and E'' may each have, dimensionless, > 0 (0.01 is 1 %).
@@ -81,8 +81,8 @@ def fit_prony(
         another are one curve); or one a curve, (curves,), where the columns are lists of curves.  None: not known, the
         points are of one curve.  The curves are shifted to ``reference`` first.
     reference : temperature of the master curve, degrees Celsius, at which its times are.  Default: where a given shift
-        is 1 (T0 of a :class:`WLF`, the temperature of a factor of 1), if it is among the temperatures; else the middle
-        one of the curves.  With a list of factors it must be one of the curves' temperatures.
+        is 1 (T0 of a :class:`WLF`, the temperature of a factor of 1), if it is within the temperatures; else the middle
+        one of the curves.  With a list of factors it must be one of the curves' temperatures, to 0.5 K.
     shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves (of points: in the order in which the
         temperatures come), or a function that takes a temperature in degrees Celsius and returns a_T.  They are divided
         by that of the reference, so that constants may be those of another temperature.  None: found from the overlap
@@ -103,10 +103,10 @@ def fit_prony(
     ParameterError
         Fewer than 3 points, or a curve of fewer than 2 frequencies; values that are not positive or not finite; columns
         of other shapes; frequencies that span more than 30 decades; a curve that does not level off at low frequencies;
-        neighbouring curves that do not overlap; factors that rise with the temperature; a reference of which the
-        factors say nothing; ``modes``, ``misfit``, ``on`` or ``mode`` that are not allowed; ``reference`` or ``shift``
-        without ``temperature``; ``omega`` without ``storage`` and ``loss``, or a record with them; another ``mode``
-        than that of the record.
+        neighbouring curves that do not overlap; factors larger at the highest temperature than at the lowest; a
+        reference outside of the curves, or of which the factors say nothing; ``modes``, ``misfit``, ``on`` or ``mode``
+        that are not allowed; ``reference`` or ``shift`` without ``temperature``; ``omega`` without ``storage`` and
+        ``loss``, or a record with them; another ``mode`` than that of the record.
 
     Warns
     -----
@@ -173,7 +173,7 @@ def fit_relaxation(
     t : times since the strain was applied, s, > 0, (n,), in any order.  Leave out those of the ramp: E(t) is that of a
         step.
     relaxation : relaxation modulus at them, stress over strain, > 0, (n,), in one unit.
-    modes : number of modes, an int from 1 to 64; fewer are returned only where the grids of times give no more modes a
+    modes : number of modes, an int from 1 to 64; fewer are returned only where the least squares give no more modes a
         strength > 0.  None: as few as ``misfit`` needs or, where no grid reaches it, as few as come within 5 % of the
         least misfit.
     misfit : root mean square of the relative errors that E(t) may have, dimensionless, > 0 (0.003 is 0.3 %).  Rolling
@@ -233,12 +233,14 @@ def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve
     """Fit a series to measured moduli: the part that :func:`fit_prony` and :func:`fit_relaxation` have in common.
 
     curve : a :class:`Curve` or :class:`Relaxation`, all points that were measured.
-    modes : number of modes, 1 to 64; None: as few as the misfit needs (:func:`.mode_selection.fewest_modes`).
+    modes : number of modes, 1 to 64, with which ``misfit`` decides "reached" alone; None: as few as the misfit needs
+        (:func:`.mode_selection.fewest_modes`).
     misfit : root mean square of the relative errors that each modulus may have, dimensionless, > 0.
     Returns (the data that were fitted, of the class of ``curve``, thinned if it has more than 1000 points; a dict of
     arguments of :class:`.fit_results.Fit` or :class:`.fit_results.RelaxationFit`: E, T_ref, prony, target, reached,
-    grid, band, points, outside, and the columns of the data; the root mean square of the relative errors of each
-    modulus, dimensionless, (storage, loss) or (relaxation,)).  A series without modes has T_ref = 1.
+    grid, band and points (both of ``curve``), outside, and the columns of the data; the root mean square of the
+    relative errors of each modulus, dimensionless, (storage, loss) or (relaxation,)).  A series without modes has T_ref
+    = 1.
     Raises ParameterError for ``misfit`` or ``modes`` out of range, frequencies or times whose largest ratio is above
     :data:`MOST_SPREAD`, 1e30, and data without a long-time modulus.
     """

@@ -238,7 +238,8 @@ def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: 
     others : heading -> why the column is left out.  It is changed: all columns but the first are added.
     Returns :class:`Numbers` of the first column: values, and half a unit of their last digits, (n,) each, in rad/s, Pa,
     1/Pa, degrees Celsius or, of tan delta, dimensionless.
-    Raises FileError with the line where two columns contradict each other, or where a cell is no number.
+    Raises FileError with the line where two columns contradict each other, or where a cell is no number, and for a unit
+    that is missing and cannot be assumed.
     """
     first = numbers_of(table, alike[0])
     for column in alike[1:]:

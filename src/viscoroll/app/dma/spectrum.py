@@ -167,8 +167,8 @@ def _minimize(data: Data, logs: Floats, low: Floats, high: Floats, calls: int) -
     logs : start, logarithms of [long-time modulus, strengths, times], in the unit of the data and s; (1 + 2 modes,).
     low, high : bounds of the logarithms, of the same shape, perhaps infinite; a start outside is moved to the bound.
     calls : largest number of evaluations of the residuals, >= 1; with 1 the start is returned.
-    The iteration ends where a step changes the sum by at most 1e-14 of it, and where each logarithm is at a bound
-    beyond which the sum would decrease.
+    The iteration ends where the relative change of the sum in a step is at most 1e-14, and where each logarithm is at a
+    bound beyond which the sum would decrease.
     Returns the logarithms at the minimum, or the best ones found when the calls are used up, (1 + 2 modes,), within the
     bounds.
     """

@@ -104,7 +104,7 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
     heading : text of the heading, with its unit or without, as "E' [MPa]" or "Speichermodul".
     row : the cell of a row of units for this column, "" without.
     Returns a list of :class:`Meaning`, one for each way to part the heading into name and unit whose name is
-    understood; an empty list where a word of the heading is not in the vocabulary.
+    understood, in the order of :func:`.readings`: the name without a unit first; an empty list where no name is.
     """
     found = [(_quantity(name), unit, log) for name, unit, log in readings(heading, row)]
     return [Meaning(*quantity, unit, log) for quantity, unit, log in found if quantity]

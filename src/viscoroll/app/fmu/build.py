@@ -179,8 +179,8 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
 def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> str:
     """Return the C text of the variables: their references, names, kinds and start values; reference 0 is time.
 
-    The kind says what values a variable may be set to: 0, it cannot be set, if its ``start`` is None, as of time; else
-    2, numbers above 0, if it is ``positive``, and 1, any finite number, if not.
+    A kind is 0 (the variable cannot be set) of time and where ``start`` is None; else 2 (finite numbers above 0)
+    where ``positive`` is True, and 1 (any finite number) where it is False.
 
     variables: :class:`.variables.Variable` of the model, in the order of their references, which start with 1; only
         name, start and positive are read.

@@ -124,8 +124,8 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
     span : range of the unknown, (low, high), in SI units or with units.
     prior : (value, standard deviation) known beforehand, or None.  The latter is of the natural logarithm of the value,
         of linear unknowns (brake, drag, nu, those of records) in their SI unit.
-    Returns an :class:`Unknown`; without a prior its ``mean`` is 0 and its ``sd`` infinite.  Its ``unit`` is None, of
-    linear unknowns the larger of |start| and a tenth of the width of the range.
+    Returns an :class:`Unknown`, whose ``mean`` and ``sd`` are those of its coordinate; without a prior they are 0 and
+    infinite.  Its ``unit`` is None, of linear unknowns the larger of |start| and a tenth of the width of the range.
     Raises ParameterError for a range that does not ascend or does not contain the start, and for a prior that is none.
     """
     low, high = _check_pair("unknown", name, span)
