@@ -1,4 +1,7 @@
-"""The lines that ``print`` shows of a fit."""
+"""The lines that ``print`` shows of a fit.
+
+Of the argument ``fit``, a :class:`.fit_results.SeriesFit`, the functions read the public attributes alone.
+"""
 
 from __future__ import annotations
 

@@ -1,6 +1,8 @@
 """Report of an identification: noise of the residuals first, then values, then limits of the data.
 
-The same as a dataset, and for JSON.
+The same as a dataset, and for JSON.  Of the argument ``fit`` the functions read the public attributes, ``_problem``
+(:class:`.problem.Problem`), ``_likelihood`` (:class:`.profile.Likelihood`) and ``_delta_chi2``.  Their sentences are
+texts without a full stop.
 """
 
 from __future__ import annotations
@@ -131,9 +133,11 @@ def _product_text(product: Any, values: dict[str, float]) -> str:
     """Return a product as text, as "E T_ref^0.5 = 1200 (95%: -2 % to +2 %)", the exponent of largest absolute value
     first.
 
-    The value is in SI units without their names, the ends of the interval are relative to it.
+    The value is in SI units without their names, the ends of the interval are relative to it.  Exponents of equal
+    absolute value stay in the order of the product; an exponent of 1 is not written.
 
-    product : a :class:`.profile.Product`; its interval is at the level 0.95.
+    product : a :class:`.profile.Product`, of which powers, value, low and high are read; its interval is at the level
+        0.95.
     values : name -> value of the unknowns, SI; the name of a negative one is put between bars, as "|V0|^0.5".
     """
     powers = sorted(product.powers.items(), key=lambda item: -abs(item[1]))
@@ -197,7 +201,8 @@ def as_dataset(fit: Any) -> xr.Dataset:
     act), and low and high of the 95 % interval, NaN on a side that is open.  Over (``unknown``, ``other``):
     correlation.  Over "RECORD point", for each record, with its name for RECORD and that of a coordinate or quantity
     for NAME: "RECORD NAME" of coordinates and data (a plan has no data), and "RECORD NAME fit" and "RECORD NAME sigma"
-    of each quantity that was measured or planned.  Attributes: title, source, report (the text), chi2, dof.
+    of each quantity that was measured or planned.  Attributes: title, source, report (the text), chi2, dof.  Points of
+    a record are flat, in the order given.
     """
     import xarray as xr
 
