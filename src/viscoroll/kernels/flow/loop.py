@@ -270,12 +270,15 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     tau_out : output times tau = gamma t, ascending, >= 0, (times,), at least one.
     request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written but for the row ROLLING_LOSS; not whole if the status is NOT_COVERED.
+    out : outputs (ROWS, times), written in the frame of the caller but for the row ROLLING_LOSS; not whole if the
+        status is NOT_COVERED.  Below level PATH the rows of distance and angle have no meaning, below LOSS that of slip
+        loss.  delta is +inf where V = 0 in full slip, and 0 at rest.
 
     Returns (status, time of the onset of partial slip, time of coming to rest).  The status is COMPLETED (0),
     CAME_TO_REST (1) or NOT_COVERED (-1).  Times are tau.  The onset is NaN for a start in partial slip, for a motion
-    that is still in full slip at the last output time, and for a start below the rest threshold, whose time of rest is
-    0.  The time of rest is NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
+    that is still in full slip at the last output time, and for a start with both |V0| and |omega0| below the rest
+    threshold, which is at rest from tau = 0 on: its time of rest is 0 and all its outputs are 0.  The time of rest is
+    NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
 
     The map does not cover a motion if kappa |V0| is at least HIGHEST, if a start speed is NaN, if the onset of partial
     slip is not tabulated or more than 4096 times slower than the start, if V there is below twice the rest threshold,

@@ -121,12 +121,14 @@ def new_workspace(modes: int) -> Workspace:
 
 @inline_kernel
 def evaluate_ratios(places, series, work):
-    """Write 1/r, k and i2 of every mode at four values of z, the half transit time of the contact.
+    """Write 1/r, k and i2 of every mode at four values of z: ratios of Bessel functions of rate times z.
+
+    Of relaxation mode i, r = I1/I0 and i2 = I2/I0 at a_i z; of creep mode j, k = K0/K1 at b_j z.
 
     places : vector of four z > 0, in the unit of time of the series; z may be infinite, where r = k = i2 = 1.
     series : :class:`Series`, of which the rates a and b are read.
     work : :class:`Workspace` of the series, whose ``inverse_r``, ``i2`` and ``k`` are written, dimensionless, four
-        numbers a mode: number c of a mode belongs to number c of ``places``.
+        numbers a mode: number c of a mode belongs to number c of ``places``.  Returns nothing.
     """
     z = unpack(places)
     for at in range(LANES * series.a.size):
