@@ -80,6 +80,7 @@ def _write_output(out, column, state):
     column : int, index of the output time.
     state : :class:`.records.Output`: V, omega, distance and angle (times gamma), delta, regime (a code of
         :mod:`..motion.records`) and loss by slip, dimensionless, with the signs of the motion, not mirrored.
+    Returns nothing.
     """
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
     out[_ANGLE, column], out[_DELTA, column], out[_REGIME, column] = state.angle, state.delta, state.regime
@@ -93,7 +94,7 @@ def _write_rest(at, x, angle, loss, out):
     at : int, first column to write; nothing is written if it is the number of columns.
     x, angle : float, distance and angle, times gamma, of all of them.
     loss : float, slip loss of all of them.
-    out : outputs (ROWS, times), written but for the row ROLLING_LOSS.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS.  Returns nothing.
     """
     for column in range(at, out.shape[1]):
         _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, AT_REST, loss))
@@ -166,7 +167,8 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     slide : :class:`FullSlipStart`: frame, V - j omega, and (T, X) of the start.
     level : SPEEDS, PATH or LOSS: distance, angle and slip loss are 0 below PATH.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written in the frame of the caller; delta is infinite where V = 0.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller; delta is +inf where V
+        = 0.  Columns from the onset on stay.
     Returns the index of the next column to write, int; it is the number of times where no output is left.
     """
     mu, per_j = flow.mu, 1.0 / flow.j
@@ -198,7 +200,8 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
     level : SPEEDS, PATH or LOSS: quantities beyond it are those of ``stick`` at all times, which have no meaning then.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written in the frame of the caller.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller: of the times from
+        column ``at`` to ``until``; the others stay.
     Returns the index of the next column to write, int; it is the number of times where no output is left.
     """
     frame = stick.frame
@@ -236,7 +239,8 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
     request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written in the frame of the caller.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller; rows beyond the level
+        have no meaning.
 
     Returns (status, time tau at which the motion comes to rest).  The status is COMPLETED (0), with the time NaN, where
     the motion does not come to rest before the last output time; CAME_TO_REST (1) where it does; NOT_COVERED (-1), with
@@ -333,6 +337,7 @@ def look_up_motions(flow, motions, result, start, stop):
 
     Distance and angle are written as x and angle, divided by gamma.  The rolling loss is the loss of kinetic energy
     since the start less the slip loss.  Entries of a motion that is not covered have no meaning, apart from its status.
+    Returns nothing.
     """
     gamma, rest, V0, omega0, t, rows = motions
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j

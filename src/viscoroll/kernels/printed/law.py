@@ -131,8 +131,8 @@ def direct_contact_length(kappa_V, alpha):
 
     With c = 1 - 1/alpha, r = I1/I0 at alpha zeta, k = K0/K1 at zeta, p = k r, and i2 = I2/I0 = 1 - 2 r/(alpha zeta),
     the residual is c (i2 + p) >= 0 at lam = alpha^(-1/2), and -2 c r/zeta <= 0 at lam = 1, each with the zeta of its
-    lam: the two always enclose the root.  lam^-2 - 1 costs epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V
-    = 1e-8, alpha = 11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
+    lam: the two always enclose the root.  lam^-2 - 1 costs epsilon its relative digits where epsilon -> kappa V c is
+    small (4e-9 at kappa V = 1e-8, alpha = 11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
     """
     lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 1.0, 0.0)
     zeta = lam / (2.0 * kappa_V)

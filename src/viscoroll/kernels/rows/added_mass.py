@@ -17,9 +17,8 @@ from .evaluate import locate_octave
 from .record import ALPHA, E0, ROW_COUNT
 from .simd_polynomial import TERMS, evaluate_pair
 
-#: Added mass gamma N at V = 0, in units of the mass, up to which motions count as such that do not reach V = 0.  A
-#: motion in partial slip ends where gamma N falls to -1, if not before (:func:`..motion.law.added_mass_margin`): any
-#: bound below -1 would do.
+#: Added mass gamma N at V = 0, in units of the mass, at or below which V = 0 is not reached: a motion in partial slip
+#: ends where gamma N falls to -1, if not before (``added_mass_margin`` of the kernels of motion), far from -4.
 _HEAVY = -4.0
 
 

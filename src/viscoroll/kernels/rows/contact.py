@@ -80,8 +80,8 @@ def stick_argument(u, L, D):
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
     Returns a float, dimensionless, >= 0 in partial slip, and 0 at u = 0.  In full slip it is -0.0, which has no meaning
-    but may be located in the rows like any other v.  Where rounding makes D equal to L it is infinite (NaN at u = 0), and
-    negative where rounding makes D larger: these have no meaning either.
+    but may be located in the rows like any other v.  Where rounding makes D equal to L it is infinite (NaN at u = 0),
+    and where rounding makes D larger it is negative: neither has a meaning.
     """
     return 2.0 * u / (L - D)
 
@@ -327,8 +327,8 @@ def _write_other_fields(n, c, law, scratch, request):
     request : :class:`Request` of states and quantities; of ``out`` the numbers of state n in the rows of the requested
         quantities are written, dimensionless.
 
-    Returns nothing.  The quantities: delta_star, delta, delta_0 (creepage of free rolling), full_slip (1.0 or 0.0), grip
-    (1 - |Q|/mu), lam, zeta, epsilon, beta, the slopes of M and Q, and the two parts of M with their slopes over V.
+    Returns nothing.  The quantities: delta_star, delta, delta_0 (creepage of free rolling), full_slip (1.0 or 0.0),
+    grip (1 - |Q|/mu), lam, zeta, epsilon, beta, the slopes of M and Q, the two parts of M and their slopes over V.
 
     At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta and the slopes of Q
     are 0; grip and beta are 0 too where D of a state of partial slip is rounded to L.  ``dQ_dV`` is at fixed delta or
