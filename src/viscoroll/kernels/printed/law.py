@@ -182,7 +182,8 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
     kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless.
     lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
         is finite.
-    Returns a float, dimensionless, in [0, mu] but for rounding; mu where beta zeta is 0, in the limit of full slip.
+    Returns a float, dimensionless, in [0, mu] but for rounding, which may leave less than 0 at delta = 0; exactly mu
+    where beta zeta is 0, in the limit of full slip.
 
     1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at s = 1e-6 (1e-8 for kappa V =
     1e3, where K1/K0 magnifies the rounding of the bracket).  That magnification grows in proportion to V: 1e-13 mu at
@@ -203,7 +204,8 @@ def direct_moment(kappa, lam, epsilon, zeta, alpha):
     lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
         is finite.
     alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
-    Returns a float, dimensionless, > 0; 0 of alpha = 1, where rounding may leave a small number of either sign.
+    Returns a float, dimensionless, > 0 in exact numbers; for alpha = 1 it is 0, where rounding may leave a small number
+    of either sign.
 
     lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by 9e-14 relative at kappa V =
     1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and for alpha = 1 + 1e-6 by 9e-5 somewhere below kappa V =

@@ -101,8 +101,8 @@ def free_creep_at(position, u, cover_rows):
         a term in 1/u.
     u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
-    Returns (value, first derivative, second derivative), floats, dimensionless; a cover on the cylinder has the other
-    sign than the same on the base; all are 0.0 for half-spaces.
+    Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; a cover on the cylinder
+    has the other sign than the same on the base; all are 0.0 for half-spaces.
     """
     if cover_rows is None:
         return 0.0, 0.0, 0.0

@@ -103,7 +103,7 @@ def ensure_part(part, row, law):
         alpha (:mod:`.alpha_axis`) have no BODY_MOMENTS.
     row : int, number of the row, from 0 to the last row of the law; the fast limit beyond it has no parts.
     law : :class:`Law` with its material selected; where a part is made, its ``rows`` and ``marks`` are written.
-    Returns an int, the index of the first coefficient.
+    Returns an int, the index of the first coefficient, of a pair of the first of its 48.
     """
     number = (row + 1) * PARTS_PER_ROW + part // PART_SIZE
     if unlikely(law.marks[np.uint64(number)] != law.marks[VERSION]):
