@@ -66,7 +66,7 @@ def _initial_u(size, slow, turns):
 
 @inline_kernel
 def _clamp(x, low, high):
-    """The nearest value to x in [low, high]; low if x is NaN."""
+    """Return the nearest value to x in [low, high], floats with low < high; low if x is NaN."""
     x = x if x > low else low
     return x if x < high else high
 

@@ -7,6 +7,10 @@ would lose digits near alpha = 2^N, and a T_j for every coefficient would take a
 of t, the fewer groups change a digit.  So of the blocks of eight coefficients only the first ones have all four groups
 in most rows.
 
+Here alpha = T_epsilon/T_sigma is the instantaneous divided by the long-time modulus.  Heads, rows, their parts, marks
+and versions are those of :mod:`record`; the functions and the fast limit beyond the last row are those of
+:mod:`evaluate`.
+
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 

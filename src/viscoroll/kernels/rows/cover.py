@@ -2,7 +2,12 @@
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0, and numba compiles
 nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law 2
-kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.
+kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.  The fast
+limit holds beyond the last row of the law.
+
+Letters: kappa = R/l0, mu the coefficient of friction; L = 2 kappa delta_star/mu; lam, length of the contact divided by
+l0, and epsilon, its shift in half contact lengths, functions of u; eta, half the transit time of the stick zone, and
+eta/F, a function of v = 1/F(eta) (:mod:`.rows`).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """

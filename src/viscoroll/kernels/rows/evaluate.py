@@ -222,7 +222,8 @@ def body_moments(position, u, law):
 
     Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), floats, dimensionless; the first
     two are divided by ``scale`` of the :class:`LengthAndMoment` at u, which is 1 in the rows and z in the fast limit;
-    the slopes are not.  Of a cover the body without the layer has 0.
+    the slopes are not.  Of a cover all of M counts as that of the body with the layer, and the other body has 0; where
+    both relax, these parts have no meaning.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)

@@ -1,5 +1,8 @@
 """The speeds at which M(V) - gain V equals a load, over arrays.
 
+Here M is the rolling moment divided by load times radius, V > 0 the speed, kappa = R/l0 the slenderness, and gain the
+slope of a load that rises or falls with the speed.
+
 kappa M is one function of u = kappa V, so that kappa (M - gain V) = load is one equation between two nodes between
 which its left side is monotone.
 

@@ -7,8 +7,10 @@ N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed ch
     U = H g_s - g H_s + z^2 (y_s + T_mean g)
     N = -[(3/2) U - (theta/2) U' + (theta g' - g) W]/H
 
-_s is the slope over s of a jet.  (Divided by 1 + T_mean s, which makes the long-time modulus 1 again, h and y gain
-T_mean times themselves and g nothing: hence the last term of U.)  Unit of N: that of time squared.
+z is half the transit time of the contact, a_i and b_j are the rates of the modes, g, h and X_i functions of z
+(:mod:`.series`), H = z^2 + 2 z h, and T_mean = sum E_i tau_i.  _s is the slope over s of a jet.  (Divided by 1 + T_mean
+s, which makes the long-time modulus 1 again, h and y gain T_mean times themselves and g nothing: hence the last term of
+U.)  Unit of N: that of time squared.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """

@@ -5,8 +5,8 @@
 offsets in a row.  Two functions whose powers are interleaved (:mod:`simd_polynomial`) take two neighbouring parts.
 
 ``marks`` holds one head, as long as a row has parts, and then for every part of every row the version of the material
-that it was made for.  The rows of one material are complete.  Of many materials a part is made when it is first read;
-who reads it need not know which (:mod:`evaluate`).
+that it was made for: the number of the selection of a material, which grows.  The rows of one material are complete.
+Of many materials a part is made when it is first read; who reads it need not know which (:mod:`evaluate`).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -88,8 +88,9 @@ class Law(NamedTuple):
 
 @inline_kernel
 def select_material(law, n):
-    """Make ``law`` that of state or motion ``n``, an int; no work if one law serves all or that of n is selected
-    already.
+    """Make ``law`` that of state or motion ``n``, an int >= 0: its kernel writes the heads of rows and marks.
+
+    Nothing is done if one law serves all or that of n is selected already.  Returns nothing.
     """
     if law.selector != 0:
         call_address(law.selector, n, law.source)
