@@ -9,7 +9,8 @@ Terms of this file (records in :mod:`.records`):
 - Times are tau = gamma t.  Distances and angles are integrals over tau, gamma times x and gamma times the angle, until
   :func:`look_up_motions` divides them by gamma.
 - Level: SPEEDS (0): V and omega alone; PATH (1): distance and angle too; LOSS (2): slip loss too.
-- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5, slip loss 6, rolling loss 7.
+- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5 (FULL_SLIP 0, PARTIAL_SLIP 1,
+  AT_REST 2), slip loss 6, rolling loss 7; losses are divided by m (R/T)^2, with the unit of time T.
 - Mirrored frame: the signs of V and omega are changed (frame -1) or not (frame 1), so that omega >= V in full slip and
   V > 0 in partial slip.
 - Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep; the slow
@@ -141,7 +142,7 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
 
     Returns (:class:`StickOnset` at a time tau <= 0; its :class:`Asymptote`; whether the map covers the motion, without
     which the other two have no meaning).  Distance, angle and slip loss of the onset are minus those from there to the
-    start, distance and angle with the sign of V0; they are 0 below level PATH.  A start on the slow manifold has its
+    start, not mirrored; below level PATH all are 0, below LOSS the loss.  A start on the slow manifold has its
     onset at practically tau = 0 and no boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
@@ -281,8 +282,8 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     Returns (status, time of the onset of partial slip, time of coming to rest).  The status is COMPLETED (0),
     CAME_TO_REST (1) or NOT_COVERED (-1).  Times are tau.  The onset is NaN for a start in partial slip, for a motion
     that is still in full slip at the last output time, and for a start with both |V0| and |omega0| below the rest
-    threshold, which is at rest from tau = 0 on: its time of rest is 0 and all its outputs are 0.  The time of rest is
-    NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
+    threshold, which is at rest from tau = 0 on: its time of rest is 0, and its outputs are 0 with the regime AT_REST.
+    The time of rest is NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
 
     The map does not cover a motion if kappa |V0| is at least HIGHEST, if a start speed is NaN, if the onset of partial
     slip is not tabulated or more than 4096 times slower than the start, if V there is below twice the rest threshold,

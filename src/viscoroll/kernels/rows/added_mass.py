@@ -27,7 +27,8 @@ def _evaluate_N(u, law):
     """Return N of M = M(V) + N V' at u, its integral and its slope, with the row in which they were evaluated.
 
     u : float, kappa |V|, dimensionless, >= 0, finite.
-    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.
+    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.  Read are ``N_rows``, e0 and
+        the number of rows in ``marks``, and alpha in ``rows``.
 
     Returns (row, N, integral, slope).  row: int, index of the row from 0, or the number of rows where u lies beyond the
     last one and N has its fast limit (alpha - 1)/(16 alpha u^2).  N: float, in units of P T_epsilon^2.  integral:

@@ -9,7 +9,8 @@ All quantities are dimensionless (docs/symbols.md); an argument of which no shap
 
 Terms of this file:
 
-- Law: polynomials of the functions of one material, a row for each octave of u or v (:mod:`.record`).
+- Law: polynomials of the functions of one material, a row for each octave of u or v (:mod:`.record`); of many
+  materials a part of a row is computed, and written into the law, when it is first read (:mod:`.evaluate`).
 - RowPosition: where u or v lies in them: number of the row, argument t of its polynomials, slope dt/dx.
 - u = kappa |V|: dimensionless speed.  L = 2 kappa delta_star/mu: critical creepage, a function of u.
 - D = 2 kappa |delta - delta_0|/mu: creepage less delta_0, that of free rolling, which is 0 for half-spaces; D < L in
@@ -95,7 +96,7 @@ def traction_over_mu(position, v, u, L, D, law):
     u : float, kappa |V|, dimensionless, >= 0; read where the form with the mean slope is used.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
 
     Returns a float in [0, 1], dimensionless: 0.0 at D = 0; 1.0 in full slip, where D is rounded to L or above, and
     where L or D is NaN.  From D = L/16 on it is 1 - w^2 (H/F^2)(v) with w = L - D, unless that difference is small
@@ -136,7 +137,7 @@ def friction_reserve(position, v, L, D, law):
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
     Returns a float in [0, 1], dimensionless: (L - D)^2 (H/F^2)(v), which is 1 to rounding at D = 0; 0.0 in full slip
     (L <= D), and where L or D is NaN.
     """
@@ -153,7 +154,7 @@ def stick_fraction(position, v, lam, L, D, law):
     lam : float, length of the contact divided by l0, dimensionless, > 0; not read in full slip and at D = 0.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of eta/F are read.
     Returns a float in [0, 1], dimensionless: exactly 1.0 at D = 0, else (eta/F)(v) (L - D)/lam; 0.0 in full slip (L <=
     D), and where L or D is NaN.
     """
@@ -170,7 +171,7 @@ def traction_slopes(u, L, dL, D, law):
     u : float, kappa |V|, dimensionless, >= 0.
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is not read at small D.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
     Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) in full slip (L <= D), and where L or D is
     NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they are -2 w (A dL + d(H/F^2)/dv) and 2 w A.
 
@@ -230,7 +231,7 @@ def signed_traction(position, v, u, L, D, mu, law):
     D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`, dimensionless; inf
         or -inf in full slip.
     mu : float, coefficient of friction, dimensionless, > 0.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
     Returns a float in [-mu, mu], dimensionless, with the sign of D, which may be that of -0.0; mu or -mu in full slip,
     and also where D or L is NaN.
     """
@@ -246,7 +247,7 @@ def Q_slopes(u, L, dL, D, state, law):
     D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`, dimensionless; inf
         or -inf in full slip, where nothing else is read.
     state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 and, of a cover, ``cover_rows`` are read.
 
     Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta or at fixed omega,
     whichever ``state`` has, the others at fixed V.  All are 0 where D is infinite.  In partial slip at V = 0 the last

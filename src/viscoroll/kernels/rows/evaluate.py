@@ -143,7 +143,7 @@ def _fast_terms(u, body, law):
     u : float, kappa |V|, dimensionless, > 0 and finite.
     body : int, index in the head of the rows: FAST_TOTAL for both bodies, FAST_HALF_SPACE or FAST_CYLINDER for one.  W
         of it is at this index, C at the next one.
-    law : :class:`Law` of the material.
+    law : :class:`Law` of the material, of which the head of ``rows`` is read.
 
     Returns (z, shift, part), floats, dimensionless: z = lam_fast/(2 u), which is zeta in the limit; shift = (alpha z/2)
     (C - W ln z); part = alpha z W/8.  With W and C of both bodies shift is epsilon of a half-space, and of a cover the
@@ -163,7 +163,8 @@ def length_and_moment(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is read for ``d_um`` alone.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of L and M/V or, beyond the last row, the head are
+        read.
 
     Returns floats.  ``m`` is M/V itself in the rows, with ``scale`` 1; beyond the last row it is M/V divided by z =
     lam_fast/(2 u), with ``scale`` z.  At u = 0 L of half-spaces is 1 and M/V has its finite limit; of elastic bodies
@@ -201,7 +202,8 @@ def lam_and_epsilon(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is not read.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of lam and epsilon or, beyond the last row, the head
+        are read.
     Returns (lam, epsilon), floats, dimensionless: length divided by l0, from 1 down to alpha^(-1/2) for half-spaces;
     shift in half contact lengths, 0 at u = 0 and for elastic half-spaces, and -> 0 for u -> infinity.
     """
@@ -252,7 +254,7 @@ def limits_at_rest(kappa, law):
     """Return L = 2 kappa delta_star/mu and the creepage of free rolling in the limit V -> 0.
 
     kappa : float, slenderness R/l0, dimensionless, > 0; not read for half-spaces.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which, if it is a cover, L and delta_0 in row 0 are read.
     Returns (L, delta_0), floats, dimensionless: L > 0, delta_0 of either sign; for half-spaces (1.0, -0.0), of which a
     compiler leaves the second out of sums.
     """
@@ -306,7 +308,7 @@ def H_over_F2(position, v, law):
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 or, beyond the last row, the head are read.
 
     The traction is |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta - delta_0|)/mu.
     Returns (value, slope), floats, dimensionless, value > 0.  For half-spaces the value goes from 1 at v = 0 to alpha
@@ -330,7 +332,7 @@ def H_over_F2_secants(position, near, v, x, law):
         row, as the fast limit then serves the whole interval.
     v : float, 1/F(eta), dimensionless, >= 0.
     x : float, ratio of v to the other argument, less 1, dimensionless, in [0, 1]; 0 gives the slopes at v.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 or, beyond the last row, the head are read.
 
     Returns (value, slope, mean slope of the value, mean slope of the slope), floats, all over v, dimensionless.  At x =
     0, where both ends are v, the mean slopes are the slope and the second derivative.  Where the ends are in two rows,

@@ -46,7 +46,7 @@ def _find_crossing(load, n, curve, law):
     load : float, value of kappa (M - gain V), between those of the two nodes, dimensionless.
     n : int, index of the lower node, from 0 to the number of nodes - 2.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of M/V are read.
     Returns u = kappa V, a float, > 0, dimensionless, from u of node n to that of node n + 1.  Where the load equals an
     extremum at the node n + 1 to rounding (EXTREMUM_RTOL), it is that node.
 
@@ -93,7 +93,7 @@ def _find_crossing(load, n, curve, law):
 def crossing_loop(law, curve, load, node, out, start, stop):
     """Find u = kappa V where kappa (M(V) - gain V) equals each load.
 
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of M/V are read.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
     load : values of kappa (M - gain V), (n,), dimensionless, each between the values at its two nodes.
     node : for each load the index of the node below the crossing, int, (n,).

@@ -83,10 +83,9 @@ def _memory_integral(u, w, a, r_complement):
     r_complement : float, 1 - r(a), r the ratio I1/I0, in (0, 1].
 
     Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1, a float, dimensionless,
-    found to rounding by 28 Gauss-Legendre nodes.
-    The integral over [0, pi] is zero.  Near the rear edge, where w < 1 and a w < 1, it is therefore taken over the
-    small rest [phi, pi], with the other sign, where a (cos phi - cos t) <= a w < 1.  Elsewhere, if a u > 38, the part
-    of [0, phi] where a (cos t - cos phi) exceeds 38 is left out.
+    found to rounding by 28 Gauss-Legendre nodes.  The integral over [0, pi] is zero.  Near the rear edge, where w < 1
+    and a w < 1, it is therefore taken over the small rest [phi, pi], with the other sign, where a (cos phi - cos t) <=
+    a w < 1.  Elsewhere, if a u > 38, the part of [0, phi] where a (cos t - cos phi) exceeds 38 is left out.
     """
     rear = w < 1.0 and a * w < 1.0
     sine = np.sqrt(u * w)
@@ -160,7 +159,8 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
 
     series : :class:`Series`: rates and strengths of the modes; of one mode, and overwritten, if ``alpha`` is not empty.
     alpha : alphas >= 1 of a series of one mode, of length 1 or n; empty: the series is complete.
-    whole, stick : :class:`MemoryWeights` of the series for the contact and for the stick zone, scratch.
+    whole, stick : :class:`MemoryWeights` of the series for the contact and for the stick zone, scratch; they belong to
+        no z at the begin (:func:`new_memory_weights`).
     points : :class:`Points`: position x/l0, kappa, mu and the contact state of each point, arrays of length 1 or n.
     p, tau : (n,) floats, written: pressure p/E' and modulus |tau|/E' of the shear stress at every point, dimensionless,
         >= 0, where E' = pi E/(1 - nu^2).  Both are 0 at the edges and outside the contact; in the slip zone, which is

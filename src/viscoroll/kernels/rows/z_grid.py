@@ -236,7 +236,8 @@ def make_part(number, source):
 
     number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + k, with the row from 0 and k, the number
         of the part in its row; of a pair of functions that of its first part.
-    source : pointer to a SOURCE record, of which all fields but those of the indices are read.
+    source : pointer to a SOURCE record, of which all fields are read but material_index, state_count, and materials,
+        since the marks hold the address of the selected one.
 
     Returns nothing.  Written are the 24 coefficients of the function, or 48 of a pair, in the rows; the version of the
     material as mark ``number``, of a pair at its first part only; functions and versions of those nodes of the grid
