@@ -61,7 +61,7 @@ def fast_moment(shift, u, cover_rows):
         read.
     u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
-    Returns a float, dimensionless; it falls as 1/u.
+    Returns a float, dimensionless, which -> 0 for u -> infinity: of a cover as 1/u, of half-spaces as (ln u)/u.
     """
     if cover_rows is None:
         return shift

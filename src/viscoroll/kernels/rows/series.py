@@ -339,7 +339,8 @@ def evaluate_functions(jets, z, series, work):
     series : :class:`Series`: rates and strengths of the modes; elastic if it has no modes, where all results are 0.
     work : :class:`Workspace` of the series with the ratios 1/r, k and i2 at z.  ``functions`` is written: vectors of
         four g/z and h/z, dimensionless, at G_OVER_Z and H_OVER_Z, and m of half-space and cylinder, in the unit of time
-        of the series, at M_HALF_SPACE and M_CYLINDER.  ``y`` ends as X, ``kf`` as k f; the rest is scratch.
+        of the series, at M_HALF_SPACE and M_CYLINDER.  ``y`` ends as X, ``kf`` as k f; ``right`` and ``matrix`` are
+        scratch.
 
     Returns (g, h, sum X_i i2_i), vectors of four; g and h are in the unit of time of the series.
 
