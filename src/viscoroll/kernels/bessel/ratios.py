@@ -189,8 +189,9 @@ def slope_r(x, r, complement):
 
     x : argument, float >= 0, dimensionless.
     r, complement : floats, r and 1 - r at x, of :func:`ratio_r`; not read below x = 1e-8.
-    Returns a float, dimensionless, from 0.5 at x = 0 (and, to rounding, below 1e-8) down to 0.  At large x, where the
-    slope falls like 1/(2 x^2), the two terms cancel: its relative error is x roundings or so.
+    Returns a float, dimensionless, from 0.5 at x = 0 (and, to rounding, below 1e-8) down to 0 at infinity; NaN of a
+    NaN.  At large x, where the slope falls like 1/(2 x^2), the two terms cancel: its relative error is x roundings or
+    so, and from x = 2e15 or so on it may be 0.
     """
     if x < 1e-8:
         return 0.5
@@ -203,7 +204,8 @@ def slope_k(z, k, complement):
 
     z : argument, float > 0, dimensionless; 0, where the slope is infinite, gives NaN.
     k, complement : floats, k and 1 - k at z, of :func:`ratio_k`.
-    Returns a float, dimensionless, > 0, which grows like -ln z as z -> 0.  At large z, where the slope falls like
-    1/(2 z^2), the two terms cancel: its relative error is z roundings or so, and it may be 0 or below.
+    Returns a float, dimensionless, > 0, which grows like -ln z as z -> 0; 0 at infinity; NaN of a NaN.  At large z,
+    where the slope falls like 1/(2 z^2), the two terms cancel: its relative error is z roundings or so, and from z =
+    2e15 or so on it may be 0.
     """
     return k / z - complement * (1.0 + k)

@@ -112,7 +112,8 @@ def views(table: NDArray) -> FlowTables:
     """Return the tables in one vector as views in their shapes.
 
     table : vector of :data:`SIZE` doubles.
-    Returns :class:`FlowTables` of arrays in the shapes :data:`SHAPES`; what is written to them is written to ``table``.
+    Returns :class:`FlowTables` of arrays in the shapes :data:`SHAPES`, which follow each other in the vector; what is
+    written to them is written to ``table``.
     """
     parts = zip(STARTS, SHAPES, strict=True)
     return FlowTables(*(table[start : start + prod(shape)].reshape(shape) for start, shape in parts))

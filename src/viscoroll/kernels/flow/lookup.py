@@ -82,7 +82,8 @@ _GAUSS_W = gauss(5)[1]
 def full_slip_integrals(V, level, flow):
     """Return time and distance of sliding between rest and the speed V, and the limit of full slip, from the map.
 
-    V : float, speed of the axis in the mirrored frame (omega > V), of either sign or 0, kappa |V| < 2^layout.HIGH.
+    V : float, speed of the axis in the mirrored frame (omega > V), of either sign or 0, kappa |V| < 2^layout.HIGH,
+        which is not checked.
     level : SPEEDS, PATH or LOSS: the distance is read from the table from PATH on.
     flow : Flow, of the scene.
 
@@ -107,7 +108,8 @@ def speed_at_slide_time(T, flow):
     T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^layout.HIGH.
     flow : Flow, of the scene.
 
-    Returns V, with the sign of T; below the table its limit mu T for small T.
+    Returns V, a float, with the sign of T; for kappa mu |T| < 2^layout.LOW, below the table, its limit mu T for small
+    T.
     """
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), layout.LOW)
     if row == 0:
@@ -122,11 +124,12 @@ def slide_distance(start, tau, flow):
 
     start : (T, X) at the beginning, as :func:`full_slip_integrals` returns them at level PATH: time and distance
         between rest and the speed there, in the mirrored frame.
-    tau : float, time gamma t of sliding, > 0.
+    tau : float, time gamma t of sliding, > 0; T + tau is within the tables.
     flow : Flow, of the scene.
 
-    Returns gamma times the distance, with the sign of the motion in the mirrored frame: the difference of X; or, for
-    tau up to 0.02 |T|, where that difference cancels, the integral of V by a five-point Gauss rule.
+    Returns a float, gamma times the displacement of the axis in the mirrored frame, signed (of opposite motions before
+    and after V = 0 the sum): the difference of X; or, for tau up to 0.02 |T|, where that difference cancels, the
+    integral of V by a five-point Gauss rule.
     """
     T, X = start
     if tau > _SHORT * abs(T):
@@ -164,13 +167,13 @@ def read_onset(I, level, flow):
 def _locate_on_manifold(slow_log):
     """Return the position of a slow logarithm in the table of the slow manifold.
 
-    slow_log : float, slow logarithm of V, the coordinate along the slow manifold; any number below the end of the
-        table, which is the largest one that is tabulated and is not checked here.
+    slow_log : float, slow logarithm of V, the coordinate along the slow manifold; any number below 2^SLOW_OCTAVES - 1,
+        the end of the table, which is not checked; not a NaN.
 
     Returns (position, t, factor): index in the map's vector at which the row begins, int; argument in [-1, 1] of its
-    polynomials; factor of V, delta and the remaining path.  Inside the table the factor is 1.  Below it the position is
-    that of the lowest slow logarithm, and the factor is exp(slow_log - lowest), by which these quantities fall; it may
-    underflow to 0.
+    polynomials, a float; factor of V, delta and the remaining path, a float.  Inside the table the factor is 1.  Below
+    it the position is that of the lowest slow logarithm, and the factor is exp(slow_log - lowest), by which these
+    quantities fall; it may underflow to 0.
     """
     if slow_log >= 0.0:
         row, t, _ = locate_octave(1.0 + slow_log, 0)
@@ -185,9 +188,11 @@ def _locate_on_manifold(slow_log):
 
 @inline_kernel
 def manifold_speeds(slow_log, table):
-    """Return (V, delta) on the slow manifold: speed, > 0 until it underflows to 0, and creepage.
+    """Return (V, delta) on the slow manifold: speed, > 0 until it underflows to 0, and creepage, of either sign.
 
-    slow_log : float, slow logarithm.
+    Both are floats; below the table they fall as exp(slow_log).
+
+    slow_log : float, slow logarithm, below the end of the table (:func:`_locate_on_manifold`).
     table : vector of all tables, ``table`` of Flow.
     """
     at, t, share = _locate_on_manifold(slow_log)
@@ -199,9 +204,10 @@ def manifold_speeds(slow_log, table):
 def _remaining_path(slow_log, table):
     """Return the path that remains to rest on the slow manifold.
 
-    slow_log : float, slow logarithm.
+    slow_log : float, slow logarithm, below the end of the table (:func:`_locate_on_manifold`).
     table : vector of all tables, ``table`` of Flow.
-    Returns (distance, angle), each times gamma, >= 0 for the V > 0 of the mirrored frame.
+    Returns (distance, angle), floats, each times gamma, >= 0 for the V > 0 of the mirrored frame; below the table they
+    fall as exp(slow_log).
     """
     at, t, share = _locate_on_manifold(slow_log)
     x, angle = evaluate_pair(table, at + layout.SLOW_PATH, t)[:2]
@@ -217,9 +223,9 @@ def manifold_path(start, span, rate, table):
     rate : float, decrease of the slow logarithm in unit time tau = gamma t, > 0: ``slow_rate`` of Flow.
     table : vector of all tables, ``table`` of Flow.
 
-    Returns (distance, angle), each times gamma and >= 0 for V > 0: the difference of the remaining path; or, for a span
-    up to a quarter of max(1 + end, 1) with the slow logarithm at its end, where that difference cancels, the integrals
-    of V and omega by a five-point Gauss rule.
+    Returns (distance, angle), floats, each times gamma and >= 0 for V > 0, (0.0, 0.0) of the span 0: the difference of
+    the remaining path; or, for a span up to a quarter of max(1 + end, 1) with the slow logarithm at its end, where that
+    difference cancels, the integrals of V and omega by a five-point Gauss rule.
     """
     end = start - span
     if span > 0.25 * max(1.0 + end, 1.0):
@@ -236,7 +242,7 @@ def manifold_path(start, span, rate, table):
 
 @kernel
 def remaining_slip_loss(slow_log, table):
-    """Return the slip loss that remains to rest on the slow manifold, divided by m (R/T_epsilon)^2.
+    """Return the slip loss that remains to rest on the slow manifold, a float >= 0, divided by m (R/T_epsilon)^2.
 
     slow_log : float, slow logarithm; below the table the loss falls as V^3.
     table : vector of all tables, ``table`` of Flow.
@@ -247,7 +253,7 @@ def remaining_slip_loss(slow_log, table):
 
 @kernel
 def manifold_at_speed(v, table):
-    """Return (slow logarithm, delta) on the slow manifold at a speed.
+    """Return (slow logarithm, delta) on the slow manifold at a speed, floats, each of either sign.
 
     v : float, kappa V, from LOWEST to below 2^layout.HIGH; it is not checked.
     table : vector of all tables, ``table`` of Flow.
@@ -276,9 +282,10 @@ def read_asymptote(family, v, level, flow):
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns an :class:`.records.Asymptote`: slow_log, that of the asymptote at the time of the onset; rate, the k0 of
-    the stiff time E; split, the E that divides the layer; x, angle (both times gamma; 0 below level PATH) and loss (0
-    below level LOSS), by which the motion exceeds the asymptote from the onset to rest, of either sign.
+    Returns an :class:`.records.Asymptote` of floats: slow_log, that of the asymptote at the time of the onset; rate,
+    the k0 of the stiff time E, > 0; split, the E that divides the layer, exactly 1 in octaves of v where motions of the
+    family do not pass delta = 0; x, angle (both times gamma; 0 below level PATH) and loss (0 below level LOSS), by
+    which the motion exceeds the asymptote from the onset to rest, of either sign.
     """
     table = flow.table
     row, t, _ = locate_octave(v, flow.first)
@@ -298,7 +305,7 @@ def layer_coordinate(E, split):
 
     E : float, stiff time since the onset, >= 0.
     split : float, the E at which the layer is divided, > 0.
-    Returns u: 2^LAYER_LOW at the onset, 1 at the split, 1 + E - split after it.
+    Returns u, a float: 2^LAYER_LOW at the onset, 1 at the split, 1 + E - split after it.
     """
     return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
 
@@ -313,7 +320,8 @@ def locate_in_layer(family, v, u, flow):
     flow : Flow, of the scene.
 
     Returns (position, t, s): index in the map's vector at which the polynomials of column 0 begin, int; their arguments
-    in [-1, 1), t over v and s over u, each linear within an octave.
+    in [-1, 1), floats, t over v and s over u, each linear within an octave.  That v and u are inside of the table is
+    not checked.
     """
     row, t, _ = locate_octave(v, flow.first)
     part, s, _ = locate_octave(u, layout.LAYER_LOW)
@@ -342,7 +350,7 @@ def layer_value_and_slopes(table, column, at, t, s):
         beyond those at constant V0, in units of V0/k0), LAYER_LOSS (slip loss divided by V0^2); V0 is V at the onset.
     at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and over u, in [-1, 1].
 
-    Returns (value, derivative in t at fixed s, derivative in s at fixed t), dimensionless.
+    Returns (value, derivative in t at fixed s, derivative in s at fixed t), floats, dimensionless.
     """
     at += column * layout.BLOCK
     per, value = broadcast(s), _powers(table, at + layout.BLOCK - LAYER_TERMS)
@@ -374,8 +382,9 @@ def layer_state(stick, asymptote, elapsed, level, flow):
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene.
 
-    Returns (V, delta, distance, angle, slip loss): speed > 0; creepage; distance and angle since the onset, times
-    gamma, 0 below level PATH; slip loss since the onset, divided by m (R/T_epsilon)^2, 0 below level LOSS.
+    Returns (V, delta, distance, angle, slip loss), floats: speed > 0; creepage, of either sign; distance and angle
+    since the onset, times gamma, 0 below level PATH; slip loss since the onset, divided by m (R/T_epsilon)^2, 0 below
+    level LOSS.
     """
     table, E = flow.table, elapsed * asymptote.rate
     at, t, s = locate_in_layer(stick.family, stick.v, layer_coordinate(E, asymptote.split), flow)
@@ -397,8 +406,9 @@ def slow_log_at_rest(rest, flow):
 
     rest : float, threshold, > 0; one above half the highest V of a start, HIGHEST/kappa, is replaced by that half.
     flow : Flow, of the scene.
-    Returns the slow logarithm, the coordinate along the slow manifold, after four steps of a fixed-point iteration for
-    V; below the tables, where delta counts as 0, that of their lowest V plus the logarithm of the ratio of the speeds.
+    Returns the slow logarithm, a float, after four steps of a fixed-point iteration for V (a negative delta counts as
+    0, as |V| then is the larger speed); below the tables, where delta counts as 0, that of their lowest V plus the
+    logarithm of the ratio of the speeds.
     """
     rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
     for _ in range(4):

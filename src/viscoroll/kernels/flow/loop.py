@@ -9,7 +9,8 @@ Terms of this file (records in :mod:`.records`):
 - Times are tau = gamma t.  Distances and angles are integrals over tau, gamma times x and gamma times the angle, until
   :func:`look_up_motions` divides them by gamma.
 - Level: SPEEDS (0): V and omega alone; PATH (1): distance and angle too; LOSS (2): slip loss too.
-- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5, slip loss 6, rolling loss 7.
+- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5 (FULL_SLIP 0, PARTIAL_SLIP 1,
+  AT_REST 2), slip loss 6, rolling loss 7; losses are divided by m (R/T)^2, with the unit of time T.
 - Mirrored frame: the signs of V and omega are changed (frame -1) or not (frame 1), so that omega >= V in full slip and
   V > 0 in partial slip.
 - Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and then keep; the slow
@@ -80,6 +81,7 @@ def _write_output(out, column, state):
     column : int, index of the output time.
     state : :class:`.records.Output`: V, omega, distance and angle (times gamma), delta, regime (a code of
         :mod:`..motion.records`) and loss by slip, dimensionless, with the signs of the motion, not mirrored.
+    Returns nothing.
     """
     out[_V, column], out[_OMEGA, column], out[_X, column] = state.V, state.omega, state.x
     out[_ANGLE, column], out[_DELTA, column], out[_REGIME, column] = state.angle, state.delta, state.regime
@@ -93,7 +95,7 @@ def _write_rest(at, x, angle, loss, out):
     at : int, first column to write; nothing is written if it is the number of columns.
     x, angle : float, distance and angle, times gamma, of all of them.
     loss : float, slip loss of all of them.
-    out : outputs (ROWS, times), written but for the row ROLLING_LOSS.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS.  Returns nothing.
     """
     for column in range(at, out.shape[1]):
         _write_output(out, column, Output(0.0, 0.0, x, angle, 0.0, AT_REST, loss))
@@ -140,7 +142,7 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
 
     Returns (:class:`StickOnset` at a time tau <= 0; its :class:`Asymptote`; whether the map covers the motion, without
     which the other two have no meaning).  Distance, angle and slip loss of the onset are minus those from there to the
-    start, distance and angle with the sign of V0; they are 0 below level PATH.  A start on the slow manifold has its
+    start, not mirrored; below level PATH all are 0, below LOSS the loss.  A start on the slow manifold has its
     onset at practically tau = 0 and no boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
@@ -166,7 +168,8 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     slide : :class:`FullSlipStart`: frame, V - j omega, and (T, X) of the start.
     level : SPEEDS, PATH or LOSS: distance, angle and slip loss are 0 below PATH.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written in the frame of the caller; delta is infinite where V = 0.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller; delta is +inf where V
+        = 0.  Columns from the onset on stay.
     Returns the index of the next column to write, int; it is the number of times where no output is left.
     """
     mu, per_j = flow.mu, 1.0 / flow.j
@@ -198,7 +201,8 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
     level : SPEEDS, PATH or LOSS: quantities beyond it are those of ``stick`` at all times, which have no meaning then.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written in the frame of the caller.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller: of the times from
+        column ``at`` to ``until``; the others stay.
     Returns the index of the next column to write, int; it is the number of times where no output is left.
     """
     frame = stick.frame
@@ -236,7 +240,8 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
     request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written in the frame of the caller.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller; rows beyond the level
+        have no meaning.
 
     Returns (status, time tau at which the motion comes to rest).  The status is COMPLETED (0), with the time NaN, where
     the motion does not come to rest before the last output time; CAME_TO_REST (1) where it does; NOT_COVERED (-1), with
@@ -270,12 +275,15 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     tau_out : output times tau = gamma t, ascending, >= 0, (times,), at least one.
     request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
     flow : Flow, of the scene.
-    out : outputs (ROWS, times), written but for the row ROLLING_LOSS; not whole if the status is NOT_COVERED.
+    out : outputs (ROWS, times), written in the frame of the caller but for the row ROLLING_LOSS; not whole if the
+        status is NOT_COVERED.  Below level PATH the rows of distance and angle have no meaning, below LOSS that of slip
+        loss.  delta is +inf where V = 0 in full slip, and 0 at rest.
 
     Returns (status, time of the onset of partial slip, time of coming to rest).  The status is COMPLETED (0),
     CAME_TO_REST (1) or NOT_COVERED (-1).  Times are tau.  The onset is NaN for a start in partial slip, for a motion
-    that is still in full slip at the last output time, and for a start below the rest threshold, whose time of rest is
-    0.  The time of rest is NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
+    that is still in full slip at the last output time, and for a start with both |V0| and |omega0| below the rest
+    threshold, which is at rest from tau = 0 on: its time of rest is 0, and its outputs are 0 with the regime AT_REST.
+    The time of rest is NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
 
     The map does not cover a motion if kappa |V0| is at least HIGHEST, if a start speed is NaN, if the onset of partial
     slip is not tabulated or more than 4096 times slower than the start, if V there is below twice the rest threshold,
@@ -330,6 +338,7 @@ def look_up_motions(flow, motions, result, start, stop):
 
     Distance and angle are written as x and angle, divided by gamma.  The rolling loss is the loss of kinetic energy
     since the start less the slip loss.  Entries of a motion that is not covered have no meaning, apart from its status.
+    Returns nothing.
     """
     gamma, rest, V0, omega0, t, rows = motions
     one, tau, j = np.empty((ROWS, t.size)), t * gamma, flow.j

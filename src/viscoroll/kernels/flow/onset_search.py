@@ -1,4 +1,4 @@
-"""Flow map, starts inside the stick zone: the search for the onset of partial slip that the start would have come from.
+"""Flow map, starts in partial slip: the search for the onset of partial slip that the start would have come from.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 
@@ -44,10 +44,11 @@ def _initial_u(size, slow, turns):
     size : float, delta/delta_star of the start, in [-1, 1], times 1 for PLUS and -1 for MINUS: negative beyond delta =
         0.
     slow : float, delta/delta_star on the slow manifold at the speed of the start, times the same sign; less than
-        ``size``.
+        ``size``, in (-1, 1).
     turns : bool, whether motions of this family pass delta = 0 (then the layer has a split there).
 
-    Returns u, a float from 2^LAYER_LOW on; it may lie beyond the end of the layer, to which the caller limits it.
+    Returns u, a float from 2^LAYER_LOW on, below 1 before the split of the layer; it may lie beyond the end of the
+    layer, to which the caller limits it.
 
     Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction is 1 - r^2, so that dr/dE =
     (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
@@ -65,28 +66,32 @@ def _initial_u(size, slow, turns):
 
 @inline_kernel
 def _clamp(x, low, high):
-    """The nearest value to x in [low, high]; low if x is NaN."""
+    """Return the nearest value to x in [low, high], floats with low < high; low if x is NaN."""
     x = x if x > low else low
     return x if x < high else high
 
 
 @kernel
 def find_onset(V, delta, edge, flow):
-    """Find the onset of partial slip from which a state inside the stick zone would have come.
+    """Find the onset of partial slip from which a state in partial slip would have come.
 
     V : float, speed of the axis, > 0.
     delta : float, creepage, |delta| < delta_star.
-    edge : float, delta_star at V; it serves the first guess only.
+    edge : float, delta_star at V, > 0; it serves the first guess only.
     flow : Flow, of the scene.
 
     Returns (family, kappa V at that onset, E, whether the map covers the state): int, float, float, bool.  family is
-    PLUS or MINUS; E is the stiff time since that onset, in [0, LAYER_END].  A state whose delta is within 1e-10 of the
-    slow manifold, or within 1e-9 where no onset is found, counts as on it: then family is PLUS, the second is kappa V
-    of the state, and E is infinite.
+    PLUS or MINUS; E is the stiff time since that onset, in [0, LAYER_END].  A state on the slow manifold has family
+    PLUS, kappa V of the state itself, and an infinite E.  The tests are made in this order:
 
-    The map does not cover a state, and the first three have no meaning, if kappa V is below LOWEST or at least the
-    smaller of HIGHEST and 2^(first + OCTAVES); if it is not on the manifold and kappa V is outside the tabulated onsets
-    less one octave at either end; or if the iteration finds no onset.
+    1. kappa V below LOWEST, or at least the smaller of HIGHEST and 2^(first + OCTAVES), or NaN: not covered.
+    2. delta within 1e-10 of the manifold: covered, on the manifold.
+    3. kappa V below 2^(first + 1) or above 2^(first + OCTAVES - 1), an octave inside of the tabulated onsets: not
+       covered.
+    4. An onset is found, with E at most LAYER_END: covered.
+    5. Else, an E above LAYER_END included: covered, on the manifold, if delta is within 1e-9 of it; otherwise not.
+
+    Where the state is not covered, a NaN of delta included, the first three have no meaning.
 
     Method: Newton's iteration in ln V at onset and in u, of at most 12 steps, applied to the logarithm of the distance
         from the manifold, which decreases nearly linearly in E; a solution counts if V (relative) and delta (absolute)

@@ -76,8 +76,9 @@ class StickOnset(NamedTuple):
     family : PLUS or MINUS.
     v : kappa V.
     tau : time, gamma t.
-    x, angle, loss : distance, angle and slip loss there.  The onset of a start inside the stick zone lies before the
-        start: tau, x, angle and loss count from the start and are negative.
+    x, angle, loss : distance, angle and slip loss there, from the start of the motion, distance and angle in the frame
+        of the caller.  The onset of a start in partial slip lies before the start: tau <= 0, and the three are minus
+        those from the onset to the start.
     """
 
     frame: Any
@@ -107,7 +108,10 @@ class Asymptote(NamedTuple):
 
 
 class Output(NamedTuple):
-    """One output state in the frame of the caller; lengths are multiplied by gamma."""
+    """One output state in the frame of the caller; distance x and angle are multiplied by gamma.
+
+    regime is a code of :mod:`..motion.records`, loss the slip loss since the start.
+    """
 
     V: Any
     omega: Any

@@ -20,14 +20,14 @@ STIFFNESS = 3
 
 @kernel
 def states(V, delta, kappa, mu, law, out):
-    """Evaluate critical creepage, moment and traction at states inside the stick zone, to which a flow map is fitted.
+    """Evaluate critical creepage, moment and traction at states in partial slip, to which a flow map is fitted.
 
     V : speeds of the axis, > 0, (n,).
     delta : creepage, |delta| < delta_star, (n,).  From delta_star on Q is +-mu and its slope 0, nearly.
-    kappa, mu : float, slenderness R/l0 and coefficient of friction.
+    kappa, mu : float, slenderness R/l0 and coefficient of friction, > 0.
     law : :class:`..rows.record.Law` of one material, without a cover.
-    out : (4, n), written: delta_star; M divided by P R; Q divided by P, with the sign of delta, 0 at delta = 0; dQ/d
-        delta at fixed V.
+    out : (4, n) floats, written: delta_star; M divided by P R; Q divided by P, with the sign of delta, 0 at delta = 0;
+        dQ/d delta at fixed V.  Returns nothing.
     """
     for i in range(V.size):
         u = kappa * V[i]

@@ -64,7 +64,7 @@ class Interpolation:
         """Compute the coefficients of Lagrange's polynomials of the nodes, with 40 digits.
 
         nodes : list of at least two distinct numbers, Decimals; kept as ``exact`` and, rounded, as ``nodes``.
-        Raises decimal.DivisionByZero where two nodes are equal.
+        Raises decimal.DivisionByZero where two nodes are equal, or decimal.InvalidOperation if 0 is a node besides.
         """
         self.exact = tuple(nodes)
         self.nodes = to_doubles(nodes)
@@ -135,7 +135,7 @@ def gauss(n: int) -> tuple[_Floats, _Floats]:
     """Return nodes and weights of the Gauss-Legendre rule on [0, 1].
 
     n : number of points, >= 1.
-    Returns (nodes, ascending; weights, which add up to 1), doubles, (n,) each.
+    Returns (nodes, ascending; weights in their order, which add up to 1), doubles, (n,) each.
     """
     legendre = leg2poly(_unit_series(n, 1))
     nodes = np.array(_zeros(legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n + 1)]))
@@ -160,7 +160,7 @@ def to_chebyshev(n: int) -> _Floats:
     It gives the series of the polynomial of degree n - 1 through the values.
 
     n : number of nodes and terms, > 1.
-    Returns doubles, (n, n), [term, node].
+    Returns doubles, (n, n), [term, node], the term of T_0 first.
     """
     x = np.array(chebyshev(n))
     terms = [1 + 0 * x, x]

@@ -159,7 +159,11 @@ def _load(context, builder, signature, arguments):
 
 
 def _store(context, builder, signature, arguments):
-    """Store vectors; 8 bytes are all that the address of a double is aligned to."""
+    """Make the instructions that store vectors; 8 bytes are all that the address of a double is aligned to.
+
+    context, builder, signature, arguments : of numba's lowering of (array, start, vector or tuple of vectors).
+    Returns numba's dummy value, as the function returns nothing.
+    """
     vectors = _vectors_of(builder, signature.args[2], arguments[2], 1)
     pointers = vector_pointers(context, builder, signature.args[0], *arguments[:2], len(vectors))
     for pointer, vector in zip(pointers, vectors):

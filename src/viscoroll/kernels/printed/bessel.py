@@ -29,7 +29,7 @@ def _hankel(order: int, sign: int, terms: int = 20) -> list[float]:
 
     order : int, 0 or 1, of the Bessel function.
     sign : int, -1 for sqrt(2 pi x) e^-x I(x), 1 for sqrt(2 x/pi) e^x K(x).
-    terms : int, highest power.
+    terms : int, highest power, >= 0.
     Returns the ``terms`` + 1 coefficients of ascending powers of 1/x, the first 1, a list of floats.
     """
     a = [1.0]
@@ -56,7 +56,8 @@ def _temme_k1(terms: int = 10) -> list[list[float]]:
     z K1 = 1 + sum_(n > 0) q^n/n!^2 (1 - 2 n f_n) with f_n = -(ln(z/2) + gamma) + 1 + 1/2 + ... + 1/n.
 
     terms : number of coefficients of each series.
-    Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of floats.
+    Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of ``terms`` floats, n = 0
+    first; gamma is Euler's constant.
     """
     i0, k0 = _temme_k0(terms)
     return [

@@ -129,9 +129,10 @@ def direct_contact_length(kappa_V, alpha):
     divided by T_epsilon; shift in half contact lengths; OK (0), or NOT_CONVERGED (1) if lam was not found
     (:func:`brent`), and then all three are not to be used.  alpha = 1 gives lam = 1 and epsilon = 0, to rounding.
 
-    At lam = alpha^(-1/2) the residual is c (i2(alpha zeta) + p) >= 0, at lam = 1 it is -2 c r/zeta <= 0: the two always
-    enclose the root.  lam^-2 - 1 costs epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V
-    = 1e-8, alpha = 11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
+    With c = 1 - 1/alpha, r = I1/I0 at alpha zeta, k = K0/K1 at zeta, p = k r, and i2 = I2/I0 = 1 - 2 r/(alpha zeta),
+    the residual is c (i2 + p) >= 0 at lam = alpha^(-1/2), and -2 c r/zeta <= 0 at lam = 1, each with the zeta of its
+    lam: the two always enclose the root.  lam^-2 - 1 costs epsilon its relative digits where epsilon -> kappa V c is
+    small (4e-9 at kappa V = 1e-8, alpha = 11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
     """
     lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 1.0, 0.0)
     zeta = lam / (2.0 * kappa_V)
@@ -181,7 +182,8 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
     kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless.
     lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
         is finite.
-    Returns a float, dimensionless, in [0, mu] but for rounding; mu where beta zeta is 0, in the limit of full slip.
+    Returns a float, dimensionless, in [0, mu] but for rounding, which may leave less than 0 at delta = 0; exactly mu
+    where beta zeta is 0, in the limit of full slip.
 
     1 - Q/mu is formed, so slight creep leaves few digits: Q is off by 1e-10 relative at s = 1e-6 (1e-8 for kappa V =
     1e3, where K1/K0 magnifies the rounding of the bracket).  That magnification grows in proportion to V: 1e-13 mu at
@@ -202,7 +204,8 @@ def direct_moment(kappa, lam, epsilon, zeta, alpha):
     lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
         is finite.
     alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
-    Returns a float, dimensionless, > 0; 0 of alpha = 1, where rounding may leave a small number of either sign.
+    Returns a float, dimensionless, > 0 in exact numbers; for alpha = 1 it is 0, where rounding may leave a small number
+    of either sign.
 
     lam^2 - 1/alpha cancels at high speed and for alpha near 1: for alpha = 11, M is off by 9e-14 relative at kappa V =
     1e2, 1e-9 at 1e4, 10 % at 1e8; for alpha = 1.01 by 2e-9 and for alpha = 1 + 1e-6 by 9e-5 somewhere below kappa V =

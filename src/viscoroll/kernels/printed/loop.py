@@ -16,16 +16,16 @@ def direct_state(alpha, n, request):
 
     alpha : float, T_epsilon/T_sigma of the material, >= 1, dimensionless.
     n : int, index of the state.
-    request : :class:`..rows.contact_states.Request`: states, and for each quantity its row of ``out``, -1 if it is not
-        requested.  Of lam, zeta, epsilon, delta_star, delta, full_slip (1.0 or 0.0), beta, Q and M those that are
-        requested are written into column n + ``first``, dimensionless; other quantities never are.
+    request : :class:`..rows.contact_states.Request`: states (V finite), and for each quantity its row of ``out``, -1 if
+        it is not requested.  Of lam, zeta, epsilon, delta_star, delta, full_slip (1.0 or 0.0), beta, Q and M those that
+        are requested are written into column n + ``first``, dimensionless; other quantities never are.
 
     Returns the status, an int: OK (0), or NOT_CONVERGED (1) if lam or beta was not found.  The quantities are written
     in that case too, and are not to be used.
 
-    At V = 0: lam = 1, zeta = inf, epsilon = M = 0, beta = 1 - s and |Q| = mu s (2 - s), with s = |delta|/delta_star.
-    In full slip, |delta| >= delta_star: beta = 0 and |Q| = mu.  M has the sign of V, Q that of omega - V; 0 where that
-    is 0.
+    At V = 0: lam = 1, zeta = inf, epsilon = M = 0, beta = 1 - s and |Q| = mu s (2 - s), with s = |delta|/delta_star;
+    delta, if omega is given, is 0 for omega = 0 and else infinite.  In full slip, |delta| >= delta_star: beta = 0 and
+    |Q| = mu.  M has the sign of V, Q that of omega - V; 0 where that is 0.
     """
     to = request.to
     state = read_state(request.states, n)

@@ -7,6 +7,10 @@ would lose digits near alpha = 2^N, and a T_j for every coefficient would take a
 of t, the fewer groups change a digit.  So of the blocks of eight coefficients only the first ones have all four groups
 in most rows.
 
+Here alpha = T_epsilon/T_sigma is the instantaneous divided by the long-time modulus.  Heads, rows, their parts, marks
+and versions are those of :mod:`record`; the functions and the fast limit beyond the last row are those of
+:mod:`evaluate`.
+
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
@@ -141,11 +145,11 @@ def select_alpha(n, source):
     parts.
 
     n : int, index of the state.
-    source : pointer to a SOURCE record, with the addresses of alpha (>= 1, of length 1 or one for each state), rows and
-        marks.  If that alpha is selected already, nothing is written.  Else into the head of rows are written alpha,
-        its lam, W and C in the fast limit (of both bodies together only) and the Chebyshev polynomials of s, into that
-        of marks a new version, the addresses of the axis of its octave, and the number of rows: that of its octave, for
-        alpha = 1 only 1.
+    source : pointer to a SOURCE record, with the addresses of alpha (1 to 1e12, of length 1 or one for each state, in
+        octaves whose axes are made, which is not checked), octaves, rows and marks.  If that alpha is selected already,
+        nothing is written.  Else into the head of rows are written alpha, its lam, W and C in the fast limit (of both
+        bodies together only) and the Chebyshev polynomials of s, into that of marks a new version, the addresses of the
+        axis of its octave, and the number of rows: that of its octave, for alpha = 1 only 1.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).  Returns nothing.
     """
@@ -182,7 +186,7 @@ def make_part(number, source):
         The part may not be BODY_MOMENTS, the moments of the bodies, which are not on the axis: of like bodies they are
         halves of M.
     source : pointer to a SOURCE record, with the addresses of rows and marks.  The 24 coefficients of a function, or 48
-        of a pair, are written, and in the marks the version of the part.
+        of a pair, interleaved (:mod:`.simd_polynomial`), are written, and as mark ``number`` the version of alpha.
 
     At alpha = 1, where a sum would round, the closed form is written: L, lam, H/F^2 and eta/F are 1, M/V and epsilon
     are 0.  Returns nothing.

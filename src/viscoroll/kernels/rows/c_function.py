@@ -46,9 +46,10 @@ def refuse(out):
 def _half_space_law(V, omega, out, scenes):
     """Evaluate the law of half-spaces at one state: the C function, which calls :func:`_evaluate` without a cover.
 
-    V, omega : floats, speed and angular velocity in the units of the caller.
-    out, scenes : pointers to RESULTS = 8 doubles, written, and to a SCENE record.
-    Returns the status, an int: 0, or 1 with all results NaN.
+    V, omega : floats, speed and angular velocity in the units of the caller, of any sign.
+    out, scenes : pointers to RESULTS = 8 doubles, written as the module says, and to a SCENE record.
+    Returns the status, an int: 0; or 1, with all results NaN, if the dimensionless V or omega is not finite or kappa
+    |V| exceeds MAX_U.
     """
     return _evaluate(V, omega, out, record_at(scenes), None)
 
@@ -57,9 +58,11 @@ def _half_space_law(V, omega, out, scenes):
 def _cover_law(V, omega, out, scenes):
     """Evaluate the law of a cover at one state: the C function, which calls :func:`_evaluate` with the cover's numbers.
 
-    V, omega : floats, speed and angular velocity in the units of the caller.
-    out, scenes : pointers to RESULTS = 8 doubles, written, and to a SCENE record, whose ``cover_rows`` is an address.
-    Returns the status, an int: 0, or 1 with all results NaN.
+    V, omega : floats, speed and angular velocity in the units of the caller, of any sign.
+    out, scenes : pointers to RESULTS = 8 doubles, written as the module says, and to a SCENE record, whose
+        ``cover_rows`` is an address.
+    Returns the status, an int: 0; or 1, with all results NaN, if the dimensionless V or omega is not finite or kappa
+    |V| exceeds MAX_U.
     """
     scene = record_at(scenes)
     cover_rows = floats_at(scene.cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * (scene.row_count - 1))
@@ -140,8 +143,8 @@ def c_function_address(function, record: np.dtype) -> int:
     """Return the address of the machine code of a kernel for calls from C; the kernel is compiled if it is not yet.
 
     function : the kernel (V, omega, pointer to results, pointer to a record) -> status, numba's dispatcher.
-    record : dtype of the record.
-    Returns an int, valid in this process.
+    record : numpy dtype of the record.
+    Returns an int, valid in this process; a further call returns the same.
     """
     arguments = types.float64, types.float64, types.CPointer(types.float64)
     return function_address(function, record, types.int32, *arguments)

@@ -9,7 +9,8 @@ All quantities are dimensionless (docs/symbols.md); an argument of which no shap
 
 Terms of this file:
 
-- Law: polynomials of the functions of one material, a row for each octave of u or v (:mod:`.record`).
+- Law: polynomials of the functions of one material, a row for each octave of u or v (:mod:`.record`); of many
+  materials a part of a row is computed, and written into the law, when it is first read (:mod:`.evaluate`).
 - RowPosition: where u or v lies in them: number of the row, argument t of its polynomials, slope dt/dx.
 - u = kappa |V|: dimensionless speed.  L = 2 kappa delta_star/mu: critical creepage, a function of u.
 - D = 2 kappa |delta - delta_0|/mu: creepage less delta_0, that of free rolling, which is 0 for half-spaces; D < L in
@@ -80,7 +81,8 @@ def stick_argument(u, L, D):
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
     Returns a float, dimensionless, >= 0 in partial slip, and 0 at u = 0.  In full slip it is -0.0, which has no meaning
-    but may be located in the rows like any other v; where rounding makes D equal to L it is infinite (NaN at u = 0).
+    but may be located in the rows like any other v.  Where rounding makes D equal to L it is infinite (NaN at u = 0),
+    and where rounding makes D larger it is negative: neither has a meaning.
     """
     return 2.0 * u / (L - D)
 
@@ -89,16 +91,16 @@ def stick_argument(u, L, D):
 def traction_over_mu(position, v, u, L, D, law):
     """Return |Q|/mu, the fraction of the friction that is used; the fraction keeps its digits at small creepage too.
 
-    position : :class:`RowPosition` of v.
-    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless; not read in full slip.
-    u : float, kappa |V|, dimensionless, >= 0.
+    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
+    u : float, kappa |V|, dimensionless, >= 0; read where the form with the mean slope is used.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
 
-    Returns a float in [0, 1], dimensionless: 0 at D = 0, and 1 where L - D is not above 0, which is full slip, or a
-    NaN.  From D = L/16 on it is 1 - w^2 (H/F^2)(v) with w = L - D, unless that difference is small (:func:`_cancels`);
-    else it is D [(2 L - D) (H/F^2)(v) - v L S] with the mean slope S of H/F^2 between 2 u/L and v.
+    Returns a float in [0, 1], dimensionless: 0.0 at D = 0; 1.0 in full slip, where D is rounded to L or above, and
+    where L or D is NaN.  From D = L/16 on it is 1 - w^2 (H/F^2)(v) with w = L - D, unless that difference is small
+    (:func:`_cancels`); else it is D [(2 L - D) (H/F^2)(v) - v L S] with the mean slope S of H/F^2 between 2 u/L and v.
     """
     w = L - D
     if not w > 0.0:  # also in partial slip so close to its end that D is rounded to L
@@ -131,13 +133,13 @@ def _cancels(traction, D, L):
 def friction_reserve(position, v, L, D, law):
     """Return the friction reserve 1 - |Q|/mu, which keeps all its digits where it is small.
 
-    position : :class:`RowPosition` of v.
-    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless; not read in full slip.
+    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material: polynomials of each octave.
-    Returns a float in [0, 1], dimensionless: (L - D)^2 (H/F^2)(v), which is 1 to rounding at D = 0; 0 where L - D is
-    not above 0, which is full slip, or a NaN.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    Returns a float in [0, 1], dimensionless: (L - D)^2 (H/F^2)(v), which is 1 to rounding at D = 0; 0.0 in full slip
+    (L <= D), and where L or D is NaN.
     """
     w = L - D
     return min(w * w * H_over_F2(position, v, law)[0], 1.0) if w > 0.0 else 0.0
@@ -147,14 +149,14 @@ def friction_reserve(position, v, L, D, law):
 def stick_fraction(position, v, lam, L, D, law):
     """Return beta, the length of the stick zone divided by the contact length.
 
-    position : :class:`RowPosition` of v.
-    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless; not read in full slip and at D = 0.
-    lam : float, length of the contact divided by l0, dimensionless, > 0.
+    position : :class:`RowPosition` of v; like v it is not read in full slip and at D = 0.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
+    lam : float, length of the contact divided by l0, dimensionless, > 0; not read in full slip and at D = 0.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material: polynomials of each octave.
-    Returns a float in [0, 1], dimensionless: exactly 1 at D = 0; 0 where L - D is not above 0, which is full slip, or a
-    NaN.
+    law : :class:`Law` of the material, of which the polynomials of eta/F are read.
+    Returns a float in [0, 1], dimensionless: exactly 1.0 at D = 0, else (eta/F)(v) (L - D)/lam; 0.0 in full slip (L <=
+    D), and where L or D is NaN.
     """
     w = L - D
     if not w > 0.0:
@@ -169,9 +171,9 @@ def traction_slopes(u, L, dL, D, law):
     u : float, kappa |V|, dimensionless, >= 0.
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is not read at small D.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material: polynomials of each octave.
-    Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) where L - D is not above 0, which is full
-    slip, or a NaN.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) in full slip (L <= D), and where L or D is
+    NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they are -2 w (A dL + d(H/F^2)/dv) and 2 w A.
 
     As in :func:`traction_over_mu`, mean slopes of H/F^2 and of its slope are used where D is below L/16 or a difference
     would lose digits; at D = 0 or u = 0 the slope over u then is 0.
@@ -209,7 +211,8 @@ def signed_creep(L, free_creep, state, law):
     state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
     law : :class:`Law`, of which only ``cover_rows`` is read: whether the material is a cover (not None).
     Returns a float, dimensionless: its sign is that of omega - V for half-spaces, that of (delta - delta_0) V for a
-    cover, where V = 0 counts as V > 0; free rolling gives 0.0 or -0.0; full slip gives inf or -inf.
+    cover, where V = 0.0 counts as V > 0; free rolling gives 0.0 or -0.0; full slip gives inf or -inf; NaN where the
+    creepage is NaN, or ``free_creep`` of a cover.
     """
     slip, delta = slip_and_creepage(state)
     slip, delta = sliding_creep(slip, delta, free_creep, state, law.cover_rows)
@@ -221,15 +224,16 @@ def signed_creep(L, free_creep, state, law):
 def signed_traction(position, v, u, L, D, mu, law):
     """Return the traction Q, Eq. (15), divided by the load P.
 
-    position : :class:`RowPosition` of v.
-    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless; not read in full slip.
+    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     u : float, kappa |V|, dimensionless, >= 0.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`, dimensionless; inf
         or -inf in full slip.
     mu : float, coefficient of friction, dimensionless, > 0.
-    law : :class:`Law` of the material: polynomials of each octave.
-    Returns a float in [-mu, mu], dimensionless, with the sign of D, which may be that of -0.0; mu or -mu in full slip.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    Returns a float in [-mu, mu], dimensionless, with the sign of D, which may be that of -0.0; mu or -mu in full slip,
+    and also where D or L is NaN.
     """
     return np.copysign(mu * traction_over_mu(position, v, u, L, abs(D), law), D)
 
@@ -241,9 +245,9 @@ def Q_slopes(u, L, dL, D, state, law):
     u : float, kappa |V|, dimensionless, >= 0.
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless.
     D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`, dimensionless; inf
-        or -inf in full slip.
+        or -inf in full slip, where nothing else is read.
     state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 and, of a cover, ``cover_rows`` are read.
 
     Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta or at fixed omega,
     whichever ``state`` has, the others at fixed V.  All are 0 where D is infinite.  In partial slip at V = 0 the last
@@ -292,8 +296,9 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
     laws : tuple of :class:`Law`; the state in column k belongs to law k modulo their number, which must have its
         material selected.
     scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.  Three numbers a state are written: at ``positions`` the
-        number of its row, an int whose bits are stored as a double; TOGETHER numbers further t; again TOGETHER further
-        dt/dx.
+        number of its row, an int (-1 beyond the last row) whose bits are stored as a double; TOGETHER numbers further
+        t; again TOGETHER further dt/dx.
+    Returns nothing.
     """
     for k in range(begin, end):
         c = np.uint64(k)
@@ -323,9 +328,12 @@ def _write_other_fields(n, c, law, scratch, request):
     request : :class:`Request` of states and quantities; of ``out`` the numbers of state n in the rows of the requested
         quantities are written, dimensionless.
 
-    At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip ``full_slip`` is 1.0 (else 0.0),
-    and grip, beta and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded to
-    L.  ``dQ_dV`` is at fixed delta or omega, whichever the states have (:func:`Q_slopes`).
+    Returns nothing.  The quantities: delta_star, delta, delta_0 (creepage of free rolling), full_slip (1.0 or 0.0),
+    grip (1 - |Q|/mu), lam, zeta, epsilon, beta, the slopes of M and Q, the two parts of M and their slopes over V.
+
+    At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta and the slopes of Q
+    are 0; grip and beta are 0 too where D of a state of partial slip is rounded to L.  ``dQ_dV`` is at fixed delta or
+    omega, whichever the states have (:func:`Q_slopes`).
     """
     to = request.to
     state = _state(c, scratch, request)

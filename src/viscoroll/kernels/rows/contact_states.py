@@ -84,7 +84,7 @@ def write_field(row, value, n, request):
         written.
     value : float, the quantity, dimensionless.
     n : int, index of the state; its column is n + ``request.first``.
-    request : :class:`Request` of states and quantities, of whose ``out`` one number is written.
+    request : :class:`Request` of states and quantities, of whose ``out`` one number is written.  Returns nothing.
     """
     if row >= 0:
         request.out[np.uint64(row), np.uint64(n + request.first)] = value
@@ -94,7 +94,8 @@ def write_field(row, value, n, request):
 def slip_and_creepage(state):
     """Return the direction of slip and the creepage of a state, whichever of creepage and omega it has.
 
-    state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
+    state : :class:`State` of numbers, of which V, ``creep`` (delta or omega, dimensionless) and ``creep_is_omega`` are
+        read.
 
     Returns (slip, delta), floats, dimensionless.  If omega is given, slip is omega - V; if delta is given, it is delta,
     or -delta for V < 0, which has the sign of omega - V but not its size.  delta is the creepage (omega - V)/V.  V = 0

@@ -2,7 +2,12 @@
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0, and numba compiles
 nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law 2
-kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.
+kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.  The fast
+limit holds beyond the last row of the law.
+
+Letters: kappa = R/l0, mu the coefficient of friction; L = 2 kappa delta_star/mu; lam, length of the contact divided by
+l0, and epsilon, its shift in half contact lengths, functions of u; eta, half the transit time of the stick zone, and
+eta/F, a function of v = 1/F(eta) (:mod:`.rows`).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -56,7 +61,7 @@ def fast_moment(shift, u, cover_rows):
         read.
     u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
-    Returns a float, dimensionless; it falls as 1/u.
+    Returns a float, dimensionless, which -> 0 for u -> infinity: of a cover as 1/u, of half-spaces as (ln u)/u.
     """
     if cover_rows is None:
         return shift
@@ -101,8 +106,8 @@ def free_creep_at(position, u, cover_rows):
         a term in 1/u.
     u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
-    Returns (value, first derivative, second derivative), floats, dimensionless; a cover on the cylinder has the other
-    sign than the same on the base; all are 0.0 for half-spaces.
+    Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; a cover on the cylinder
+    has the other sign than the same on the base; all are 0.0 for half-spaces.
     """
     if cover_rows is None:
         return 0.0, 0.0, 0.0

@@ -120,7 +120,8 @@ def locate_row(x, law):
 
     x : float, u or v, dimensionless, >= 0.
     law : :class:`Law`, with its material selected, of whose ``marks`` e0 and the number of rows are read.
-    Returns the position; its row is :data:`FAST_LIMIT` beyond the last row, also for infinity.  A NaN has t NaN.
+    Returns the position; its row is :data:`FAST_LIMIT` = -1 beyond the last row, also for infinity.  A NaN has t NaN,
+    in row 0 or in FAST_LIMIT by its sign bit.
     """
     row, t, dt_dx = locate_octave(x, law.marks[E0])
     return RowPosition(row if row < law.marks[ROW_COUNT] else FAST_LIMIT, t, dt_dx)
@@ -128,7 +129,7 @@ def locate_row(x, law):
 
 @inline_kernel
 def in_fast_limit(position):
-    """Return whether a :class:`RowPosition` lies beyond the last row, in the fast limit."""
+    """Return whether a :class:`RowPosition` lies beyond the last row, in the fast limit, a bool."""
     return unlikely(position.row < 0)
 
 
@@ -142,7 +143,7 @@ def _fast_terms(u, body, law):
     u : float, kappa |V|, dimensionless, > 0 and finite.
     body : int, index in the head of the rows: FAST_TOTAL for both bodies, FAST_HALF_SPACE or FAST_CYLINDER for one.  W
         of it is at this index, C at the next one.
-    law : :class:`Law` of the material.
+    law : :class:`Law` of the material, of which the head of ``rows`` is read.
 
     Returns (z, shift, part), floats, dimensionless: z = lam_fast/(2 u), which is zeta in the limit; shift = (alpha z/2)
     (C - W ln z); part = alpha z W/8.  With W and C of both bodies shift is epsilon of a half-space, and of a cover the
@@ -162,11 +163,12 @@ def length_and_moment(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is read for ``d_um`` alone.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of L and M/V or, beyond the last row, the head are
+        read.
 
-    Returns floats.  ``m`` is M/V itself in the rows, with ``scale`` 1, and beyond the last row M/V divided by z, with
-    ``scale`` z.  At u = 0 L of half-spaces is 1 and M/V has its finite limit; of elastic bodies M/V is 0.  The compiler
-    leaves out the fields that a caller does not read.
+    Returns floats.  ``m`` is M/V itself in the rows, with ``scale`` 1; beyond the last row it is M/V divided by z =
+    lam_fast/(2 u), with ``scale`` z.  At u = 0 L of half-spaces is 1 and M/V has its finite limit; of elastic bodies
+    M/V is 0.  The compiler leaves out the fields that a caller does not read.
     """
     if in_fast_limit(position):
         lam = law.rows[LAM_FAST]
@@ -188,8 +190,8 @@ def moment_factor(position, u, scale, state):
     position : :class:`RowPosition` of u, which tells whether u is beyond the last row.
     u : float, kappa |V|, dimensionless, >= 0; not read in the rows.
     scale : float, ``scale`` of the :class:`LengthAndMoment` at u: 1, or z in the fast limit; not read in the rows.
-    state : :class:`State`, of which V (with its sign) and kappa are read.
-    Returns a float with the sign of V, dimensionless.
+    state : :class:`State`, of which V (with its sign) and, beyond the last row, kappa are read.
+    Returns a float with the sign of V, dimensionless: V itself in the rows, 0 at V = 0.
     """
     return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
 
@@ -200,9 +202,10 @@ def lam_and_epsilon(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is not read.
-    law : :class:`Law` of the material: polynomials of each octave.
-    Returns (lam, epsilon), floats, dimensionless: length divided by l0, in (0, 1] for half-spaces; shift in half
-    contact lengths, 0 at u = 0 and for elastic bodies.
+    law : :class:`Law` of the material, of which the polynomials of lam and epsilon or, beyond the last row, the head
+        are read.
+    Returns (lam, epsilon), floats, dimensionless: length divided by l0, from 1 down to alpha^(-1/2) for half-spaces;
+    shift in half contact lengths, 0 at u = 0 and for elastic half-spaces, and -> 0 for u -> infinity.
     """
     if in_fast_limit(position):
         _, shift, _ = _fast_terms(u, FAST_TOTAL, law)
@@ -221,7 +224,8 @@ def body_moments(position, u, law):
 
     Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), floats, dimensionless; the first
     two are divided by ``scale`` of the :class:`LengthAndMoment` at u, which is 1 in the rows and z in the fast limit;
-    the slopes are not.  Of a cover the body without the layer has 0.
+    the slopes are not.  Of a cover all of M counts as that of the body with the layer, and the other body has 0; where
+    both relax, these parts have no meaning.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
@@ -238,8 +242,9 @@ def free_creep_and_slopes(u, law):
     """Return 2 kappa delta_0, from the creepage of free rolling, with its first two derivatives over u.
 
     u : float, kappa |V|, dimensionless, >= 0.
-    law : :class:`Law` of the material.
-    Returns (value, first derivative, second derivative), floats, dimensionless; 0.0 each of half-spaces, at no cost.
+    law : :class:`Law` of the material, of which marks and ``cover_rows`` are read.
+    Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; 0.0 each of
+    half-spaces, at no cost.
     """
     return free_creep_at(locate_row(u, law), u, law.cover_rows)
 
@@ -249,9 +254,9 @@ def limits_at_rest(kappa, law):
     """Return L = 2 kappa delta_star/mu and the creepage of free rolling in the limit V -> 0.
 
     kappa : float, slenderness R/l0, dimensionless, > 0; not read for half-spaces.
-    law : :class:`Law` of the material: polynomials of each octave.
-    Returns (L, delta_0), floats, dimensionless; for half-spaces (1.0, -0.0), of which a compiler leaves the second out
-    of sums.
+    law : :class:`Law` of the material, of which, if it is a cover, L and delta_0 in row 0 are read.
+    Returns (L, delta_0), floats, dimensionless: L > 0, delta_0 of either sign; for half-spaces (1.0, -0.0), of which a
+    compiler leaves the second out of sums.
     """
     if law.cover_rows is None:
         return 1.0, -0.0
@@ -303,11 +308,11 @@ def H_over_F2(position, v, law):
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 or, beyond the last row, the head are read.
 
     The traction is |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta - delta_0|)/mu.
-    Returns (value, slope), floats, dimensionless.  For half-spaces the value goes from 1 at v = 0 to alpha at infinity;
-    it is 1/L^2 at v = 2 u/L for every material.
+    Returns (value, slope), floats, dimensionless, value > 0.  For half-spaces the value goes from 1 at v = 0 to alpha
+    at infinity, where the slope is 0; it is 1/L^2 at v = 2 u/L for every material.
     """
     if in_fast_limit(position):
         alpha = law.rows[ALPHA]
@@ -327,10 +332,11 @@ def H_over_F2_secants(position, near, v, x, law):
         row, as the fast limit then serves the whole interval.
     v : float, 1/F(eta), dimensionless, >= 0.
     x : float, ratio of v to the other argument, less 1, dimensionless, in [0, 1]; 0 gives the slopes at v.
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 or, beyond the last row, the head are read.
 
-    Returns (value, slope, mean slope of the value, mean slope of the slope), floats, all over v, dimensionless.  Where
-    the ends are in two rows, a mean slope is that of either row weighted by its share of the interval.
+    Returns (value, slope, mean slope of the value, mean slope of the slope), floats, all over v, dimensionless.  At x =
+    0, where both ends are v, the mean slopes are the slope and the second derivative.  Where the ends are in two rows,
+    a mean slope is the sum of those in either row, weighted by their shares of the interval.
     """
     if in_fast_limit(position):
         return *H_over_F2(position, v, law), *_fast_secants(v, x, law)
@@ -356,10 +362,11 @@ def H_over_F2_secants(position, near, v, x, law):
 def _fast_secants(v, x, law):
     """Return the mean slopes of H/F^2 and of its slope between v/(1 + x) and v in the fast limit, without cancellation.
 
-    v : float, 1/F(eta), dimensionless, > 0, which may be infinite (both are 0 then).
+    v : float, 1/F(eta), dimensionless, > 0, which may be infinite.
     x : float, ratio of v to the other argument, less 1, dimensionless, >= 0; 0 gives the slopes at v.
     law : :class:`Law` of the material, of whose head alpha, W and C of both bodies are read.
-    Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), floats, over v, dimensionless; 0 for elastic bodies.
+    Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), floats, over v, dimensionless; at x = 0 they are the slope
+    and the second derivative at v; both are 0 for elastic bodies and at v = infinity.
     """
     alpha = law.rows[ALPHA]
     W = law.rows[FAST_TOTAL]

@@ -111,8 +111,9 @@ class Jitted:
     def ctypes(self) -> tuple[Any, ctypes.c_void_p]:
         """The C function and its user data, for ctypes; each keeps this law alive.
 
-        A tuple: a function of ctypes (V, omega, pointer to eight doubles that it writes, address of the user data) ->
-        status, which releases the GIL; a ``c_void_p`` of the user data with slopes.
+        Returns a tuple: a function of ctypes (V, omega, pointer to eight doubles that it writes, address of the user
+        data) -> status, which releases the GIL; a ``c_void_p`` of the user data with slopes.  The status is 0, or
+        another int where the law is not defined and all eight doubles are NaN.
         """
         function = ctypes.CFUNCTYPE(*_C_TYPES)(self.function_address)
         scene = ctypes.c_void_p(self.address)

@@ -1,5 +1,8 @@
 """The speeds at which M(V) - gain V equals a load, over arrays.
 
+Here M is the rolling moment divided by load times radius, V > 0 the speed, kappa = R/l0 the slenderness, and gain the
+slope of a load that rises or falls with the speed.
+
 kappa M is one function of u = kappa V, so that kappa (M - gain V) = load is one equation between two nodes between
 which its left side is monotone.
 
@@ -41,11 +44,11 @@ def _find_crossing(load, n, curve, law):
     """Return u between the nodes ``n`` and n + 1 where the curve equals ``load``: Newton's iteration in a bracket.
 
     load : float, value of kappa (M - gain V), between those of the two nodes, dimensionless.
-    n : int, index of the lower node.
+    n : int, index of the lower node, from 0 to the number of nodes - 2.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
-    law : :class:`Law` of the material: polynomials of each octave.
-    Returns u = kappa V, a float, > 0, dimensionless.  Where the load equals an extremum at the node n + 1 to rounding
-    (EXTREMUM_RTOL), it is that node.
+    law : :class:`Law` of the material, of which the polynomials of M/V are read.
+    Returns u = kappa V, a float, > 0, dimensionless, from u of node n to that of node n + 1.  Where the load equals an
+    extremum at the node n + 1 to rounding (EXTREMUM_RTOL), it is that node.
 
     The iteration, in ln u, starts from interpolation between the nodes, and takes the middle of the bracket where a
     step would leave it.  It ends when a step is so small that the next one would be rounding, at the latest after 40
@@ -90,12 +93,13 @@ def _find_crossing(load, n, curve, law):
 def crossing_loop(law, curve, load, node, out, start, stop):
     """Find u = kappa V where kappa (M(V) - gain V) equals each load.
 
-    law : :class:`Law` of the material: polynomials of each octave.
+    law : :class:`Law` of the material, of which the polynomials of M/V are read.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
     load : values of kappa (M - gain V), (n,), dimensionless, each between the values at its two nodes.
     node : for each load the index of the node below the crossing, int, (n,).
-    out : (n,) floats, of which the numbers ``start`` to ``stop`` - 1 are written: u > 0, dimensionless.
-    start, stop : int, index of the first load and of the one after the last.
+    out : (n,) floats, of which the numbers ``start`` to ``stop`` - 1 are written: u > 0, dimensionless, between the two
+        nodes of the load.
+    start, stop : int, index of the first load and of the one after the last.  Returns nothing.
     """
     for n in range(start, stop):
         out[n] = _find_crossing(load[n], node[n], curve, law)

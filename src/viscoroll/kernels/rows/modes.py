@@ -7,8 +7,10 @@ N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed ch
     U = H g_s - g H_s + z^2 (y_s + T_mean g)
     N = -[(3/2) U - (theta/2) U' + (theta g' - g) W]/H
 
-_s is the slope over s of a jet.  (Divided by 1 + T_mean s, which makes the long-time modulus 1 again, h and y gain
-T_mean times themselves and g nothing: hence the last term of U.)  Unit of N: that of time squared.
+z is half the transit time of the contact, a_i and b_j are the rates of the modes, g, h and X_i functions of z
+(:mod:`.series`), H = z^2 + 2 z h, and T_mean = sum E_i tau_i.  _s is the slope over s of a jet.  (Divided by 1 + T_mean
+s, which makes the long-time modulus 1 again, h and y gain T_mean times themselves and g nothing: hence the last term of
+U.)  Unit of N: that of time squared.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -40,7 +42,7 @@ def _evaluate_asymptotic(terms, x):
 
     terms : coefficients a_0, a_1, ..., of which a_0 = 1 is not read, (terms,), floats.
     x : float, argument a_i z or b_j z, 64 or more, dimensionless; it may be infinite.
-    Returns (value, first derivative, second derivative) over x, floats; (1, 0, 0) at infinity.
+    Returns (value, first derivative, second derivative) over x, floats, dimensionless; (1, 0, 0) at infinity.
     """
     w = 1.0 / x
     value = slope = second_derivative = 0.0
@@ -57,7 +59,8 @@ def _jet(rate, z, function):
 
     rate : float, a_i or b_j, rate of the mode, > 0.
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the rate.
-    function : (value, first derivative, second derivative) over x, floats, at x = rate z.
+    function : (value f, first derivative f', second derivative f'') over x, floats, at x = rate z.
+    Returns the vector (f, rate f', -z f', -f' - rate z f'').
     """
     value, slope, second_derivative = function
     return pack(value, rate * slope, -z * slope, -slope - rate * z * second_derivative)
@@ -71,7 +74,7 @@ def _write_ratio_jets(z, series, work):
         and derivatives over s are NaN.
     series : :class:`Series`, of which the rates a and b are read.
     work : :class:`Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2`` are written, four numbers a mode, as
-        of :func:`_jet`.
+        of :func:`_jet`.  Returns nothing.
     """
     for i in range(series.a.size):
         a = series.a[i]
@@ -105,7 +108,7 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
     """Return N, the factor of dV/dt in M = M(V) + N dV/dt, at z = zeta > 0, by the closed form of the module docstring.
 
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series; infinite for V = 0.
-    series : :class:`Series` of at least one mode: rates and strengths.
+    series : :class:`Series` of at least one mode, with ascending rates a and b, which are read, and the strengths e.
     of_g, of_h, of_y : jets of g, h and sum X_i i2_i at z (:mod:`.series`), vectors of four: value, d/dz, d/ds, d2/dz
         ds; not read where a limit is returned.
 
@@ -147,7 +150,7 @@ def set_alpha_of_state(n, alpha, series):
     alpha : alphas >= 1, of length 1 for all states or with one for each; empty: the series is complete and nothing is
         written.
     series : :class:`Series` of one mode with b = 1 and Q = 1, of which a[0] = alpha and e[0] = t[0] = sqrt((alpha -
-        1)/alpha) are written; any series if ``alpha`` is empty.
+        1)/alpha) are written; any series if ``alpha`` is empty.  Returns nothing.
     """
     if alpha.size > 0:
         one_alpha = element(alpha, n)
@@ -167,6 +170,7 @@ def modes_loop(series, alpha, work, z, out):
         at rest, and slopes are NaN.
     out : (9, n), written.  Rows 0 to 3: g/z, h/z, m of the half-space, m of the cylinder (m = M/V, in the unit of
         time); rows 4 to 7: their slopes over ln(1/z); row 8: N of M = M(V) + N dV/dt, in the unit of time squared.
+        For alpha = 1 all are 0, but for those NaNs.  Returns nothing.
     """
     for n in range(z.size):
         set_alpha_of_state(n, alpha, series)

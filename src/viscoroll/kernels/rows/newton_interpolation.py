@@ -56,7 +56,7 @@ def divided_differences(count, scratch):
     scratch : vector of SCRATCH_SIZE numbers with POINT_COUNT arguments, all different, from ARGUMENTS on, and as many
         values from VALUES on, those of the second function FUNCTION_STRIDE further.  POINT_COUNT differences of each
         function, those of order 0 first, are written one block (40 numbers) after the begin of its values, and the
-        values are overwritten.
+        values are overwritten.  Returns nothing.
     """
     for order in range(POINT_COUNT):
         first = POINT_COUNT - LANES
@@ -80,7 +80,7 @@ def evaluate_at_nodes(nodes, which, scratch):
     nodes : (24,) contiguous floats, the nodes in the variable of the arguments in ``scratch``.
     which : int, 0 or 1, index of the function.
     scratch : vector of this module with arguments and with the divided differences of that function; 24 values are
-        written from NODE_VALUES on, over those of another function.
+        written from NODE_VALUES on, in the order of ``nodes``, over those of another function.  Returns nothing.
     """
     start = VALUES + FUNCTION_STRIDE * which + _BLOCK
     x = load_row(nodes, 0)
@@ -101,7 +101,7 @@ def sum_of_rows(matrix, first, terms, factors, to, numbers):
     terms : int, number of rows and of factors, >= 0.
     factors, to : int, indices in ``numbers`` at which the factors begin, and the sum.
     numbers : contiguous vector with the factors; the sum, 24 numbers, is written after all factors have been read, so
-        that the two may overlap.
+        that the two may overlap; zeros if ``terms`` is 0.  Returns nothing.
     """
     zero = broadcast(0.0)
     total = zero, zero, zero, zero, zero, zero
@@ -122,7 +122,7 @@ def to_powers(slow, limit, scratch):
         added to the constant coefficient.  In the other rows it is not read: the value at a middle node takes its
         place.
     scratch : vector of this module; 24 values from NODE_VALUES on are read, and the 24 coefficients, the constant
-        first, are written in their place.  Chebyshev coefficients are left after them.
+        first, are written in their place.  Chebyshev coefficients are left after them.  Returns nothing.
     """
     if not slow:
         limit = scratch[NODE_VALUES + TERMS // 2]

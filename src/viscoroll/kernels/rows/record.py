@@ -5,8 +5,8 @@
 offsets in a row.  Two functions whose powers are interleaved (:mod:`simd_polynomial`) take two neighbouring parts.
 
 ``marks`` holds one head, as long as a row has parts, and then for every part of every row the version of the material
-that it was made for.  The rows of one material are complete.  Of many materials a part is made when it is first read;
-who reads it need not know which (:mod:`evaluate`).
+that it was made for: the number of the selection of a material, which grows.  The rows of one material are complete.
+Of many materials a part is made when it is first read; who reads it need not know which (:mod:`evaluate`).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -88,8 +88,9 @@ class Law(NamedTuple):
 
 @inline_kernel
 def select_material(law, n):
-    """Make ``law`` that of state or motion ``n``, an int; no work if one law serves all or that of n is selected
-    already.
+    """Make ``law`` that of state or motion ``n``, an int >= 0: its kernel writes the heads of rows and marks.
+
+    Nothing is done if one law serves all or that of n is selected already.  Returns nothing.
     """
     if law.selector != 0:
         call_address(law.selector, n, law.source)
@@ -103,7 +104,7 @@ def ensure_part(part, row, law):
         alpha (:mod:`.alpha_axis`) have no BODY_MOMENTS.
     row : int, number of the row, from 0 to the last row of the law; the fast limit beyond it has no parts.
     law : :class:`Law` with its material selected; where a part is made, its ``rows`` and ``marks`` are written.
-    Returns an int, the index of the first coefficient.
+    Returns an int, the index of the first coefficient, of a pair of the first of its 48.
     """
     number = (row + 1) * PARTS_PER_ROW + part // PART_SIZE
     if unlikely(law.marks[np.uint64(number)] != law.marks[VERSION]):

@@ -7,6 +7,9 @@ With E(t) = 1 + sum E_i exp(-a_i t) and J(t) = 1 - sum J_j exp(-b_j t), the two 
     (1/r + Q^T k Q) y = e      f = Q y      X_i = e_i y_i/r_i
     h = sum e_i y_i      g = sum t_j k_j f_j      m = g + lam^2 sum X_i i2(a_i z)
 
+Here z is half the transit time of the contact, r = I1/I0, k = K0/K1 and i2 = I2/I0 are ratios of Bessel functions, a_i
+= 1/tau_i and b_j = 1/T_j, lam^-2 = 1 + 2 h/z, and m is M/V.
+
 All sums but the last are of positive terms.  What a creep mode has in m, all of them positive as well,
 
     m_j = t_j [k_j f_j + sum_i Q_ji v_i]      v_i = lam^2 X_i u_i/e_i
@@ -121,12 +124,14 @@ def new_workspace(modes: int) -> Workspace:
 
 @inline_kernel
 def evaluate_ratios(places, series, work):
-    """Write 1/r, k and i2 of every mode at four values of z, the half transit time of the contact.
+    """Write 1/r, k and i2 of every mode at four values of z: ratios of Bessel functions of rate times z.
+
+    Of relaxation mode i, r = I1/I0 and i2 = I2/I0 at a_i z; of creep mode j, k = K0/K1 at b_j z.
 
     places : vector of four z > 0, in the unit of time of the series; z may be infinite, where r = k = i2 = 1.
     series : :class:`Series`, of which the rates a and b are read.
     work : :class:`Workspace` of the series, whose ``inverse_r``, ``i2`` and ``k`` are written, dimensionless, four
-        numbers a mode: number c of a mode belongs to number c of ``places``.
+        numbers a mode: number c of a mode belongs to number c of ``places``.  Returns nothing.
     """
     z = unpack(places)
     for at in range(LANES * series.a.size):
@@ -146,7 +151,7 @@ def multiply(jets, p, q):
     """Return the product of two vectors of four: number by number, or as jets.
 
     jets : bool, True if ``p`` and ``q`` are jets (value, d/dz, d/ds, d2/dz ds), whose product then follows the product
-        rule.
+        rule; False: four values each, multiplied number by number.
     p, q : the factors, vectors of four.
     Returns a vector of four.
     """
@@ -163,7 +168,7 @@ def reciprocal(jets, p):
 
     jets : bool, whether the four are a jet (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
     p : vector of four numbers, of a jet with the first other than 0; of values a 0 gives an infinity.
-    Returns a vector of four of the same kind.
+    Returns a vector of four of the same kind: 1/p number by number, or the jet of 1/p.
     """
     inverse = 1.0 / p
     if not jets:
@@ -183,6 +188,7 @@ def _strength(jets, strength, rate):
     jets : bool, whether a jet (value, d/dz, d/ds, d2/dz ds) is returned.
     strength : float, e_i or t_j, square root of a time.
     rate : float, a_i or b_j, rate of the same mode; read for a jet alone.
+    Returns a vector of four: the strength four times, or its jet (strength, 0, strength/rate, 0).
     """
     return pack(strength, 0.0, strength / rate, 0.0) if jets else broadcast(strength)
 
@@ -201,6 +207,7 @@ def _factorize(matrix, count):
         half with the diagonal is read, and overwritten by 1/D on the diagonal and by L D below it; the upper half is
         neither read nor written.
     count : int, number of rows, >= 0.
+    Returns nothing.  It is not tested that D is positive: a 0 in it gives infinities and NaNs.
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):
@@ -220,6 +227,7 @@ def _substitute(matrix, right, count):
     matrix : factors by :func:`_factorize`, (count, count) vectors of four, flat; not changed.
     right : right sides, ``count`` vectors of four, flat; overwritten by the solutions.
     count : int, number of unknowns of each system, >= 0.
+    Returns nothing.
     """
     row_size = LANES * count
     for i in range(0, row_size, LANES):
@@ -241,7 +249,7 @@ def solve_modes(jets, series, work):
     series : :class:`Series`: rates, strengths and Q of the modes.
     work : :class:`Workspace` of the series with the ratios 1/r and k, four numbers a mode.  ``y`` and ``kf`` are
         written, in the unit of e, square root of a time; ``right`` is scratch, and ``matrix`` ends as the factors of
-        :func:`_factorize`.
+        :func:`_factorize`.  Returns nothing; without modes nothing is written.
 
     Values need one solve.  For a jet the matrix is factorized by its value alone, and the error of the solution is
     corrected with these factors: the first solve leaves an error in the derivatives, which has d/dz or d/ds as a
@@ -326,11 +334,13 @@ def evaluate_functions(jets, z, series, work):
     """Write g/z, h/z and m of both bodies at z > 0 into ``work.functions``.
 
     jets : bool, whether vectors are jets (value, d/dz, d/ds, d2/dz ds) instead of values at four places.
-    z : vector of four z, or the jet (z, 1, 0, 0) of one, in the unit of time of the series.
+    z : vector of four z, or the jet (z, 1, 0, 0) of one, in the unit of time of the series; it may be infinite, where
+        g/z and h/z are 0 and the slopes of a jet are NaN.
     series : :class:`Series`: rates and strengths of the modes; elastic if it has no modes, where all results are 0.
     work : :class:`Workspace` of the series with the ratios 1/r, k and i2 at z.  ``functions`` is written: vectors of
         four g/z and h/z, dimensionless, at G_OVER_Z and H_OVER_Z, and m of half-space and cylinder, in the unit of time
-        of the series, at M_HALF_SPACE and M_CYLINDER.  ``y`` ends as X, ``kf`` as k f; the rest is scratch.
+        of the series, at M_HALF_SPACE and M_CYLINDER.  ``y`` ends as X, ``kf`` as k f; ``right`` and ``matrix`` are
+        scratch.
 
     Returns (g, h, sum X_i i2_i), vectors of four; g and h are in the unit of time of the series.
 

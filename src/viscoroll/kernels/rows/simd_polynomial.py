@@ -4,7 +4,8 @@ One function is stored as its coefficients in their order: six vectors, each a p
 and b is stored as a0 a1 b0 b1, a2 a3 b2 b3, ...: twelve vectors, polynomials in t^2 of the even and odd coefficients.
 So a polynomial over an octave costs no more than one over an eighth of the octave with half as many coefficients.
 
-All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the argument ``t``.
+All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the argument ``t``.  A NaN of t
+gives NaNs.
 """
 
 from llvmlite import ir
@@ -124,7 +125,7 @@ def _join(sums, t, square):
 
     sums : vector of four, the values of a, b, c and d at t^4.
     t, square : floats, argument and t^2, dimensionless.
-    Returns a float.
+    Returns a float, in the unit of the coefficients.
     """
     a, b, c, d = unpack(sums)
     return fma(square, fma(t, d, c), fma(t, b, a))

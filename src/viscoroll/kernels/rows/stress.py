@@ -16,6 +16,9 @@ D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40 digits
 of itself for a from 1e-8 to 1e8, alpha from 1.01 to 1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes
 the second term is a sum over the modes, with the weight a_i X_i (:mod:`series`) in place of alpha B.
 
+Here c = 1 - 1/alpha, r = I1/I0 and k = K0/K1; V > 0, lam = 2 kappa V zeta is the contact length divided by l0, and eta
+= beta zeta belongs to the stick zone.
+
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 
@@ -79,10 +82,10 @@ def _memory_integral(u, w, a, r_complement):
     a : float, a_i z (of one mode alpha z): half transit time z times the rate of the mode, dimensionless, > 0, finite.
     r_complement : float, 1 - r(a), r the ratio I1/I0, in (0, 1].
 
-    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1, a float, dimensionless.
-    The integral over [0, pi] is zero.  Near the rear edge, where w < 1 and a w < 1, it is therefore taken over the
-    small rest [phi, pi], with the other sign, where a (cos phi - cos t) <= a w < 1.  Elsewhere, if a u > 38, the part
-    of [0, phi] where a (cos t - cos phi) exceeds 38 is left out.
+    Returns Int_0^phi (r + cos t) exp(-a (cos t - cos phi)) dt with cos phi = 1 - u = w - 1, a float, dimensionless,
+    found to rounding by 28 Gauss-Legendre nodes.  The integral over [0, pi] is zero.  Near the rear edge, where w < 1
+    and a w < 1, it is therefore taken over the small rest [phi, pi], with the other sign, where a (cos phi - cos t) <=
+    a w < 1.  Elsewhere, if a u > 38, the part of [0, phi] where a (cos t - cos phi) exceeds 38 is left out.
     """
     rear = w < 1.0 and a * w < 1.0
     sine = np.sqrt(u * w)
@@ -126,9 +129,9 @@ def unit_shape(u, w, z, series, weights):
     weights : :class:`MemoryWeights`, the strengths of the modes at z.  If they belong to another z, they are computed
         and written here; a caller that changes ``series`` has to set their z to NaN.
 
-    Returns a float, dimensionless, >= 0: exactly 0 at the edges and outside the contact; sqrt(u w) for z = inf and for
-    elastic bodies; else sqrt(u w) and the memory integrals of the modes, each times a_i X_i.  Modes with weight 0 or an
-    infinite a_i z count as none.
+    Returns a float, dimensionless, >= 0: exactly 0.0 at the edges and outside the contact, where ``weights`` stays;
+    sqrt(u w) for z = inf and for elastic bodies; else the sum of sqrt(u w) and the memory integrals of the modes, each
+    times a_i X_i.  Modes with weight 0 or an infinite a_i z count as none.
     """
     if u <= 0.0 or w <= 0.0:
         return 0.0
@@ -156,11 +159,12 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
 
     series : :class:`Series`: rates and strengths of the modes; of one mode, and overwritten, if ``alpha`` is not empty.
     alpha : alphas >= 1 of a series of one mode, of length 1 or n; empty: the series is complete.
-    whole, stick : :class:`MemoryWeights` of the series for the contact and for the stick zone, scratch.
+    whole, stick : :class:`MemoryWeights` of the series for the contact and for the stick zone, scratch; they belong to
+        no z at the begin (:func:`new_memory_weights`).
     points : :class:`Points`: position x/l0, kappa, mu and the contact state of each point, arrays of length 1 or n.
     p, tau : (n,) floats, written: pressure p/E' and modulus |tau|/E' of the shear stress at every point, dimensionless,
         >= 0, where E' = pi E/(1 - nu^2).  Both are 0 at the edges and outside the contact; in the slip zone, which is
-        all of the contact for beta = 0, tau is mu p; for beta = 1 it is 0 but for rounding.
+        all of the contact for beta = 0, tau is mu p; for beta = 1 it is 0 but for rounding.  Returns nothing.
     """
     for i in range(p.size):
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:

@@ -2,7 +2,8 @@
 
 Every number of a law is a polynomial of log2(h/l0) within an octave of the thickness h, and of ln(3 - 4 nu) where
 covers differ in Poisson's ratio nu.  It is the sum of the numbers of the laws at the nodes, each times a weight that
-depends on thickness and nu alone.
+depends on thickness and nu alone.  The head, the rows and the marks of a law, and the parts of a row, are those of
+:mod:`record`; cover rows are the numbers that only a cover has (:mod:`cover`).  All numbers are dimensionless.
 """
 
 from ..compile.intrinsics import floats_at, integers_at, record_at, record_type
@@ -43,6 +44,7 @@ def _interpolate(source, marks, first, to, out, count):
     to : int, index in ``out`` of the first number that is written.
     out : vector of rows or cover rows of the law, of which ``count`` numbers are overwritten.
     count : int, number of numbers.
+    Returns nothing.
     """
     law_size = (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
     weights = floats_at(source.weights + 8 * source.law_count * marks[SELECTED], source.law_count)
@@ -86,7 +88,7 @@ def make_part(number, source):
 
     number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in the row/PART_SIZE.
     source : pointer to a SOURCE record.  The 24 coefficients of a function, or 48 of a pair (L with M/V, lam with
-        epsilon, moments of the bodies), are written, and in the marks the version of the part.
+        epsilon, moments of the bodies), are written, and as mark ``number`` the version of the cover.
 
     Returns nothing.
     """

@@ -11,6 +11,18 @@ integers beside the rows: some for the law as a whole, then for each part of eac
 which it was computed.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
+
+Terms of this file:
+
+- z: half the transit time of the contact or of its stick zone, in the unit of time of the material.
+- u = kappa |V|, dimensionless speed, and v = 1/F(eta) of a stick zone with the half transit time eta (:mod:`.rows`).
+  Functions of u: L = 2 kappa delta_star/mu, M/V and its parts, lam (length of the contact divided by l0), epsilon
+  (shift in half contact lengths); of v: H/F^2 and eta/F.
+- Row 0, the slow row, spans 0 <= u, v < 2^e0 with t = u 2^-e0 or v 2^-e0; row n > 0 is the octave that ends at
+  2^(e0 + n), with t in [-1, 1).
+- Head: numbers of the law as a whole, in front of its rows, and likewise in front of the marks of its parts.
+- Selected material: that of which the law holds the rows at present; each new one gets the next version number.
+- J_j, T_j: strengths and times of the creep modes of a material.
 """
 
 import math
@@ -111,8 +123,8 @@ def _leja_order(points: np.ndarray) -> np.ndarray:
     The first is the largest.  Each further one has the largest product of distances from those before it (Leja's
     order).
 
-    points : (n,) floats, different from each other, n > 0.
-    Returns a new array, (n,).
+    points : (n,) floats, different from each other, n > 0, in [0, 1] (distances are scaled for that range).
+    Returns a new array, (n,), of the same numbers in this order; of equal products the one earlier in ``points``.
     """
     order = [points.argmax()]
     while len(order) < points.size:
@@ -175,9 +187,10 @@ class Grid(NamedTuple):
 def grid_size(count: int, alpha: float) -> int:
     """Return the number of nodes of a grid from which rows of a law can be made.
 
-    count : int, number of rows.
+    count : int, number of rows, >= 1; the largest one of many materials.
     alpha : float, instantaneous divided by long-time modulus of the material, >= 1; the largest one of many materials.
-    Returns an int, a multiple of four, which includes the 36 points of the slow row.
+    Returns an int, a multiple of four, which includes the 36 points of the slow row: ten nodes for each octave of z
+    that the rows need, and reserves at both ends for the 36 points around an octave.
     """
     nodes = NODES_PER_OCTAVE * (count + math.ceil(0.5 * math.log2(alpha)) + 4) + 3 * POINT_COUNT + LANES
     return nodes + -nodes % LANES
@@ -195,10 +208,11 @@ def select_series(n, source):
     """Make the material of a state the selected one: write its data into the heads of rows and marks.
 
     n : int, index of the state.
-    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks.  If that material is
-        selected already, nothing is written.  Else the first ten numbers of the material (alpha, lam_fast, W and C
-        three times, sums J_j T_j of both bodies) are written into the head of rows, and into that of marks its exponent
-        e0, its number of rows and of modes, the address of its numbers, its index and a new version.
+    source : pointer to a SOURCE record, of which the addresses of the materials, their indices, rows and marks are
+        read, with state_count and material_size.  If that material is selected already, nothing is written.  Else the
+        first ten numbers of the material (alpha, lam_fast, W and C three times, sums J_j T_j of both bodies) are
+        written into the head of rows, and into that of marks its exponent e0, its number of rows and of modes, the
+        address of its numbers, its index and a new version.
 
     Rows of the law are then computed when they are first read (:func:`make_part`).  Returns nothing.
     """
@@ -222,10 +236,12 @@ def make_part(number, source):
 
     number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + k, with the row from 0 and k, the number
         of the part in its row; of a pair of functions that of its first part.
-    source : pointer to a SOURCE record, with the addresses of the materials, rows and marks, and scratch.
+    source : pointer to a SOURCE record, of which all fields are read but material_index, state_count, and materials,
+        since the marks hold the address of the selected one.
 
-    Returns nothing.  Written are the 24 coefficients of the function, or 48 of a pair, in the rows; the mark
-    ``number``; functions and versions of those nodes of the grid that belonged to another material; and the scratch.
+    Returns nothing.  Written are the 24 coefficients of the function, or 48 of a pair, in the rows; the version of the
+    material as mark ``number``, of a pair at its first part only; functions and versions of those nodes of the grid
+    that belonged to another material; and the scratch.
     """
     source = record_at(source)
     marks = integers_at(source.marks, number + 1)
@@ -256,7 +272,8 @@ def _make_functions(part, row, grid):
     row : int, index of the row, from 0; row 0 is the slow row, where t is in [0, 1], else t is in [-1, 1].
     grid : :class:`Grid` of function values over ln z of the selected material.  Into its ``rows`` 24 coefficients are
         written, the constant first, or 48 of a pair, interleaved by two (:mod:`.simd_polynomial`).  In the slow row the
-        constant is the exact limit at rest (0 of epsilon).
+        constant is the exact limit at rest (0 of epsilon).  Nodes that hold values of another material are computed,
+        and the scratch is overwritten.  Returns nothing.
     """
     over_v = part >= H_OVER_F2
     slow = row == 0
@@ -303,7 +320,7 @@ def _slow_limit(function, grid):
     grid : :class:`Grid` of the selected material, of which e0 and, in the head, the sums J_j T_j of both bodies are
         read.
     Returns a float, dimensionless: of M/V the sum J_j T_j of both bodies, of its parts that of one; of epsilon/t that
-    of both times 2^e0; 1 of the other functions.
+    of both times 2^e0; 1.0 of the other functions, L, lam, H/F^2 and eta/F.
     """
     half_space = grid.rows[_T_HALF_SPACE]
     cylinder = grid.rows[_T_HALF_SPACE + 1]
@@ -323,8 +340,9 @@ def _z_of_node(node, grid):
 
     node : int, index of the node, from 0 to node_count - 1.
     grid : :class:`Grid` of function values over ln z of the selected material.
-    Returns a float, > 0, in the unit of time of the material.  Points of the slow row have 1/z from above 0 to 2^(e0 +
-    1) (1 + 2.5 T), T = sum J_j T_j 2^e0, which is a little beyond the end of that row in u and in v.
+    Returns a float, > 0, in the unit of time of the material.  Points of the slow row have 1/z between 0 and 2^(e0 + 1)
+    (1 + 2.5 T), T = sum J_j T_j 2^e0 of both bodies, which is a little beyond the end of that row in u and in v; they
+    are zeros of T_36 in 1/z, in Leja's order.
     """
     slow = node - (grid.node_count - POINT_COUNT)
     n = node + grid.lowest
@@ -340,9 +358,10 @@ def _fill_block(first, grid):
     """Compute the 12 functions at four nodes by the formulas of the modes, and write them into ``grid.functions``.
 
     first : int, index of the first node, a multiple of four.
-    grid : :class:`Grid` of the selected material.  Four rows of its ``functions`` are written, in the order of the
-        columns _L to _LN_ETA_OVER_F, dimensionless; M/V, its parts and lam as products with u.  Its workspace is
-        scratch.
+    grid : :class:`Grid` of the selected material.  Four rows of its ``functions`` are written, dimensionless, in the
+        order of the columns: L, u M/V, u lam, epsilon, u times M/V of half-space and cylinder, H/F^2, eta/F, u, v, ln
+        lam, ln(eta/F), with z as zeta of the contact for functions of u, as eta of its stick zone for those of v.
+        Its workspace is scratch.  Returns nothing.
     """
     places = pack(
         _z_of_node(first, grid), _z_of_node(first + 1, grid), _z_of_node(first + 2, grid), _z_of_node(first + 3, grid)
@@ -382,8 +401,8 @@ def _ensure_nodes(first, stop, grid):
     """Compute those nodes of the grid, in blocks of four, that still hold values of another material.
 
     first, stop : int, index of the first node that is needed, and of the one after the last.
-    grid : :class:`Grid` of the selected material, whose ``functions`` and ``node_versions`` are written for blocks that
-        are out of date; others stay.
+    grid : :class:`Grid` of the selected material, whose ``functions`` and ``node_versions`` are written for blocks
+        whose version is not that of the material; others stay.  Returns nothing.
     """
     for block in range(first // LANES, (stop - 1) // LANES + 1):
         if grid.node_versions[block] != grid.version:
@@ -399,7 +418,8 @@ def _ln_from_end(node, row, over_v, grid):
     row : int, index of the row that spans the octave, whose end is 2^(e0 + row).
     over_v : bool, True for v, False for u.
     grid : :class:`Grid` of the selected material, in which the node is computed if it holds values of another one.
-    Returns a float, dimensionless: 0 at the end of the octave, -ln 2 at its begin, > 0 beyond the end.
+    Returns a float, dimensionless: 0 at the end of the octave, -ln 2 at its begin, > 0 beyond the end; it falls with
+    growing ``node``.
     """
     _ensure_nodes(node, node + 1, grid)
     end = (node + grid.lowest + NODES_PER_OCTAVE * (grid.e0 + row)) * _STEP
@@ -412,16 +432,17 @@ def _ln_from_end(node, row, over_v, grid):
 def _collect_points(row, first, count, over_v, grid):
     """Write the 36 points around an octave of u or v into the scratch of ``grid``, as arguments and values.
 
-    Arguments are ln u or ln v, counted from the end of the octave.  The points are the 36 nodes of the grid around its
-    middle, from the middle outwards.
+    Arguments are ln u or ln v, counted from the end of the octave.  The points are 36 nodes of the grid in sequence, 18
+    on either side of the middle of the octave in ln u or ln v, from the middle outwards.  That the grid reaches so far
+    is not checked (:func:`grid_size`).
 
     row : int, index of the row that spans the octave, > 0.
     first : int, column of the first function in the grid, _L to _ETA_OVER_F.
     count : int, number of functions, 1, or 2 with neighbouring columns.
     over_v : bool, True if they are functions of v, False for u.
     grid : :class:`Grid` of the selected material.  Its ``scratch`` is written: 36 arguments from ARGUMENTS on and 36
-        values of each function from VALUES on, one FUNCTION_STRIDE apart.  Nodes that hold values of another material
-        are computed.
+        values of each function from VALUES on, one FUNCTION_STRIDE apart: values as the grid has them, so that M/V, its
+        parts and lam are multiplied by u.  Nodes that hold values of another material are computed.  Returns nothing.
     """
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
     node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
@@ -453,7 +474,7 @@ def _collect_slow_points(first, count, over_v, grid):
     over_v : bool, True if they are functions of v, False for u.
     grid : :class:`Grid` of the selected material.  Its ``scratch`` is written: 36 arguments from ARGUMENTS on and 36
         values of each function from VALUES on, one FUNCTION_STRIDE apart.  Nodes that hold values of another material
-        are computed.
+        are computed.  Returns nothing.
     """
     end = math.ldexp(1.0, int(grid.e0))
     _ensure_nodes(grid.node_count - POINT_COUNT, grid.node_count, grid)

@@ -38,8 +38,8 @@ def _grid_law(V, omega, pointer, grids):
     Both slopes of Q are 0 where Q does not depend on the creepage: beyond the ends of delta, and where it is clipped to
     +-mu P.  At rest (V = omega = 0) they are infinite.  V = 0 counts as rolling in the direction V > 0.
 
-    Returns the status: 0; or 1, and all eight results are NaN, where |V| is above the grid, V or omega is not finite,
-    or delta is outside a grid that does not slip fully at its ends.
+    Returns the status, an int: 0; or 1, and all eight results are NaN, where |V| is above the grid, V or omega is not
+    finite, or delta is outside a grid that does not slip fully at its ends.
     """
     out = carray(pointer, RESULTS)
     grid = record_at(grids)

@@ -87,7 +87,8 @@ def _locate(spline, name, x):
 
     spline : vector of the spline: bounds, axes and coefficients.
     name : V_AXIS, DELTA_AXIS or ALPHA_AXIS, index in the head of the spline.
-    x : float, the coordinate, in the units of the grid; it is ignored if the field does not depend on it.
+    x : float, the coordinate itself, also of a logarithmic axis, in the units of the grid; it is ignored if the field
+        does not depend on it.
 
     Returns :class:`AxisPosition`.  A coordinate on an inner edge is at the left end of its interval, one at the upper
     end of the axis is in the last interval.  Outside of the axis, and for NaN, t is NaN and the interval 0.  If the
@@ -120,8 +121,9 @@ def _basis(spline, position, n):
     n : int, 0 ... 3, index of the basis spline among those that are not 0 in the interval; those beyond the degree of
         the axis are 0.
 
-    Returns (value, slope, offset): value, dimensionless; slope over the coordinate itself, also of a logarithmic axis;
-    int that is added to the position of a coefficient in the vector.  Value and slope are NaN outside of the axis.
+    Returns (value, slope, offset): value, a float, dimensionless; slope over the coordinate itself, also of a
+    logarithmic axis, a float; int that is added to the position of a coefficient in the vector.  Value and slope are
+    NaN outside of the axis.
     """
     axis = position.axis
     at = (position.interval * TERMS + n) * TERMS + EDGES + 1 + _integer_at(spline, axis + INTERVALS) + axis
@@ -142,8 +144,9 @@ def evaluate(spline, V, delta, alpha):
     V, delta, alpha : float, coordinates in the units of the grid.  A coordinate on which the field does not depend is
         ignored.
 
-    Returns value and slopes over V, delta and alpha, in the units of the grid: all NaN if a coordinate is outside of
-    its axis; a value beyond the bounds of the field is clipped to them, and all its slopes are 0.
+    Returns value and slopes over V, delta and alpha, floats in the units of the grid: all NaN if a coordinate is NaN or
+    outside of its axis; a value beyond the bounds of the field is clipped to them, and all its slopes are 0.  The slope
+    over a coordinate that is ignored is 0.
     """
     over_V = _locate(spline, V_AXIS, V)
     over_delta = _locate(spline, DELTA_AXIS, delta)
@@ -182,7 +185,7 @@ def spline_at(spline, V, delta, alpha):
     V, delta, alpha : float, coordinates in the units of the grid.  Where the field does not depend on one of them, that
         argument is ignored, and any number may be given.
 
-    Returns NaN, the slopes too, if another coordinate is outside of its axis.  A value beyond the bounds of the field
-    is clipped to them, and its slopes are 0.
+    Returns NaN, the slopes too, if another coordinate is NaN or outside of its axis.  A value beyond the bounds of the
+    field is clipped to them, and its slopes are 0.  The slope over a coordinate that is ignored is 0.
     """
     return evaluate(spline, V, delta, alpha)
