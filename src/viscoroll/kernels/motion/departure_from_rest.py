@@ -225,12 +225,15 @@ def holding_margin(load, mu):
 
 @kernel
 def _holding_margin_at(tau, segment, work):
-    """Return the holding margin of :func:`holding_margin` at a time: a force or torque, dimensionless, below 0 where
-    the drive moves the cylinder.
+    """Evaluate the drive at a time and return by how much friction and brake hold the cylinder at rest against it.
+
+    :func:`holding_margin` takes a Load; the search for the time of departure needs the margin as a function of time.
 
     tau: float, the time.
     segment: int, index of the segment of the drive that contains the time.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion, whose Scene and Drive are read.
+    Returns a force or torque, a float, dimensionless: at least 0 where the cylinder stays, below 0 where the drive
+    moves it, -1.0 where a prescribed speed has a slope other than 0.
     """
     return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene.mu)
 
