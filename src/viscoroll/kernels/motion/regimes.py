@@ -62,7 +62,7 @@ def _torque_at_locked_wheel(state, regime, step_state, work):
     work: Workspace, of the motion.
     Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q and M_cylinder,
     signed, in the direction of the regime; the largest torque of the brake at that time, at least 0, and 0 where no
-    brake acts.
+    brake acts.  M_cylinder contains the part of the added mass that V' of ``regime`` causes.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     _, torque, _ = applied_forces(state.V, 0.0, load, regime)
@@ -84,7 +84,8 @@ def change_brake(regime, spin_sign, locked):
 def brake_holds_omega(state, regime, step_state, work):
     """Return whether the brake can hold omega at 0 against the torque that would accelerate the wheel; a bool.
 
-    It can if that torque is at most the largest one of the brake; without a brake, only if it is exactly 0.
+    It can if the modulus of that torque (:func:`_torque_at_locked_wheel`) is at most the largest torque of the brake;
+    without a brake, only if it is exactly 0.
 
     state: State, with omega = 0.
     regime: Regime, at that state.
@@ -103,9 +104,9 @@ def release_brake(state, regime, step_state, work):
     regime: Regime, the one before.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
-    Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the torque that
-    accelerates the wheel from omega = 0 (1, -1, or 0 for no torque) where the segment has a brake, to 0 where it has
-    none.
+    Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the torque of
+    :func:`_torque_at_locked_wheel` that accelerates the wheel from omega = 0 (1, -1, or 0 for no torque) where the
+    segment has a brake anywhere on it, to 0 where it has none.
     """
     torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
     spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
@@ -125,8 +126,8 @@ def comes_to_rest(state, regime, step_state, work):
     state: State, at the event.
     regime: Regime, of full slip.
     step_state: StepState, at the event.
-    work: Workspace, with V at the nodes of the step that ends there.
-    Returns a bool.
+    work: Workspace, with V at the nodes of the step that ends there, the Drive and rtol.
+    Returns a bool; True at equality with a threshold, and so where V is exactly 0.
     """
     prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
     omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
@@ -141,9 +142,9 @@ def reverse_direction(regime):
     """Return the Regime with the opposite direction, in which the signs of slip and omega are opposite too.
 
     ``direction``, ``sigma`` and ``spin_sign`` change their signs, ``full_slip`` and ``locked`` stay.  The caller
-    changes the signs of V and omega.
+    changes the signs of V and omega; d of partial slip would keep its sign, but only full slip is reversed.
 
-    regime: Regime, the present one.
+    regime: Regime, the present one, of full slip.
     """
     return Regime(regime.full_slip, -regime.direction, -regime.sigma, -regime.spin_sign, regime.locked)
 
@@ -165,9 +166,9 @@ def impose_prescribed_speed(state, regime, step_state, work):
 
     state: State, as integrated, with V >= 0.
     regime: Regime, at that state.
-    step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
-    Returns (State, Regime), with V >= 0.
+    step_state: StepState, with the time and its segment, whose prescribed speed is taken.
+    work: Workspace, of the motion; it is only read.
+    Returns (State, Regime), with V >= 0; ``locked`` and, but for a reversal, all of the Regime stay.
     """
     drive, full_slip = work.drive, regime.full_slip
     if drive.prescribed == NOT_PRESCRIBED:
@@ -307,7 +308,10 @@ def initial_regime(V, omega, step_state, work):
 
 @kernel
 def regime_code(regime):
-    """Return the code of a moving cylinder's regime in the outputs; regime: Regime, the present one."""
+    """Return the code of a moving cylinder's regime in the outputs: OMEGA_LOCKED, FULL_SLIP or PARTIAL_SLIP, an int.
+
+    regime: Regime, the present one; ``locked`` comes first, then ``full_slip``.
+    """
     return OMEGA_LOCKED if regime.locked else FULL_SLIP if regime.full_slip else PARTIAL_SLIP
 
 
