@@ -60,12 +60,13 @@ def n_coefficients(row):
 
 @inline_kernel
 def evaluate_polynomial(row, function, x):
-    """Return one function of a segment at a position, a float, dimensionless, in fixed directions.
+    """Return one function of a segment at a position by Horner's scheme, a float, dimensionless, in fixed directions.
 
-    row: (columns,), the segment; its coefficients are read.
+    The torque of the brake may come out below 0.
+
+    row: (columns,), the segment; its coefficients, in ascending powers of x, are read.
     function: int, DRIVE_FORCE, DRIVE_TORQUE, DRIVE_RATE, DRIVE_BRAKE or DRIVE_SPEED (:mod:`records`).
-    x: float, position in [-1, 1] on the segment; outside the polynomial is extrapolated.  Coefficients are in ascending
-    powers of x, and Horner's scheme is used.
+    x: float, position in [-1, 1] on the segment; outside the polynomial is extrapolated.
     """
     n_terms = n_coefficients(row)
     first, total = COL_COEFFICIENTS + function * n_terms, 0.0

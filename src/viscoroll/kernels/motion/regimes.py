@@ -62,7 +62,7 @@ def _torque_at_locked_wheel(state, regime, step_state, work):
     work: Workspace, of the motion.
     Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q and M_cylinder,
     signed, in the direction of the regime; the largest torque of the brake at that time, at least 0, and 0 where no
-    brake acts.  M_cylinder contains the part of the added mass that V' of ``regime`` causes.
+    brake acts.  In partial slip M_cylinder contains n V'/2 of the added mass, with V' of the present regime.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     _, torque, _ = applied_forces(state.V, 0.0, load, regime)
@@ -283,8 +283,9 @@ def initial_regime(V, omega, step_state, work):
     step_state: StepState, at the start.
     work: Workspace, of the motion.
     Returns (State, Regime, stick_formed): the State in the direction of the Regime, which is that of V, or of omega
-    where V is 0; the Regime with the sign of the excess slip as ``sigma`` (1 for 0) and without a brake;
-    ``stick_formed`` is True only for a start in partial slip with d = +-1.
+    where V is 0, with omega in full slip and d = excess slip/(delta_star V) in partial slip; the Regime with the sign
+    of the excess slip as ``sigma`` (1 for 0) and without a brake; ``stick_formed``, a bool, True only for a start in
+    partial slip with d = +-1.
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
         # Sliding ends within a time of that order, at constant V + j omega.
