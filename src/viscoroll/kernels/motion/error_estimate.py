@@ -242,7 +242,7 @@ def estimate_error(step, regime, work):
     work: Workspace, with the solution at its nodes and the dense output; ROW_P_SLOPE and, where its defect is
     evaluated, ROW_D_SLOPE are written.
     Returns a float >= 0, dimensionless; inf or NaN, which the caller rejects too, where the scale of V is 0 or p is not
-    finite.  A NaN of the second unknown or of V alone, with a finite p, is passed over.
+    finite.  A NaN of the second unknown or of V with a finite p may be passed over.
     """
     nodes, half = work.nodes, 0.5 * step.h
     scale_V, scale_d = error_scales(step, regime, work)
