@@ -116,7 +116,7 @@ def added_mass_exhausted(event, state, regime, work):
 
     It is so where its margin (:func:`added_mass_margin`) is at most 0, or where the event STICK_EDGE, whose function is
     the product of the margin and 1 - |d|, is due to the margin, the smaller factor of the two.  In full slip it is
-    False.  A law without added mass has a margin of 1: the result is False then, but for a STICK_EDGE with sigma d < 0.
+    False.  A law without added mass has a margin of 1: the result is False then, as sigma d is about 1 at STICK_EDGE.
 
     event: int, code of the last event, or NO_EVENT.
     state: State, the present one.
@@ -165,7 +165,7 @@ def _vanishes_within_rounding(state, regime, step_state, work):
 def relax_creep(state, regime, step_state, work):
     """Relax d to its equilibrium at a fixed time and fixed p, by bisection, where no step can resolve its relaxation.
 
-    The equilibrium is the zero of V d', which is positive below it; n of the added mass is kept in p.
+    The equilibrium is the zero of V d', which is positive for smaller d; the added mass n in p stays that of ``state``.
 
     state: State, the present one, in partial slip.
     regime: Regime, at that state.
@@ -349,8 +349,8 @@ def integrate_motion(V0, omega0, record):
     Returns (status, number of trial steps, number of regime changes, t of the onset of stick, t of coming to rest): the
     status is a code of :mod:`records`, COMPLETED ... ADDED_MASS_EXHAUSTED, an int as the number of trial steps; all
     others are floats.  Reversals of direction are no regime changes; the times are dimensionless, tau/gamma, NaN where
-    the event does not occur.  The onset is the first one; coming to rest is that below the rest threshold, or 0 without
-    motion under a threshold.
+    the event does not occur.  The onset is the first one of the motion; coming to rest is that below the rest
+    threshold, NaN without a threshold.
     """
     work = by_reference(record)
     nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)

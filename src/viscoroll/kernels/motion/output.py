@@ -100,10 +100,9 @@ def write_quadrature(column, n, increase, work):
 
 @kernel
 def _write_totals(column, work):
-    """Write the totals of all quadratures up to the last accepted step to one output column.
+    """Write the totals of all quadratures to one output column: rows 2, 3 and 8 ... 12 of ``work.outputs``.
 
-    column: int, index of the output time.
-    work: Workspace, with the totals; rows 2, 3 and 8 ... 12 of its ``outputs`` are written.
+    column: int, its index; work: Workspace, with the totals up to the last accepted step.
     """
     for n in range(N_QUADRATURES):
         write_quadrature(column, n, 0.0, work)
@@ -184,8 +183,7 @@ def write_due_outputs(state, regime, step_state, work):
     regime: Regime, at that state.
     step_state: StepState, with that time, its segment and the next output.
     work: Workspace, of the motion; all rows of its outputs are written at these times, if there are any.
-    Returns the StepState at the same time with ``next_output`` after these outputs, and the length of the next step
-    not chosen (0), also where no output was due; the numbers of steps stay.
+    Returns the StepState with ``next_output`` after these outputs and h = 0, also where none was due; all else stays.
     """
     column = step_state.next_output
     while column < work.output_tau.size and work.output_tau[column] <= step_state.tau * (1.0 + work.options.rtol):
@@ -269,9 +267,8 @@ def accept_step(end, v, step, regime, step_state, work):
     step: Step, the solved one.
     regime: Regime, that of the step.
     step_state: StepState, at its left end.
-    work: Workspace, with the solution and its dense output; outputs, totals, integrands and the coefficients of their
-    integrals are written, and the entry of ``step_ends`` at the number of accepted steps, if it has one, becomes t =
-    ``end``/gamma.
+    work: Workspace, with the solution and its dense output; outputs, totals, integrands, the coefficients of their
+    integrals and the next entry of ``step_ends``, t = ``end``/gamma, if it has one, are written.
     Returns the StepState at ``end``, with ``next_output`` after the outputs written and one accepted step more; the
     number of trial steps, the segment and the length of the next step stay.
     """
