@@ -243,8 +243,8 @@ def coast_to_end(state, regime, step_state, work):
 
     The rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit V -> 0 and
     inertia = 1 + j (1 + delta_0) + gamma N.  With a rest threshold the motion ends when the larger speed has fallen to
-    it: from then on V = omega = 0, forces of 0, delta = delta_0 and the code AT_REST are written, and the kinetic
-    energy that is left counts as lost.
+    it: from then on V = omega = 0, forces of 0, delta = delta_0 and the code AT_REST are written, the kinetic energy
+    that is left counts as lost, and works and losses are those of the whole decay to V = 0.
 
     state: State, the present one, in partial slip; its V is the start of the decay, its d is replaced by that of the
     decay.

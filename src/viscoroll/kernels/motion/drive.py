@@ -81,8 +81,8 @@ def _sum_of_moduli(row, first, last):
 
     It is an upper bound of the modulus of each of them on the segment, and 0 only if all are 0.
 
-    row: (columns,), the segment.
-    first, last: int, index DRIVE_* of the first function and of the one after the last.
+    row: (columns,), the segment; its coefficients are read.
+    first, last: int, index DRIVE_* of the first function and of the one after the last, ``first`` < ``last``.
     """
     n_terms, total = n_coefficients(row), 0.0
     for n in range(COL_COEFFICIENTS + first * n_terms, COL_COEFFICIENTS + last * n_terms):
@@ -185,9 +185,9 @@ def store_drive(step, work):
 
     They are in fixed directions, not in those of the regime, and without feedback.
 
-    step: Step, within one segment.
-    work: Workspace; the four rows from ROW_DRIVE on are written.  They are left as they are where nothing drives from
-    the first segment on: they are 0 from the start of the motion then.
+    step: Step, within one segment; tau, h, segment and undriven are read.
+    work: Workspace; the four rows from ROW_DRIVE on are written, nodes 0 ... N.  They are left as they are where
+    nothing drives from the first segment on: they are 0 from the start of the motion then.
     """
     nodes = work.nodes
     if step.undriven and step.segment == 0:  # The rows are 0 from the start of the motion.
@@ -228,7 +228,7 @@ def segment_end(segment, work):
     The last segment has no end of its own: it ends with the motion, at the last output time.
 
     segment: int, index of the segment.
-    work: Workspace, of the motion.
+    work: Workspace, of which the output times and the starts of the segments are read.
     """
     end = last_output_tau(work)
     return min(work.drive.segments[segment + 1, COL_START], end) if segment + 1 < work.drive.segments.shape[0] else end
@@ -286,9 +286,10 @@ def is_constant(segment, drive):
     bool.
 
     All their coefficients but the constant ones are exactly 0 then.  The prescribed speed itself may be linear in time.
+    Functions that are 0 are constant.
 
     segment: int, index of the segment.
-    drive: Drive, that of the motion.
+    drive: Drive, of which ``segments`` is read.
     """
     row, variation = drive.segments[segment], 0.0
     terms = n_coefficients(row)

@@ -170,7 +170,7 @@ def locate_zero(event, node, nodes):
     0: the zero is sought beyond the right end of the step, up to half its length.
     nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written.
     Returns a float, v: for ``node`` > 0 in [0, 2]; for ``node`` = 0 in [2, 3], where 2 means that the function is not
-    positive at the right end, and at least NOT_FOUND that it is still positive half a step after it.
+    positive at the right end, and at least NOT_FOUND = 2.99 that it has no zero before that position.
     """
     fit_dense_output(event, ROW_DENSE_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)

@@ -227,8 +227,9 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     regime: Regime, to integrate.
     step_state: StepState, at the start; h = 0: the length of the first step is chosen here.
     work: Workspace, of the motion; outputs, quadratures and ends of steps are written.
-    Returns (event, State, Regime, StepState) at the end of the last accepted step.  The Regime is still the one that
-    ends, but sigma may have changed at d = 0.  The event is its code (:mod:`workspace`), or
+    Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start without one; the
+    StepState counts the rejected steps too.  The Regime is still the one that ends, but sigma may have changed at d =
+    0.  The event is its code (:mod:`workspace`), or
 
     - NO_EVENT at the end of the segment, if the allowed steps are used up, or if the rest of the motion is exponential
       (:func:`is_coasting`);

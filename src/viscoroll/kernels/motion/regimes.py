@@ -74,7 +74,7 @@ def change_brake(regime, spin_sign, locked):
     """Return the Regime with another state of its brake; full_slip, direction and sigma stay.
 
     regime: Regime, the present one.
-    spin_sign: float, 1 or -1, sign of omega where a brake acts; 0 where none does.
+    spin_sign: float, 1 or -1, sign of omega where a brake acts, or of the torque where omega is 0; 0 where none acts.
     locked: bool, whether the brake holds omega at 0; spin_sign has no effect on the rates then.
     """
     return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, locked)
@@ -252,8 +252,8 @@ def enter_segment(state, regime, step_state, work):
     state: State, at the end of the segment before, or the start of the motion.
     regime: Regime, at that state.
     step_state: StepState, with the time and the index of the new segment.
-    work: Workspace, of the motion.
-    Returns (State, Regime).
+    work: Workspace, of the motion; it is only read.
+    Returns (State, Regime): V is at least 0; where the brake takes hold, ``locked`` is True and ``spin_sign`` stays.
     """
     if step_state.segment > 0:  # A start keeps its given speeds.
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
@@ -323,8 +323,8 @@ def rest_code(step_state, work):
     It is HELD_AT_REST if the segment has a brake anywhere on it, or if a speed is prescribed in the motion; else
     AT_REST.
 
-    step_state: StepState, with the segment.
-    work: Workspace, of the motion.
+    step_state: StepState, of which the segment is read.
+    work: Workspace, of which the Drive is read.
     """
     braked = has_brake(step_state.segment, work.drive)
     return HELD_AT_REST if braked or work.drive.prescribed != NOT_PRESCRIBED else AT_REST

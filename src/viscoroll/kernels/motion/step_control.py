@@ -131,9 +131,9 @@ def first_step_length(stick_formed, step_state, regime, work):
     slip; ignored in full slip and at V = 0.
     step_state: StepState, at the start of the regime.
     regime: Regime, the new one.
-    work: Workspace, with node 0.
+    work: Workspace, with V, V', the weighted rate, ROW_SPEED and the relaxation rate at node 0.
     Returns a float, at least 0; it is 0 where the stick zone has just formed and d' is exactly 0, and inf in full slip
-    at rest or without any rate.
+    at rest or without any rate.  The caller limits it to the rest of the segment and to 1e-14 of the time from below.
     """
     nodes, scene = work.nodes, work.scene
     V, V_rate, rate = nodes[ROW_V], abs(nodes[ROW_V_RATE]), abs(nodes[ROW_WEIGHTED_RATE])
