@@ -76,15 +76,18 @@ def _load(context, builder, kind, at):
 
 
 def _lower_reference(context, builder, signature, arguments):
+    """Return instructions that store a record on the stack of the kernel; the value of LLVM is its address."""
     return cgutils.alloca_once_value(builder, arguments[0])
 
 
 def _lower_value(context, builder, signature, arguments):
+    """Return instructions that load a record from its reference; a record that is a value already stays."""
     kind = signature.args[0]
     return _load(context, builder, kind.record, arguments[0]) if isinstance(kind, _ReferenceType) else arguments[0]
 
 
 def _lower_pointer(context, builder, signature, arguments):
+    """Return the pointer to the numbers of an array, a value of LLVM."""
     return context.make_array(signature.args[0])(context, builder, arguments[0]).data
 
 

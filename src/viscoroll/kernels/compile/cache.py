@@ -54,7 +54,7 @@ def sources_digest() -> str:
 
     It covers the names and all bytes of the files ``*.py`` and ``*.npy`` in and below :data:`KERNELS`, comments
     included, and is computed once in a process.
-    Returns a str of 16 hexadecimal digits.
+    Returns a str of 16 hexadecimal digits.  Raises OSError if one of the files cannot be read.
     """
     digest = hashlib.sha256(f"{numba.__version__} {llvmlite.__version__}".encode())
     for path in sorted((*KERNELS.rglob("*.py"), *KERNELS.rglob("*.npy"))):
@@ -67,6 +67,7 @@ def warn_once(trouble: str) -> None:
     """Give a RuntimeWarning of a problem with the cache; not again if it is one of the last two that were warned of.
 
     trouble : str, the first part of the message, which says what is wrong.
+    Returns None.  Where warnings are turned into errors it raises RuntimeWarning.
     """
     warnings.warn(f"{trouble}; kernels are compiled anew instead", RuntimeWarning, stacklevel=2)
 
@@ -74,7 +75,7 @@ def warn_once(trouble: str) -> None:
 class DiskCache:
     """The machine code of one function on disk, in the interface of the caches of numba's dispatchers.
 
-    function : the Python function.
+    function : the Python function.  Its code is in the folder ``cache_path``, a str, which may not exist yet.
     """
 
     def __init__(self, function: Callable) -> None:

@@ -150,11 +150,13 @@ def defer(whole, options: dict[str, Any]):
 
     @lru_cache(maxsize=1)
     def part():
+        """Return numba's dispatcher of the part, made once."""
         return numba.njit(
             whole.py_func, pipeline_class=_pipelines()[0], no_cpython_wrapper=True, no_cfunc_wrapper=True, **options
         )
 
     def get_call_template(args, kws):
+        """Return numba's template of a call of the part, or of ``whole`` after a failure."""
         # numba compiles again for every literal integer among the arguments
         args = tuple(map(types.unliteral, args))
         kws = {name: types.unliteral(kind) for name, kind in kws.items()}
@@ -329,6 +331,7 @@ def _pipeline(library_class: type):
             super().__init__(typing, target, library, args, returns, ShortFlags(flags), types_)
 
         def define_pipelines(self):
+            """Return a list of one pass manager: numba's, with :class:`Lowering` and without some passes."""
             passes = DefaultPassBuilder.define_nopython_pipeline(self.state)
             steps = [(step, why) for step, why in passes.passes if step.__name__ not in _NOT_NEEDED]
             passes.passes = [(Lowering if step is NativeLowering else step, why) for step, why in steps]

@@ -54,7 +54,7 @@ def call_llvm(builder, name: str, arguments):
     builder : builder of LLVM.
     name : name of the intrinsic with its type, such as "llvm.fma.v4f64".
     arguments : values of LLVM, at least one, all of the type of the first.
-    Returns the value of LLVM of the call.
+    Returns the value of LLVM of the call, of that type.
     """
     kind = arguments[0].type
     function = ir.FunctionType(kind, [kind] * len(arguments))
@@ -118,7 +118,7 @@ def function_address(function, record: np.dtype, returned=types.void, *first) ->
     returned : numba's type of its value; by default nothing.
     first : numba's types of the arguments in front of the record; by default one 64-bit integer.
     Returns the address as an int, valid in this process.  The kernel is compiled in the first call with these types; a
-    further call returns the same address.
+    further call returns the same address.  Raises numba's error if the kernel cannot be compiled for these types.
     """
     kinds = *(first or (types.int64,)), types.CPointer(numba.from_dtype(record))
     function.compile(returned(*kinds))
@@ -128,19 +128,23 @@ def function_address(function, record: np.dtype, returned=types.void, *first) ->
 
 @kernel(inline=True, allocates=True)
 def floats_at(address, size):
-    """The vector of ``size`` doubles at an address."""
+    """Return the vector of ``size`` doubles at an address, an array of numpy that shares the memory.
+
+    address : int, the address, which is not checked; the memory must exist as long as the vector is used.
+    size : int, number of doubles, at least 0.
+    """
     return carray(_to_doubles(address), size)
 
 
 @kernel(inline=True, allocates=True)
 def integers_at(address, size):
-    """The vector of ``size`` 64-bit integers at an address."""
+    """Return the vector of ``size`` 64-bit integers at an address, as :func:`floats_at` returns that of doubles."""
     return carray(_to_integers(address), size)
 
 
 @kernel(inline=True, allocates=True)
 def record_at(pointer):
-    """The record to which a pointer points."""
+    """Return the record to which a pointer points, numba's view of it; its fields are read by name from the memory."""
     return carray(pointer, 1)[0]
 
 
@@ -150,8 +154,8 @@ def septic(t, c):
     another.
 
     t : argument, float.
-    c : coefficients, the constant first, at least 8 floats, of which the first 8 are read.
-    Returns a float.
+    c : coefficients, the constant first, at least 8 floats, of which the first 8 are read; the length is not checked.
+    Returns a float, NaN if ``t`` or a coefficient is NaN.
     """
     t2 = t * t
     low = fma(t2, fma(t, c[3], c[2]), fma(t, c[1], c[0]))

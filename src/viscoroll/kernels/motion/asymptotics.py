@@ -70,7 +70,10 @@ _COASTING_D = 1e-2
 
 @inline_kernel
 def equilibrium_tolerance(rtol):
-    """Return the relative distance of V from its equilibrium at which V has reached it; rtol: tolerance."""
+    """Return the relative distance of V from its equilibrium at which V has reached it: max(0.001 rtol, 1e-14).
+
+    rtol: float, relative tolerance of the motion, dimensionless.
+    """
     return max(_NEAR_EQUILIBRIUM * rtol, _NEAR_ROUNDING)
 
 
@@ -83,7 +86,8 @@ def may_be_at_equilibrium(noise, work):
     and the result is True only for a p' within the noise.  If True, :func:`find_equilibrium` decides.
 
     noise: float, rounding error of p', at least 0, dimensionless.
-    work: Workspace, with p, p' and dp'/dp at node 0.
+    work: Workspace, with p, p' and dp'/dp at node 0 (ROW_P, ROW_P_RATE, ROW_P_DIAGONAL); rtol is read too.
+    Returns True also at equality, False if one of these is NaN.
     """
     nodes, tolerance = work.nodes, equilibrium_tolerance(work.options.rtol)
     return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * tolerance * nodes[ROW_P_DIAGONAL] * abs(nodes[ROW_P])
@@ -96,9 +100,9 @@ def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
     V has no equilibrium here where omega approaches V, or 0 under a brake, where feedback of omega acts on either
     speed, or where V' does not decrease with V.
 
-    state: State, the present one.
-    rates: Rates, at that state.
-    regime: Regime, of full slip.
+    state: State, the present one, in full slip.
+    rates: Rates, at that state; p_rate, weighted_rate, dp_rate_dV, dp_rate_dd and drate_dd are read.
+    regime: Regime, of full slip; ``sigma`` and ``spin_sign`` are read.
     noise: float, rounding error of p', dimensionless.
     tolerance: float, relative distance of V at which it has reached its equilibrium.
     Returns (reached, State): whether the Newton step is at most ``tolerance`` times V plus the part of it that
@@ -117,18 +121,18 @@ def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
 def find_equilibrium(state, regime, noise, step_state, work):
     """Return the stable equilibrium under the present drive and whether the motion has reached it.
 
-    The motion has reached it if the Newton step to it is below the tolerance, of V relative to itself and of d in
-    absolute terms, or below rounding.  In full slip the equilibrium is that of V alone
+    The motion has reached it if the Newton step to it is at most the tolerance, of V relative to itself and of d in
+    absolute terms, plus the step that ``noise`` explains.  In full slip the equilibrium is that of V alone
     (:func:`_equilibrium_full_slip`).  The Jacobian of the present state decides whether the equilibrium is stable.
 
     state: State, the present one, with V > 0 in partial slip.
     regime: Regime, at that state.
     noise: float, rounding error of p' at the equilibrium, dimensionless.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion; it is only read.
     Returns (reached, State): a bool, and the State after the Newton step, reached or not, with V at least 0 in partial
-    slip. (False, state) where the equilibrium is not stable, and in partial slip where a speed is prescribed or the
-    brake holds omega.
+    slip; nothing limits its d.  (False, state) where the equilibrium is not stable, in full slip where V has none, and
+    in partial slip where a speed is prescribed or the brake holds omega.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)
@@ -166,8 +170,9 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; where the equilibrium is reached, nodes, dense output, drive at the nodes, outputs
     and quadratures are written.
-    Returns (reached, State, StepState): whether the motion has reached it; both at the end of the segment, with one
-    trial step and one accepted step more and the length of the next step not chosen, or both unchanged.
+    Returns (reached, State, StepState): whether the motion has reached it, a bool; if so the State at the equilibrium,
+    of V alone in full slip, with omega of the end of the segment, and the StepState there, with one trial step and one
+    accepted step more and the length of the next step not chosen; else both unchanged.
     """
     steady, equilibrium = find_equilibrium(state, regime, noise, step_state, work)
     if not steady:
@@ -194,9 +199,10 @@ def is_coasting(state, regime, step_state, work):
     alpha = 1 there is no rolling resistance, and V decays only under a feedback that brakes.
 
     state: State, the present one.
-    regime: Regime, at that state.
-    step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
+    regime: Regime, at that state; ``full_slip`` is read.
+    step_state: StepState, of which the segment is read.
+    work: Workspace, of the motion; it is only read.
+    Returns False in full slip, at V = 0 and where resistance and feedback are equal; :func:`coast_to_end` is for True.
     """
     rtol = work.options.rtol
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
@@ -213,12 +219,13 @@ def _energies_of_decay(rate, inertia, torque_difference, work):
     Of half-spaces the loss in slip is of higher order and counts as 0, and the loss in rolling is the kinetic energy
     plus the works of the feedback.  Of a cover, which slips in free rolling, both follow from traction and moments.
 
-    rate: float, rate of the decay of V per unit of tau.
+    rate: float, rate of the decay of V per unit of tau, above 0.
     inertia: float, factor of V' in the equation of the decay, dimensionless.
     torque_difference: float, inertia times Q/V, dimensionless; only a cover needs it.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
     Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the brake), floats,
-    dimensionless, in the order of the quadratures; the last is 0, as no brake acts.
+    dimensionless, in the order of quadratures 2 ... 6 of :func:`write_quadrature`; works of a feedback that brakes are
+    negative; the last is 0, as no brake acts.
     """
     half_space, cylinder, force, torque = low_speed_limits(work)
     delta_0, force_work, torque_work = rest_limits(work.scene)[1], force / rate, torque / rate
@@ -236,8 +243,8 @@ def coast_to_end(state, regime, step_state, work):
 
     The rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit V -> 0 and
     inertia = 1 + j (1 + delta_0) + gamma N.  With a rest threshold the motion ends when the larger speed has fallen to
-    it: from then on V = omega = 0, forces of 0, delta = delta_0 and the code AT_REST are written, and the kinetic
-    energy that is left counts as lost.
+    it: from then on V = omega = 0, forces of 0, delta = delta_0 and the code AT_REST are written, the kinetic energy
+    that is left counts as lost, and works and losses are those of the whole decay to V = 0.
 
     state: State, the present one, in partial slip; its V is the start of the decay, its d is replaced by that of the
     decay.

@@ -48,7 +48,10 @@ class Drives(NamedTuple):
 
 @kernel
 def _value_of_motion(array, i):
-    """Return the value of motion ``i``; array: one value for all motions, or one for each."""
+    """Return the value of motion ``i``, an int: ``array[i]``, or the last value where ``array`` is shorter.
+
+    array: (1,) or (n,), one value for all motions, or one for each; not empty.
+    """
     return array[min(i, array.size - 1)]
 
 
@@ -60,10 +63,10 @@ def _drive_of_motion(drives, gamma, i, segments):
     prescribed speed are copied.
 
     drives: Drives, over t; one for all motions, or one for each.
-    gamma: float, tau = gamma t, dimensionless.
+    gamma: float, tau = gamma t, dimensionless, above 0.
     i: int, index of the motion.
-    segments: (k, columns), written.
-    Returns the Gains of the motion, those of the last one given if there are fewer.
+    segments: (k, columns), written: k segments, columns as COL_* of :mod:`records`.
+    Returns the Gains of the motion, those of the last one given if there are fewer; they are not converted.
     """
     source = drives.segments[min(i, drives.segments.shape[0] - 1)]
     for k in range(segments.shape[0]):
@@ -86,12 +89,13 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
     batch: fields of a :class:`Batch`, parameters and starts of n motions; n is the length of the second axis of
     ``out``.
     drives: fields of :class:`Drives`, over t.
-    t: (k,), output times, dimensionless, increasing.
+    t: (k,), output times, dimensionless, increasing, k >= 1, the first at least 0.
     options: fields of :class:`Options`, of the integration.
     rows: (q,) int, requested output rows of :mod:`output`.
     out: (q, n, k), [quantity, motion, time], filled; NaN at times that a motion did not reach.
     info: (n, 5), [motion, INFO_COLUMNS], filled: status (a code of :mod:`records`), trial steps, regime changes, and t
-    of the onset of stick and of coming to rest, NaN where they do not occur.
+    of the onset of stick and of coming to rest, NaN where they do not occur.  A motion that fails has its status here;
+    the others are not affected.
     notes: (switches, step_ends), arrays (m, 2) and (l,).  Each motion writes its regime changes, t and code, and the
     ends t of its steps from their starts on, as far as they have room: they are meant for a single motion, as entries
     that a motion does not write are left as they were.

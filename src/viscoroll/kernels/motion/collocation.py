@@ -85,7 +85,8 @@ def multiply_matrix(matrix, row, offset, values, target, result):
     offset: float, subtracted from each value of the row.
     values: array or pointer that contains the row.
     target: int, index in ``result`` from which the product is written.
-    result: array or pointer, ROW_LENGTH numbers of which are written; it may be ``values``, as all are read before.
+    result: array or pointer, ROW_LENGTH numbers of which are written; it may be ``values``, as all are read before.  A
+    NaN or inf in the row makes the whole product NaN or inf, even where the matrix is 0.
     """
     low = high = broadcast(0.0)
     for k in range(ROW_LENGTH):
@@ -103,9 +104,11 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     D is the differentiation matrix.  Node 0 is given, not an unknown: the column of node 0 is not written, and in the
     other columns the entry of node 0 is 0.
 
-    weights, diagonal: int, indices in ``nodes`` of the rows with the numbers of either diagonal matrix.
+    weights, diagonal: int, indices in ``nodes`` of the rows with the numbers of either diagonal matrix; the weight of
+    node 0 must be finite, its entry in ``diagonal`` is not read.
     nodes: Workspace.nodes.
-    matrix: pointer to ROW_LENGTH^2 numbers, written column by column.
+    matrix: pointer to ROW_LENGTH^2 numbers, of which columns 1 ... N are written; column 0 keeps its values, 0 from the
+    start of the motion.
     """
     low, high = load(nodes, weights), load(nodes, weights + LANES)
     for k in range(1, ROW_LENGTH):
@@ -127,8 +130,8 @@ def _eliminate(i, matrix):
 
     i: int, 1 ... N, number of the step and index of the row and column of its pivot; row and column of node 0 are left
     out.
-    matrix: pointer to ROW_LENGTH^2 numbers, column by column; columns 1 ... N are changed.  A pivot of 0 leaves inf and
-    NaN.
+    matrix: pointer to ROW_LENGTH^2 numbers, column by column; columns 1 ... N are changed, their entries of node 0 stay
+    0.  A pivot of 0 leaves inf and NaN.
     """
     column = ROW_LENGTH * i
     pivot = broadcast(1.0 / matrix[column + i])
@@ -210,7 +213,7 @@ def fit_integral(row, target, nodes):
 def evaluate_dense_output(v, nodes, row):
     """Return the interpolant of a row at a position, less its value at the left end; a float in the unit of the row.
 
-    v: float, position on the step, 0 at its left end, where the result is 0, and 2 at its right end; beyond 2 the
+    v: float, position on the step, 0 at its left end, where the result is 0, and 2 at its right end; outside the
     polynomial is extrapolated.
     nodes: Workspace.nodes.
     row: int, index in ``nodes`` of the coefficients of :func:`fit_dense_output`.
@@ -242,7 +245,8 @@ def row_range(row, nodes):
 
     row: int, index in ``nodes`` of the row.
     nodes: Workspace.nodes.
-    Returns (smallest, largest), in the unit of the row.
+    Returns (smallest, largest), floats in the unit of the row.  Both are NaN if node 0 is; a NaN at another node is
+    passed over.
     """
     smallest = largest = nodes[row]
     for i in range(1, N + 1):

@@ -65,8 +65,8 @@ def _residual_of_d(d, load, scene):
 
     d: float, delta/delta_star, in [-1, 1]; of a cover that of the excess over free rolling.
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
-    scene: Scene, parameters of Eq. (22); mu > 0.
-    Returns (residual, its slope in d, V'), floats, dimensionless.
+    scene: Scene, of which kappa, mu > 0 and ``law`` are read.
+    Returns (residual, its slope in d, V'), floats, dimensionless; V' is in the direction of ``load``, of either sign.
     """
     Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
     V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
@@ -85,7 +85,7 @@ def _d_at_zero_omega(scene):
     It is above -1, so that omega can stay 0 in partial slip, only where mu L > 2 kappa (1 + delta_0); of half-spaces,
     where L = 1 and delta_0 = 0 at rest, that is mu > 2 kappa.
 
-    scene: Scene, parameters of Eq. (22).
+    scene: Scene, of which kappa, mu > 0 and ``law`` are read.
     """
     L, delta_0 = rest_limits(scene)
     return -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
@@ -98,11 +98,11 @@ def _spin_against_brake(load, scene):
     The brake can hold omega in partial slip only where friction is so strong that d at omega = 0 is above -1
     (:func:`_d_at_zero_omega`); it holds it where the torque that the traction there leaves is at most its own.
 
-    load: Load, at V = 0, with a brake.
+    load: Load, at V = 0, of a segment with a brake, whose torque may be 0 at the time.
     scene: Scene, parameters of Eq. (22).
     Returns (sign, held): sign of omega, 1.0 where d at omega = 0 is at most -1, as omega then grows with V, else that
-    of the torque that is left, 0.0 for none; held, whether the brake holds omega at 0, in which case the sign is to be
-    ignored.
+    of the torque that is left, 0.0 for none; held, a bool, whether the brake holds omega at 0 (also where both torques
+    are equal), in which case the sign is to be ignored.
     """
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
@@ -115,11 +115,13 @@ def _spin_against_brake(load, scene):
 def _effective_load(load, spin_sign, scene):
     """Return the Load that contains the torque of the brake and the effect of the added mass on V' and omega'.
 
+    With the result V' = inverse_mass (Q + force) + V_rate and omega' = inverse_inertia (torque - Q) + omega_rate hold
+    at V = 0, where M is 0, although the moment n V' of the added mass acts, half of it on V and half on omega; V_rate
+    and omega_rate are the prescribed slopes.
+
     load: Load, at V = 0.
     spin_sign: float, sign of omega against which the brake acts; 0 for none.
-    scene: Scene, with the added mass.
-    With the result V' = inverse_mass (Q + force) + V_rate and omega' = inverse_inertia (torque - Q) + omega_rate hold
-    at V = 0, where M is 0, although the moment n V' of the added mass acts, half of it on V and half on omega.
+    scene: Scene, with the added mass; n > -1 at V = 0 where V is free, else the result is not finite or has no meaning.
     Returns ``load`` with other ``torque``, ``inverse_mass`` and ``inverse_inertia``; without brake and added mass they
     stay too.  The field ``brake`` stays although its torque is in ``torque``.
     """
@@ -169,8 +171,9 @@ def solve_d_at_departure(load, spin_sign, scene):
     load: Load, at V = 0.
     spin_sign: float, sign of omega against which a brake acts; 0 without one, or where it holds omega.
     scene: Scene, parameters of Eq. (22).
-    Returns (can_roll, d): whether the cylinder can roll off in partial slip, that is there is a root with |d| < 1 and
-    V' > 0 there; d of the root, also where V' <= 0, dimensionless.  (False, 0.0) where there is no root.
+    Returns (can_roll, d): whether the cylinder can roll off in partial slip, a bool, that is there is a root with |d| <
+    1 and V' > 0 there; d of the root, also where V' <= 0, a float, dimensionless, to rounding; a root at 0 comes out as
+    a |d| of about 1e-60, not as 0.0.  (False, 0.0) where there is no root with |d| < 1.
     """
     load, low, high = _effective_load(load, spin_sign, scene), -1.0, 1.0
     d_zero = _d_at_zero_omega(scene)  # The residual decreases above this d.
@@ -208,10 +211,12 @@ def holding_margin(load, mu):
     - V prescribed to stay 0: mu plus the torque of the brake, less the modulus of the torque of the motor;
     - omega prescribed to stay 0: mu - |force|.
 
-    load: Load, at V = omega = 0, where feedback vanishes.
-    mu: float, coefficient of friction.
-    Returns the margin as a force or torque, a float, dimensionless; -1.0 where a prescribed speed has a slope other
-    than 0.
+    load: Load, at V = omega = 0, where feedback vanishes; force, torque, brake, the prescribed slopes and the inverse
+    mass and inertia are read.  The brake must not hold omega (``locked``), as inverse_inertia = 0 is taken for a
+    prescribed omega.
+    mu: float, coefficient of friction, dimensionless.
+    Returns the margin as a force or torque, a float, dimensionless, at most mu + brake; 0 holds.  It is -1.0 where a
+    prescribed speed has a slope other than 0.
     """
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
         return -1.0
@@ -225,12 +230,15 @@ def holding_margin(load, mu):
 
 @kernel
 def _holding_margin_at(tau, segment, work):
-    """Return the holding margin of :func:`holding_margin` at a time: a force or torque, dimensionless, below 0 where
-    the drive moves the cylinder.
+    """Evaluate the drive at a time and return by how much friction and brake hold the cylinder at rest against it.
+
+    :func:`holding_margin` takes a Load; the search for the time of departure needs the margin as a function of time.
 
     tau: float, the time.
     segment: int, index of the segment of the drive that contains the time.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion, whose Scene and Drive are read.
+    Returns a force or torque, a float, dimensionless: at least 0 where the cylinder stays, below 0 where the drive
+    moves it, -1.0 where a prescribed speed has a slope other than 0.
     """
     return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene.mu)
 
@@ -239,14 +247,14 @@ def _holding_margin_at(tau, segment, work):
 def find_departure_time(tau, segment, work):
     """Return the first tau at which the drive moves a cylinder at rest; the end of the segment if it does not.
 
-    If the drive is constant its margin at ``tau`` decides between ``tau`` and the end.  Else a sign change of the
-    holding margin is searched in _SCAN_INTERVALS intervals of the rest of the segment, then bisected to rounding; two
-    sign changes in one interval are not found.
+    If the drive is constant its margin at ``tau`` decides between ``tau`` and the end; a margin of 0 holds.  Else a
+    sign change of the holding margin is searched in _SCAN_INTERVALS intervals of the rest of the segment, then bisected
+    to rounding; two sign changes in one interval are not found.  The margin at ``tau`` itself is then not evaluated.
 
-    tau: float, time from which the search starts.
+    tau: float, time from which the search starts, at which the cylinder stays.
     segment: int, index of the segment that contains it.
     work: Workspace, of the motion.
-    Returns a float in [tau, end of the segment]; the margin is negative there, unless it is the end.
+    Returns a float in [tau, end of the segment or of the motion]; the margin is negative there, unless it is the end.
     """
     end = segment_end(segment, work)
     if is_constant(segment, work.drive):
@@ -281,8 +289,9 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
     departure in partial slip was found.
     work: Workspace, of the motion.
     Returns (kind, Regime, 0.0) in the form of :func:`depart_from_rest`: SLIDES_OFF with the Regime of full slip, in the
-    direction in which V grows, with the sign of the slip in that direction as ``sigma`` and the ``spin_sign`` and
-    ``locked`` that the brake causes; or STAYS_AT_REST with REGIME_AT_REST.  The third entry, 0.0, is omega.
+    direction in which V grows (1.0 where V' is 0), with the sign of the slip in that direction as ``sigma`` and the
+    ``spin_sign`` and ``locked`` that the brake causes; or STAYS_AT_REST with REGIME_AT_REST if neither sign passes.
+    The third entry, 0.0, is omega.
     """
     scene = work.scene
     L, free_creep = rest_limits(scene)

@@ -60,9 +60,11 @@ def n_coefficients(row):
 
 @inline_kernel
 def evaluate_polynomial(row, function, x):
-    """Return one function of a segment at a position, a float, dimensionless, in fixed directions.
+    """Return one function of a segment at a position by Horner's scheme, a float, dimensionless, in fixed directions.
 
-    row: (columns,), the segment.
+    The torque of the brake may come out below 0.
+
+    row: (columns,), the segment; its coefficients, in ascending powers of x, are read.
     function: int, DRIVE_FORCE, DRIVE_TORQUE, DRIVE_RATE, DRIVE_BRAKE or DRIVE_SPEED (:mod:`records`).
     x: float, position in [-1, 1] on the segment; outside the polynomial is extrapolated.
     """
@@ -79,8 +81,8 @@ def _sum_of_moduli(row, first, last):
 
     It is an upper bound of the modulus of each of them on the segment, and 0 only if all are 0.
 
-    row: (columns,), the segment.
-    first, last: int, index DRIVE_* of the first function and of the one after the last.
+    row: (columns,), the segment; its coefficients are read.
+    first, last: int, index DRIVE_* of the first function and of the one after the last, ``first`` < ``last``.
     """
     n_terms, total = n_coefficients(row), 0.0
     for n in range(COL_COEFFICIENTS + first * n_terms, COL_COEFFICIENTS + last * n_terms):
@@ -93,8 +95,8 @@ def evaluate_drive(tau, segment, drive):
     """Return the drive at one time, in fixed directions, not in those of the regime, without feedback; dimensionless.
 
     tau: float, the time.
-    segment: int, index of the segment that contains tau.
-    drive: Drive, that of the motion.
+    segment: int, index of the segment that contains tau; outside it its polynomials are extrapolated.
+    drive: Drive, of which ``segments`` and ``prescribed`` are read.
     Returns (force, torque of the motor, slope in tau of the prescribed speed, largest torque of the brake), floats; the
     slope is 0 without a prescribed speed; the torque of the brake is at least 0, as values below 0 count as 0.
     """
@@ -136,7 +138,7 @@ def load_from_values(values, regime, work):
 
     values: (force, torque, slope of the prescribed speed, torque of the brake), as :func:`evaluate_drive` returns them.
     regime: Regime, of which ``direction`` and ``locked`` are read.
-    work: Workspace, with the Drive and j.
+    work: Workspace, of which ``drive.prescribed``, ``drive.gains`` and ``scene.j`` are read.
     """
     force, torque, rate, brake = values
     drive, direction = work.drive, regime.direction
@@ -159,8 +161,8 @@ def evaluate_load(tau, segment, regime, work):
 
     tau: float, the time.
     segment: int, index of the segment that contains tau.
-    regime: Regime, at that time.
-    work: Workspace, of the motion.
+    regime: Regime, at that time; ``direction`` and ``locked`` are read.
+    work: Workspace, of which the Drive and j are read.
     """
     return load_from_values(evaluate_drive(tau, segment, work.drive), regime, work)
 
@@ -170,9 +172,9 @@ def current_load(regime, step_state, work):
     """Return the Load at the time reached, in the direction of the regime; its fields are set as by
     :func:`load_from_values`.
 
-    regime: Regime, the present one.
+    regime: Regime, the present one; ``direction`` and ``locked`` are read.
     step_state: StepState, with that time and its segment.
-    work: Workspace, of the motion.
+    work: Workspace, of which the Drive and j are read.
     """
     return evaluate_load(step_state.tau, step_state.segment, regime, work)
 
@@ -183,9 +185,9 @@ def store_drive(step, work):
 
     They are in fixed directions, not in those of the regime, and without feedback.
 
-    step: Step, within one segment.
-    work: Workspace; the four rows from ROW_DRIVE on are written.  They are left as they are where nothing drives from
-    the first segment on: they are 0 from the start of the motion then.
+    step: Step, within one segment; tau, h, segment and undriven are read.
+    work: Workspace; the four rows from ROW_DRIVE on are written, nodes 0 ... N.  They are left as they are where
+    nothing drives from the first segment on: they are 0 from the start of the motion then.
     """
     nodes = work.nodes
     if step.undriven and step.segment == 0:  # The rows are 0 from the start of the motion.
@@ -206,8 +208,8 @@ def load_at_node(i, regime, work):
     Its fields are set as by :func:`load_from_values`.
 
     i: int, the node, 0 ... N.
-    regime: Regime, that of the step.
-    work: Workspace, with the drive at the nodes (:func:`store_drive`).
+    regime: Regime, that of the step; ``direction`` and ``locked`` are read.
+    work: Workspace, with the drive at the nodes (:func:`store_drive`); its Drive and j are read too.
     """
     nodes = work.nodes
     values = (
@@ -226,7 +228,7 @@ def segment_end(segment, work):
     The last segment has no end of its own: it ends with the motion, at the last output time.
 
     segment: int, index of the segment.
-    work: Workspace, of the motion.
+    work: Workspace, of which the output times and the starts of the segments are read.
     """
     end = last_output_tau(work)
     return min(work.drive.segments[segment + 1, COL_START], end) if segment + 1 < work.drive.segments.shape[0] else end
@@ -256,8 +258,9 @@ def continues_smoothly(segment, drive):
     segments; a kink is compared with that sum divided by half the length of the shorter segment.  If the drive is
     smooth the length of the last step is a good one for the next.
 
-    segment: int, index of a segment that another one follows.
-    drive: Drive, that of the motion.
+    segment: int, index of a segment that another one follows; the last one is not allowed.
+    drive: Drive, of which ``segments`` is read.
+    Returns True if every function passes both tests, a difference equal to its limit included, else False.
     """
     row, next_row = drive.segments[segment], drive.segments[segment + 1]
     terms = n_coefficients(row)
@@ -283,9 +286,10 @@ def is_constant(segment, drive):
     bool.
 
     All their coefficients but the constant ones are exactly 0 then.  The prescribed speed itself may be linear in time.
+    Functions that are 0 are constant.
 
     segment: int, index of the segment.
-    drive: Drive, that of the motion.
+    drive: Drive, of which ``segments`` is read.
     """
     row, variation = drive.segments[segment], 0.0
     terms = n_coefficients(row)
@@ -307,7 +311,8 @@ def is_unloaded(segment, drive):
     """Return whether from a segment on there is no force, torque, brake or prescribed speed; feedback may act; a bool.
 
     segment: int, index of the segment; all later ones are considered too.
-    drive: Drive, that of the motion.
+    drive: Drive, of which ``segments`` and ``prescribed`` are read.
+    Returns False with a prescribed speed, even if it is 0.
     """
     for row in drive.segments[segment:]:
         if _sum_of_moduli(row, DRIVE_FORCE, N_DRIVE_FUNCTIONS) > 0.0:
@@ -318,6 +323,8 @@ def is_unloaded(segment, drive):
 @kernel
 def is_undriven(segment, drive):
     """Return whether from a segment on nothing drives, feedback included, a bool.
+
+    It is :func:`is_unloaded` with all gains of the feedback 0.
 
     segment: int, index of the segment; all later ones are considered too.
     drive: Drive, that of the motion.
@@ -331,7 +338,9 @@ def is_undriven(segment, drive):
 def rest_threshold(segment, work):
     """Return the speed below which the motion ends at rest, dimensionless; 0 while something drives or will.
 
+    Feedback drives too (:func:`is_undriven`).  It is 0 also if no threshold is given.
+
     segment: int, index of the present segment of the drive.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion; its Drive and the threshold in ``options`` are read.
     """
     return work.options.rest_speed if work.options.rest_speed > 0.0 and is_undriven(segment, work.drive) else 0.0

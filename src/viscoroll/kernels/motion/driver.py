@@ -77,9 +77,10 @@ def _advance_at_rest(step_state, work):
     Returns (kind, State, Regime, StepState):
 
     - ROLLS_OFF, SLIDES_OFF: it departs now; State with V = 0 and d in partial slip, omega = 0 in full slip; the Regime
-      of the departure; the time stays, the length of the next step is not chosen;
-    - STAYS_AT_REST: State of zeros, REGIME_AT_REST; the StepState at the time at which the drive will move it, or at
-      the end of the segment, with the outputs before that time written, and at the last output time that one too;
+      of the departure; the time and the number of trial steps stay, the length of the next step is not chosen;
+    - STAYS_AT_REST: State of zeros, REGIME_AT_REST; the StepState at the time at which the drive will move it
+      (:func:`find_departure_time`), or at the end of the segment or of the motion, with one trial step more, the
+      outputs before that time written, and at the last output time that one too;
     - AMBIGUOUS: the same at the present time, with an output at that time written.
     """
     kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
@@ -98,10 +99,10 @@ def _is_below_rest_speed(moving, state, regime, step_state, work):
     It is False without a threshold and while something drives or will; a cylinder that does not move counts as below.
 
     moving: bool, whether the cylinder moves.
-    state: State, the present one; ignored unless it moves.
+    state: State, the present one; ignored unless it moves, as is ``regime``.
     regime: Regime, at that state.
-    step_state: StepState, with the segment.
-    work: Workspace, of the motion.
+    step_state: StepState, of which the segment is read.
+    work: Workspace, of the motion; it is only read.
     """
     rest_speed = rest_threshold(step_state.segment, work)
     if rest_speed == 0.0 or not moving:
@@ -115,12 +116,12 @@ def added_mass_exhausted(event, state, regime, work):
 
     It is so where its margin (:func:`added_mass_margin`) is at most 0, or where the event STICK_EDGE, whose function is
     the product of the margin and 1 - |d|, is due to the margin, the smaller factor of the two.  In full slip it is
-    False.  A law without added mass has a margin of 1: the result is False then.
+    False.  A law without added mass has a margin of 1: the result is False then, as sigma d is about 1 at STICK_EDGE.
 
     event: int, code of the last event, or NO_EVENT.
     state: State, the present one.
-    regime: Regime, at that state.
-    work: Workspace, of the motion.
+    regime: Regime, at that state; ``full_slip`` and ``sigma`` are read.
+    work: Workspace, of the motion; its Scene is read.
     """
     margin = added_mass_margin(added_inertia(state.V, work.scene)[0], work.scene.j)
     at_end = event == STICK_EDGE and margin < 1.0 - regime.sigma * state.omega_or_d
@@ -131,11 +132,12 @@ def added_mass_exhausted(event, state, regime, work):
 def _relaxes_within_rounding(state, regime, step_state, work):
     """Return whether d relaxes, or changes by 1, within the rounding of time, 1e-13 of the time so far; a bool.
 
-    It is False in full slip, and at tau = 0.
+    The relaxation time is V divided by the modulus of the derivative of V d' in d, the time of a change by 1 is V/|V
+    d'|.  The result is False in full slip, at tau = 0, and where both moduli are 0.
 
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion; it is only read.
     """
     if regime.full_slip:
         return False
@@ -147,11 +149,12 @@ def _relaxes_within_rounding(state, regime, step_state, work):
 def _vanishes_within_rounding(state, regime, step_state, work):
     """Return whether V falls to 0 within the rounding of time, 1e-13 of the time so far, or is negligible; a bool.
 
-    V is negligible at 1e-75 and below, if something drives or will.
+    V is negligible at 1e-75 and below, if something drives or will.  It falls to 0 within the time V/|V'| if V' is
+    below 0; at tau = 0 or with V' at least 0 it does not.
 
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion; it is only read.
     """
     if state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive):
         return True
@@ -161,6 +164,8 @@ def _vanishes_within_rounding(state, regime, step_state, work):
 @kernel
 def relax_creep(state, regime, step_state, work):
     """Relax d to its equilibrium at a fixed time and fixed p, by bisection, where no step can resolve its relaxation.
+
+    The equilibrium is the zero of V d', which is positive for smaller d; the added mass n in p stays that of ``state``.
 
     state: State, the present one, in partial slip.
     regime: Regime, at that state.
@@ -207,7 +212,7 @@ def _advance_segment(moving, state, regime, step_state, work):
     Returns (moves, State, Regime, StepState), unchanged where no segment ends.  Where one does, StepState has the next
     segment and keeps the length of the next step only where the drive continues smoothly, else 0.  Of a cylinder that
     moves, State and Regime are those of :func:`enter_segment`, and it still moves unless V is 0 in partial slip or both
-    speeds are 0; of one at rest they are unchanged.
+    speeds are 0; of one at rest they are unchanged.  The time stays; one call enters one segment at most.
     """
     drive = work.drive
     if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == drive.segments.shape[0]:
@@ -233,10 +238,11 @@ def _come_to_rest(code, state, regime, step_state, work):
     The change of regime to AT_REST is recorded unless ``code`` is -1 or AT_REST.
 
     code: int, regime in the outputs before; -1 before the first one.
-    state, regime: State and Regime, the present ones.
+    state, regime: State and Regime, the present ones; of a cylinder at rest State(0, 0).
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; outputs, switches, REST_TIME and the total of the loss in rolling are written.
-    Returns the StepState at the last output time.
+    work: Workspace, of the motion; outputs, switches, REST_TIME (t = tau/gamma) and the total of the loss in rolling
+    are written.
+    Returns the StepState at the last output time, with one trial step more and all outputs written.
     """
     nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]
     if code >= 0 and code != AT_REST:
@@ -255,10 +261,10 @@ def _record_regime(code, new_code, stick_formed, step_state, work):
     code: int, regime in the outputs before; -1 before the first one, which is no change.
     new_code: int, regime in the outputs from now on.
     stick_formed: bool, whether the stick zone has just formed; t = tau/gamma is then written to ONSET_TIME if that is
-    NaN.
+    NaN, and if the code changes.
     step_state: StepState, with the time of the change.
     work: Workspace, of the motion; switches, their numbers and ONSET_TIME are written.
-    Returns ``new_code``.
+    Returns ``new_code``, an int, also where it equals ``code``.
     """
     if new_code != code:
         if code >= 0:
@@ -334,15 +340,17 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
 def integrate_motion(V0, omega0, record):
     """Integrate one motion of Eq. (22) with its drive from t = 0 to its last output time.
 
-    Where something drives or will, speeds below 1e-75 count as 0; V0 counts as 0 up to 1e-150 of |omega0|.  From V =
-    omega = 0 the cylinder stays at rest until the drive moves it.
+    Where something drives or will, two speeds below 1e-75 count as 0; V0 counts as 0 up to 1e-150 of |omega0|.  From V
+    = omega = 0 the cylinder stays at rest until the drive moves it.
 
     V0, omega0: float, initial speeds of either sign, dimensionless.
     record: Workspace, by value; ``nodes`` are 0 on entry, but for the row of ones.  Outputs, switches and ends of steps
     are written.
     Returns (status, number of trial steps, number of regime changes, t of the onset of stick, t of coming to rest): the
-    status is a code of :mod:`records`, COMPLETED ... ADDED_MASS_EXHAUSTED; reversals of direction are no regime
-    changes; the times are dimensionless, tau/gamma, NaN where the event does not occur.
+    status is a code of :mod:`records`, COMPLETED ... ADDED_MASS_EXHAUSTED, an int as the number of trial steps; all
+    others are floats.  Reversals of direction are no regime changes; the times are dimensionless, tau/gamma, NaN where
+    the event does not occur.  The onset is the first one of the motion; coming to rest is that below the rest
+    threshold, NaN without a threshold.
     """
     work = by_reference(record)
     nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)

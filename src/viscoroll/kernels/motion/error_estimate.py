@@ -120,7 +120,8 @@ def error_scales(step, regime, work):
     work: Workspace, with V and the larger speeds at its nodes; in partial slip also with d at the last one and with the
     derivatives of p.
     Returns (scale of V, scale of the second unknown), floats, dimensionless.  A scale of a speed is 0 where that speed
-    is 0 at all nodes: the update or error that is divided by it is then inf or NaN, and the step is rejected.
+    is 0 at all nodes: the update or error that is divided by it is then inf or NaN, and the step is rejected.  A NaN at
+    a node is passed over, but for d at the last node, with which the second scale is NaN in partial slip.
     """
     nodes, largest_speed, largest_V, V_change = work.nodes, 0.0, 0.0, 0.0
     for i in range(N + 1):
@@ -153,7 +154,7 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
     node 0 is set to 0.
     initial_slope: float, slope in t at the left end by the right-hand side, in the unit of the row.
     nodes: Workspace.nodes.
-    Returns the modulus of the defect, in the unit of the row.
+    Returns the modulus of the defect, a float >= 0 in the unit of the row; NaN if a value of the row is NaN.
     """
     multiply_matrix(DIFFERENTIATION, row, nodes[row], nodes, slope_row, nodes)
     defect = initial_slope
@@ -167,8 +168,10 @@ def _variation_of_p_rate(half, nodes):
     """Return the largest difference of p' between nodes 1 ... N, times half the length of the step; a float >= 0 in the
     unit of p.
 
+    It tells :func:`estimate_error` by how much p' varies on the step, beside which a defect counts as small or not.
+
     half: float, half the length of the step in tau.
-    nodes: Workspace.nodes, with p' at nodes 1 ... N.
+    nodes: Workspace.nodes, with p' at nodes 1 ... N; one that is NaN is passed over unless it is at node 1.
     """
     smallest = largest = nodes[ROW_P_RATE + 1]
     for i in range(2, N + 1):
@@ -187,8 +190,8 @@ def _relative_speed_at_first_output(step, work):
 
     step: Step, from V = omega = 0 on.
     work: Workspace, with V at its nodes.
-    Returns a float in (0, 1], dimensionless; 1 where V is 0 at all nodes.  It is 0 only if V has come back to exactly 0
-    at the last node, and the step is then rejected.
+    Returns a float in [0, 1], dimensionless; 1 where V is 0 at all nodes.  It is 0 only if V has come back to exactly 0
+    at the last node, and the step is then rejected, as its error is inf or NaN.
     """
     nodes, output_time = work.nodes, last_output_tau(work)
     for i in range(work.output_tau.size):
@@ -211,7 +214,8 @@ def _strong_friction_rounding(regime, work):
     (:func:`has_strong_friction`) only where mu > kappa, so that other scenes need not ask.
 
     regime: Regime, that of the step.
-    work: Workspace, with the drive at node 0.
+    work: Workspace, with the Scene, and the drive at node 0, of which only the inverse mass and inertia matter.
+    Returns a float: 6.6e-15 mu under strong friction in partial slip with sigma < 0, else 0.0.
     """
     strong = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
     return _STRONG_FRICTION_ROUNDING * work.scene.mu if strong else 0.0
@@ -233,12 +237,12 @@ def estimate_error(step, regime, work):
     The first one is divided by :func:`_relative_speed_at_first_output` where both speeds are 0 at the left end, and
     else, under a drive, multiplied by the square root of the growth of the larger speed.
 
-    step: Step, the solved trial step.
+    step: Step, the solved trial step; h, segment, undriven and initial_slope_known are read.
     regime: Regime, that of the step.
     work: Workspace, with the solution at its nodes and the dense output; ROW_P_SLOPE and, where its defect is
     evaluated, ROW_D_SLOPE are written.
-    Returns a float >= 0, dimensionless; inf or NaN, which the caller rejects too, where a scale is 0 or the solution is
-    not finite.
+    Returns a float >= 0, dimensionless; inf or NaN, which the caller rejects too, where the scale of V is 0 or p is not
+    finite.  A NaN of the second unknown or of V with a finite p may be passed over.
     """
     nodes, half = work.nodes, 0.5 * step.h
     scale_V, scale_d = error_scales(step, regime, work)

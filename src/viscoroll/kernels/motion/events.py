@@ -84,8 +84,8 @@ def is_event_active(event, step, regime, work):
 
     event: int, code of the event.
     step: Step, the trial step; ``undriven`` is read.
-    regime: Regime, that of the step.
-    work: Workspace, of the motion.
+    regime: Regime, that of the step; ``full_slip``, ``spin_sign`` and ``locked`` are read.
+    work: Workspace, of the motion; the rest threshold in ``options`` is read.
     """
     if event == DELTA_ZERO:
         return not regime.full_slip
@@ -111,9 +111,11 @@ def evaluate_event_functions(step, regime, work):
 
     A row whose event is not active (:func:`is_event_active`) may keep the values of an earlier step.
 
-    step: Step, the solved one.
+    step: Step, the solved one; ``undriven`` is read.
     regime: Regime, that of the step.
-    work: Workspace, with the unknowns at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written as above.
+    work: Workspace, with the unknowns and the drive at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written as
+    above.  The values are dimensionless: speeds for V_ZERO and BELOW_REST_SPEED, in full slip also for STICK_EDGE and
+    OMEGA_ZERO; a squared torque for BRAKE_RELEASE; ratios for all others.
     """
     nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
     for i in range(N + 1):
@@ -143,8 +145,9 @@ def _first_negative_node(event, last, nodes):
 
     event: int, code of the event.
     last: int, the last node that is considered, 1 ... N.
-    nodes: Workspace.nodes, with the event functions.
-    Returns an int, 1 ... ``last``, or 0.
+    nodes: Workspace.nodes, with the event functions; for STICK_EDGE also with ROW_SPEED.
+    Returns an int, 1 ... ``last``, or 0.  A value of exactly 0 is neither positive nor negative, and a NaN is passed
+    over; one at node 0 makes the result 0.
     """
     smallest, largest = row_range(event, nodes)
     if not smallest < 0.0:
@@ -167,7 +170,7 @@ def locate_zero(event, node, nodes):
     0: the zero is sought beyond the right end of the step, up to half its length.
     nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written.
     Returns a float, v: for ``node`` > 0 in [0, 2]; for ``node`` = 0 in [2, 3], where 2 means that the function is not
-    positive at the right end, and at least NOT_FOUND that it is still positive half a step after it.
+    positive at the right end, and at least NOT_FOUND = 2.99 that it has no zero before that position.
     """
     fit_dense_output(event, ROW_DENSE_EVENT, nodes)
     low, high = (1.0 + NODES[node - 1], 1.0 + NODES[node]) if node > 0 else (2.0, _EXTRAPOLATION_END)
@@ -184,8 +187,9 @@ def _find_interpolant_zero(start, low, high, nodes):
     start: float, value of the event function at v = 0, which the interpolant leaves out.
     low, high: float, ends of the bracket in v; the function should be positive at ``low`` and negative at ``high``.
     nodes: Workspace.nodes, with the interpolant at ROW_DENSE_EVENT.
-    Returns a float in [low, high]: ``low`` if the function is not positive there, else ``high`` if it is positive
-    there; else the end of the last bracket with the smaller modulus of the function, which is a zero to rounding.
+    Returns a float in [low, high]: ``low`` if the function is 0, negative or NaN there, else ``high`` if it is positive
+    there; else the end of the last bracket with the smaller modulus of the function, as the weights have reduced it,
+    and ``high`` of two equal ones: a zero to rounding.
     """
     f_low = start + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT)
     f_high = start + evaluate_dense_output(high, nodes, ROW_DENSE_EVENT)
@@ -217,7 +221,9 @@ def _locate_double_crossing(event, nodes):
     before it.
 
     event: int, code of the event and index in ``nodes`` of the row of its function.
-    nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written.
+    nodes: Workspace.nodes, with the event functions; the row ROW_DENSE_EVENT is written if there is such a node.
+    Returns a float: a v between nodes i - 1 and i + 1, or 0.0.  A minimum between two nodes of equal value is not
+    found.
     """
     for i in range(1, N):
         if 0.0 < nodes[event + i] < min(nodes[event + i - 1], nodes[event + i + 1]):
@@ -241,8 +247,8 @@ def find_first_event(step, regime, work):
     """Return the event whose function falls below 0 first on a solved step, and its position by the interpolant.
 
     Only active events count (:func:`is_event_active`).  Between the same two nodes the zeros of the interpolants decide
-    which event is first.  If no function is negative at a node, in full slip the stick edge is also searched between
-    the nodes.
+    which event is first; at equal zeros it is the one with the smaller code.  If no function is negative at a node, in
+    full slip the stick edge is also searched between the nodes (:func:`_locate_double_crossing`).
 
     step: Step, the solved one.
     regime: Regime, that of the step.
@@ -275,8 +281,8 @@ def find_missed_event(step, regime, work):
 
     step: Step, the solved one.
     regime: Regime, that of the step.
-    work: Workspace, with the event functions.
-    Returns an int, the first such event in the order of the codes.
+    work: Workspace, with the event functions, and speeds and drive at the nodes.
+    Returns an int, the first such event in the order of the codes, or NO_EVENT.
     """
     nodes = work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
@@ -297,10 +303,13 @@ def find_missed_event(step, regime, work):
 def _event_function(event, v, regime, work):
     """Return an event function at a position of a step, by the dense output of the unknowns; a float, dimensionless.
 
+    At the nodes it has the values of :func:`evaluate_event_functions`, to rounding; between them it is more accurate
+    than their interpolant, as the function is no polynomial.
+
     event: int, STICK_EDGE; BELOW_REST_SPEED, in full slip only; or OMEGA_ZERO, in partial slip only.
     v: float, position on the step, in [0, 2] or a little outside.
-    regime: Regime, that of the step.
-    work: Workspace, with the dense output.
+    regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
+    work: Workspace, with the dense output, and the unknowns at node 0.
     """
     V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:
@@ -316,10 +325,10 @@ def refine_event(event, v, regime, work):
 
     Such functions are the stick edge and the larger speed in full slip, and 1 + delta, whose zero is that of omega, in
     partial slip.  The iteration is Newton's, with one difference quotient in place of the slope.  It ends after 5
-    corrections, or before one of 0.1 or more.
+    corrections, or before one of 0.1 or more in modulus or one that is NaN.
 
     event: int, code of the event.
-    v: float, position of the event by the interpolant.
+    v: float, position of the event by the interpolant, in [0, 2].
     regime: Regime, that of the step.
     work: Workspace, with the dense output.
     Returns the position v, a float in [0, 2]; for all other events ``v`` unchanged.
@@ -341,12 +350,12 @@ def _event_scale(event, nodes):
     """Return the scale of an event function on a step, in the unit of the function.
 
     It is the largest modulus of the function at the nodes, or that of the quantities of which the function is a
-    difference if it is larger: the largest of |V| and |omega| on the step for STICK_EDGE, OMEGA_ZERO and
-    BELOW_REST_SPEED, in partial slip too; the square of the brake's largest torque for BRAKE_RELEASE.
+    difference if it is larger: the largest of |V| and |omega| at the nodes for STICK_EDGE, OMEGA_ZERO and
+    BELOW_REST_SPEED, in partial slip too; the square of the brake's largest torque at the nodes for BRAKE_RELEASE.
 
     event: int, code of the event and index in ``nodes`` of the row of its function.
-    nodes: Workspace.nodes, with event functions, speeds and drive.
-    Returns a float, at least 0.
+    nodes: Workspace.nodes, with event functions, ROW_SPEED and drive.
+    Returns a float, at least 0; 0 only where all of these are 0.
     """
     smallest, largest = row_range(event, nodes)
     largest = max(largest, -smallest)
@@ -359,7 +368,10 @@ def _event_scale(event, nodes):
 
 @inline_kernel
 def _event_tolerance(rtol):
-    """Return the value of an event function divided by its scale up to which it counts as 0; rtol: tolerance."""
+    """Return the value of an event function divided by its scale up to which it counts as 0: max(0.01 rtol, 4e-15).
+
+    rtol: float, relative tolerance of the motion, dimensionless.
+    """
     return max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING)
 
 
@@ -369,10 +381,10 @@ def ends_at_event(event, nodes, rtol):
 
     At the right end its modulus is at most max(0.01 rtol, 4e-15) times its scale (:func:`_event_scale`) and the
     function is smaller than at another node.  Its largest value must exceed 1e-13 of the scale, so that a step along
-    which it is 0 but for rounding does not end at it.
+    which it is 0 but for rounding does not end at it.  The result is False for a NaN at the right end.
 
     event: int, code of the event and index in ``nodes`` of the row of its function.
-    nodes: Workspace.nodes, with the event functions.
+    nodes: Workspace.nodes, with the event functions, ROW_SPEED and the drive.
     rtol: float, relative tolerance of the motion, dimensionless.
     """
     scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)

@@ -28,10 +28,11 @@ def evaluate_moments(u, scene):
     """Evaluate what the law gives at one speed: critical creepage, Eq. (9), and rolling moments, Eq. (18).
 
     All seven numbers are finite at u = 0 too, where they are the limits of slow rolling.  The added mass is not in the
-    moments.  They are 0 where both bodies are elastic (alpha = 1).
+    moments.  The moments are 0 where both bodies are elastic (alpha = 1).
 
     u: float, kappa |V|, dimensionless, at least 0.
-    scene: Scene, parameters of Eq. (22); with ``moments_differ`` False each body takes half of the moment.
+    scene: Scene, of which ``law`` and ``moments_differ`` are read; with ``moments_differ`` False each body takes half
+    of the moment.
     Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), floats, dimensionless; L = lam
     (1 + epsilon) = 2 kappa delta_star/mu and its derivatives in u.  The quotients and the slopes are even in V, so that
     the moment of either body at a V of any sign is V times its quotient.
@@ -52,7 +53,9 @@ def evaluate_moments(u, scene):
 def rest_limits(scene):
     """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for half-spaces.
 
-    scene: Scene, parameters of Eq. (22).
+    L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.
+
+    scene: Scene, of which kappa and ``law`` are read.
     """
     return limits_at_rest(scene.kappa, by_value(scene.law))
 
@@ -78,10 +81,11 @@ def low_speed_limits(work):
 def critical_creepage(V, scene):
     """Return the critical creepage delta_star, Eq. (9), at which the whole contact slips, dimensionless.
 
-    On a cover it is the excess over the creepage of free rolling.  It is above 0, even in V and finite at V = 0.
+    On a cover it is the excess over the creepage of free rolling.  It is above 0, even in V, and mu L/(2 kappa) with L
+    of :func:`rest_limits` at V = 0.
 
     V: float, speed of the axis of either sign, dimensionless.
-    scene: Scene, parameters of Eq. (22).
+    scene: Scene, of which kappa, mu and ``law`` are read.
     """
     u, law = scene.kappa * abs(V), by_value(scene.law)
     return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
@@ -94,8 +98,8 @@ def creepage(V, d, scene):
     V: float, speed of the axis of either sign, dimensionless; V = 0: the limit.
     d: float, delta/delta_star of the excess over free rolling; |d| <= 1 in partial slip, beyond it the result is linear
     in d too.
-    scene: Scene, parameters of Eq. (22).
-    Returns a float, dimensionless.
+    scene: Scene, of which kappa, mu and ``law`` are read.
+    Returns a float, dimensionless; omega = V (1 + delta) follows from it.
     """
     u, law = scene.kappa * abs(V), by_value(scene.law)
     delta = critical_creepage(V, scene) * d
@@ -108,8 +112,9 @@ def excess_slip(slip, V, scene):
 
     slip: float, omega - V, signed, dimensionless.
     V: float, speed of the axis of either sign, dimensionless.
-    scene: Scene, parameters of Eq. (22).
-    Returns a float, signed, dimensionless; full slip begins where its modulus is delta_star |V|.
+    scene: Scene, of which ``law`` is read, and kappa of a cover.
+    Returns a float, signed, dimensionless; full slip begins where its modulus is delta_star |V|.  At V = 0 it is
+    ``slip``.
     """
     law = by_value(scene.law)
     if law.cover_rows is None:
@@ -124,9 +129,10 @@ def added_inertia(V, scene):
     The equations are in docs/theory_materials.md, Slowly changing speed.
 
     V: float, speed of the axis of either sign, dimensionless.
-    scene: Scene, parameters of Eq. (22).
+    scene: Scene, of which ``law``, kappa and gamma are read.
     Returns (n, its derivative in V, its integral over V), floats, dimensionless; all are 0 for a law without added
-    mass.  The integral begins at V = 0, but at infinity where n < -4 at V = 0, as V = 0 is not reached then.
+    mass.  n is even and its derivative odd in V; at V = 0 the derivative is that of V > 0.  The integral begins at V =
+    0, but at infinity where n <= -4 at V = 0, as V = 0 is not reached then.
     """
     return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
 
@@ -137,10 +143,10 @@ def omega_and_delta(state, regime, scene):
 
     state: State, the unknowns.
     regime: Regime, whose ``full_slip`` tells what the second unknown is.
-    scene: Scene, parameters of Eq. (22).
+    scene: Scene, of which kappa, mu and ``law`` are read, in partial slip only.
     Returns (omega, delta), floats, dimensionless, omega in the direction of the regime.  On a cover delta contains the
-    creepage of free rolling.  At V = 0 delta is the limit in partial slip; in full slip it is infinite with the sign of
-    omega - V, and +inf where omega is 0 too.
+    creepage of free rolling.  At V = 0 in partial slip omega is 0 and delta is its limit; in full slip delta is then
+    infinite with the sign of omega, +inf where omega is 0 too (-inf for omega = -0.0).
     """
     if not regime.full_slip:
         delta = creepage(state.V, state.omega_or_d, scene)
@@ -158,6 +164,7 @@ def added_mass_margin(n, j):
 
     n: float, gamma N, signed, dimensionless.
     j: float, moment of inertia J/(m R^2), above 0, dimensionless.
+    Returns a float, above 0 for n between the two zeros, 0 at them, below 0 elsewhere; NaN for a NaN.
     """
     return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
 
@@ -175,8 +182,8 @@ def stick_edge_function(V, omega_or_d, regime, scene):
     V: float, speed of the axis, dimensionless.
     omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
     regime: Regime, the present one; ``full_slip`` and ``sigma`` are read.
-    scene: Scene, parameters of Eq. (22).
-    Returns a float, dimensionless.
+    scene: Scene, of which ``law`` and kappa are read, in full slip also mu, in partial slip gamma and j.
+    Returns a float, dimensionless: in full slip a speed, in partial slip a part of the critical creepage.
     """
     if not regime.full_slip:
         n, _, _ = added_inertia(V, scene)

@@ -59,7 +59,7 @@ _OUT_QUADRATURES = np.array([OUT_X, OUT_X + 1, OUT_WORK + 3, OUT_WORK + 4, OUT_W
 def requested_groups(rows):
     """Return which groups of outputs are requested, as each costs time.
 
-    rows: (k,) int, the requested output rows, numbered as in the module.
+    rows: (k,) int, the requested output rows, numbered as in the module; it may be empty.
     Returns (quadratures, forces), two bools: whether a row of x, angle, works or losses is among them; whether force or
     torque is.
     """
@@ -90,8 +90,8 @@ def write_quadrature(column, n, increase, work):
     """Write one quadrature to one output column: its total up to the last accepted step plus an increase.
 
     column: int, index of the output time.
-    n: int, the quadrature: 0 distance, 1 angle, 2 loss in slip, 3 loss in rolling, 4 work of the force, 5 work of the
-    torque, 6 loss in the brake; their output rows differ from this order.
+    n: int, the quadrature: 0 distance x, 1 angle, 2 loss in slip, 3 loss in rolling, 4 work of the force, 5 work of the
+    torque, 6 loss in the brake; they are written to rows 2, 3, 11, 12, 8, 9 and 10 of the outputs.
     increase: float, since the last accepted step, dimensionless.
     work: Workspace, with the totals; one number of its ``outputs`` is written.
     """
@@ -100,7 +100,10 @@ def write_quadrature(column, n, increase, work):
 
 @kernel
 def _write_totals(column, work):
-    """Write the totals of all quadratures to one output column; column: int, its index; work: Workspace."""
+    """Write the totals of all quadratures to one output column: rows 2, 3 and 8 ... 12 of ``work.outputs``.
+
+    column: int, its index; work: Workspace, with the totals up to the last accepted step.
+    """
     for n in range(N_QUADRATURES):
         write_quadrature(column, n, 0.0, work)
 
@@ -112,8 +115,8 @@ def record_switch(code, step_state, work):
     code: int, regime after it in the outputs (:mod:`.records`), or DIRECTION_REVERSED.
     step_state: StepState, with that time.
     work: Workspace: t = tau/gamma and ``code`` are written to the next row of ``switches`` if it has one.  The number
-    of entries, N_RECORDED in ``nodes``, grows in any case; the number of regime changes, N_SWITCHES, grows unless the
-    code is DIRECTION_REVERSED.
+    of entries, N_RECORDED in ``nodes``, grows by 1 in any case; the number of regime changes, N_SWITCHES, grows by 1
+    unless the code is DIRECTION_REVERSED.
     """
     nodes, switches = work.nodes, work.switches
     n = int(nodes[N_RECORDED])
@@ -130,12 +133,13 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
 
     Force and torque are those of the drive at the output times, not those that hold a prescribed speed.
 
-    end: float, that time in tau.
+    end: float, that time in tau, not before the present one.
     inclusive: bool, whether an output at ``end`` itself is written too.
     code: int, regime in the outputs, AT_REST or HELD_AT_REST.
-    step_state: StepState, at the present time.
-    work: Workspace, of the motion; outputs are written.
-    Returns the StepState at ``end``, with one trial step more and the length of the next step not chosen.
+    step_state: StepState, at the present time; its segment is that of all these outputs.
+    work: Workspace, of the motion; all rows of its outputs are written, at the columns from ``next_output`` on.
+    Returns the StepState at ``end``, with ``next_output`` after these outputs, one trial step more and the length of
+    the next step not chosen (0).
     """
     column, tau = step_state.next_output, work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
@@ -156,7 +160,7 @@ def _write_state(column, state, segment, regime, work):
     state: State, at that time, in the direction of the regime; it is written in fixed directions.
     segment: int, index of the segment of the drive at that time.
     regime: Regime, at that time.
-    work: Workspace, of the motion; column ``column`` of its outputs is written.
+    work: Workspace, of the motion; rows 0, 1, 4, 5, 6 and 7 of its outputs are written at ``column``.
     """
     direction, force, torque = regime.direction, 0.0, 0.0
     omega, delta = omega_and_delta(state, regime, work.scene)
@@ -177,10 +181,9 @@ def write_due_outputs(state, regime, step_state, work):
 
     state: State, at the time reached.
     regime: Regime, at that state.
-    step_state: StepState, with that time and the next output.
-    work: Workspace, of the motion; outputs are written.
-    Returns the StepState at the same time with ``next_output`` after these outputs, and the length of the next step
-    not chosen.
+    step_state: StepState, with that time, its segment and the next output.
+    work: Workspace, of the motion; all rows of its outputs are written at these times, if there are any.
+    Returns the StepState with ``next_output`` after these outputs and h = 0, also where none was due; all else stays.
     """
     column = step_state.next_output
     while column < work.output_tau.size and work.output_tau[column] <= step_state.tau * (1.0 + work.options.rtol):
@@ -195,8 +198,8 @@ def _quadrature_at(n, v, step, nodes):
     """Return the increase of a quadrature from the left end of a step to a position, a float, dimensionless.
 
     n: int, index of the quadrature, as of :func:`write_quadrature`.
-    v: float, position in [0, 2].
-    step: Step, the accepted one.
+    v: float, position in [0, 2]; at 0 the result is 0.
+    step: Step, the accepted one, whose length is read.
     nodes: Workspace.nodes, with the integrand at node 0 and the coefficients of its integral (:func:`fit_integral`).
     """
     first = nodes[ROW_INTEGRANDS + ROW_LENGTH * n]
@@ -209,11 +212,12 @@ def _evaluate_integrands(regime, work):
 
     In the order of :func:`write_quadrature`, with the traction Q, the moments and the forces that act
     (:func:`required_forces`): V/gamma and omega/gamma in fixed directions; (omega - V) Q; V M_half_space + omega
-    M_cylinder; force V; torque omega; less the torque of the brake times omega.  All are integrated over tau: distance
-    and angle thus become integrals over t.
+    M_cylinder; force V; torque omega; -(torque of the brake) omega.  All are integrated over tau: distance and angle
+    thus become integrals over t.
 
     regime: Regime, that of the step.
-    work: Workspace, with unknowns and drive at the nodes; N_QUADRATURES rows from ROW_INTEGRANDS on are written.
+    work: Workspace, with unknowns and drive at nodes 0 ... N; there N_QUADRATURES rows from ROW_INTEGRANDS on are
+    written, also those that are 0 as nothing drives.
     """
     nodes, values = work.nodes, by_value(work)
     direction_over_gamma = regime.direction / values.scene.gamma
@@ -263,10 +267,10 @@ def accept_step(end, v, step, regime, step_state, work):
     step: Step, the solved one.
     regime: Regime, that of the step.
     step_state: StepState, at its left end.
-    work: Workspace, with the solution and its dense output; outputs, totals, the integrands and the next entry of
-    ``step_ends``, t = tau/gamma, if it has one, are written.
-    Returns the StepState at ``end``, with one accepted step more; the number of trial steps and the length of the next
-    step stay.
+    work: Workspace, with the solution and its dense output; outputs, totals, integrands, the coefficients of their
+    integrals and the next entry of ``step_ends``, t = ``end``/gamma, if it has one, are written.
+    Returns the StepState at ``end``, with ``next_output`` after the outputs written and one accepted step more; the
+    number of trial steps, the segment and the length of the next step stay.
     """
     tau, column = work.output_tau, step_state.next_output
     is_last = end == last_output_tau(work)

@@ -52,9 +52,9 @@ def predict(step, relaxation, dense_step, regime, work):
     The first of these that applies is taken:
 
     - the stored dense output, where the step ends at most 1.5 lengths of the dense step beyond its right end; not if
-      the step has the same left end and is shorter than a thousandth of it;
-    - V linear in time and the second unknown relaxing exponentially (:func:`_predict_relaxation`), from V > 0 on, or in
-      full slip if V or omega is not 0;
+      the step has the same left end and at most a thousandth of its length;
+    - V linear in time and the second unknown relaxing exponentially (:func:`_predict_relaxation`), in partial slip from
+      V > 1e-200 on (``initial_slope_known``), in full slip if V or omega is not 0;
     - the departure from rest (:func:`_predict_from_rest`).
 
     step: Step, the trial step.
@@ -62,7 +62,8 @@ def predict(step, relaxation, dense_step, regime, work):
     dense_step: Step, whose dense output is stored: the last accepted one, or a longer one that was rejected; h = 0:
     none.
     regime: Regime, that of the step.
-    work: Workspace, with node 0 of the step; V and the second unknown are written at nodes 1 ... N.
+    work: Workspace, with node 0 of the step (V, the second unknown, V', the weighted rate and ROW_SPEED); V and the
+    second unknown are written at nodes 1 ... N, in partial slip with V >= 0 and |d| <= 1.
     """
     usable = step.tau > dense_step.tau or step.h > _SHORTER_STEP * dense_step.h
     if usable and dense_step.h > 0.0 and step.tau + step.h <= dense_step.tau + (1.0 + _EXTRAPOLATION) * dense_step.h:
@@ -77,9 +78,9 @@ def predict(step, relaxation, dense_step, regime, work):
 def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
     """Store V and the second unknown at a node; in partial slip limited to V >= 0 and |d| <= 1.
 
-    i: int, the node.
+    i: int, the node, 1 ... N.
     V: float, speed of the axis, dimensionless.
-    omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
+    omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip; a NaN is stored as NaN.
     full_slip: bool, whether the whole contact slips; True: both are stored as they are.
     nodes: Workspace.nodes; entry ``i`` of ROW_V and ROW_OMEGA_OR_D is written.
     """
@@ -133,14 +134,15 @@ def _predict_relaxation(step, relaxation, regime, nodes):
 def _predict_from_rest(step, regime, work):
     """Store the unknowns of a step that starts at V = 0, in full slip at V = omega = 0.
 
-    V' changes linearly from its value at the left end, which may be 0, to that of the drive at the right end.  In full
-    slip omega' does the same.  In partial slip d changes linearly to its value at a departure under the drive at the
-    right end; it stays if no departure in partial slip is possible there.
+    V' changes linearly from its value at the left end, which may be 0, to that of the drive at the right end, evaluated
+    at V = 0; V is its integral.  In full slip omega' does the same, evaluated at omega = 0.  In partial slip d changes
+    linearly to its value at a departure under the drive at the right end, or stays if no departure in partial slip is
+    possible there; V' at the right end is that of p' at this d, at least 0.
 
     step: Step, the one to predict.
     regime: Regime, that of the step.
-    work: Workspace, with node 0; V and the second unknown are written at nodes 1 ... N, limited as by
-    :func:`_store_unknowns`.
+    work: Workspace, with V', the weighted rate and d at node 0; V and the second unknown are written at nodes 1 ... N,
+    limited as by :func:`_store_unknowns`.
     """
     nodes = work.nodes
     load, d = evaluate_load(step.tau + step.h, step.segment, regime, work), 0.0

@@ -95,8 +95,8 @@ def _start_step(state, regime, step_state, work):
     work: Workspace; node 0 of V, the second unknown, p, p', the weighted rate, the larger speed, V', the relaxation
     rate and dp'/dp is written.  At V = 0 in partial slip V' is that of p' at fixed d, and the relaxation rate is not
     finite.
-    Returns the Regime; at d = 0 in partial slip its sigma is the sign of d', toward which d moves, else it is
-    unchanged.
+    Returns the Regime: at d = 0 in partial slip with sigma d' < 0 the one with the opposite sigma, as d moves to that
+    branch; else ``regime`` unchanged.
     """
     nodes = work.nodes
     nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
@@ -121,9 +121,9 @@ def _end_at_V_zero(step, remaining, state, regime, work):
     remaining: float, time in tau to the end of the segment.
     state: State, at the left end.
     regime: Regime, at that state.
-    work: Workspace, with node 0.
-    Returns (Step, whether it ends at the expected time of V = 0); the Step is unchanged where that time is after its
-    end, or inf.
+    work: Workspace, with V' at node 0, and the Drive.
+    Returns (Step, whether it ends at the expected time of V = 0, a bool); the Step is unchanged where that time is
+    after its end, or inf, and then the second is False; at V = 0 with V' < 0 its length is 0.
     """
     time = time_to_V_zero(step, state, regime, work)
     if time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
@@ -171,7 +171,8 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     - error: its error divided by its tolerance; the caller rejects a step above 1, whatever the event.  It is inf where
       Newton's iteration did not converge; at least 10, or NaN, where no trial ended at the event; at most 1 where the
       event was missed by the shortest step that time resolves;
-    - dense_step: the Step whose dense output is stored now: the last one whose iteration converged.
+    - dense_step: the Step whose dense output is stored now: the last one whose iteration converged, or the one passed
+      if none did.
     """
     nodes, event, error, upper = work.nodes, NO_EVENT, np.inf, remaining
     for _ in range(_MAX_TRIALS):
@@ -226,8 +227,9 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     regime: Regime, to integrate.
     step_state: StepState, at the start; h = 0: the length of the first step is chosen here.
     work: Workspace, of the motion; outputs, quadratures and ends of steps are written.
-    Returns (event, State, Regime, StepState) at the end of the last accepted step.  The Regime is still the one that
-    ends, but sigma may have changed at d = 0.  The event is its code (:mod:`workspace`), or
+    Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start without one; the
+    StepState counts the rejected steps too.  The Regime is still the one that ends, but sigma may have changed at d =
+    0.  The event is its code (:mod:`workspace`), or
 
     - NO_EVENT at the end of the segment, if the allowed steps are used up, or if the rest of the motion is exponential
       (:func:`is_coasting`);

@@ -62,7 +62,7 @@ def _torque_at_locked_wheel(state, regime, step_state, work):
     work: Workspace, of the motion.
     Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q and M_cylinder,
     signed, in the direction of the regime; the largest torque of the brake at that time, at least 0, and 0 where no
-    brake acts.
+    brake acts.  In partial slip M_cylinder contains n V'/2 of the added mass, with V' of the present regime.
     """
     load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
     _, torque, _ = applied_forces(state.V, 0.0, load, regime)
@@ -74,7 +74,7 @@ def change_brake(regime, spin_sign, locked):
     """Return the Regime with another state of its brake; full_slip, direction and sigma stay.
 
     regime: Regime, the present one.
-    spin_sign: float, 1 or -1, sign of omega where a brake acts; 0 where none does.
+    spin_sign: float, 1 or -1, sign of omega where a brake acts, or of the torque where omega is 0; 0 where none acts.
     locked: bool, whether the brake holds omega at 0; spin_sign has no effect on the rates then.
     """
     return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, locked)
@@ -84,7 +84,8 @@ def change_brake(regime, spin_sign, locked):
 def brake_holds_omega(state, regime, step_state, work):
     """Return whether the brake can hold omega at 0 against the torque that would accelerate the wheel; a bool.
 
-    It can if that torque is at most the largest one of the brake; without a brake, only if it is exactly 0.
+    It can if the modulus of that torque (:func:`_torque_at_locked_wheel`) is at most the largest torque of the brake;
+    without a brake, only if it is exactly 0.
 
     state: State, with omega = 0.
     regime: Regime, at that state.
@@ -103,9 +104,9 @@ def release_brake(state, regime, step_state, work):
     regime: Regime, the one before.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion.
-    Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the torque that
-    accelerates the wheel from omega = 0 (1, -1, or 0 for no torque) where the segment has a brake, to 0 where it has
-    none.
+    Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the torque of
+    :func:`_torque_at_locked_wheel` that accelerates the wheel from omega = 0 (1, -1, or 0 for no torque) where the
+    segment has a brake anywhere on it, to 0 where it has none.
     """
     torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
     spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
@@ -125,8 +126,8 @@ def comes_to_rest(state, regime, step_state, work):
     state: State, at the event.
     regime: Regime, of full slip.
     step_state: StepState, at the event.
-    work: Workspace, with V at the nodes of the step that ends there.
-    Returns a bool.
+    work: Workspace, with V at the nodes of the step that ends there, the Drive and rtol.
+    Returns a bool; True at equality with a threshold, and so where V is exactly 0.
     """
     prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
     omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
@@ -141,9 +142,9 @@ def reverse_direction(regime):
     """Return the Regime with the opposite direction, in which the signs of slip and omega are opposite too.
 
     ``direction``, ``sigma`` and ``spin_sign`` change their signs, ``full_slip`` and ``locked`` stay.  The caller
-    changes the signs of V and omega.
+    changes the signs of V and omega; d of partial slip would keep its sign, but only full slip is reversed.
 
-    regime: Regime, the present one.
+    regime: Regime, the present one, of full slip.
     """
     return Regime(regime.full_slip, -regime.direction, -regime.sigma, -regime.spin_sign, regime.locked)
 
@@ -165,9 +166,9 @@ def impose_prescribed_speed(state, regime, step_state, work):
 
     state: State, as integrated, with V >= 0.
     regime: Regime, at that state.
-    step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
-    Returns (State, Regime), with V >= 0.
+    step_state: StepState, with the time and its segment, whose prescribed speed is taken.
+    work: Workspace, of the motion; it is only read.
+    Returns (State, Regime), with V >= 0; ``locked`` and, but for a reversal, all of the Regime stay.
     """
     drive, full_slip = work.drive, regime.full_slip
     if drive.prescribed == NOT_PRESCRIBED:
@@ -251,8 +252,8 @@ def enter_segment(state, regime, step_state, work):
     state: State, at the end of the segment before, or the start of the motion.
     regime: Regime, at that state.
     step_state: StepState, with the time and the index of the new segment.
-    work: Workspace, of the motion.
-    Returns (State, Regime).
+    work: Workspace, of the motion; it is only read.
+    Returns (State, Regime): V is at least 0; where the brake takes hold, ``locked`` is True and ``spin_sign`` stays.
     """
     if step_state.segment > 0:  # A start keeps its given speeds.
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
@@ -282,8 +283,9 @@ def initial_regime(V, omega, step_state, work):
     step_state: StepState, at the start.
     work: Workspace, of the motion.
     Returns (State, Regime, stick_formed): the State in the direction of the Regime, which is that of V, or of omega
-    where V is 0; the Regime with the sign of the excess slip as ``sigma`` (1 for 0) and without a brake;
-    ``stick_formed`` is True only for a start in partial slip with d = +-1.
+    where V is 0, with omega in full slip and d = excess slip/(delta_star V) in partial slip; the Regime with the sign
+    of the excess slip as ``sigma`` (1 for 0) and without a brake; ``stick_formed``, a bool, True only for a start in
+    partial slip with d = +-1.
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
         # Sliding ends within a time of that order, at constant V + j omega.
@@ -307,7 +309,10 @@ def initial_regime(V, omega, step_state, work):
 
 @kernel
 def regime_code(regime):
-    """Return the code of a moving cylinder's regime in the outputs; regime: Regime, the present one."""
+    """Return the code of a moving cylinder's regime in the outputs: OMEGA_LOCKED, FULL_SLIP or PARTIAL_SLIP, an int.
+
+    regime: Regime, the present one; ``locked`` comes first, then ``full_slip``.
+    """
     return OMEGA_LOCKED if regime.locked else FULL_SLIP if regime.full_slip else PARTIAL_SLIP
 
 
@@ -318,8 +323,8 @@ def rest_code(step_state, work):
     It is HELD_AT_REST if the segment has a brake anywhere on it, or if a speed is prescribed in the motion; else
     AT_REST.
 
-    step_state: StepState, with the segment.
-    work: Workspace, of the motion.
+    step_state: StepState, of which the segment is read.
+    work: Workspace, of which the Drive is read.
     """
     braked = has_brake(step_state.segment, work.drive)
     return HELD_AT_REST if braked or work.drive.prescribed != NOT_PRESCRIBED else AT_REST

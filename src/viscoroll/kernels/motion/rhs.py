@@ -108,7 +108,7 @@ def applied_forces(V, omega, load, regime):
     """Return the applied force and torques, feedback included, in the direction of the regime, dimensionless.
 
     V, omega: float, speeds in the direction of the regime, dimensionless.
-    load: Load, the drive at the time.
+    load: Load, the drive at the time; force, torque, brake and gains are read.
     regime: Regime, of which ``spin_sign`` is read, the sign of omega against which a brake acts; 0: no torque of the
     brake.
     Returns (force, torque of the motor, torque of motor and brake together), floats, signed.  Where a speed is
@@ -133,7 +133,8 @@ def required_forces(V, omega, rates, load, regime, j):
 
     V, omega: float, speeds in the direction of the regime, dimensionless.
     rates: Rates, at these speeds; Q and the moments are read.
-    load: Load, the drive at the time.
+    load: Load, the drive at the time; inverse_mass = 0 tells that V is prescribed, inverse_inertia = 0 that omega is,
+    unless the brake holds it.
     regime: Regime, at that state; ``locked`` and ``spin_sign`` are read.
     j: float, moment of inertia J/(m R^2), dimensionless.
     Returns (force, torque of the motor, torque of the brake), floats, signed, in the direction of the regime,
@@ -158,8 +159,8 @@ def has_strong_friction(load, regime, scene):
     < 0: only there may dp/dV vanish.  It is False in full slip and where V is prescribed.
 
     load: Load, whose ``inverse_mass`` and ``inverse_inertia`` are read.
-    regime: Regime, that of the state.
-    scene: Scene, parameters of Eq. (22).
+    regime: Regime, that of the state; ``full_slip`` and ``sigma`` are read.
+    scene: Scene, of which mu and kappa are read.
     """
     inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
     strong = k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
@@ -180,8 +181,10 @@ def partial_slip_rates(V, d, load, regime, scene):
     d: float, delta/delta_star, of a cover that of the excess over free rolling; dimensionless.
     load: Load, the drive at the time.
     regime: Regime, of partial slip; sigma is the sign of the branch, spin_sign that of omega under a brake.
-    scene: Scene, parameters of Eq. (22), by value; mu > 0.
-    Returns Rates, dimensionless, with the derivatives of partial slip: the second unknown is d and the weight V.
+    scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`; law, moments_differ, kappa, mu > 0 and
+    gamma are read.
+    Returns Rates, dimensionless, with the derivatives of partial slip: the second unknown is d and the weight V.  Under
+    strong friction (:func:`has_strong_friction`) p is V, with the derivatives of V'.
     """
     law, mu, sign, k = scene.law, scene.mu, regime.sigma, 0.5 * scene.mu / scene.kappa
     u, du_dV = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
@@ -250,8 +253,10 @@ def full_slip_rates(V, omega, load, regime, scene):
     V, omega: float, the speeds in the direction of the regime, dimensionless.
     load: Load, the drive at the time.
     regime: Regime, of full slip; sigma is the sign of Q, spin_sign that of omega under a brake.
-    scene: Scene, parameters of Eq. (22), by value.
-    Returns Rates, dimensionless: the second unknown is omega, the weight is 1, p is V.
+    scene: Scene, of which kappa, mu, moments_differ and ``law`` are read, the law of the pair of materials of this
+    motion (:class:`..rows.record.Law`).  It is a tuple of numbers and arrays, not a reference (:func:`by_value`): the
+    caller stores numbers in a loop, after each of which LLVM would read the fields of a reference again.
+    Returns Rates, dimensionless: the second unknown is omega, the weight is 1, p is V.  All are finite, at V = 0 too.
     """
     u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
     _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
@@ -275,9 +280,9 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
     V: float, speed of the axis in the direction of the regime, dimensionless.
     omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
     load: Load, the drive at the time.
-    regime: Regime, full or partial slip.
-    scene: Scene, parameters of Eq. (22), by value.
-    Returns Rates, dimensionless.
+    regime: Regime; ``full_slip`` selects the function, which also reads sigma and spin_sign.
+    scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`.
+    Returns Rates, dimensionless, as the function selected returns them.
     """
     if regime.full_slip:
         return full_slip_rates(V, omega_or_d, load, regime, scene)
@@ -293,8 +298,8 @@ def evaluate_rhs(state, load, regime, scene):
     state: State, the unknowns, in the direction of the regime.
     load: Load, the drive at the time.
     regime: Regime, full or partial slip.
-    scene: Scene, parameters of Eq. (22), by reference.
-    Returns Rates, dimensionless.
+    scene: Scene, parameters of Eq. (22): a reference (:mod:`..compile.by_reference`), one address to pass, or a tuple.
+    Returns Rates, dimensionless, as :func:`full_slip_rates` or :func:`partial_slip_rates` returns them.
     """
     return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
 
@@ -303,10 +308,12 @@ def evaluate_rhs(state, load, regime, scene):
 def current_rates(state, regime, step_state, work):
     """Return the right-hand side at a state and the time reached, :class:`Rates`, dimensionless.
 
+    It is :func:`evaluate_rhs` with the Load evaluated at that time; nothing is stored in the workspace.
+
     state: State, the unknowns, in the direction of the regime.
-    regime: Regime, the present one, which tells what the second unknown is.
+    regime: Regime, the present one; ``full_slip`` tells what the second unknown is.
     step_state: StepState, with that time and its segment of the drive.
-    work: Workspace, of the motion.
+    work: Workspace, of the motion; its Scene and Drive are read.
     """
     return evaluate_rhs(state, current_load(regime, step_state, work), regime, work.scene)
 
@@ -317,7 +324,8 @@ def rhs_and_forces_at_node(i, regime, work):
 
     i: int, the node, 0 ... N.
     regime: Regime, that of the step.
-    work: Workspace, with unknowns and drive at the nodes.
+    work: Workspace, with V, the second unknown and the four functions of the drive (:func:`.drive.store_drive`) at the
+    node.
     Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless, in the direction of the regime,
     as :func:`required_forces` returns them.
     """

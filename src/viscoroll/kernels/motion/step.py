@@ -92,7 +92,7 @@ def store_rhs(i, rates, nodes):
     """Store p, p', the weighted rate of the second unknown and max(|V|, |omega|) at a node.
 
     i: int, the node, 0 ... N.
-    rates: Rates, the right-hand side at the node.
+    rates: Rates, the right-hand side at the node; p, p_rate, weighted_rate and omega are read.
     nodes: Workspace.nodes, with V at the node; entry ``i`` of ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED is
     written.
     """
@@ -108,11 +108,13 @@ def _evaluate_residuals(refactor, step, regime, work):
     (D x) for the second unknown x with its weighted rate b.  They are in the units of p and of weight times x.
 
     refactor: bool, whether the derivatives that the Newton matrices consist of are stored too.
-    step: Step, the trial step.
+    step: Step, the trial step; ``h`` is read.
     regime: Regime, that of the step.
-    work: Workspace, with the unknowns and the drive at the nodes.  The rows of the residuals and slopes, ROW_P,
-    ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED are written; with ``refactor`` also ROW_DV_DP, ROW_DP_DD, ROW_COUPLING,
-    ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK and the two diagonals.
+    work: Workspace, with V, the second unknown and the drive at the nodes, and p at node 0.  Entries 1 ... N of
+    ROW_P_RESIDUAL, ROW_D_RESIDUAL, ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED are written; with ``refactor``
+    also those of ROW_DV_DP, ROW_DP_DD, ROW_COUPLING, ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK, ROW_P_DIAGONAL and
+    ROW_D_DIAGONAL.  ROW_P_SLOPE and ROW_D_SLOPE are written whole, with 0 at node 0.  ROW_RELAXATION is not finite
+    where V is 0 in partial slip.
     """
     values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
     multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)
@@ -153,14 +155,19 @@ def _add_feedback_to_matrix(work):
 def _newton_iteration(refactor, coupled, step, regime, work):
     """Do one Newton iteration of both collocation equations at nodes 1 ... N, and update the unknowns.
 
-    refactor: bool, whether to evaluate and invert the Newton matrices again; False: the stored inverses are used.
+    refactor: bool, whether to evaluate and invert the Newton matrices again; False: the stored inverses are used, with
+    the rows ROW_DV_DP, ROW_DP_DD, ROW_COUPLING and ROW_FEEDBACK of the iteration that made them.
     coupled: bool, whether p' depends on the second unknown, so that the system of p contains feedback.
     step: Step, the trial step.
     regime: Regime, that of the step.
-    work: Workspace, with the unknowns and the drive at the nodes; V, the second unknown and p are changed at nodes 1
-    ... N, and with ``refactor`` the two matrices.
-    Returns the largest update of an unknown divided by its error scale (:func:`error_scales`, of the updated unknowns),
-    a float >= 0, dimensionless; NaN if an update is NaN.
+    work: Workspace, with V, the second unknown and the drive at the nodes.  All that follows is written at nodes 1 ...
+    N: the unknowns ROW_V, ROW_OMEGA_OR_D and ROW_P after the update; ROW_P_UPDATE, ROW_D_UPDATE, ROW_P_RESIDUAL and
+    ROW_D_RESIDUAL, the residuals with terms of the other equation; and, of the unknowns before the update, ROW_P_RATE,
+    ROW_WEIGHTED_RATE, ROW_SPEED, ROW_P_SLOPE and ROW_D_SLOPE.  With ``refactor`` also ``p_matrix``, ``d_matrix`` and
+    the derivatives before the update: ROW_DV_DP, ROW_DP_DD, ROW_COUPLING, ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK,
+    ROW_P_DIAGONAL and ROW_D_DIAGONAL.
+    Returns the largest update of V or of the second unknown, each divided by its error scale (:func:`error_scales`, of
+    the updated unknowns), a float >= 0, dimensionless; NaN if an update is NaN.
     """
     nodes, p_matrix, d_matrix = work.nodes, work.p_matrix, work.d_matrix
     if refactor:
@@ -209,7 +216,8 @@ def solve_step(step, relaxation, dense_step, regime, work):
     predictor reads it.
     dense_step: Step, whose dense output is stored on entry, for the predictor; one with h = 0 if none is.
     regime: Regime, that of the step.
-    work: Workspace, with node 0; the drive, nodes 1 ... N and the Newton matrices are written.
+    work: Workspace, with node 0; the drive, nodes 1 ... N and the Newton matrices are written.  The rates, slopes and
+    ROW_SPEED at nodes 1 ... N are those before the last update, the derivatives those of the last matrices.
     Returns True if the iteration converged: the dense output of V and of the second unknown is then that of ``step``.
     Returns False if it did not within _MAX_ITERATIONS, or if an update was 1e6 or more times its scale, twice the one
     before or larger, or NaN: nodes 1 ... N then hold the last iterate, and the dense output is still that of

@@ -84,10 +84,10 @@ _LATER_REJECTION = 0.4
 def moderate_speed(scene):
     """Return the V that divides slow from fast rolling, a float above 0, dimensionless.
 
-    It is between 0.5 and 1 times 1/kappa divided by the longest time of the material in units of T_epsilon, by the
-    octave of the first row of the law.
+    It is 2^(e0 + 4)/kappa, with 2^e0 the end of the first row of the law in kappa |V|: between 0.5 and 1 times 1/kappa
+    divided by the longest time of the material in units of T_epsilon.
 
-    scene: Scene, parameters of Eq. (22).
+    scene: Scene, of which kappa and the marks of ``law`` are read.
     """
     return 2.0 ** (scene.law.marks[E0] + _ROWS_BELOW_LONGEST_TIME) / scene.kappa
 
@@ -96,13 +96,13 @@ def moderate_speed(scene):
 def _time_to_reach_V(V_change, step_state, regime, work):
     """Return the time in tau in which V rises from 0 to a small value, with V' linear as the drive makes it.
 
-    V' is V'(0) of node 0, at least 0, plus a slope from a second V' a thousandth of the segment later, in which d is
-    that of a departure under the drive there, or that of node 0 if the equation of d has no root.
+    V' is V'(0) of node 0, at least 0, plus a slope from a second V' a thousandth of the rest of the segment later, in
+    which d is that of a departure under the drive there, or that of node 0 if the equation of d has no root.
 
     V_change: float, that V, above 0, dimensionless.
-    step_state: StepState, at V = 0.
-    regime: Regime, at that state.
-    work: Workspace, with node 0.
+    step_state: StepState, at V = 0, before the end of its segment.
+    regime: Regime, of partial slip, at that state.
+    work: Workspace, with V' and d at node 0.
     Returns a float, at least 0: the time at which V has its maximum if V does not reach V_change, which is 0 if V'
     falls from 0; a very large number or inf if V' and its slope are 0.
     """
@@ -131,9 +131,9 @@ def first_step_length(stick_formed, step_state, regime, work):
     slip; ignored in full slip and at V = 0.
     step_state: StepState, at the start of the regime.
     regime: Regime, the new one.
-    work: Workspace, with node 0.
+    work: Workspace, with V, V', the weighted rate, ROW_SPEED and the relaxation rate at node 0.
     Returns a float, at least 0; it is 0 where the stick zone has just formed and d' is exactly 0, and inf in full slip
-    at rest or without any rate.
+    at rest or without any rate.  The caller limits it to the rest of the segment and to 1e-14 of the time from below.
     """
     nodes, scene = work.nodes, work.scene
     V, V_rate, rate = nodes[ROW_V], abs(nodes[ROW_V_RATE]), abs(nodes[ROW_WEIGHTED_RATE])
@@ -164,11 +164,11 @@ def time_to_V_zero(step, state, regime, work):
     the result is inf too if nothing drives, and if the prescribed slopes or, where they are 0, force plus torque
     without feedback do not act against V.
 
-    step: Step, the trial step.
+    step: Step, the trial step; tau, segment and undriven are read.
     state: State, at its left end.
     regime: Regime, that of the step.
-    work: Workspace, with V' at node 0.
-    Returns a float, at least 0.
+    work: Workspace, with V' at node 0, and the Drive.
+    Returns a float, at least 0; 0 at V = 0 if it decreases from there; inf for a V' of NaN.
     """
     V_rate = work.nodes[ROW_V_RATE]
     if not V_rate < 0.0:
@@ -194,8 +194,9 @@ def step_length_after_relaxation(step, regime, work):
     step: Step, the accepted one.
     regime: Regime, that of the step.
     work: Workspace, with the rates and derivatives at its last node.
-    Returns a float: 0 in full slip, or if the step spans six relaxation times of d or fewer; inf where V' and dp'/dp
-    are 0.
+    Returns a float, at least 0; the caller takes it if it is larger than the length by the error.  It is 0 in full
+    slip, if the step spans six relaxation times of d or fewer, and where V is 0 at the last node (NaN if p' is 0 too);
+    inf where p' and dp'/dp are 0.
     """
     nodes = work.nodes
     if regime.full_slip or not nodes[ROW_RELAXATION + N] * step.h < -_RELAXED_TIMES:
@@ -209,17 +210,18 @@ def step_length_after_relaxation(step, regime, work):
 def next_step_length(step, error, n_rejected, last_h, last_error):
     """Return the length in tau of the step after a trial step, by its error.
 
-    The length is that of the trial step times 0.9 error^(-1/7), in [0.1, 6].  After a boundary layer errors stay small
-    although steps grow: after an accepted step the length may then be up to 1.3 times larger still.  After a rejected
-    one it is at most 0.7 of that of the trial step at the first rejection and 0.4 at later ones.
+    The length is that of the trial step times 0.9 error^(-1/7), a factor limited to [0.1, 6].  After a boundary layer
+    errors stay small although steps grow: after an accepted step the length is then multiplied by (h/last_h)
+    (last_error/error)^(1/7) too, a factor limited to [1, 1.3].  After a rejected one it is at most 0.7 of that of the
+    trial step at the first rejection and 0.4 at later ones.
 
-    step: Step, the trial step.
-    error: float, its error divided by its tolerance, accepted up to 1; inf or NaN if Newton's iteration did not
-    converge: the length is then multiplied by 0.3.
+    step: Step, the trial step; its length h is read.
+    error: float, at least 0, its error divided by its tolerance, accepted up to 1; inf if Newton's iteration did not
+    converge.  From 1e300 on, or with NaN, the length is that of the trial step times 0.3.
     n_rejected: int, number of rejected trial steps with the same left end before it.
     last_h: float, length in tau of the last accepted step; 0 without one.
     last_error: float, error of that step divided by its tolerance; ignored without one.
-    Returns a float above 0.
+    Returns a float above 0, at least 0.1 times h; the end of the segment does not limit it.
     """
     h = _NEWTON_FAILURE * step.h
     if error < 1e300:

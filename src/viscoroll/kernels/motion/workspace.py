@@ -147,19 +147,20 @@ def node_time(step, i):
 def dense_position(tau, step):
     """Return the position v of a time on a step: 0 at its left end, 2 at its right end, more beyond it; a float.
 
-    tau: float, the time; times before the left end count as the left end.
-    step: Step, with a length above 0.
+    tau: float, the time; times before the left end, as rounding may leave them, count as the left end.
+    step: Step, with a length above 0; ``tau`` and ``h`` are read.
     """
     return 2.0 * (max(tau - step.tau, 0.0) / step.h)
 
 
 @inline_kernel
 def set_step_length(h, n_trials, step_state):
-    """Return the StepState with another length of the next trial step and a larger count of trial steps.
+    """Return the StepState with ``h`` as the length of the next trial step and ``n_trials`` added to ``n_steps``.
 
-    h: float, that length in tau; 0 if it is not chosen yet.
-    n_trials: int, number added to the count: 1 after a trial step, 0 where only the length changes.
-    step_state: StepState, the present one; its other fields stay.
+    h: float, that length in tau, dimensionless, at least 0; 0 if it is not chosen yet.
+    n_trials: int, number added to ``n_steps``, the number of trial steps so far: 1 after a trial step, 0 where only the
+    length changes.
+    step_state: StepState, the present one; its other fields stay, the number of accepted steps among them.
     """
     tau, next_output, segment, n_steps, n_accepted, _ = step_state
     return StepState(tau, next_output, segment, n_steps + n_trials, n_accepted, h)
@@ -170,7 +171,9 @@ def dense_state(v, nodes):
     """Return the State at a position of a step by its dense output.
 
     v: float, position: 0 at the left end, 2 at the right end; outside the polynomials are extrapolated.
-    nodes: Workspace.nodes, with node 0 and the dense output of the step.
+    nodes: Workspace.nodes, with the dense output of the step, and V and the second unknown at its node 0.
+    Returns a State in the direction and with the second unknown of the regime of the step; nothing limits its V or d,
+    which may lie outside the regime by the error of the polynomials.
     """
     return State(
         nodes[ROW_V] + evaluate_dense_output(v, nodes, ROW_DENSE_V),
