@@ -103,7 +103,7 @@ class Inputs:
 
     @property
     def medians(self) -> dict[str, Any]:
-        """Median of each input; of a file the row in its middle."""
+        """Median of each input, name -> float in the unit of the file; of N rows of a file the row floor(N/2)."""
         middle = self.values(np.full((len(self.dimensions), 1), 0.5))
         return {name: values.item() for name, values in middle.items()}
 
@@ -115,7 +115,8 @@ class Inputs:
         for all its columns.
 
         points: (dimensions, n), in (0, 1), in the order of :attr:`dimensions`; other numbers of rows raise ValueError.
-        Returns name -> values, (n,), in the units of the file: distributions, then columns.
+        Returns name -> values, (n,), float64, in the units of the file: distributions, then columns.  A quantile that
+        overflows is infinite.
         """
         rows = dict(zip(self.dimensions, points, strict=True))
         if self.mixing is not None:
@@ -152,7 +153,7 @@ class Inputs:
         of the k inputs at its upper end with all others at their lower ends; all at their lower ends; then the same
         with the ends exchanged.
         Returns name -> values, (n,), in the units of the file.  The columns of a file with several are at their
-        medians, a number each, as their ends need not occur together.
+        medians, a number each, as their ends need not occur together; if all inputs are such, no value is an array.
         """
         names = [*self.random, *(name for columns in self.joint.values() if len(columns) == 1 for name in columns)]
         at_low = np.eye(len(names), len(names) + 1, dtype=bool)

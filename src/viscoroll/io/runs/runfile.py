@@ -206,13 +206,17 @@ class Run:
 
     @property
     def bytes_a_motion(self) -> int:
-        """Memory that a motion takes while its block is evaluated, bytes."""
+        """Memory that a motion takes while its block is evaluated, bytes, an int: of its fields and inputs."""
         columns = len(self.fields) * self.t.size + 2 * len(self.inputs.uncertain) + 12
         return 8 * (columns + self.t.size)  # one output at a time is copied for its summary
 
     @property
     def block(self) -> int:
-        """Number of motions in a full block: as the file states, else as many as fit the memory."""
+        """Number of motions in a full block, an int from 1 to n: as the file states, else as many as fit the memory.
+
+        That is the largest power of two of motions that take at most 128 MiB, and not more than 2^20 motions of a flow
+        map or 2^16 that are integrated.
+        """
         if self.settings.block is not None:
             return min(self.settings.block, self.settings.n)
         # a power of two suits Sobol's sequence

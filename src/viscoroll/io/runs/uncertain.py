@@ -179,8 +179,9 @@ class _Reader:
 
         number: the uncertain number, whose name the column gets in ``joint``.
         table: its table of TOML: file, a .csv, .nc or .parquet, relative to the run file, and column.
-        Raises FileError for a file or column that cannot be read, or whose length differs from that of its other
-        columns.
+        Raises FileError for a table without a text at either key or with an unknown key, and for a file or column that
+        cannot be read, or whose length differs from that of its other columns; MissingDependencyError for .parquet
+        without pyarrow.
         """
         check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")

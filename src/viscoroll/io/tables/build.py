@@ -80,6 +80,8 @@ def build(
         Where ``what`` is none of these or has arrays; an axis is out of range or does not increase strictly; there are
         more than 5e7 nodes; ``alpha`` is given for a cylinder or for a scene with a material; an unknown method, or
         "direct" of a material.
+    FileError
+        The dataset of a law that is incomplete or differs from its checksum.
 
     Examples
     --------
@@ -173,6 +175,7 @@ def _evaluate(
         array (1,), which broadcasts too; without "alpha" the roller has its own.
     names: names of the fields, as of :func:`viscoroll.contact`.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
+    Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out of range.
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
     creep = points.get("delta", np.zeros(1))

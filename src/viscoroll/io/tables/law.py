@@ -130,6 +130,11 @@ def measured_errors(
         - Every alpha, names :data:`AXIS_FUNCTIONS`: the largest of these over the alphas; "m" has the sum of the
           largest errors of both parts of M.
         - A cover: names and scales of :func:`_measured_errors_of_cover`, without N.
+
+    Raises
+    ------
+    ParameterError
+        A cover whose solve at one of the speeds finds no contact length that carries the load.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):
