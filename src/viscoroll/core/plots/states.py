@@ -41,7 +41,7 @@ _JUMP_RTOL = 1e-9
 
 
 def varied_axes(data: xr.Dataset) -> list[str]:
-    """Return the axes of several values that the fields of ``data`` depend on."""
+    """Return the names of the axes of several values that the shown fields of ``data`` depend on, in its order."""
     dims = {dim for name in _shown_fields(data) for dim in data[name].dims}
     return [str(dim) for dim, size in data.sizes.items() if size > 1 and dim in dims]
 

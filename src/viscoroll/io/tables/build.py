@@ -81,7 +81,7 @@ def build(
         more than 5e7 nodes; ``alpha`` is given for a cylinder or for a scene with a material; an unknown method, or
         "direct" of a material.
     FileError
-        The dataset of a law that is incomplete or differs from its checksum.
+        The dataset of a law that is incomplete or does not state its material.
 
     Examples
     --------
