@@ -173,7 +173,7 @@ class Cylinder(Methods):
         half-space has ``base``, or that of the law, or the same material.
         Raises ParameterError where they do not go together: a dimensionless law as ``material``, a ``base`` beside a
         law that contains one, another ``plane`` than that of a law of two different bodies, two rigid bodies or two
-        layers, a layer in plane stress.
+        layers, a layer in plane stress; and for arrays among E to T_sigma, which have no :class:`Material`.
         """
         law = self.material
         if not isinstance(law, LawTable):

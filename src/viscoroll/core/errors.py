@@ -85,8 +85,8 @@ def describe_value(value: Any) -> str:
     """Return a value for a message: its text in one line of at most 60 characters, and its type in parentheses.
 
     value: what a caller gave, of any type.
-    Returns a text as "'abc' (a text)", "[1, 2] (a list)", "f (a function)", or of an array "... (of type int64, shape
-    (3,))"; of None, an int or a float the text alone; of other objects "... (of type NAME)".
+    Returns a text as "'abc' (a text)", "[1, 2] (a list)", "<function ...> (a function)", or of an array "... (of type
+    int64, shape (3,))"; of None, an int or a float the text alone; of other objects "... (of type NAME)".
     """
     text = f"{' '.join(repr(value).split()):.60}"
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
