@@ -326,7 +326,11 @@ _MESSAGES = (
 
 
 def caller_level() -> int:
-    """Return the number of frames up to the first one outside this package: the ``stacklevel`` of a warning."""
+    """Return the number of frames from the caller up to the first one outside this package, >= 1.
+
+    It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.  If all frames are
+    those of this package, the outermost one counts.
+    """
     level, frame = 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "viscoroll":
         level, frame = level + 1, frame.f_back

@@ -36,6 +36,7 @@ def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
     path: path of the file or folder, for the message.
     problem: what fails, in words, as "cannot be read".
     remedy: further words, which follow the reason; "" without.
+    Yields None.
     """
     try:
         yield

@@ -134,12 +134,13 @@ class Inputs:
         return values
 
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
-        """Return the ends of the draws of an input, (2,), [lower, upper], in the unit of the file.
+        """Return the ends of the draws of an input.
 
-        name: name of the input, else StopIteration.
-        low, high: probabilities; the ends of a distribution are its quantiles there, by default those of the smallest
-            and the largest coordinate that a point has.  They are ignored for a column of a file, whose ends are its
-            smallest and its largest number.
+        name: name of the input; another name raises StopIteration.
+        low, high: probabilities in (0, 1) of the ends of a distribution, by default the smallest and the largest
+            coordinate that a point has; ignored for a column of a file.
+        Returns [lower, upper], (2,), in the unit of the file: quantiles of a distribution, which may be infinite; the
+        smallest and the largest number of a column.
         """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))

@@ -74,7 +74,7 @@ def build(
         ``linear_error`` that of linear interpolation in the untransformed axes, over 10^5 random points in random
         cells; ``spline_error_at`` and ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".  Attributes
         of the dataset are those of a CF file, ``method``, the parameters of the roller (of a scene alpha, kappa and mu,
-        of a cylinder R, m, mu and load) and of bodies ``material``, as TOML.
+        of a cylinder R, m, mu and load) and, unless the scene has an alpha alone, ``material``, the bodies as TOML.
 
     Raises
     ------
@@ -170,7 +170,7 @@ def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: s
 def _evaluate(
     roller: Scene | Cylinder, points: dict[str, Floats], names: tuple[str, ...], method: Any = "table"
 ) -> dict[str, Floats]:
-    """Return fields of the contact: name -> values in the shape of the points, in the units of the roller.
+    """Return fields of the contact: name -> values in the broadcast shape of the points, in the units of the roller.
 
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     points: "V", and perhaps "delta" and "alpha" -> arrays that broadcast; without "delta" fields are at delta = 0 as an

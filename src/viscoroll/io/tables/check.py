@@ -75,8 +75,8 @@ class Report:
         """Return a table in words: a heading, a line for each check, a blank line, the verdict, version and settings.
 
         The line of a check has its name, the measured and the allowed difference, "ok" or "EXCEEDED", and the meaning.
-        The verdict is the number of checks whose difference is beyond what is allowed.  Raises ValueError without
-        checks.
+        The verdict is the number of checks whose difference is beyond what is allowed or NaN, or that there is none.
+        Raises ValueError without checks.
         """
         width = max(len(check.name) for check in self.checks)
         lines = [
