@@ -326,7 +326,7 @@ _MESSAGES = (
 
 
 def caller_level() -> int:
-    """Return the number of frames from the caller up to the first one outside this package, >= 1.
+    """Return the number of frames from the caller up to the first one outside this package, both counted, >= 1.
 
     It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.  If all frames are
     those of this package, the outermost one counts.

@@ -1,4 +1,4 @@
-"""One block of a run: its random inputs and its motions."""
+"""One block of a run, a range of its motions: their random inputs, and the motions themselves."""
 
 from __future__ import annotations
 

@@ -162,7 +162,7 @@ class Inputs:
         return self.medians | ends
 
     def largest(self, name: str) -> float:
-        """Return the largest magnitude of a start speed up to which a flow map is made.
+        """Return the largest magnitude of a start speed up to which a flow map, tables of the motions, is made.
 
         name: "V0" or "omega0"; KeyError if the section [start] does not give it.
         Returns a float >= 0 in the unit of the file.  A distribution may be unbounded: its quantiles at 1e-6 and

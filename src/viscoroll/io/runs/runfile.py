@@ -166,9 +166,10 @@ class Run:
     def method(self) -> Literal["flow", "integrate"]:
         """Method of all blocks: "flow" or "integrate".
 
-        It is that of the file, or for "auto" the flow map if one serves (:attr:`mappable`), the run has at least
-        :data:`.batch.FLOW_PAYS` motions, and a start speed differs from 0.  It depends on the run as a whole, so that
-        bits do not depend on blocks.
+        A flow map is a set of tables of all free motions of one scene, which are looked up there and not integrated.
+        The method is that of the file, or for "auto" the flow map if one serves (:attr:`mappable`), the run has at
+        least 4096 motions (:data:`.batch.FLOW_PAYS`), and a start speed differs from 0.  It depends on the run as a
+        whole, so that bits do not depend on blocks.
         """
         if self.settings.method != "auto":
             return self.settings.method
@@ -178,7 +179,7 @@ class Run:
 
     @property
     def mappable(self) -> bool:
-        """Whether a flow map serves: only start speeds are uncertain, [drive] is absent or empty, and not unsteady."""
+        """Whether a flow map serves: only start speeds are uncertain, [drive] is absent or empty, ``unsteady`` false."""
         driven = self.inputs.content.get("drive") or self.settings.unsteady
         return not driven and set(self.inputs.uncertain) <= set(START)
 
@@ -186,8 +187,8 @@ class Run:
     def fastest(self) -> float:
         """Speed up to which the flow map is tabulated: the larger of |V0| and R |omega0|.
 
-        It is in m/s, or dimensionless, where R is 1; of distributions see :meth:`.inputs.Inputs.largest`.  The few
-        faster motions are integrated.  Raises KeyError if [start] lacks one of the two.
+        It is a float >= 0 in m/s, or dimensionless, where R is 1; of distributions see :meth:`.inputs.Inputs.largest`.
+        The few faster motions are integrated.  Raises KeyError if [start] lacks one of the two.
         """
         R = self.inputs.content["cylinder"]["R"] if self.si else 1.0
         return max(self.inputs.largest("V0"), R * self.inputs.largest("omega0"))
