@@ -68,11 +68,12 @@ class RunResults(Result):
         Returns
         -------
         xarray.Dataset
-            Over (motion, t) the quantities that ``fields`` of the section [run] names, by default V, omega and x; an
-            output that a motion did not reach is NaN.  Over (motion,) each uncertain input by its name, onset_time and
-            rest_time (NaN of a motion without), status (code of :class:`MotionStatus`) and flow (1 if the motion was
-            looked up in a flow map, tables of the motions of one scene, 0 if it was integrated).  t is a coordinate,
-            motion has none: motion k is the k-th of the run, from 0.  All are in the units of the run file.
+            Over (motion, t) the quantities that ``fields`` of the section [run] names, by default V (speed of the
+            axis), omega (angular velocity) and x (distance travelled); an output that a motion did not reach is NaN.
+            Over (motion,) each uncertain input by its name, onset_time of partial slip and rest_time (NaN of a motion
+            without), status (code of :class:`MotionStatus`) and flow (1 if the motion was looked up in a flow map,
+            tables of the motions of one scene, 0 if it was integrated).  t is a coordinate, motion has none: motion k
+            is the k-th of the run, from 0.  All are in the units of the run file.
 
         Raises
         ------

@@ -102,7 +102,7 @@ def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
         values.
     Returns name of the load or speed -> number, array (n,) or, of a table, :class:`Schedule`, in the units of the file;
     {} without [drive].  Numbers and arrays are returned themselves and are not checked.
-    Raises ParameterError, which names the load, for a wrong schedule; ValueError for arrays of different n in one.
+    Raises ParameterError, which names the load, for a wrong schedule; ValueError as :func:`_schedule`.
     """
     drive = content.get("drive", {})
     return {name: _schedule(name, **load) if isinstance(load, dict) else load for name, load in drive.items()}

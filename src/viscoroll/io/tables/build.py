@@ -1,4 +1,10 @@
-"""The contact law on a grid: what look-up blocks of other programs read."""
+"""The contact law on a grid, for look-up blocks of other programs.
+
+Fields: beta, length of the stick zone divided by contact length; Q, creep force; lam, contact length divided by that at
+rest; epsilon, shift of the contact in half contact lengths; M, rolling moment, and its parts M_half_space and
+M_cylinder; delta_star, creepage at which full slip begins; delta_0, creepage of free rolling, of a layer; zeta, time in
+which a point passes through half the contact.
+"""
 
 from __future__ import annotations
 

@@ -1,4 +1,7 @@
-"""Checks of tables: the file of a law against the formulas of its modes, a grid against the rows of the law."""
+"""Checks of tables: the file of a law against the formulas of its modes, a grid against the rows of the law.
+
+The rows of a law are its polynomials, one for each octave of speed.
+"""
 
 from __future__ import annotations
 
