@@ -179,7 +179,7 @@ class Run:
 
     @property
     def mappable(self) -> bool:
-        """Whether a flow map serves: start speeds alone are uncertain, [drive] is absent or empty, unsteady is false."""
+        """Whether a flow map serves: start speeds alone are uncertain, [drive] is absent or empty, unsteady false."""
         driven = self.inputs.content.get("drive") or self.settings.unsteady
         return not driven and set(self.inputs.uncertain) <= set(START)
 
