@@ -39,8 +39,8 @@ def has_no_unit(value: Any) -> bool:
     """Whether the type of a value shows that it has no unit: a number, an array or a list of numbers.
 
     value: what a caller gave, of any type.
-    Returns True also of None, texts, truth values, dicts and arrays of texts and dates; False of all that may have a
-    unit, as nested lists, arrays of objects, and classes derived from the types of Python and numpy.
+    Returns True also of None, texts, truth values, dicts, and arrays of texts or dates; False of anything else, which
+    may have a unit: nested lists, arrays of objects, and instances of classes derived from those of Python and numpy.
     """
     kind = type(value)
     if kind is np.ndarray:

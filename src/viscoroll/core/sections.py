@@ -164,6 +164,8 @@ def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
     name: name of the section, "" for the top level.
     key: key in the section, "" for the section itself; the message states it only as far as ``problem`` does.
     problem: what is wrong, in words, which end the message.
+    The message is "PATH: line N: [NAME] PROBLEM", without the line if neither key nor section is found or the file
+    cannot be read, and without [NAME] at the top level.
     """
     line = None
     with suppress(OSError, UnicodeDecodeError):

@@ -55,7 +55,8 @@ def series_fit(fit: Any) -> Figure:
     """Draw measured moduli as points and the series that was fitted to them as curves, on logarithmic axes.
 
     fit: a :class:`viscoroll.Fit` (E' and E'' over angular frequency, rad/s) or a :class:`viscoroll.RelaxationFit` (the
-        relaxation modulus over time, s), in the unit of its data.
+        relaxation modulus over time, s), in the unit of its data; its ``data``, ``symbols``, ``prony`` and misfit are
+        read.
     Returns the :class:`matplotlib.figure.Figure`; its title states the number of modes and the misfit.
     """
     x, *columns = fit.data

@@ -234,7 +234,7 @@ class Run:
 
         Parameters
         ----------
-        block : number of the block, from 0 to ``blocks`` - 1.
+        block : number of the block, from 0 to ``blocks`` - 1, which is not checked.
 
         Returns
         -------
