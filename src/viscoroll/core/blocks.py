@@ -43,7 +43,10 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     whole = np.broadcast_to(array, shape)
 
     def read_block(start: int, stop: int) -> Floats:
-        """Return a read-only copy of the elements ``start`` to ``stop`` - 1 of the flattened array, a vector."""
+        """Return a read-only copy of elements of the flattened array, a contiguous vector (stop - start,).
+
+        start, stop: index of the first element, and of the one after the last, 0 <= start < stop <= its size.
+        """
         iterator: Any = np.nditer  # the stubs of numpy lack the flag "contig"
         flags = ["external_loop", "buffered", "ranged"]
         chunks = iterator(whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start)

@@ -77,9 +77,9 @@ def identification(fit: Any) -> Figure:
     Residuals are (fit - data)/sigma, dimensionless.  A record over several coordinates is drawn over its last one, with
     a vertical line for each point's prediction band.
 
-    fit: a :class:`viscoroll.app.identification.fit.Identification`: names of its ``values``, ``records``, ``predicted``
-        bands, ``sigma`` and ``planned`` are read.  Of a planned one, which has no data, neither data nor residuals are
-        drawn.
+    fit: a :class:`viscoroll.app.identification.fit.Identification`, whose ``values`` (for their names), ``records``,
+        ``predicted`` bands, ``sigma``, ``planned`` and columns of the problem are read.  Of a planned one, which has no
+        data, neither data nor residuals are drawn.
     Returns the :class:`matplotlib.figure.Figure`, whose axis of a coordinate that is spaced by factors is logarithmic.
     """
     shown = fit._problem.columns

@@ -185,10 +185,11 @@ def _outcomes(
 
     run: :class:`Run`, whose ``settings.summaries`` name the quantities.
     cube: points of the unit cube, (input, motion), of :func:`_points`.
-    threads: number of threads, on which the motions of one block run; None: all cores available.
+    threads: number of threads, on which the motions of one block run; None: ``$VISCOROLL_THREADS``, else all cores
+        available.
     progress: whether a progress bar is drawn.
-    Raises ParameterError if the values of all motions would take more than 0.5 GB, and for inputs that a motion does
-    not allow.
+    Raises ParameterError if the values of all motions would take more than 0.5 GB, for a wrong ``threads``, and for
+    inputs that a motion does not allow; FileError for inputs that a material does not allow.
     Returns (name of a quantity -> values, (t, motion), or (1, motion) of one number per motion, in the units of the
     run, NaN where a motion does not have it; status of each motion, a code of :class:`MotionStatus`, (motion,), int8).
     """

@@ -62,7 +62,7 @@ def build(
         layer has no such scale, since delta_0 does not vary with mu: it is refused, as is the law of every alpha.  All
         parameters are numbers, no arrays.
     V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_epsilon or in m/s; for V < 0 see the signs
-        of Eqs. (17), (18).
+        of Eqs. (17), (18).  A number, here and below, is an axis of one node.
     delta : creepages, (n,), dimensionless, any sign, strictly increasing.
     alpha : values of alpha, (n,), in [1, 1e12], strictly increasing, in place of that of a scene without a material;
         None: no such axis.
@@ -76,7 +76,7 @@ def build(
     xarray.Dataset
         beta and Q over (V, delta) or (V, delta, alpha); lam, epsilon, M, its parts in both bodies, delta_star and zeta
         over V (and alpha), and of a layer delta_0; units, symbols, equations in the attributes.  Nodes have the bits of
-        :func:`contact`. ``spline_error`` of a field is the largest absolute error of :func:`interpolate`,
+        :func:`contact` by this method.  ``spline_error`` of a field is the largest absolute error of :func:`interpolate`,
         ``linear_error`` that of linear interpolation in the untransformed axes, over 10^5 random points in random
         cells; ``spline_error_at`` and ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".  Attributes
         of the dataset are those of a CF file, ``method``, the parameters of the roller (of a scene alpha, kappa and mu,
@@ -195,7 +195,8 @@ def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
 
     table: the grid, which is changed.  Each field gets the attributes spline_error and linear_error, the largest
         absolute error of cubic splines and of linear interpolation over :data:`SAMPLE_SIZE` random points, in the unit
-        of the field; and spline_error_at and linear_error_at, the point as text, as "V = 0.31, delta = 0.0042".
+        of the field; and spline_error_at and linear_error_at, the first such point as text, as "V = 0.31, delta =
+        0.0042", of the axes that the field depends on.
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, for the exact values at random points.
     """
     points = random_points(table, SAMPLE_SIZE, SEED)

@@ -194,8 +194,9 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
 def _write_header(dataset: xr.Dataset, path: Path) -> None:
     """Write the rows of a law and their evaluator as one header of C.
 
-    The header contains the material as a comment, the evaluator (``c/vr_law.h``), arrays ``static const double`` with
-    the coefficients, of a cover with those of its creep too, and a variable ``static const vr_law``.
+    The header contains title, source, T_ref, checksum and material as a comment, the evaluator (``c/vr_law.h``), an
+    array ``static const double NAME_coefficients`` (octave, power, function), of a cover ``NAME_creep`` too, and a
+    variable ``static const vr_law NAME``, which refers to them.
 
     dataset : dataset of a law, of half-spaces or of a cover.
     path : file to write, replaced if it exists; its stem becomes the name of the variable.

@@ -63,8 +63,8 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     xarray.Dataset
         Of half-spaces the coefficients of lam, epsilon, m_half_space, m_cylinder (M of either body divided by V) and N
         over ``kappa |V|``, of share = eta/F(eta) and press = H(eta)/F(eta)^2 over v = 1/F(eta), where eta is half the
-        transit time of the stick zone.  Each function has its ``largest_relative_error`` as an attribute
-        (:func:`measured_errors`).  Further variables are the fast limits and both forms of the series; attributes are
+        transit time of the stick zone; each is a variable over (octave, power), and has its ``largest_relative_error``
+        as an attribute (:func:`measured_errors`).  Further variables are the fast limits and both forms of the series; attributes are
         the material as TOML and ``comment``, which describes the evaluation.  The law holds for any speed, creepage,
         kappa, mu, load and radius.
 
@@ -73,7 +73,7 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
         2 kappa delta_star/mu and free = 2 kappa delta_0 over ``kappa |V|``.
 
         With ``alpha`` the polynomials are of ln alpha too, one for each octave of alpha, of lam, epsilon/c, M/(V c),
-        N/c, share and press with c = (alpha - 1)/alpha.
+        N/c, share and press with c = (alpha - 1)/alpha, over (octave_of_alpha, degree, octave, power).
 
     Raises
     ------
