@@ -142,8 +142,9 @@ def _body(path: Path, name: str, section: Any) -> Any:
 
     path, name, section: as of :func:`_first_material`.
     Returns the Material of the section, or of the first motion if E, nu, thickness and series are the same for all;
-    else a Solid, in which those that differ are arrays (n,), thickness None of a half-space.  Its T_ref, in s, is that
-    of the first motion; a temperature that differs multiplies the relaxation times, by one factor for each motion.
+    else a Solid, in which those that differ are arrays (n,), the others numbers, thickness None of a half-space.  Its
+    T_ref, in s, is that of the first motion; a temperature that differs multiplies the relaxation times, by one factor
+    for each motion.
     Raises ParameterError for E or thickness <= 0, nu out of (-1, 0.5] or a temperature that the shift does not allow,
     in an array; FileError as :func:`_first_material`, and for a series out of range.
     """

@@ -76,11 +76,13 @@ def build(
     xarray.Dataset
         beta and Q over (V, delta) or (V, delta, alpha); lam, epsilon, M, its parts in both bodies, delta_star and zeta
         over V (and alpha), and of a layer delta_0; units, symbols, equations in the attributes.  Nodes have the bits of
-        :func:`contact` by this method.  ``spline_error`` of a field is the largest absolute error of :func:`interpolate`,
-        ``linear_error`` that of linear interpolation in the untransformed axes, over 10^5 random points in random
-        cells; ``spline_error_at`` and ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".  Attributes
-        of the dataset are those of a CF file, ``method``, the parameters of the roller (of a scene alpha, kappa and mu,
-        of a cylinder R, m, mu and load) and, unless the scene has an alpha alone, ``material``, the bodies as TOML.
+        :func:`contact` by this method.
+
+        ``spline_error`` of a field is the largest absolute error of :func:`interpolate`, ``linear_error`` that of
+        linear interpolation in the untransformed axes, over 10^5 random points in random cells; ``spline_error_at`` and
+        ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".  Attributes of the dataset are those of a
+        CF file, ``method``, the parameters of the roller (of a scene alpha, kappa and mu, of a cylinder R, m, mu and
+        load) and, unless the scene has an alpha alone, ``material``, the bodies as TOML.
 
     Raises
     ------

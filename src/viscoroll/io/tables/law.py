@@ -64,9 +64,9 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
         Of half-spaces the coefficients of lam, epsilon, m_half_space, m_cylinder (M of either body divided by V) and N
         over ``kappa |V|``, of share = eta/F(eta) and press = H(eta)/F(eta)^2 over v = 1/F(eta), where eta is half the
         transit time of the stick zone; each is a variable over (octave, power), and has its ``largest_relative_error``
-        as an attribute (:func:`measured_errors`).  Further variables are the fast limits and both forms of the series; attributes are
-        the material as TOML and ``comment``, which describes the evaluation.  The law holds for any speed, creepage,
-        kappa, mu, load and radius.
+        as an attribute (:func:`measured_errors`).  Further variables are the fast limits and both forms of the series;
+        attributes are the material as TOML and ``comment``, which describes the evaluation.  The law holds for any
+        speed, creepage, kappa, mu, load and radius.
 
         Of a cylinder with a layer (a thickness) the law holds at its ratio of l0 to thickness alone, that is at its
         load and radius, and at any speed, creepage and mu.  It has no N and no series, and in addition limit =
