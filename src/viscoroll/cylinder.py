@@ -382,7 +382,8 @@ def _describe_body(body: Any) -> str:
     """Return a body in a few words for a printed report.
 
     body: :class:`Material` or :class:`LawTable`.
-    Returns its name, "rigid", or modulus, Poisson's ratio and number of modes, with the thickness of a layer.
+    Returns, of a Material, its name, "rigid", or modulus, Poisson's ratio and number of modes, with the thickness of a
+    layer; of a LawTable its ``repr``.
     """
     if not isinstance(body, Material):
         return repr(body)

@@ -117,7 +117,7 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
     path: path of the file, for the message and the number of the line.
     content: name of a section, or key outside of sections -> its content, as tomllib reads it.
     more: name of a further section that the file may have -> its class, a msgspec.Struct; None if it is checked
-    elsewhere.
+        elsewhere.
     Returns nothing.
     Raises FileError if none of preset, [scene] and [cylinder] is given, or [cylinder] beside one of the others (a
     preset may stand beside [scene]); if a section of a material stands without [cylinder]; for an unknown key or

@@ -203,7 +203,9 @@ def _outcomes(
     status = np.empty(motions, np.int8)
 
     def work(start: int, stop: int) -> None:
-        """Roll the motions ``start`` to ``stop`` - 1, and write their values and statuses."""
+        """Roll the motions ``start`` to ``stop`` - 1 of the cube, and write their values into the columns of
+        ``outcomes`` and their codes into ``status``.
+        """
         rolled = roll_inputs(run, run.inputs.values(cube[:, start:stop]), stop - start, threads)
         status[start:stop] = rolled.status
         for name, values in outcomes.items():
