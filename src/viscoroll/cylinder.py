@@ -173,7 +173,7 @@ class Cylinder(Methods):
         half-space has ``base``, or that of the law, or the same material.
         Raises ParameterError where they do not go together: a dimensionless law as ``material``, a ``base`` beside a
         law that contains one, another ``plane`` than that of a law of two different bodies, two rigid bodies or two
-        layers, a layer in plane stress.
+        layers, a layer in plane stress; and for arrays among E to T_sigma, which have no :class:`Material`.
         """
         law = self.material
         if not isinstance(law, LawTable):
@@ -262,10 +262,11 @@ class Cylinder(Methods):
         return self.replace(load=self.load * slope_tan_cos(slope)[1])
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return the title and the rows of the printed report.
+        """Return (the title; a list of :class:`SummaryRow`) of the printed report.
 
-        The rows are the numbers that were given, with their SI units, the load, the plane, and each body by its name,
-        or by modulus and number of modes if it has none, with the thickness of a layer.
+        The rows are, in this order, the numbers that were given, with their SI units, the load, the plane, "material"
+        if ``material`` was given, and "base" if ``base`` or a :class:`Material` was: each body by its name, or by
+        modulus and number of modes if it has none, with the thickness of a layer.
         """
         values = self.numbers | {"load": self.load, "plane": self.plane}
         rows = [SummaryRow(name, format_value(value), UNITS.get(name, "")) for name, value in values.items()]
@@ -299,7 +300,9 @@ class Cylinder(Methods):
 
     @cached_property
     def scale(self) -> Scale:  # type: ignore[override]
-        """:class:`.Scale`: the SI value of 1 of each quantity of the scene, by name, as ``scale["V"]`` in m/s."""
+        """:class:`.Scale`: the SI value of 1 of each quantity of the scene, by name, as ``scale["V"]`` in m/s; a float,
+        or an array (n,) where a parameter in it is one.
+        """
         return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
 
     def scene(self) -> Scene:
@@ -368,8 +371,8 @@ class Cylinder(Methods):
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]
-        """Attributes that datasets of results get, by name: the list of the lowest and the highest speed at which the
-        materials were measured, m/s; none without measured data, and for an array of l0.
+        """Attributes that datasets of results get: "measured_V" -> [lowest, highest speed at which the materials were
+        measured], floats in m/s; {} without measured data, and for an array of l0.
         """
         rates = self.body_data.measured_rates
         return {} if rates is None or np.ndim(self.l0) else {MEASURED: [rate * self.l0 for rate in rates]}
@@ -379,7 +382,8 @@ def _describe_body(body: Any) -> str:
     """Return a body in a few words for a printed report.
 
     body: :class:`Material` or :class:`LawTable`.
-    Returns its name, "rigid", or modulus, Poisson's ratio and number of modes, with the thickness of a layer.
+    Returns, of a Material, its name, "rigid", or modulus, Poisson's ratio and number of modes, with the thickness of a
+    layer; of a LawTable its ``repr``.
     """
     if not isinstance(body, Material):
         return repr(body)

@@ -35,6 +35,7 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     C order, a vector (stop - start,).  If ``array`` has a single element the vector is always (1,), that element.
     Vectors are views if ``array`` is contiguous and of that shape, else copies.  All are contiguous and read-only,
     because numba compiles a kernel again for each kind of array.
+    Raises ValueError where ``array`` does not broadcast to ``shape``.
     """
     if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
         vector = broadcast_vector(array, array.shape)
@@ -42,7 +43,10 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     whole = np.broadcast_to(array, shape)
 
     def read_block(start: int, stop: int) -> Floats:
-        """Return a read-only copy of the elements ``start`` to ``stop`` - 1 of the flattened array, a vector."""
+        """Return a read-only copy of elements of the flattened array, a contiguous vector (stop - start,).
+
+        start, stop: index of the first element, and of the one after the last, 0 <= start < stop <= its size.
+        """
         iterator: Any = np.nditer  # the stubs of numpy lack the flag "contig"
         flags = ["external_loop", "buffered", "ranged"]
         chunks = iterator(whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start)
@@ -60,8 +64,9 @@ def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 
     array: numbers that broadcast to ``shape``.
     shape: shape of the result before it is flattened.
-    Returns a vector with as many elements as ``shape`` has, a view where possible, else a copy; if ``array`` has a
-    single element it is (1,), for any shape.
+    Returns a vector with as many elements as ``shape`` has, in C order, a view where possible, else a copy; if
+    ``array`` has a single element it is (1,), for any shape.
+    Raises ValueError where they do not broadcast.
     """
     whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
     vector = whole.reshape(-1).view()
@@ -130,7 +135,8 @@ def run_blocks(
     Parameters
     ----------
     work : function (start, stop) -> None, which computes the elements ``start`` to ``stop`` - 1 of a block and writes
-        them where they belong.  Several threads call it at the same time; its exceptions are raised here.
+        them where they belong.  Several threads call it at the same time.  Its exceptions are raised here, of several
+        that of the first block; then some of the blocks after it have not been computed.
     count : number of elements, >= 0; ``work`` is not called for 0.
     block : number of elements of a block, >= 1; the last block may have fewer.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.  No more are used than

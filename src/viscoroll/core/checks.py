@@ -34,7 +34,8 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     Returns
     -------
     array
-        float64, of the shape of ``value``, () of a number; all elements are finite.  It may be ``value`` itself.
+        float64, of the shape of ``value``, () of a number, in ``unit``; all elements are finite.  It may be empty, and
+        it may be ``value`` itself.
 
     Raises
     ------
@@ -138,7 +139,10 @@ def _first_wrong(array: Floats, wrong: Booleans) -> str:
 
 
 def extent(array: Floats) -> tuple[float, float]:
-    """Return the smallest and the largest element; both are NaN if the array has a NaN."""
+    """Return the smallest and the largest element, floats; both are NaN if the array has a NaN.
+
+    array: float64, of any shape; an empty one raises ValueError.
+    """
     if array.ndim == 0:
         return float(array), float(array)
     return float(array.min()), float(array.max())
@@ -182,7 +186,7 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
     """Return the common shape of arrays, by numpy's rule of broadcasting.
 
     arrays: arrays by the name that an error states; those without axes fit every shape.
-    Returns the shape; () if no array has axes, or none is given.
+    Returns the shape, a tuple of ints; () if no array has axes, or none is given.
 
     Raises
     ------
@@ -201,7 +205,7 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
 
 
 def read_only(array: Floats) -> float | Floats:
-    """Return a float for an array without axes, else a read-only copy of the array."""
+    """Return a float of an ``array`` without axes, else a read-only copy of it."""
     if array.ndim == 0:
         return float(array)
     array = array.copy()
@@ -254,6 +258,7 @@ def check_bool(name: str, value: Any) -> bool:
     Returns
     -------
     bool
+        The truth value, as a bool of Python.
 
     Raises
     ------

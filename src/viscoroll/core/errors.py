@@ -85,8 +85,8 @@ def describe_value(value: Any) -> str:
     """Return a value for a message: its text in one line of at most 60 characters, and its type in parentheses.
 
     value: what a caller gave, of any type.
-    Returns a text as "'abc' (a text)", "[1, 2] (a list)", or of an array "... (of type int64, shape (3,))"; of None, an
-    int or a float the text alone.
+    Returns a text as "'abc' (a text)", "[1, 2] (a list)", "<function ...> (a function)", or of an array "... (of type
+    int64, shape (3,))"; of None, an int or a float the text alone; of other objects "... (of type NAME)".
     """
     text = f"{' '.join(repr(value).split()):.60}"
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
@@ -137,6 +137,7 @@ def check_one_given(**values: Any) -> str:
     """Check that exactly one of two parameters is given, and return its name.
 
     values: exactly two parameters by name, None where one is not given.
+    Returns the name of the one that is given.
     Raises ParameterError if none or both are given.
     """
     given = [name for name, value in values.items() if value is not None]
@@ -283,6 +284,11 @@ class ModelWarning(UserWarning):
 class MotionStatus(IntEnum):
     """How a motion ended.
 
+    A motion is complete if it is DONE (it reached the last output time) or RESTED (its speeds fell below the rest
+    threshold).  Others stop before that: STEP_LIMIT and STEP_TOO_SMALL of the integrator; UNDECIDED at V = omega = 0,
+    where the motion is not unique; UNSTEADY, too slow for the unsteady correction; CAUGHT, too slow to leave the
+    indentation of a standstill.  The property ``message`` states each in a sentence.
+
     Examples
     --------
     >>> import viscoroll as vr
@@ -320,7 +326,11 @@ _MESSAGES = (
 
 
 def caller_level() -> int:
-    """Return the number of frames up to the first one outside this package: the ``stacklevel`` of a warning."""
+    """Return the number of frames from the caller up to the first one outside this package, both counted, >= 1.
+
+    It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.  If all frames are
+    those of this package, the outermost one counts.
+    """
     level, frame = 1, sys._getframe(1)
     while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] == "viscoroll":
         level, frame = level + 1, frame.f_back

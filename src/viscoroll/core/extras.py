@@ -13,6 +13,7 @@ def import_extra(package: str, extra: str) -> Any:
 
     package: name of the module and of the distribution that has it, as "fmpy".
     extra: extra of viscoroll that installs it, as in ``pip install 'viscoroll[EXTRA]'``, for the error.
+    Returns the module.
 
     Raises
     ------

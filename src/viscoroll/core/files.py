@@ -36,6 +36,7 @@ def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
     path: path of the file or folder, for the message.
     problem: what fails, in words, as "cannot be read".
     remedy: further words, which follow the reason; "" without.
+    Yields None.
     """
     try:
         yield
@@ -48,9 +49,9 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     """Give a temporary path beside ``path``, and rename that file to ``path`` when the body of the ``with`` ends.
 
     The body must write a file at the temporary path.  The file and its folder are synced to disk.  After an exception
-    ``path`` is as it was, and the temporary file is deleted.  A process that is killed may leave a temporary file,
-    named .PID-XXXXXXXX.tmp-NAME, which may be deleted.  The target of a symbolic link is replaced, and the link stays.
-    The temporary name has the suffix of ``path``, from which writers infer a format.
+    of the body ``path`` is as it was, and the temporary file is deleted.  A process that is killed may leave a
+    temporary file, named .PID-XXXXXXXX.tmp-NAME, which may be deleted.  The target of a symbolic link is replaced, and
+    the link stays.  The temporary name has the suffix of ``path``, from which writers infer a format.
 
     path: path of the file to write or to replace.
     Yields the temporary path, at which no file is yet.

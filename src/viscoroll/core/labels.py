@@ -138,6 +138,7 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     like = next(iter(whole.values())).drop_attrs()
 
     def wrap(name: str, values: Any, further: tuple[str, ...]) -> Any:
+        """Return values as an array of xarray with the axes and coordinates of the arguments, then ``further`` axes."""
         return xr.DataArray(values, dims=(*like.dims, *further), coords=like.coords, name=name)
 
     coords = {str(name): (tuple(map(str, each.dims)), each.values) for name, each in like.coords.items() if each.dims}
@@ -165,6 +166,12 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
         )
 
     def wrap(name: str, values: Any, further: tuple[str, ...]) -> Any:
+        """Return values, (n,) or (n, m), as a series or a data frame with the index of the arguments.
+
+        name: name of the series; a data frame has none.
+        values: array; it is returned itself if it has more axes.
+        further: names of its axes after the first; with one the columns of the data frame are 0 to m - 1, of that name.
+        """
         if len(further) > 1:  # no type of pandas has more axes
             return values
         if further:

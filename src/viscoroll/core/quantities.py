@@ -36,7 +36,12 @@ _TEMPERATURE = "degC"
 
 
 def has_no_unit(value: Any) -> bool:
-    """Whether the type of a value shows that it has no unit: a number, an array or a list of numbers."""
+    """Whether the type of a value shows that it has no unit: a number, an array or a list of numbers.
+
+    value: what a caller gave, of any type.
+    Returns True also of None, texts, truth values, dicts, and arrays of texts or dates; False of anything else, which
+    may have a unit: nested lists, arrays of objects, and instances of classes derived from those of Python and numpy.
+    """
     kind = type(value)
     if kind is np.ndarray:
         return value.dtype.kind in _UNITLESS_KINDS
@@ -83,8 +88,9 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     name: name of the argument, for errors.
     value: what a caller gave: a number, an array, a list, a quantity of pint, astropy or unyt, a duration, an array of
         xarray, a series or an index of pandas.
-    Returns (numbers in the same kind of container, a list of a tuple; their unit as a text).  Without a unit it is
-    (``value``, None), of whatever type the value is.  Durations are numbers in "s".
+    Returns (numbers in the same kind of container, but a list in place of a tuple; their unit as a text).  Without a
+    unit that is (``value``, None), of whatever type the value is; of lists and arrays of objects it is a new one.
+    Durations are numbers in "s".
 
     Raises
     ------

@@ -52,8 +52,9 @@ class Result:
 
         A column of a quantity with a unit is named as "V [m s-1]", because pandas writes no attributes into files.
         The index has the axes of the variable that has most axes, the first one of several with as many; a result of a
-        single state has one row, with index 0 named "state".  Variables over other axes, as the corners of a drive, are
-        left out.
+        single state has one row, with index 0 named "state".  Variables over fewer of these axes are repeated along the
+        others; variables over other axes, as the corners of a drive, are left out.  A dataset without variables raises
+        ValueError.
         """
         data = self.to_xarray()
         dims = max((variable.dims for variable in data.values()), key=len)
@@ -89,7 +90,7 @@ class Result:
         return figure
 
     def _figure(self) -> Figure:
-        """Return the figure of the dataset."""
+        """Return the figure of the dataset, as of :func:`.plots.draw`."""
         from .plots import draw
 
         return draw(self.to_xarray())
@@ -111,13 +112,22 @@ class Result:
 
 
 def as_text(title: str, rows: list[SummaryRow]) -> str:
-    """Return a summary with a ``title`` and ``rows`` for a terminal."""
+    """Return a summary for a terminal: the title, then a line for each row, its name, value and unit.
+
+    title: first line.
+    rows: :class:`SummaryRow` each, perhaps none; values begin in one column.
+    """
     width = max((len(row.name) for row in rows), default=0)
     return "\n".join([title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)])
 
 
 def as_html(title: str, rows: list[SummaryRow]) -> str:
-    """Return a summary with a ``title`` and its first ``rows`` for a notebook."""
+    """Return a summary as HTML for a notebook: the title, and a table of the name, value and unit of each row.
+
+    title: text above the table.
+    rows: :class:`SummaryRow` each, of which the first 40 are shown.
+    Returns one element div, in which the characters of the texts that HTML reserves are escaped.
+    """
     cells = "".join(
         "<tr>" + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) + "</tr>"
         for row in rows[:_MAX_ROWS]
@@ -139,10 +149,10 @@ def column_name(name: str, unit: str) -> str:
 def format_value(value: Any) -> str:
     """Return a number or a short array as text; of a long array its shape and range.
 
-    value: a number, a text, or an array of any shape.
-    Returns a float with 12 significant digits; an array of one to four elements, or without axes, with six digits after
-    the point; of a larger array a text as "(100,), 0 to 2.5, 3 not finite" or "(100,), none finite"; of an empty one
-    its shape; of anything else its ``str``.
+    value: a number, a text, or an array of numbers of any shape.
+    Returns a text: of a float 12 significant digits; of an array of one to four elements, or without axes, its elements
+    with at most six digits after the point; of a larger array its shape and the smallest and largest finite element, as
+    "(100,), 0 to 2.5, 3 not finite" or "(100,), none finite"; of an empty one its shape; of anything else its ``str``.
     """
     if not isinstance(value, np.ndarray):
         return f"{value:.12g}" if isinstance(value, float) else str(value)
@@ -245,6 +255,7 @@ class Values(Result):
         return self._values.keys()
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return (the title, with the common shape of the results unless it is (); a row for each result)."""
         shape = np.broadcast_shapes(*map(np.shape, self._values.values()))
         title = self._title + (f", {shape}" if shape else "")
         units = {name: unit_of(self._attributes(name)) for name in self._values}
@@ -256,7 +267,8 @@ class Values(Result):
         An axis along which one argument alone varies has the name and the values of that argument; another axis is
         named ``state``, or of several axes ``state_0``, ``state_1`` and so on.  Arguments with labels of xarray or
         pandas determine axes and coordinates.  Results and arguments are broadcast to the common shape, numbers are
-        variables without axes, truth values become 0 or 1.
+        variables without axes, truth values become 0 or 1 (int8).  Attributes of the dataset are its title and those
+        that the call added, as the speeds at which the material was measured.
 
         Examples
         --------
@@ -284,7 +296,9 @@ class Values(Result):
         return xr.Dataset(data, coords, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:
-        """Return the attributes of the result or argument ``name``."""
+        """Return the attributes of the result or argument ``name``, as of :func:`.symbols.attributes`; a unit that the
+        call gave for it takes the place of its own.
+        """
         found: dict[str, Any] = dict(attributes(name, self._si))
         return found | {"units": self._units[name]} if name in self._units else found
 

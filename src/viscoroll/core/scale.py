@@ -96,6 +96,11 @@ class Scale(dict[str, Any]):
         self, R: Any = 1.0, T: Any = 1.0, P: Any = 1.0, m: Any = 1.0, l0: Any = 1.0, E_prime: Any = 1.0,
         *, si: bool = True,
     ) -> None:  # fmt: skip
+        """Keep the units of which all others are products, by name, and that of angles, 1 rad.
+
+        R, T, P, m, l0, E_prime : radius, time, load, mass, contact length at rest and modulus, as the class states.
+        si : whether these are SI units, else 1 each.
+        """
         super().__init__(R=R, T=T, P=P, m=m, l0=l0, E_prime=E_prime, rad=1.0)
         self.si = si
 

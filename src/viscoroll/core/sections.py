@@ -40,7 +40,11 @@ _TYPE_NAMES = {
 
 
 def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
-    """Return the content of the TOML file at ``path``; raise FileError if it cannot be read or is not TOML."""
+    """Return the content of a TOML file, as tomllib reads it: name of a key or section -> value or dict.
+
+    path: path of the file, in UTF-8; a byte order mark is ignored.
+    Raises FileError if it cannot be read or is not TOML.
+    """
     try:
         with as_file_error(path, "cannot be read"):
             return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
@@ -145,6 +149,7 @@ def as_section_error(path: Any, name: str, key: str = "") -> Iterator[None]:
     path: path of the file, which is read again for the line.
     name: name of the section.
     key: key that is at fault; "": the name of the parameter in the error is taken for the key.
+    Yields None.
     """
     try:
         yield
@@ -159,6 +164,8 @@ def section_error(path: Any, name: str, key: str, problem: str) -> FileError:
     name: name of the section, "" for the top level.
     key: key in the section, "" for the section itself; the message states it only as far as ``problem`` does.
     problem: what is wrong, in words, which end the message.
+    The message is "PATH: line N: [NAME] PROBLEM", without the line if neither key nor section is found or the file
+    cannot be read, and without [NAME] at the top level.
     """
     line = None
     with suppress(OSError, UnicodeDecodeError):

@@ -78,9 +78,10 @@ def describe_quantity(name: str, si: bool = False) -> str:
     """Return the meaning of a quantity in words, as for long_name of a dataset; "" where it is not known.
 
     name: name of the quantity in code, or of a slope as "dQ_dV".
-    si: whether it is in SI units; a quantity whose unit is per m, as a force in N/m, ends with "per length of the
-        cylinder" then.  Else the words end with the unit by which the quantity is divided, as ", divided by R".  A
-        ratio has no such ending in either case.
+    si: whether it is in SI units; a quantity whose unit is per m, as a force in N/m, ends with ", per length of the
+        cylinder" then.  Else the words end with the unit by which the quantity is divided, as ", divided by R", of an
+        angular velocity with ", multiplied by T_epsilon", of an angle with ", radians".  A ratio, and a temperature,
+        has no such ending in either case.
     """
     if name in SYMBOLS:
         text = SYMBOLS[name].long_name

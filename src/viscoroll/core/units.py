@@ -78,7 +78,7 @@ def is_unit(text: str) -> bool:
 
 
 def pint_spelling(unit: str) -> str:
-    """Return a unit in the spelling of pint: superscripts and signs as ASCII, powers with ``**``."""
+    """Return a ``unit`` in the spelling of pint: superscripts and signs as ASCII, powers with ``**``; "1" of ""."""
     text = unit.strip()
     for character, spelling in _SPELLINGS.items():
         text = text.replace(character, spelling)

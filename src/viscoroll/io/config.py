@@ -72,7 +72,7 @@ def preset(name: str) -> Scene:
     """Return the scene of a preset, one of :data:`.presets.PRESETS`.
 
     name: name of the preset, as "paper-section-5".
-    Raises ParameterError, with the nearest name, if there is none.
+    Raises ParameterError, which lists all names, for any other value.
     """
     if not isinstance(name, str) or name not in PRESETS:
         raise unknown_name_error("preset", name, PRESETS, "a preset")
@@ -117,7 +117,7 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
     path: path of the file, for the message and the number of the line.
     content: name of a section, or key outside of sections -> its content, as tomllib reads it.
     more: name of a further section that the file may have -> its class, a msgspec.Struct; None if it is checked
-    elsewhere.
+        elsewhere.
     Returns nothing.
     Raises FileError if none of preset, [scene] and [cylinder] is given, or [cylinder] beside one of the others (a
     preset may stand beside [scene]); if a section of a material stands without [cylinder]; for an unknown key or
@@ -146,7 +146,8 @@ def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, A
     content: name of a section -> its keys and values; ``preset`` -> name of a scene.
     materials: "material" and "base" -> :class:`Material`, as far as the file has these sections; ignored without
         [cylinder].
-    Raises ParameterError for a value out of range or missing, or an unknown preset; FileError for a wrong series.
+    Raises ParameterError for a value out of range or missing, or an unknown preset; FileError for a wrong series;
+    TypeError for an unknown key.
     Returns a :class:`Cylinder` if there is a section [cylinder]; else a :class:`Scene`: that of the preset, in which
     the values of [scene] replace its own, or without a preset that of [scene].
     """

@@ -188,7 +188,7 @@ def permuted(index: Words, n: int, key: Words) -> Words:
     index: the numbers, < n, (k,), uint64.
     n: size of the permutation, >= 1.
     key: keys of the rounds of the Feistel network, (rounds,), uint64; another key is another permutation.
-    Returns the images, (k,), uint64, a new array.
+    Returns the images, (k,), uint64, < n, a new array.
     """
     half = max((int(n - 1).bit_length() + 1) // 2, 1)
     result = _feistel(index, half, key)

@@ -23,6 +23,7 @@ def draw(data: xr.Dataset) -> Figure:
     Returns
     -------
     matplotlib.figure.Figure
+        The figure, not shown and not saved; the first of these kinds, in this order, that applies.
 
     Raises
     ------

@@ -131,7 +131,8 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
     with the largest total index of any quantity first.
 
     indices: dataset of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file: of each
-        quantity NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or (input,), dimensionless.
+        quantity NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or (input,), dimensionless; at least
+        one quantity; attributes confidence, in (0, 1), and motions, their number, for the title.
     Returns the :class:`matplotlib.figure.Figure`.
     """
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]

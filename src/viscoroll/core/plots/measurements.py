@@ -55,7 +55,8 @@ def series_fit(fit: Any) -> Figure:
     """Draw measured moduli as points and the series that was fitted to them as curves, on logarithmic axes.
 
     fit: a :class:`viscoroll.Fit` (E' and E'' over angular frequency, rad/s) or a :class:`viscoroll.RelaxationFit` (the
-        relaxation modulus over time, s), in the unit of its data.
+        relaxation modulus over time, s), in the unit of its data; its ``data``, ``symbols``, ``prony`` and misfit are
+        read.
     Returns the :class:`matplotlib.figure.Figure`; its title states the number of modes and the misfit.
     """
     x, *columns = fit.data
@@ -76,9 +77,10 @@ def identification(fit: Any) -> Figure:
     Residuals are (fit - data)/sigma, dimensionless.  A record over several coordinates is drawn over its last one, with
     a vertical line for each point's prediction band.
 
-    fit: a :class:`viscoroll.app.identification.fit.Identification`.  Of a planned one, which has no data, neither data
-        nor residuals are drawn.
-    Returns the :class:`matplotlib.figure.Figure`.
+    fit: a :class:`viscoroll.app.identification.fit.Identification`, whose ``values`` (for their names), ``records``,
+        ``predicted`` bands, ``sigma``, ``planned`` and columns of the problem are read.  Of a planned one, which has no
+        data, neither data nor residuals are drawn.
+    Returns the :class:`matplotlib.figure.Figure`, whose axis of a coordinate that is spaced by factors is logarithmic.
     """
     shown = fit._problem.columns
     figure, grid = new_figure(

@@ -41,7 +41,7 @@ _JUMP_RTOL = 1e-9
 
 
 def varied_axes(data: xr.Dataset) -> list[str]:
-    """Return the axes of several values that the fields of ``data`` depend on."""
+    """Return the names of the axes of several values that the shown fields of ``data`` depend on, in its order."""
     dims = {dim for name in _shown_fields(data) for dim in data[name].dims}
     return [str(dim) for dim, size in data.sizes.items() if size > 1 and dim in dims]
 
@@ -88,8 +88,9 @@ def field_curves(data: xr.Dataset) -> Figure:
 def stresses(data: xr.Dataset) -> Figure:
     """Draw pressure and shear stress along the contact.
 
-    data: dataset with ``x``, ``p`` and ``tau``; of several states, along other axes than that of x, the first is drawn.
-    Returns the :class:`matplotlib.figure.Figure`.
+    data: dataset with ``x``, place along the contact, ``p``, pressure, and ``tau``, shear stress, with the attribute
+        units; of several states, along other axes than the first one of x, the first is drawn.
+    Returns the :class:`matplotlib.figure.Figure`, with both curves in one panel.
     """
     figure, axes = new_figure("Pressure and shear stress along the contact")
     data = data.isel(dict.fromkeys(set(data.dims) - {data["x"].dims[0]}, 0))

@@ -94,7 +94,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     Raises
     ------
     FileError
-        No such column, several tables in the file, cells that are no numbers.
+        No such column, several columns of that name, several tables in the file, cells that are no numbers.
     ParameterError
         A unit that is unknown or of another dimension.
     """

@@ -76,7 +76,7 @@ def fault_of(cell: str, decimal: str) -> str:
     cell : text of the cell; an empty one and marks as "nan", "---" and "inf" are missing values.
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     Returns "" for a number without a mark, or with that decimal mark alone; else the reason: a missing value, a
-    possible separator of thousands, or no number with that mark.
+    possible separator of thousands (without a decimal mark also of a text), or no number with that mark.
     """
     if _GAP.fullmatch(cell):
         return "is a missing value: remove its row"

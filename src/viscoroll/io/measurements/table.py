@@ -105,7 +105,8 @@ def read_table(
     ------
     FileError
         A file that cannot be read, that is no text, or has no table; several tables with different headings; rows or
-        headings of unlike numbers of cells; a line among the rows or above them that is neither numbers nor units.
+        headings of unlike numbers of cells; rows of numbers above the headings; a line among the rows, or between them
+        and the headings, that is neither numbers nor units.
     ParameterError
         A decimal mark that is neither; an encoding that Python does not know.
     """
@@ -148,6 +149,7 @@ class _Layout:
     def __post_init__(self) -> None:
         """Find the width, the most frequent number of cells of rows of numbers, and the words on the separator.
 
+        Of several numbers of cells that are as frequent the one that occurs first is taken.
         Raises FileError where no line is a row of numbers.
         """
         widths = Counter(len(line.cells) for line in self.lines if line.numeric)

@@ -24,9 +24,10 @@ def attributes(name: str, si: bool) -> dict[str, Any]:
 
     name: name of an input (as base_E, tau_2, drive_torque_time_1), of a field of a motion, or "t".
     si: whether the run is in SI units, else dimensionless.
-    Returns a dict with long_name and units ("1" of a dimensionless quantity); of most quantities symbol and equation
-    too; of the codes regime, status and flow no units, but the list flag_values and the text flag_meanings, a word for
-    each code.  The long_name is "" of a name that is none of these.
+    Returns a dict with long_name and units ("1" of a dimensionless quantity); of a quantity in the table of symbols
+    also symbol and equation, unless it has a dimension and the run is in SI units; of the codes regime, status and flow
+    no units, but the list flag_values and the text flag_meanings, a word for each code.  The long_name is "" of a name
+    that is none of these.
     """
     if name.startswith(PREFIXES["drive"]):
         load, _, corner = name.removeprefix(PREFIXES["drive"]).partition("_")

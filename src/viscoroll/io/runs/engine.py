@@ -73,7 +73,8 @@ def run_ensemble(
     Raises
     ------
     FileError
-        The folder holds something else or cannot be written, another process writes to it, or the cluster is lost.
+        The folder holds something else or cannot be written, another process writes to it, the cluster is lost, or a
+        material does not allow its inputs.
     ParameterError
         An unknown cluster, ``threads`` that is no whole number >= 1, another ``progress``, or inputs that a motion does
         not allow.
@@ -169,8 +170,9 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
         an address.
     Yields (a :class:`concurrent.futures.Executor`; its number of workers, >= 1; the first argument of its tasks: the
     store itself for threads, else dask's reference to it).
-    Raises ParameterError for an unknown cluster, FileError for a scheduler that does not answer, has no workers or is
-    lost while blocks run, MissingDependencyError without dask.
+    Raises ParameterError for an unknown cluster or a wrong ``threads``, FileError for a scheduler that does not answer,
+    has no workers or is lost while blocks run (on a cluster any OSError of the body of the ``with`` counts as that),
+    MissingDependencyError without dask.
     """
     if cluster is None:
         interrupted = threading.Event()
@@ -215,7 +217,7 @@ def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
     cluster: "local" or the address of a scheduler.
     threads: number of local processes, of one thread each; None: ``$VISCOROLL_THREADS``, else all cores available.
         Ignored for a running scheduler, which has workers of its own.
-    Raises OSError if no scheduler answers within 10 s, ParameterError for a wrong ``threads``.
+    Raises OSError or TimeoutError if no scheduler answers within 10 s, ParameterError for a wrong ``threads``.
     """
     if cluster != "local":
         return distributed.Client(cluster, timeout=10)

@@ -86,6 +86,10 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     ------
     ParameterError
         ``threads`` that is no whole number >= 1, or inputs that a motion does not allow.
+    FileError
+        Inputs that a material does not allow.
+    MissingDependencyError
+        If the run keeps every motion and zarr is not installed.
 
     Examples
     --------

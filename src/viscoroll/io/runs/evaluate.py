@@ -1,4 +1,4 @@
-"""One block of a run: its random inputs and its motions."""
+"""One block of a run, a range of its motions: their random inputs, and the motions themselves."""
 
 from __future__ import annotations
 
@@ -28,11 +28,11 @@ def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Flo
     """Draw the inputs of the motions of a block.
 
     run: :class:`Run`, which states the distributions, seed, design and number of motions.
-    block: number of the block, from 0.
+    block: number of the block, from 0 to ``run.blocks - 1``.
     most: number of motions at most, >= 1; None: all of the block.  The inputs of a smaller number are a sample of the
         same distributions, but only with "sobol" exactly the first ones of the whole block.
-    Returns name of each uncertain input -> values, (motions,), in the units of the run file; {} without uncertain
-    inputs.
+    Returns name of each uncertain input -> values, float64, (motions,), in the units of the run file; {} without
+    uncertain inputs.  A draw may be infinite where its distribution overflows, which a motion refuses.
     """
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)
@@ -46,21 +46,28 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     Parameters
     ----------
     run : a run of :func:`read_run`.
-    values : name of each uncertain input -> a number or (n,), in the units of the file.
-    count : number of motions; n where an input is an array (n,).
+    values : name of each uncertain input -> a number or (n,), in the units of the file; other names have no effect.
+    count : number of motions, >= 1; n where an input is an array (n,).
     threads : number of threads; None: ``$VISCOROLL_THREADS``, else all cores available.
 
     Returns
     -------
     Ensemble
-        The motions, ``count`` of them, with the fields that the run keeps or summarises (``run.fields``).
+        The motions, ``count`` of them (n if ``count`` is 1 and another input than a start speed is (n,)), at the output
+        times of the run, in the units of its file, with the fields that the run keeps or summarises (``run.fields``);
+        the other fields are None.  A motion that cannot be rolled to its end raises nothing: its ``status`` says so,
+        and its outputs from there on are NaN.
 
     Raises
     ------
     ParameterError
-        Inputs that a motion does not allow, or a ``count`` that does not fit them.
+        Inputs that a motion does not allow, or ``threads`` that is no whole number >= 1.
+    ValueError
+        A ``count`` that does not fit the inputs; of other inputs than start speeds as a ParameterError.
     FileError
         A material that these inputs do not allow.
+    KeyError
+        An uncertain input that ``values`` does not have.
 
     Examples
     --------
@@ -83,10 +90,11 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
     """Draw the inputs of a block, and compute its motions, on one thread.
 
     run: :class:`Run`, with its inputs and settings.
-    block: number of the block, from 0.
-    Returns (name of an input -> values, (motions,), in the units of the run file; the motions, an :class:`Ensemble`
-    with the fields that the run needs).
-    Raises ParameterError for inputs that a motion does not allow.
+    block: number of the block, from 0 to ``run.blocks - 1``.
+    Returns (name of an uncertain input -> values, (motions,), in the units of the run file, as of
+    :func:`block_inputs`; the motions, an :class:`Ensemble` with ``run.fields``, as of :func:`roll_inputs`).
+    Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a material does not allow,
+    CancelledError if the run was interrupted (:func:`.blocks.cancel_with`).
     """
     start, stop = run.edges(block)
     values = block_inputs(run, block)
@@ -103,7 +111,8 @@ def warn_of_materials(run: Run) -> None:
 
     run: :class:`Run`, with its inputs and settings.
     Returns None; each warning is a :class:`ModelWarning`, that of a band once for each material in a process.
-    Raises ParameterError for medians that a motion does not allow.
+    Raises ParameterError for medians that a motion does not allow, also for one of the first 1000 draws; FileError for
+    those that a material does not allow.
     """
     medians = run.inputs.medians
     content = run.inputs.filled(medians)
@@ -119,10 +128,12 @@ def _fraction_outside(run: Run) -> float:
     """Return the fraction of motions whose transit frequency at the start is outside a measured band of a material.
 
     The transit frequency is |V0| divided by the contact length in free rolling at that speed, in 1/s; it is compared
-    with angular frequencies in rad/s.  A start at rest is inside: M is 0 there.
+    with angular frequencies in rad/s.  A start at rest is inside, because the rolling moment M is 0 there.
 
     run: :class:`Run` in SI units that gives V0; its first motions, at most 1000 of the first block, are examined.
-    Returns the fraction of these, 0 to 1, of motions outside the band of at least one material; 0 without bands.
+    Returns the fraction of these motions that are outside the band of at least one material, a float in [0, 1]; 0.0
+    without bands.
+    Raises ParameterError for inputs of these motions that a cylinder does not allow, FileError for a material.
     """
     content = run.inputs.filled(block_inputs(run, 0, _STARTS))
     roller: Any = roller_of(run.path, content)

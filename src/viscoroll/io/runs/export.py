@@ -40,6 +40,9 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
     ------
     FileError
         There is no finished store, or a file in it is damaged; the netCDF file cannot be written, or the disk is full.
+        A file of that name then stays as it was.
+    MissingDependencyError
+        If zarr is not installed.
 
     Notes
     -----

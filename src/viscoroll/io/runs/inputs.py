@@ -103,7 +103,7 @@ class Inputs:
 
     @property
     def medians(self) -> dict[str, Any]:
-        """Median of each input; of a file the row in its middle."""
+        """Median of each input, name -> float in the unit of the file; of N rows of a file the row floor(N/2)."""
         middle = self.values(np.full((len(self.dimensions), 1), 0.5))
         return {name: values.item() for name, values in middle.items()}
 
@@ -115,7 +115,8 @@ class Inputs:
         for all its columns.
 
         points: (dimensions, n), in (0, 1), in the order of :attr:`dimensions`; other numbers of rows raise ValueError.
-        Returns name -> values, (n,), in the units of the file: distributions, then columns.
+        Returns name -> values, (n,), float64, in the units of the file: distributions, then columns.  A quantile that
+        overflows is infinite.
         """
         rows = dict(zip(self.dimensions, points, strict=True))
         if self.mixing is not None:
@@ -133,12 +134,13 @@ class Inputs:
         return values
 
     def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
-        """Return the ends of the draws of an input, (2,), [lower, upper], in the unit of the file.
+        """Return the ends of the draws of an input.
 
-        name: name of the input, else StopIteration.
-        low, high: probabilities; the ends of a distribution are its quantiles there, by default those of the smallest
-            and the largest coordinate that a point has.  They are ignored for a column of a file, whose ends are its
-            smallest and its largest number.
+        name: name of the input; another name raises StopIteration.
+        low, high: probabilities in (0, 1) of the ends of a distribution, by default the smallest and the largest
+            coordinate that a point has; ignored for a column of a file.
+        Returns [lower, upper], (2,), in the unit of the file: quantiles of a distribution, which may be infinite; the
+        smallest and the largest number of a column.
         """
         if name in self.random:
             return self.random[name].ppf(np.array([low, high]))
@@ -152,7 +154,7 @@ class Inputs:
         of the k inputs at its upper end with all others at their lower ends; all at their lower ends; then the same
         with the ends exchanged.
         Returns name -> values, (n,), in the units of the file.  The columns of a file with several are at their
-        medians, a number each, as their ends need not occur together.
+        medians, a number each, as their ends need not occur together; if all inputs are such, no value is an array.
         """
         names = [*self.random, *(name for columns in self.joint.values() if len(columns) == 1 for name in columns)]
         at_low = np.eye(len(names), len(names) + 1, dtype=bool)
@@ -160,7 +162,7 @@ class Inputs:
         return self.medians | ends
 
     def largest(self, name: str) -> float:
-        """Return the largest magnitude of a start speed up to which a flow map is made.
+        """Return the largest magnitude of a start speed up to which a flow map, tables of the motions, is made.
 
         name: "V0" or "omega0"; KeyError if the section [start] does not give it.
         Returns a float >= 0 in the unit of the file.  A distribution may be unbounded: its quantiles at 1e-6 and

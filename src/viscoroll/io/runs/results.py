@@ -68,8 +68,12 @@ class RunResults(Result):
         Returns
         -------
         xarray.Dataset
-            Inputs, fields, onset_time, rest_time, status (code of :class:`MotionStatus`) and flow (1 if the motion was
-            read from a flow map, 0 if it was integrated), in the units of the run file.
+            Over (motion, t) the quantities that ``fields`` of the section [run] names, by default V (speed of the
+            axis), omega (angular velocity) and x (distance travelled); an output that a motion did not reach is NaN.
+            Over (motion,) each uncertain input by its name, onset_time of partial slip and rest_time (NaN of a motion
+            without), status (code of :class:`MotionStatus`) and flow (1 if the motion was looked up in a flow map,
+            tables of the motions of one scene, 0 if it was integrated).  t is a coordinate, motion has none: motion k
+            is the k-th of the run, from 0.  All are in the units of the run file.
 
         Raises
         ------
@@ -95,10 +99,12 @@ class RunResults(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return the summaries: moments, quantiles, histograms, and how the motions ended.
 
-        It is the dataset ``summaries`` itself, not a copy, in the units of the run file.  It has for each quantity NAME
-        the variables NAME_counted, NAME_mean, NAME_std, NAME_min, NAME_max, NAME_quantiles and NAME_histogram with its
-        bins, over t if the quantity has a value at each output time; and ``ended``, the number of motions with each
-        status.
+        It is the dataset ``summaries`` itself, not a copy, in the units of the run file.  For each quantity NAME it has
+        NAME_counted, NAME_mean, NAME_std, NAME_min and NAME_max over t, NAME_quantiles over (quantile, t),
+        NAME_histogram, numbers of motions, over (NAME_bin, t), and the edges NAME_bin_low and NAME_bin_high of the
+        bins; of a quantity that is one number for each motion all are without the axis t.  ``ended`` over status is the
+        number of motions with each :class:`MotionStatus`.  Values that are not finite do not count; at a time without
+        values the moments and quantiles are NaN, and counts 0.
 
         Examples
         --------
@@ -112,9 +118,11 @@ class RunResults(Result):
     def to_pandas(self) -> pd.DataFrame:
         """Return a row for each quantity and time: mean, std, min, max, and a column for each quantile.
 
-        A unit is part of the name of a quantity, as in "V [m s-1]", the first level of the index; the second is the
-        time, NaN for a quantity that is one number per motion.  The label of the column of a quantile is its level, a
-        float in [0, 1].  At a time at which no motion has a value all entries are NaN.
+        Returns a table of float64, the quantities in the order of ``names`` and the times ascending.  The levels of its
+        index are "quantity", the name with its unit as in "V [m s-1]", and the time, named "t" or "t [s]" and NaN for a
+        quantity that is one number per motion.  The label of the column of a quantile is its level, a float in [0, 1].
+        std is that of all values, divided by their number.  At a time at which no motion has a value all entries are
+        NaN.
 
         Examples
         --------
@@ -174,7 +182,8 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     Returns
     -------
     RunResults
-        It prints itself, and has ``to_xarray``, ``to_pandas``, ``plot`` and ``motions``.
+        The results.  They print themselves, and have ``to_xarray``, ``to_pandas``, ``plot`` and ``motions``; arrays are
+        read from the folder when they are needed.
 
     Raises
     ------

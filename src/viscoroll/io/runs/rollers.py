@@ -41,12 +41,17 @@ class Rollers(Cylinder):
 
     @property
     def T_ref(self) -> Any:
-        """Unit of time of the law, s; with ``seconds`` (n,)."""
+        """Unit of time of the law, s: with ``seconds`` T_epsilon, (n,), else the float of a :class:`Cylinder`."""
         return self.T_epsilon if self.seconds else super().T_ref
 
     @cached_property
     def _scene(self) -> Scene:
-        """The dimensionless parameters, computed once; with ``seconds`` gamma counts time in s."""
+        """The :class:`.Scene` of the motions, computed once.
+
+        Without ``seconds`` it is that of a :class:`Cylinder`.  With ``seconds`` alpha is T_epsilon/T_sigma, (n,), and
+        gamma is P T_epsilon/(m R), 1/s, (n,), so that its motions count time in s; kappa, mu and j are dimensionless.
+        Raises ParameterError where one of them is out of range.
+        """
         if not self.seconds:
             return super()._scene
         T = self.T_ref
@@ -57,8 +62,10 @@ class Rollers(Cylinder):
     def scale(self) -> Scale:  # type: ignore[override]
         """SI value of 1 of each dimensionless quantity, by its name, as a :class:`.scale.Scale`.
 
-        With ``seconds`` the units of t, onset_time and rest_time are 1 s, and those of x and angle follow from the
-        speeds, m and rad for 1 s; all other units are those of the cylinders, (n,) each.
+        With ``seconds`` those of t, onset_time and rest_time are the float 1.0, in s; that of x is R/T_epsilon times
+        1 s, in m, and that of angle 1/T_epsilon times 1 s, in rad, both (n,), as paths are integrals of speeds over s.
+        All others, and all without ``seconds``, are those of a :class:`Cylinder`: a float where everything in the unit
+        is a number, as 1.0 of a ratio, else an array (n,).
         """
         scale = super().scale
         if self.seconds:
@@ -70,12 +77,13 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
     """Return the roller of the motions of a block.
 
     path: path of the run file, for errors and the files that it names.
-    content: name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs; a material
-        without uncertain numbers may be a :class:`Material` already.
+    content: name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.  With "cylinder"
+        that section and "material" and "base" are read, of which one without uncertain numbers may be a
+        :class:`Material` already; without it "scene" and the key "preset".
     Returns a :class:`Scene` without a section [cylinder]; :class:`Rollers` if T_epsilon or the materials differ between
     motions; else a :class:`Cylinder`.  The other numbers of all three may be arrays (n,).
-    Raises ParameterError for a value out of range or a missing one, or an unknown preset; FileError for a material that
-    cannot be read or is wrong.
+    Raises ParameterError for a value out of range or a missing one, shapes that do not broadcast, or an unknown preset;
+    FileError for a material or a series that cannot be read or is wrong.
     """
     if "cylinder" not in content:
         return make_roller(path, content, {})
@@ -92,8 +100,9 @@ def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
 
     content: name of a section -> keys and values, numbers or arrays (n,); a table within [drive] has the keys times and
         values.
-    Returns name -> number, array (n,) or :class:`Schedule`, in the units of the file; {} without [drive].
-    Raises ParameterError, which names the load, for a wrong schedule.
+    Returns name of the load or speed -> number, array (n,) or, of a table, :class:`Schedule`, in the units of the file;
+    {} without [drive].  Numbers and arrays are returned themselves and are not checked.
+    Raises ParameterError, which names the load, for a wrong schedule; ValueError as :func:`_schedule`.
     """
     drive = content.get("drive", {})
     return {name: _schedule(name, **load) if isinstance(load, dict) else load for name, load in drive.items()}
@@ -103,9 +112,10 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
     """Make a piecewise linear load.
 
     name: name of the load, for errors.
-    times, values: times and values of its k corners, in order, each a number or (n,), in the units of the file.
+    times, values: times and values of its k >= 1 corners, in order, each a number or (n,), in the units of the file.
     Returns the :class:`Schedule`; its times, and likewise its values, are (k,) if all are numbers, else (n, k).
-    Raises ParameterError, which names the load, for what a Schedule refuses.
+    Raises ParameterError, which names the load, for what a Schedule refuses; ValueError for an empty list, and for
+    arrays of different n in one list.
     """
     try:
         return Schedule(*(np.stack(np.broadcast_arrays(*corners), axis=-1) for corners in (times, values)))
@@ -119,8 +129,10 @@ def _first_material(path: Path, name: str, section: Any) -> Material:
     path: path of the run file, for errors, and to which files that the section names are relative.
     name: "material" or "base".
     section: content of that section, with numbers or arrays (n,), of which the first elements are taken; or the
-        Material if all of it is certain, which is returned.
-    Raises ParameterError for a value out of range; FileError for a section that is wrong.
+        Material if all of it is certain.
+    Returns that Material itself, else a new one.
+    Raises FileError for a section with a wrong key, a value out of range or a temperature without a shift, and for a
+    file that it names and that cannot be read.
     """
     return section if isinstance(section, Material) else parse_materials(path, {name: _first(section)})[name]
 
@@ -128,10 +140,13 @@ def _first_material(path: Path, name: str, section: Any) -> Material:
 def _body(path: Path, name: str, section: Any) -> Any:
     """Return the material of all motions: a :class:`Material`, or a :class:`Solid` if it differs between motions.
 
-    E, nu, thickness and the series of a Solid are arrays (n,) as far as they differ; its T_ref is that of the first
-    motion.  A temperature that differs multiplies the relaxation times of each motion.
-
-    path, name, section, errors: as of :func:`_first_material`.
+    path, name, section: as of :func:`_first_material`.
+    Returns the Material of the section, or of the first motion if E, nu, thickness and series are the same for all;
+    else a Solid, in which those that differ are arrays (n,), the others numbers, thickness None of a half-space.  Its
+    T_ref, in s, is that of the first motion; a temperature that differs multiplies the relaxation times, by one factor
+    for each motion.
+    Raises ParameterError for E or thickness <= 0, nu out of (-1, 0.5] or a temperature that the shift does not allow,
+    in an array; FileError as :func:`_first_material`, and for a series out of range.
     """
     typical = _first_material(path, name, section)
     if typical is section:
@@ -152,11 +167,12 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
     """Return the band of angular frequencies that each body was measured in, at the temperature of each motion.
 
     path : path of the run file.
-    content : name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.
+    content : name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs, of which the
+        sections "material" and "base" are read; either may be a :class:`Material`.
     Returns record of a measurement, a :class:`Measured` -> (lowest, highest frequency), rad/s, arrays (n,) where the
-    temperature differs between motions, else floats.  Bodies without a record, as a given series is, are left out; {}
-    if there is none.
-    Raises ParameterError and FileError as :func:`_first_material`.
+    temperature differs between motions, else floats.  Bodies without a record, as a given series is, are left out; of
+    two bodies with equal records the band of "base" is returned; {} if there is no record.
+    Raises FileError as :func:`_first_material`, ParameterError for a temperature that the shift does not allow.
     """
     bands: dict[Measured, Any] = {}
     for name in SECTIONS:
@@ -174,9 +190,10 @@ def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats |
     path: path of the run file, for errors.
     name: "material" or "base".
     section: content of that section, whose "temperature", in degrees Celsius, may be an array (n,).
-    Returns the factors, dimensionless, > 0, (n,), of which the first is 1; None if the temperature is a number or not
-    given.
-    Raises KeyError for a temperature without a key wlf or arrhenius, FileError for a section that is wrong.
+    Returns the factors, dimensionless, > 0, (n,), of which the first is 1: below 1 where a motion is hotter than the
+    first, whose material then relaxes faster; None if the temperature is a number or not given.
+    Raises KeyError for an array of temperatures without a key wlf or arrhenius, ParameterError for a temperature that
+    the shift does not allow, FileError for a section that is wrong.
     """
     if not np.ndim(section.get("temperature", 0.0)):
         return None

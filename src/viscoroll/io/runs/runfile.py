@@ -166,9 +166,10 @@ class Run:
     def method(self) -> Literal["flow", "integrate"]:
         """Method of all blocks: "flow" or "integrate".
 
-        It is that of the file, or for "auto" the flow map if one serves (:attr:`mappable`), the run has at least
-        :data:`.batch.FLOW_PAYS` motions, and a start speed differs from 0.  It depends on the run as a whole, so that
-        bits do not depend on blocks.
+        A flow map is a set of tables of all free motions of one scene, which are looked up there and not integrated.
+        The method is that of the file, or for "auto" the flow map if one serves (:attr:`mappable`), the run has at
+        least 4096 motions (:data:`.batch.FLOW_PAYS`), and a start speed differs from 0.  It depends on the run as a
+        whole, so that bits do not depend on blocks.
         """
         if self.settings.method != "auto":
             return self.settings.method
@@ -178,7 +179,7 @@ class Run:
 
     @property
     def mappable(self) -> bool:
-        """Whether a flow map serves: only start speeds are uncertain, [drive] is absent or empty, and not unsteady."""
+        """Whether a flow map serves: start speeds alone are uncertain, [drive] is absent or empty, unsteady false."""
         driven = self.inputs.content.get("drive") or self.settings.unsteady
         return not driven and set(self.inputs.uncertain) <= set(START)
 
@@ -186,8 +187,8 @@ class Run:
     def fastest(self) -> float:
         """Speed up to which the flow map is tabulated: the larger of |V0| and R |omega0|.
 
-        It is in m/s, or dimensionless, where R is 1; of distributions see :meth:`.inputs.Inputs.largest`.  The few
-        faster motions are integrated.  Raises KeyError if [start] lacks one of the two.
+        It is a float >= 0 in m/s, or dimensionless, where R is 1; of distributions see :meth:`.inputs.Inputs.largest`.
+        The few faster motions are integrated.  Raises KeyError if [start] lacks one of the two.
         """
         R = self.inputs.content["cylinder"]["R"] if self.si else 1.0
         return max(self.inputs.largest("V0"), R * self.inputs.largest("omega0"))
@@ -206,13 +207,17 @@ class Run:
 
     @property
     def bytes_a_motion(self) -> int:
-        """Memory that a motion takes while its block is evaluated, bytes."""
+        """Memory that a motion takes while its block is evaluated, bytes, an int: of its fields and inputs."""
         columns = len(self.fields) * self.t.size + 2 * len(self.inputs.uncertain) + 12
         return 8 * (columns + self.t.size)  # one output at a time is copied for its summary
 
     @property
     def block(self) -> int:
-        """Number of motions in a full block: as the file states, else as many as fit the memory."""
+        """Number of motions in a full block, an int from 1 to n: as the file states, else as many as fit the memory.
+
+        That is the largest power of two of motions that take at most 128 MiB, and not more than 2^20 motions of a flow
+        map or 2^16 that are integrated.
+        """
         if self.settings.block is not None:
             return min(self.settings.block, self.settings.n)
         # a power of two suits Sobol's sequence
@@ -229,7 +234,7 @@ class Run:
 
         Parameters
         ----------
-        block : number of the block, from 0 to ``blocks`` - 1.
+        block : number of the block, from 0 to ``blocks`` - 1, which is not checked.
 
         Returns
         -------

@@ -66,14 +66,18 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         their bootstrap intervals of 95 %.  At a t at which some motions do not have the quantity, or at which its
         standard deviation is at most rtol times its largest magnitude at all t, it has no indices: its entries are NaN
         there, and the attribute ``refused`` states which quantity, at which t and why, a line each.  A quantity without
-        indices at any t is left out.  Estimates may lie slightly outside of [0, 1].
+        indices at any t is left out.  Estimates may lie slightly outside of [0, 1].  Further attributes are those of
+        the run, ``asked_base_points`` (n), ``base_points``, ``resamples``, ``confidence``, and for each way in which
+        motions ended the number of these, as "ended: reached the last output time".
 
     Raises
     ------
     ParameterError
-        Correlated inputs or a joint sample, which Sobol indices are not defined for; no uncertain
-        input; n out of range, or so many output times that their values would take more than 0.5 GB; no
-        quantity left.
+        Correlated inputs or a joint sample, which Sobol indices are not defined for; no uncertain input; n out of
+        range, or so many output times that their values would take more than 0.5 GB; no quantity left; ``threads`` that
+        is no whole number >= 1, ``progress`` that is no truth value, inputs that a motion does not allow.
+    FileError
+        Inputs that a material does not allow.
 
     Notes
     -----
@@ -181,10 +185,11 @@ def _outcomes(
 
     run: :class:`Run`, whose ``settings.summaries`` name the quantities.
     cube: points of the unit cube, (input, motion), of :func:`_points`.
-    threads: number of threads, on which the motions of one block run; None: all cores available.
+    threads: number of threads, on which the motions of one block run; None: ``$VISCOROLL_THREADS``, else all cores
+        available.
     progress: whether a progress bar is drawn.
-    Raises ParameterError if the values of all motions would take more than 0.5 GB, and for inputs that a motion does
-    not allow.
+    Raises ParameterError if the values of all motions would take more than 0.5 GB, for a wrong ``threads``, and for
+    inputs that a motion does not allow; FileError for inputs that a material does not allow.
     Returns (name of a quantity -> values, (t, motion), or (1, motion) of one number per motion, in the units of the
     run, NaN where a motion does not have it; status of each motion, a code of :class:`MotionStatus`, (motion,), int8).
     """
@@ -198,7 +203,9 @@ def _outcomes(
     status = np.empty(motions, np.int8)
 
     def work(start: int, stop: int) -> None:
-        """Roll the motions ``start`` to ``stop`` - 1, and write their values and statuses."""
+        """Roll the motions ``start`` to ``stop`` - 1 of the cube, and write their values into the columns of
+        ``outcomes`` and their codes into ``status``.
+        """
         rolled = roll_inputs(run, run.inputs.values(cube[:, start:stop]), stop - start, threads)
         status[start:stop] = rolled.status
         for name, values in outcomes.items():
@@ -235,12 +242,13 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
 
 
 def _estimated(values: Floats) -> Floats:
-    """Return first-order and total indices, (2, inputs), dimensionless.
+    """Return the Sobol indices, dimensionless, (2, inputs): first-order indices in row 0, total ones in row 1.
 
     With A, B and the mixed outcomes AB_n less the mean of A and B, and the variance v of A and B together, they are
     mean(B (AB_n - A))/v and mean((AB_n - A)^2)/(2 v), the estimators (b) and (f) of Table 2 of Saltelli et al. (2010).
 
-    values: outcomes, (2 + inputs, base points), as of :func:`_indices`, finite and not all equal.
+    values: outcomes, (2 + inputs, base points), as of :func:`_indices`, finite.  Where those of A and B are all equal
+        the indices are NaN or infinite.
     """
     A, B, *others = values - values[:2].mean()
     mixed = np.array(others)
@@ -252,8 +260,10 @@ def table(indices: xr.Dataset) -> pd.DataFrame:
 
     indices: dataset of :func:`sobol_indices`.
     Returns a :class:`pandas.DataFrame` with the columns "quantity", "t" with its unit as "t [s]", "input", "S1",
-    "S1_conf", "ST", "ST_conf".  "t" is NaN in the rows of a quantity that is one number per motion, and the column is
-    missing if all are.
+    "S1_conf", "ST", "ST_conf", quantities in the order of ``indices`` and times ascending; equal total indices stay in
+    the order of the inputs.  "t" is NaN in the rows of a quantity that is one number per motion, and the column is
+    missing if all are.  The labels of the rows are numbers that repeat from one quantity to the next.
+    Raises ValueError for a dataset without indices.
     """
     import pandas as pd
 

@@ -63,6 +63,8 @@ class Store:
         ------
         FileError
             A folder that holds anything else, or cannot be written.
+        ParameterError, MissingDependencyError
+            As :func:`metadata`.
         """
         self.refuse_other()
         make_folder(self.root / RECORDS)
@@ -145,8 +147,8 @@ class Store:
 
         block: number of the block, from 0.
         Returns the number of its motions.
-        Raises ParameterError for inputs that a motion does not allow, FileError if writing fails, CancelledError if the
-        run was interrupted (:func:`.blocks.cancel_with`); nothing of the block counts as stored then.
+        Raises what :func:`block_content` raises, and FileError if writing fails; nothing of the block counts as stored
+        then.
         """
         files, summary, count = block_content(self.run, block)
         self._write_part(block, files, summary=summary)
@@ -157,7 +159,7 @@ class Store:
 
         All blocks must be stored.  Their records are read, not their motions, so that memory does not grow with the
         number of motions.  Temporary files of killed processes are removed.
-        Raises FileError if the record of a block is missing or damaged, or writing fails.
+        Raises FileError if the record of a block is missing or damaged, or writing fails; what :func:`metadata` raises.
         """
         dataset = summary_dataset(
             merge_summaries(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si
@@ -201,7 +203,9 @@ def block_content(run: Run, block: int) -> BlockContent:
     run: :class:`Run`, with inputs and settings; files of motions are made if ``settings.keep`` is "all".
     block: number of the block, from 0 to ``run.blocks - 1``.
     Returns the :class:`BlockContent`, whose ``files`` are {} if ``settings.keep`` is "summaries".
-    Raises ParameterError for inputs that a motion does not allow.
+    Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a material does not allow,
+    CancelledError if the run was interrupted (:func:`.blocks.cancel_with`), MissingDependencyError if motions are kept
+    and zarr is not installed.
     """
     values, motions = roll_block(run, block)
     files = _motion_files(run, columns_of(run, values, motions), block) if run.settings.keep == "all" else {}
@@ -214,7 +218,8 @@ def metadata(run: Run) -> dict[str, bytes]:
     Names and types of the columns are those of one motion, which is rolled for that, with each input at its median.
 
     run: :class:`Run`, with its inputs and settings.
-    Raises ParameterError for medians that a motion does not allow.
+    Raises ParameterError for medians that a motion does not allow, FileError for those that a material does not allow,
+    MissingDependencyError if motions are kept and zarr is not installed.
     """
     if run.settings.keep == "summaries":
         return {}
@@ -231,6 +236,7 @@ def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = Non
     block: number of the block whose chunks are returned; None: return the metadata, and the array t, which all motions
         share.
     Returns path below the store, as "motions/V/3.0" -> content.
+    Raises MissingDependencyError without zarr.
     """
     import xarray as xr
 
@@ -248,8 +254,9 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
     run: :class:`Run`, whose settings name the fields.
     values: name of each uncertain input -> values, (n,).
     motions: :class:`Ensemble`, motions with these inputs.
-    Returns name -> values in the units of the run: the inputs, onset_time, rest_time, status (codes) and flow (0 or 1,
-    int8) over (motion,), the fields of ``run.settings.fields`` over (motion, t).
+    Returns name -> values in the units of the run: the inputs over (motion,), the fields of ``run.settings.fields``
+    over (motion, t), then onset_time and rest_time (NaN of a motion without), status (codes) and flow (int8, 1 of a
+    motion from a flow map, else 0) over (motion,).  Outputs that a motion did not reach are NaN.
     """
     columns = {name: values[name] for name in run.inputs.uncertain}
     columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}

@@ -179,8 +179,9 @@ class _Reader:
 
         number: the uncertain number, whose name the column gets in ``joint``.
         table: its table of TOML: file, a .csv, .nc or .parquet, relative to the run file, and column.
-        Raises FileError for a file or column that cannot be read, or whose length differs from that of its other
-        columns.
+        Raises FileError for a table without a text at either key or with an unknown key, and for a file or column that
+        cannot be read, or whose length differs from that of its other columns; MissingDependencyError for .parquet
+        without pyarrow.
         """
         check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")
@@ -212,9 +213,10 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     unit: unit in pint's spelling, "1" of a ratio, to which the numbers of a CSV are converted if it states another.
         Other files are not converted, and a unit that they state is not read.
     Returns float64, (n,), n >= 1, contiguous.
-    Raises FileError for a CSV that cannot be read or has no such column; ParameterError for its unit, if that has
-    another dimension; ValueError, OSError or KeyError for other files and suffixes, and for a column that is empty, has
-    several axes or has values that are no finite numbers; MissingDependencyError for .parquet without pyarrow.
+    Raises FileError for a CSV that cannot be read, has no such column or several, or cells in it that are no numbers;
+    ParameterError for its unit, if that has another dimension; ValueError, OSError or KeyError for other files and
+    suffixes, and for a column that is empty, has several axes or has values that are no finite numbers;
+    MissingDependencyError for .parquet without pyarrow.
     """
     if path.suffix == ".csv":
         values = column_in_unit(named_table(path, (column,)), column, unit)
@@ -244,7 +246,8 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
         has correlation 0; a.b and b.a may both be given if they are equal.
     Returns new Inputs with ``correlated``, the names in [correlation] in the order of ``random``, and ``mixing``, the
     Cholesky factor of their matrix; without that section they are () and None.
-    Raises FileError for a name without distribution, a value out of range, or a matrix that is not positive definite.
+    Raises FileError for a section of another form, a name without distribution, a value out of range, a.b that differs
+    from b.a, or a matrix that is not positive definite.
     """
     section, random = inputs.content.get("correlation", {}), inputs.random
     if not isinstance(section, dict):

@@ -29,7 +29,8 @@ def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None
     block: number of motions of a full block, which is one chunk.
     number: number of the block whose chunks are returned, from 0; None: return the metadata (.zgroup, .zarray, .zattrs)
         and the arrays without the axis motion, as t.
-    Returns path below the group, as "V/3.0" -> content.
+    Returns path below the group -> content; of block 3 "V/3.0" for an array over (motion, t), "mu/3" for one over
+    (motion,).
     Raises MissingDependencyError without zarr.
     """
     zarr = import_extra("zarr", "runs")

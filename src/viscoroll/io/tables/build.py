@@ -1,4 +1,10 @@
-"""The contact law on a grid: what look-up blocks of other programs read."""
+"""The contact law on a grid, for look-up blocks of other programs.
+
+Fields: beta, length of the stick zone divided by contact length; Q, creep force; lam, contact length divided by that at
+rest; epsilon, shift of the contact in half contact lengths; M, rolling moment, and its parts M_half_space and
+M_cylinder; delta_star, creepage at which full slip begins; delta_0, creepage of free rolling, of a layer; zeta, time in
+which a point passes through half the contact.
+"""
 
 from __future__ import annotations
 
@@ -56,7 +62,7 @@ def build(
         layer has no such scale, since delta_0 does not vary with mu: it is refused, as is the law of every alpha.  All
         parameters are numbers, no arrays.
     V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_epsilon or in m/s; for V < 0 see the signs
-        of Eqs. (17), (18).
+        of Eqs. (17), (18).  A number, here and below, is an axis of one node.
     delta : creepages, (n,), dimensionless, any sign, strictly increasing.
     alpha : values of alpha, (n,), in [1, 1e12], strictly increasing, in place of that of a scene without a material;
         None: no such axis.
@@ -70,9 +76,13 @@ def build(
     xarray.Dataset
         beta and Q over (V, delta) or (V, delta, alpha); lam, epsilon, M, its parts in both bodies, delta_star and zeta
         over V (and alpha), and of a layer delta_0; units, symbols, equations in the attributes.  Nodes have the bits of
-        :func:`contact`. ``spline_error`` of a field is the largest absolute error of :func:`interpolate`,
-        ``linear_error`` that of linear interpolation in the untransformed axes, over 10^5 random points in random
-        cells; ``spline_error_at`` and ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".
+        :func:`contact` by this method.
+
+        ``spline_error`` of a field is the largest absolute error of :func:`interpolate`, ``linear_error`` that of
+        linear interpolation in the untransformed axes, over 10^5 random points in random cells; ``spline_error_at`` and
+        ``linear_error_at`` name the point, as in "V = 0.31, delta = 0.0042".  Attributes of the dataset are those of a
+        CF file, ``method``, the parameters of the roller (of a scene alpha, kappa and mu, of a cylinder R, m, mu and
+        load) and, unless the scene has an alpha alone, ``material``, the bodies as TOML.
 
     Raises
     ------
@@ -80,6 +90,8 @@ def build(
         Where ``what`` is none of these or has arrays; an axis is out of range or does not increase strictly; there are
         more than 5e7 nodes; ``alpha`` is given for a cylinder or for a scene with a material; an unknown method, or
         "direct" of a material.
+    FileError
+        The dataset of a law that is incomplete or does not state its material.
 
     Examples
     --------
@@ -166,13 +178,14 @@ def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: s
 def _evaluate(
     roller: Scene | Cylinder, points: dict[str, Floats], names: tuple[str, ...], method: Any = "table"
 ) -> dict[str, Floats]:
-    """Return fields of the contact: name -> values in the shape of the points, in the units of the roller.
+    """Return fields of the contact: name -> values in the broadcast shape of the points, in the units of the roller.
 
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     points: "V", and perhaps "delta" and "alpha" -> arrays that broadcast; without "delta" fields are at delta = 0 as an
         array (1,), which broadcasts too; without "alpha" the roller has its own.
     names: names of the fields, as of :func:`viscoroll.contact`.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
+    Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out of range.
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
     creep = points.get("delta", np.zeros(1))
@@ -184,7 +197,8 @@ def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
 
     table: the grid, which is changed.  Each field gets the attributes spline_error and linear_error, the largest
         absolute error of cubic splines and of linear interpolation over :data:`SAMPLE_SIZE` random points, in the unit
-        of the field; and spline_error_at and linear_error_at, the point as text, as "V = 0.31, delta = 0.0042".
+        of the field; and spline_error_at and linear_error_at, the first such point as text, as "V = 0.31, delta =
+        0.0042", of the axes that the field depends on.
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, for the exact values at random points.
     """
     points = random_points(table, SAMPLE_SIZE, SEED)

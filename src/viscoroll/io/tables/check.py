@@ -1,4 +1,7 @@
-"""Checks of tables: the file of a law against the formulas of its modes, a grid against the rows of the law."""
+"""Checks of tables: the file of a law against the formulas of its modes, a grid against the rows of the law.
+
+The rows of a law are its polynomials, one for each octave of speed.
+"""
 
 from __future__ import annotations
 
@@ -75,8 +78,8 @@ class Report:
         """Return a table in words: a heading, a line for each check, a blank line, the verdict, version and settings.
 
         The line of a check has its name, the measured and the allowed difference, "ok" or "EXCEEDED", and the meaning.
-        The verdict is the number of checks whose difference is beyond what is allowed.  Raises ValueError without
-        checks.
+        The verdict is the number of checks whose difference is beyond what is allowed or NaN, or that there is none.
+        Raises ValueError without checks.
         """
         width = max(len(check.name) for check in self.checks)
         lines = [

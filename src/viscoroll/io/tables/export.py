@@ -34,18 +34,19 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     Parameters
     ----------
     table : dataset of :func:`law`, :func:`build` or :func:`load`.
-    path : its suffix is that of the format: of either .nc, or .cdf for readers without HDF5; of a law .h (C99 and C++:
-        table and evaluator in one header) or .json; of a grid .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or
-        .mat (MATLAB, Simulink).  A file of that name is replaced.
+    path : file to write, whose suffix selects the format; a file of that name is replaced.  For a law and a grid: .nc
+        (netCDF-4), or .cdf (netCDF-3, for readers without HDF5).  For a law: .h (C99 and C++: table and evaluator in
+        one header) or .json.  For a grid: .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or .mat (MATLAB,
+        Simulink).
 
     Raises
     ------
     ParameterError
-        Another suffix; for C a file name that is no identifier; for Modelica a grid over several alphas, as its tables
-        have two inputs.
+        Another suffix; for C a file name that, without its suffix, is no identifier; for Modelica a grid over several
+        alphas or an atlas (a grid of version 0.1.0, over three axes), as its tables have two inputs.
     FileError
-        If it cannot be written there; ``table`` is neither a law nor a grid, or is incomplete; for C the law of every
-        alpha.
+        If it cannot be written there; ``table`` is neither a law nor a grid, is incomplete, of another major version of
+        the schema, or a law whose numbers differ from their checksum; for C the law of every alpha.
 
     Examples
     --------
@@ -54,8 +55,10 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
     Notes
     -----
-    All formats hold the same bits as ``table`` (``tests/tables/test_grids.py``, ``tests/tables/test_law.py``); Modelica
-    has Q and M alone.
+    The numbers in a file have the same bits as in ``table`` (``tests/tables/test_grids.py``,
+    ``tests/tables/test_law.py``).  netCDF has all variables and attributes; CSV has the variables alone, Modelica Q and
+    M alone; a header of C has the polynomials and their limits; JSON has all variables, and of the attributes title,
+    viscoroll_table, bodies, material, comment, references, source, license, the checksum and law_schema.
     """
     path = Path(path)
     store.check(table, "export")
@@ -160,10 +163,12 @@ def linear_error(field: xr.DataArray) -> float:
 def _write_matlab(table: xr.Dataset, path: Path) -> None:
     """Write a grid as one struct ``viscoroll`` of MATLAB: breakpoints, tables, linear errors, dimensions, parameters.
 
-    Its fields are each axis and each field of the grid by name, without axes of one node; structs ``dimensions``,
-    ``linear_error`` and ``linear_error_at``, each with an entry for every field of the grid; a text ``about``; and a
-    struct ``given`` with the parameters.  All is in one struct because alpha and beta are functions of MATLAB, which
-    variables of these names would hide.
+    Its fields are each axis and each field of the grid by name, arrays whose axes of one node are dropped (such an axis
+    itself is a number); structs ``dimensions`` (names of the axes of each field, as "V, delta"), ``linear_error`` (NaN
+    where none is stated) and ``linear_error_at`` ("" where none is stated), each with an entry for every field of the
+    grid; a text ``about``; and a struct ``given`` with those of alpha, kappa, mu, R, m, load and material that the grid
+    states.  All is in one struct because alpha and beta are functions of MATLAB, which variables of these names would
+    hide.
 
     table: dataset of the grid.
     path: file to write; it is replaced if it exists.
@@ -189,8 +194,9 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
 def _write_header(dataset: xr.Dataset, path: Path) -> None:
     """Write the rows of a law and their evaluator as one header of C.
 
-    The header contains the material as a comment, the evaluator (``c/vr_law.h``), arrays ``static const double`` with
-    the coefficients, of a cover with those of its creep too, and a variable ``static const vr_law``.
+    The header contains title, source, T_ref, checksum and material as a comment, the evaluator (``c/vr_law.h``), an
+    array ``static const double NAME_coefficients`` (octave, power, function), of a cover ``NAME_creep`` too, and a
+    variable ``static const vr_law NAME``, which refers to them.
 
     dataset : dataset of a law, of half-spaces or of a cover.
     path : file to write, replaced if it exists; its stem becomes the name of the variable.
@@ -231,17 +237,17 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
 
 
 def _initializer(values: Floats) -> str:
-    """Return an array as a nested initializer of C, with digits that read back to the same bits."""
+    """Return an array as a nested initializer of C, with digits that read back to the same bits; NaN becomes NAN."""
     text = json.dumps(values.tolist(), separators=(",", ":")).replace("],", "],\n")
     return text.translate(str.maketrans("[]", "{}")).replace("NaN", "NAN")
 
 
 def _write_json(dataset: xr.Dataset, path: Path) -> None:
-    """Write the variables, as nested lists of numbers, and the main attributes of a law as one JSON object.
+    """Write the variables, as nested lists of numbers, and some attributes of a law as one JSON object.
 
-    The object has the attributes title, viscoroll_table, bodies, material, comment, references, source, license and the
-    checksum, as far as the dataset has them; law_schema as an integer; and each variable by its name.  Digits read back
-    to the same bits.
+    The object has the attributes title, viscoroll_table, bodies, material, comment, references, source, license and
+    sha256_of_numbers, the checksum, as far as the dataset has them; law_schema as an integer; and each variable by its
+    name, a number if it has no axes.  Digits read back to the same bits; a NaN is written as NaN, which is no JSON.
 
     dataset: dataset of the law, of any kind.
     path: file to write; it is replaced if it exists.

@@ -1,4 +1,11 @@
-"""The law of one material or pair, or of every alpha, as a dataset with its measured errors."""
+"""The law of one material or pair, or of every alpha, as a dataset with its measured errors.
+
+zeta is the time in which a point passes through half the contact, eta that through half the stick zone, in units of
+T_ref.  At a speed V: lam = 2 kappa V zeta is the contact length divided by that at rest, epsilon the shift of the
+contact in half contact lengths, H(zeta) = (zeta/lam)^2 and F(zeta) = zeta (1 + epsilon).  M is the rolling moment,
+N that of M + N dV/dt at slow speed changes, delta_star the creepage at which full slip begins, and delta_0 that of free
+rolling, which is 0 but for a layer.
+"""
 
 from __future__ import annotations
 
@@ -56,17 +63,17 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     xarray.Dataset
         Of half-spaces the coefficients of lam, epsilon, m_half_space, m_cylinder (M of either body divided by V) and N
         over ``kappa |V|``, of share = eta/F(eta) and press = H(eta)/F(eta)^2 over v = 1/F(eta), where eta is half the
-        transit time of the stick zone.  Each function has its ``largest_relative_error`` as an attribute
-        (:func:`measured_errors`).  Further variables are the fast limits and both forms of the series; attributes are
-        the material as TOML and ``comment``, which describes the evaluation.  The law holds for any speed, creepage,
-        kappa, mu, load and radius.
+        transit time of the stick zone; each is a variable over (octave, power), and has its ``largest_relative_error``
+        as an attribute (:func:`measured_errors`).  Further variables are the fast limits and both forms of the series;
+        attributes are the material as TOML and ``comment``, which describes the evaluation.  The law holds for any
+        speed, creepage, kappa, mu, load and radius.
 
         Of a cylinder with a layer (a thickness) the law holds at its ratio of l0 to thickness alone, that is at its
         load and radius, and at any speed, creepage and mu.  It has no N and no series, and in addition limit =
         2 kappa delta_star/mu and free = 2 kappa delta_0 over ``kappa |V|``.
 
         With ``alpha`` the polynomials are of ln alpha too, one for each octave of alpha, of lam, epsilon/c, M/(V c),
-        N/c, share and press with c = (alpha - 1)/alpha.
+        N/c, share and press with c = (alpha - 1)/alpha, over (octave_of_alpha, degree, octave, power).
 
     Raises
     ------
@@ -130,6 +137,11 @@ def measured_errors(
         - Every alpha, names :data:`AXIS_FUNCTIONS`: the largest of these over the alphas; "m" has the sum of the
           largest errors of both parts of M.
         - A cover: names and scales of :func:`_measured_errors_of_cover`, without N.
+
+    Raises
+    ------
+    ParameterError
+        A cover whose solve at one of the speeds finds no contact length that carries the load.
     """
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):

@@ -2,6 +2,7 @@
 
 Files follow CF-1.11.  ``schema_version`` is "major.minor": a new minor version only adds,
 a new major version changes the meaning of something and is refused by older readers.
+The fields are described at the head of :mod:`.build`.
 """
 
 from __future__ import annotations

@@ -54,7 +54,7 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     ------
     FileError
         If it cannot be written there; a file of that name is then left as it was.  If ``table`` is neither a law nor a
-        grid, or is incomplete.
+        grid, is incomplete, of another major version of the schema, or a law whose numbers differ from their checksum.
 
     Examples
     --------
@@ -90,7 +90,8 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
     Raises
     ------
     FileError
-        A file that is missing, truncated or damaged, of another major schema version, or no table.
+        A file that is missing, truncated or damaged, larger than 2 GiB, of another major schema version, or no table; a
+        law whose numbers differ from their checksum.
 
     Examples
     --------
