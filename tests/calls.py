@@ -31,7 +31,7 @@ from viscoroll.core.scale import Scale
 from viscoroll.io.config import read_law_source, read_roller
 from viscoroll.io.runs import estimate, read_run
 from viscoroll.io.runs.columns import attributes
-from viscoroll.io.runs.evaluate import block_inputs
+from viscoroll.io.runs.evaluate import block_inputs, roll_inputs
 from viscoroll.io.runs.sensitivity import sobol_indices
 from viscoroll.io.runs.uncertain import read_column
 from viscoroll.io.sampling import sample

@@ -30,7 +30,7 @@ _SLS = ("E", "nu", "T_epsilon", "T_sigma")
 #: Names of the fields that are numbers.
 _NUMBERS = ("R", "m", *_SLS, "mu", "j", "g", "pressed")
 #: Units of the fields.
-UNITS = {"R": "m", "m": "kg/m", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g": "m/s^2", "load": "N/m"}
+UNITS = {"R": "m", "m": "kg m-1", "E": "Pa", "T_epsilon": "s", "T_sigma": "s", "g": "m s-2", "load": "N m-1"}
 
 
 @dataclass(frozen=True, init=False, eq=False, repr=False)

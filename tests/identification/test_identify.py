@@ -253,6 +253,14 @@ def test_slopes_are_those_of_the_residuals():
         assert close(J[:, i], (up - down) / (2.0 * step), tol.IDENTIFIED_SLOPES, scale=np.abs(J[:, i]).max()), name
 
 
+def test_slopes_take_values_with_units():
+    fit = vr.identify(roller(), ranges("mu", "E"), [traction()], starts=1)
+    labelled = xr.DataArray(fit.values["E"] * 1e-6, attrs={"units": "MPa"})
+    expected = fit.jacobian(fit.values)
+    found = fit.jacobian({"E": labelled, "mu": fit.values["mu"]})
+    assert close(found, expected, tol.IDENTIFIED_SLOPES, scale=np.abs(expected).max(axis=0))
+
+
 def test_a_dataset_and_a_figure_hold_all_of_it(tmp_path):
     fit = vr.identify(roller(), ranges("mu", "E"), [resistance(seed=1), thrown(seed=2)], starts=1)
     data = fit.to_xarray()

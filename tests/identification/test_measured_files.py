@@ -1,6 +1,7 @@
 """Measurements from a TOML file and its CSV files, and ``viscoroll identify``."""
 
 import json
+from pathlib import Path
 
 import pytest
 from calls import names_in
@@ -33,7 +34,7 @@ def test_the_example_is_what_it_says():
 
 
 def test_the_program_reports(folder, capsys):
-    out = [str(folder / name) for name in ("fit.json", "fit.png", "fit.nc")]
+    out = [str(folder / name) for name in ("fit.json", "fit.png", "fit.nc", "fit.JSON", "fit.NC")]
     given = ["identify", str(folder / "data.toml"), "--starts", "1"]
     assert cli.main([*given, "-o", out[0], "--plot", out[1]]) == 0
     report = capsys.readouterr().out
@@ -44,6 +45,9 @@ def test_the_program_reports(folder, capsys):
     assert (folder / "fit.png").exists()
     assert cli.main([*given, "-o", out[2]]) == 0
     assert (folder / "fit.nc").exists()
+    for name, same in zip(out[3:], (out[0], out[2]), strict=True):  # the case of the suffix does not matter
+        assert cli.main([*given, "-o", name]) == 0
+        assert Path(name).read_bytes()[:4] == Path(same).read_bytes()[:4]
 
 
 def test_a_files_temperature_is_where_its_shift_is_one(folder):

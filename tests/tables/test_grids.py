@@ -241,6 +241,8 @@ def test_modelica(name, table, tmp_path):
     vr.tables.export(table, tmp_path / "t.txt")
     text = (tmp_path / "t.txt").read_text()
     assert text.startswith("#1\n")
+    unit = table.V.attrs["units"]
+    assert f"; V: {'dimensionless' if unit == '1' else unit}, Q: " in text
     Q = np.column_stack([V, table.Q.values.reshape(V.size, DELTA.size)])
     M = np.column_stack([V, table.M.values.ravel()])
     for field, exact in (("Q", np.vstack([np.append(0.0, DELTA), Q])), ("M", M)):

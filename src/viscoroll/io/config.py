@@ -199,7 +199,7 @@ def read_law_source(path: str | PathLike[str]) -> Any:
         As :func:`read_materials` and :func:`read_roller`; a file without a section [material] and without a roller; a
         [base] that does not fit the material.
     """
-    content = {} if Path(path).suffix == SUFFIX else read_toml(path)
+    content = {} if Path(path).suffix.lower() == SUFFIX else read_toml(path)
     if content.keys() & set(SCENES):
         roller = read_roller(path)
         return roller if isinstance(roller, Cylinder) else roller.alpha if roller.material is None else roller.material

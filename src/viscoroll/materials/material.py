@@ -92,8 +92,8 @@ class Material(FromPrograms):
         object.__setattr__(self, "nu", check_poisson(self.nu))
         if not isinstance(self.name, str):
             raise ParameterError("name", f"{self.name!r:.60}", "a text")
-        given = (name for name in ("T_ref", "density", "thickness") if getattr(self, name) is not None)
-        check_fields(self, SI, **dict.fromkeys(given, 0.0))
+        given = [name for name in ("density", "thickness") if getattr(self, name) is not None]
+        check_fields(self, SI, **dict.fromkeys(["T_ref", *given], 0.0))
         if not isinstance(self.measured, Measured | None):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
         if self.temperature is not None:
@@ -384,7 +384,7 @@ class Material(FromPrograms):
             ("E", self.E, "Pa, of long times"), ("instantaneous", self.instant, "Pa"), ("nu", self.nu, ""),
             ("modes", times.size, ""), ("T_ref", self.T_ref, "s"),
             ("relaxation times", f"{times[0]:.3g} to {times[-1]:.3g}" if times.size else None, "s"),
-            ("density", self.density, "kg/m^3"), ("thickness", self.thickness, "m"),
+            ("density", self.density, "kg m-3"), ("thickness", self.thickness, "m"),
             ("temperature", self.temperature, "degrees Celsius"),
             ("measured", self.measured and str(self.measured), ""),
         ]  # fmt: skip

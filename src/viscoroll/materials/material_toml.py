@@ -105,7 +105,7 @@ def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
         the wrong type or out of its range, a temperature without a shift.
         A netCDF file that is missing, damaged, or no material.
     """
-    if Path(path).suffix == SUFFIX:
+    if Path(path).suffix.lower() == SUFFIX:
         return {"material": Material.from_netcdf(path)}
     materials = parse_materials(path, read_toml(path))
     if not materials:
@@ -228,7 +228,7 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
     Raises FileError for the key ``file`` of the section if that file is missing or wrong, or names a file again.
     """
     try:
-        if other.suffix == SUFFIX:
+        if other.suffix.lower() == SUFFIX:
             return _material_of_law(other) if is_law(other) else Material.from_netcdf(other)
         content = read_toml(other)
         section = name if name in content else "material"

@@ -186,10 +186,11 @@ def identify(arguments: Namespace) -> None:
     options = {name: getattr(arguments, name) for name in ("robust", "starts", "seed")}
     result = vr.identify(**read_measurements(arguments.file), **options, progress=sys.stderr.isatty())
     print(result)
-    if (path := arguments.output) is not None and path.suffix == ".nc":
+    path, suffix = arguments.output, arguments.output and arguments.output.suffix.lower()
+    if suffix == ".nc":
         write_dataset(result.to_xarray(), path)
     elif path is not None:
-        text = json.dumps(as_json(result), indent=1, allow_nan=False) if path.suffix == ".json" else str(result)
+        text = json.dumps(as_json(result), indent=1, allow_nan=False) if suffix == ".json" else str(result)
         write_text(path, f"{text}\n")
     if arguments.plot is not None:
         result.plot(arguments.plot)

@@ -176,7 +176,7 @@ def fmu(arguments: Namespace) -> None:
     from ...materials.law_file import is_law
 
     path = arguments.file
-    content = {} if Path(path).suffix == ".nc" else read_toml(path)
+    content = {} if Path(path).suffix.lower() == ".nc" else read_toml(path)
     source = vr.load_law(path) if not content and is_law(path) else read_law_source(path)
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):

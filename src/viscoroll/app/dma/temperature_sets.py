@@ -42,10 +42,9 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
         or tuple whose first element is a vector.
     Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, curve after curve, in
     rad/s and the unit of the moduli (Pa, if they have units); index of the first point of each curve, (curves,), or
-    None of columns of points).  Whether the columns are numbers, finite and > 0, is not checked here, nor whether each
-    curve has points, which :func:`sets_of` needs.
-    Raises ParameterError for shapes that do not go together, for a unit of another dimension, and for temperatures that
-    are no finite numbers.
+    None of columns of points).  Whether the columns are numbers, finite and > 0, is not checked here.
+    Raises ParameterError for shapes that do not go together, a curve without points, a unit of another dimension, and
+    for temperatures that are no finite numbers.
     """
     given = check_array("temperature", temperature, unit="degC")
     columns = tuple(to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
@@ -53,6 +52,9 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
         sizes, *others = ([np.size(curve) for curve in column] for column in columns)
         if others != [sizes, sizes] or given.shape != (len(sizes),):
             raise shape_error("temperature", given.shape, f"one for each of the {len(sizes)} curves")
+        if 0 in sizes:
+            found = f"has no points for curve {sizes.index(0) + 1}"
+            raise described_error("omega", found, "one frequency or more for each curve")
         first = np.cumsum([0, *sizes[:-1]])
         return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
     flat = [np.asarray(column) for column in columns]

@@ -330,8 +330,9 @@ class Identification(Result):
         ``self.values``; the column of an unknown that does not act is (nearly) 0.
         Raises ParameterError as :meth:`residuals` does.
         """
-        J = self._problem.jacobian(self._coordinates(values))
-        return J / [unknown.slope(values.get(unknown.name, unknown.start)) for unknown in self._problem.unknowns]
+        u = self._coordinates(values)
+        scales = [unknown.slope(unknown.to_value(x)) for unknown, x in zip(self._problem.unknowns, u, strict=True)]
+        return self._problem.jacobian(u) / scales
 
     def _coordinates(self, values: Mapping[str, float]) -> Floats:
         """Return the coordinates of the unknowns that belong to values.

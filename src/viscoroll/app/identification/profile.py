@@ -433,11 +433,11 @@ class ProfileWalk:
         u : coordinates at the end of an interval, (unknowns,).
         Returns a list of names, ascending by index, of those unknowns without whose bound chi2 would fall by more than
         2 % of ``delta_chi2``, by the slopes at u.  Each is tried by itself: the unknowns that act and lie at no bound
-        are free, but for the first of the combination, which is held for it.  [] where no unknown outside of the
-        combination lies at a bound, or none limits the interval.
+        are free, but for the first of the combination, which is held for it.  [] where no unknown that acts, outside of
+        the combination, lies at a bound, or none limits the interval.
         """
         problem = self.problem
-        if not (at := [i for i in problem.at_bounds(u) if not self.powers[i]]):
+        if not (at := [i for i in problem.at_bounds(u) if i in problem.active and not self.powers[i]]):
             return []
         (r, J), others = problem.weighted(u), [i for i in problem.active if i not in at]
         others.remove(np.flatnonzero(self.powers)[0])

@@ -20,6 +20,8 @@ _GAP = re.compile(r"(?i)-*|nan|n/?a|null|none|\*+|#n/?a|#wert!|#value!|[+-]?inf(
 _TEXT = re.compile(r".*[^\W\d_].*|\d+[-:./]\d+[-:./]\d+.*|\d+:\d+.*")
 #: decimal mark and exponent as Python reads them
 _PYTHON = str.maketrans(",dD", ".ee")
+#: decimal mark, "" for an unknown one -> words of a message
+_MARKS = {"": "", ".": " with a decimal point", ",": " with a decimal comma"}
 #: largest power of ten of a last digit: doubles end at 1e308
 _MOST = 300
 
@@ -76,18 +78,18 @@ def fault_of(cell: str, decimal: str) -> str:
     cell : text of the cell; an empty one and marks as "nan", "---" and "inf" are missing values.
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     Returns "" for a number without a mark, or with that decimal mark alone; else the reason: a missing value, a
-    possible separator of thousands (without a decimal mark also of a text), or no number with that mark.
+    possible separator of thousands, or no number with that mark.
     """
     if _GAP.fullmatch(cell):
         return "is a missing value: remove its row"
     if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
         return ""
-    if _THOUSANDS.fullmatch(cell) or not decimal:
+    if _THOUSANDS.fullmatch(cell) or (not decimal and _NUMBER.fullmatch(cell)):
         return (
             "may contain a separator of thousands, since both marks occur or all groups have three digits: "
             "write only decimal marks"
         )
-    return f"is not a number with a decimal {'comma' if decimal == ',' else 'point'}"
+    return f"is not a number{_MARKS[decimal]}"
 
 
 def numbers_of(cells: list[str]) -> Numbers:

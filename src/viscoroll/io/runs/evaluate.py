@@ -13,6 +13,7 @@ from ...contact_law.contact import contact
 from ...contact_law.validity.assumptions import transit_frequency
 from ...contact_law.validity.model_warnings import warn_of_contact, warn_of_unmeasured_starts
 from ...core.array_types import Floats
+from ...core.errors import shape_error
 from ...motion.ensemble import ensemble
 from ...motion.ensemble_result import Ensemble
 from ..sampling import points
@@ -46,24 +47,22 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     Parameters
     ----------
     run : a run of :func:`read_run`.
-    values : name of each uncertain input -> a number or (n,), in the units of the file; other names have no effect.
-    count : number of motions, >= 1; n where an input is an array (n,).
+    values : name of each uncertain input -> a number or (count,), in the units of the file; other names have no effect.
+    count : number of motions, >= 1.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, else all cores available.
 
     Returns
     -------
     Ensemble
-        The motions, ``count`` of them (n if ``count`` is 1 and another input than a start speed is (n,)), at the output
-        times of the run, in the units of its file, with the fields that the run keeps or summarises (``run.fields``);
-        the other fields are None.  A motion that cannot be rolled to its end raises nothing: its ``status`` says so,
+        The motions, ``count`` of them, at the output times of the run, in the units of its file, with the fields that
+        the run keeps or summarises (``run.fields``); the other fields are None.  A motion that cannot be rolled to its end raises nothing: its ``status`` says so,
         and its outputs from there on are NaN.
 
     Raises
     ------
     ParameterError
-        Inputs that a motion does not allow, or ``threads`` that is no whole number >= 1.
-    ValueError
-        A ``count`` that does not fit the inputs; of other inputs than start speeds as a ParameterError.
+        Inputs that a motion does not allow or that are arrays of another length than ``count``, or ``threads`` that is
+        no whole number >= 1.
     FileError
         A material that these inputs do not allow.
     KeyError
@@ -76,6 +75,9 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     >>> vr.runs.roll_inputs(run, run.inputs.medians).V.shape
     (1, 2)
     """
+    for name in run.inputs.uncertain:
+        if np.shape(values[name]) not in ((), (count,)):
+            raise shape_error(name, np.shape(values[name]), f"a number or one for each motion, count = {count}")
     content, settings = run.inputs.filled(values), run.settings
     start = content["start"]
     V0, omega0 = (np.broadcast_to(start[name], count) if name in start else None for name in START)

@@ -130,7 +130,8 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
     the grid states, and the material as TOML; axes and units; use of Q and of M; signs for V < 0; the absolute errors
     of linear interpolation in Q and M, with the point where each occurs if the grid states it (NaN if it states none).
     """
-    units = {name: table[name].attrs["units"].replace("1", "dimensionless") for name in ("V", "Q", "M")}
+    units = {name: table[name].attrs["units"] for name in ("V", "Q", "M")}
+    stated = ", ".join(f"{name}: {'dimensionless' if unit == '1' else unit}" for name, unit in units.items())
     errors = []
     for name in ("Q", "M"):
         point = table[name].attrs.get("linear_error_at")
@@ -140,7 +141,7 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
         PAPER,
         *(f"{name} = {table.attrs[name]!r}" for name in _PARAMETERS if name in table.attrs),
         *str(table.attrs.get("material", "")).splitlines(),
-        f"{table.attrs['grid']}; V: {units['V']}, Q: {units['Q']}, M: {units['M']}",
+        f"{table.attrs['grid']}; {stated}",
         "Q: CombiTable2D (CombiTable2Ds from Modelica 4.0 on), u1 = V, u2 = delta",
         "M: CombiTable1Ds, u = V; CombiTimeTable reads the same layout",
         "For V < 0 look up |V| and change the sign of Q and M.  Do not extrapolate (Extrapolation.NoExtrapolation).",
