@@ -309,10 +309,11 @@ def _gains(drive: Drive) -> Floats:
 def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
-    rest: rest threshold, the speed below which the motion ends, in the unit of the roller; it is only quoted in the
-    message.
+    rest: rest threshold, the speed below which the motion ends, in the unit of the roller.  It is not examined but only
+    quoted in the message, so that the caller must not call this function where it is None.
     functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`; None of free motions, which
     may end at rest.
+    Returns None where the motion may end at rest.
     """
     if functions is not None and functions.acts_at_end:
         sentence = f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of the motion: "

@@ -261,10 +261,10 @@ def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> 
     notes: the two arrays (k, 2) and (l,) of :func:`integrate`, which receive the switches and the ends of steps; none:
     neither is kept.
     Returns (all quantities in the order of :data:`.drive.ROWS`, (rows, times), dimensionless, NaN at times that the
-    motion did not reach; a list of five floats: code of :class:`MotionStatus`, number of steps, number of changes of
-    regime, onset time and rest time in T_ref, NaN where there is none).  A cylinder that stays in its indentation is
-    not integrated: all its quantities and both times are NaN, its status is CAUGHT, its numbers of steps and changes
-    are 0, and ``notes`` stay as they were.
+    motion did not reach; a list of five numbers: code of :class:`MotionStatus`, number of steps, number of changes of
+    regime, onset time and rest time in T_ref, NaN where there is none; all of them floats).  A cylinder that stays in
+    its indentation is not integrated: its quantities are NaN, the list is [MotionStatus.CAUGHT, 0, 0, NaN, NaN], with
+    the member of the enum and two ints, and ``notes`` stay as they were.
     """
     scene = problem.scene
     if problem.immobile:

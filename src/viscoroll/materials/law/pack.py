@@ -93,8 +93,9 @@ def steady_columns(table: Floats) -> Floats:
 def constant_rows(*values: float) -> Floats:
     """Return one row for each of several constants, the polynomials of functions that do not depend on the speed.
 
-    values: the constants.
-    Returns shape (number of values, 1 row, 24 powers): power 0 is the constant, all others are 0.
+    values: the constants, one for each function.
+    Returns a new array with the axes (function, row, power), of shape (number of values, 1, 24), functions in the order
+    of the arguments: power 0 is the constant, all others are 0.
     """
     rows = np.zeros((len(values), 1, TERMS))
     rows[:, 0, 0] = values
