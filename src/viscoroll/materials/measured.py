@@ -51,7 +51,8 @@ class Measured:
 
         a_T: factor of all times from the temperature of the band to the other one, dimensionless, > 0.
         Returns a new :class:`Measured` whose frequencies are divided by ``a_T``; misfit and source stay.
-        Raises ParameterError for a factor with which a frequency is 0, negative or infinite.
+        Raises ParameterError for a factor with which a frequency is 0, negative, infinite or NaN; ZeroDivisionError for
+        the float 0.0.
 
         Examples
         --------
