@@ -47,6 +47,7 @@ def refuse_end(end: float, T: float) -> None:
 
     end: last output time, in s, or of a scene in T_ref.
     T: T_ref, the unit of time of the dimensionless motion, s; 1 for a scene.
+    Returns None for any other time.
     """
     if end / T == math.inf:
         raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")

@@ -91,17 +91,20 @@ class DriveFunctions:
 
     @property
     def counts(self) -> tuple[int, int]:
-        """(Number of motions with functions of their own, with gains of their own); 1 if all are driven alike."""
+        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if all are alike.
+
+        Raises ParameterError if two of the functions have values for different numbers of motions, both other than 1.
+        """
         return self._function_motions, self.gains.shape[1]
 
     @property
     def corners(self) -> int:
-        """Number of corners of a motion's schedules, and of pieces of its callables."""
+        """Number of corners of a motion's schedules, and of pieces of its callables; 0 for numbers alone."""
         return sum(map(count_corners, self.functions.values()))
 
     @property
     def error(self) -> float:
-        """Largest difference seen between a callable and its fit, dimensionless."""
+        """Largest difference seen between a callable and its fit, dimensionless; 0.0 without callables."""
         return max(getattr(function, "error", 0.0) for function in self.functions.values())
 
     def block(self, most: int) -> int:
@@ -116,7 +119,7 @@ class DriveFunctions:
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def _blocks(self, count: int) -> list[slice]:
-        """Return slices of ``count`` motions, each of one block."""
+        """Return slices that divide ``count`` motions into blocks, ascending, a list; for 0 motions one slice."""
         step = self.block(max(count, 1))
         return [slice(first, first + step) for first in range(0, max(count, 1), step)]
 
@@ -192,7 +195,10 @@ class DriveFunctions:
 
 @cache
 def undriven() -> KernelDrive:
-    """Return the kernel's drive of free motions."""
+    """Return the :data:`KernelDrive` of free motions: pieces (1, 1, columns) and gains (4, 1), all 0; NOT_PRESCRIBED.
+
+    The same arrays are returned by every call.
+    """
     return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
 
 
@@ -270,8 +276,9 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     stated: the start that the caller gave, a number or (n,), dimensionless; None without.
     functions: :class:`DriveFunctions` of the drive, with the prescribed speed.
     speed: the prescribed speed as in the drive: a number, an array, a Schedule or a callable.
-    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude, where the speed
-    jumps or is an empty array.
+    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude or is not finite,
+    and where the speed jumps or is an empty array; ValueError of numpy where both have values for different numbers of
+    motions.
     Returns (m,) where the speed has values for m > 1 motions.  Where it is the same for all motions: a float if
     ``stated`` is a number or None, else an array in the shape of ``stated``.  Of a callable it is the value of the
     callable itself, not of its fit.

@@ -188,6 +188,7 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
 def _pad(powers: Floats) -> Floats:
     """Return coefficients padded with zeros to the number of powers of functions of one variable.
 
-    powers : coefficients, ascending, (rows, powers).
+    powers : coefficients, ascending, (rows, powers), at most as many powers as :data:`NODES` has nodes.
+    Returns a new array (rows, nodes).
     """
     return np.pad(powers, [(0, 0), (0, NODES.t.size - powers.shape[-1])])

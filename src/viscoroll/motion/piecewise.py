@@ -95,7 +95,7 @@ def check_function(
 
 
 def count_motions(function: TimeFunction) -> int:
-    """Return for how many motions a function of time is given, an int; 1 if all motions share it.
+    """Return for how many motions a function of time is given, an int; 1 if all motions share it, 0 of an empty array.
 
     function: :class:`TimeFunction`, as :func:`check_function` returns it: an array, () or (n,), a :class:`Schedule`, or
         a :class:`Piecewise`, the fit of a callable.

@@ -98,7 +98,9 @@ class MotionProblem(NamedTuple):
     def kernel_drive(self, index: Any = slice(None)) -> KernelDrive:
         """Return the drive of some motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
 
-        index : index of numpy that selects the motions; default: all.
+        index : index of numpy, a slice or a vector of integers, that selects the motions; default: all.
+        Returns the tuple of :meth:`.drive_functions.DriveFunctions.for_kernel`, of free motions that of
+        :func:`.drive_functions.undriven`.
         """
         return undriven() if self.functions is None else self.functions.for_kernel(index)
 
@@ -243,8 +245,8 @@ def integrate(
     that are not needed stay as they were.  Each motion overwrites those of the one before, so that they are of use for
     one motion.  Arrays of length 0 keep nothing.
     Returns (quantities, (rows, count, times), NaN at times that a motion did not reach; information on each motion,
-    (count, 5), floats: code of :class:`MotionStatus`, number of steps, number of changes of regime, onset time and rest
-    time in T_ref, NaN where there is none).
+    (count, 5), floats: code of :class:`MotionStatus`, number of steps, rejected ones included, number of changes of
+    regime, onset time and rest time in T_ref, NaN where there is none).
     """
     from ..kernels.motion.batch import N_INFO_COLUMNS, motion_loop
 

@@ -79,12 +79,22 @@ def _start_energy(motions: Any) -> NDArray:
 
 
 def _translation(motions: Any, k: int) -> NDArray:
-    """Return the part of the kinetic energy at the start that is in translation, (n,)."""
+    """Return the part of the kinetic energy at the start that is in translation at output time k, (n,), dimensionless.
+
+    motions: an :class:`Ensemble` with the field V.
+    k: index of the output time.
+    Returns NaN for motions from rest, and for those that did not reach the time.
+    """
     return _dimensionless(motions, "V", k) ** 2 / _start_energy(motions)
 
 
 def _rotation(motions: Any, k: int) -> NDArray:
-    """Return the part of the kinetic energy at the start that is in rotation, (n,)."""
+    """Return the part of the kinetic energy at the start that is in rotation at output time k, (n,), dimensionless.
+
+    motions: an :class:`Ensemble` with the field omega.
+    k: index of the output time.
+    Returns NaN for motions from rest, and for those that did not reach the time.
+    """
     return motions.scene.j * _dimensionless(motions, "omega", k) ** 2 / _start_energy(motions)
 
 
@@ -92,14 +102,14 @@ def _loss(name: str, motions: Any, k: int) -> NDArray:
     """Return a loss divided by the kinetic energy at the start, (n,); NaN for motions from rest.
 
     name: name of the field, "slip_loss" or "rolling_loss", whose unit is m (R/T_ref)^2.
-    motions: an ensemble.
-    k: index of the output time.
+    motions: an :class:`Ensemble` with that field.
+    k: index of the output time, which motions that did not reach it have NaN at too.
     """
     return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
 
 
 def _field(name: str, motions: Any, k: int) -> NDArray:
-    """Return a field at an output time, (n,)."""
+    """Return the field ``name`` of ``motions`` at output time ``k``, (n,), in its unit; NaN where not reached."""
     return getattr(motions, name)[:, k]
 
 
