@@ -74,7 +74,7 @@ class Law:
         self._use(Jitted(scenes, table))
 
     def _use(self, jitted: Any) -> None:
-        """Keep the compiled law for calls.
+        """Keep the compiled law for calls, as attributes of this object.
 
         jitted: a :class:`.Jitted` law, or that of a grid, which has the C function, and the addresses of its user data
             for results without slopes (``plain``) and with slopes (``address``).
@@ -149,7 +149,8 @@ class Law:
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         """Return the law at arrays ``V`` and ``omega``, which broadcast, in the units of the roller.
 
-        The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape.
+        The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape.  Raises
+        and warns as :func:`contact` does.
         """
         return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
 

@@ -108,6 +108,9 @@ def stress(
     p, tau = np.empty((2, int(np.prod(shape))))
 
     def work(start: int, stop: int) -> None:
+        """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1, and write them into ``p`` and
+        ``tau``; of a cover p alone.
+        """
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
         points = Points(mirrored, *(read(start, stop) for read in readers))
@@ -162,7 +165,8 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     index: index of the cover, if the scene has an array of covers; else not used.
     points: record :class:`...kernels.rows.stress.Points`, of which position (divided by l0, in the frame where V > 0),
         kappa, lam, epsilon and zeta (infinite at V = 0) are used, (n,) or (1,).
-    Returns p/E', dimensionless, >= 0, 0 outside the contact, (n,), where n is the common length of these fields.
+    Returns p/E', dimensionless, >= 0 to rounding, 0 outside the contact, a new array (n,), where n is the common length
+    of these fields.
     """
     cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     modes = CoverModes(cover)

@@ -104,7 +104,7 @@ class Pair:
     def like(self) -> bool:
         """Whether both bodies deform and relax alike: one body is given for both, or E, nu, series and T_ref are equal.
 
-        Two different objects of which one is a :class:`Solid` are never alike.
+        Two different objects of which one is a :class:`Solid` are never alike.  A thickness is not compared.
         """
         one, other = self.cylinder, self.half_space
         if one is other or Solid in (type(one), type(other)):

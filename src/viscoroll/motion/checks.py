@@ -56,8 +56,9 @@ def refuse_end(end: float, T: float) -> None:
 def require_single(**arguments: Any) -> None:
     """Raise ParameterError for an array where ``roll`` takes one number.
 
-    arguments: name of an argument of ``roll`` -> its value.  Numbers and None pass, and so does what is no array, which
-    is checked elsewhere.
+    arguments: name of an argument of ``roll`` -> its value.  Numbers, arrays of shape () and None pass, and so does
+    what is no array, which is checked elsewhere.
+    The error is that of the first argument with axes, also of shape (1,); without one None is returned.
     """
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):
@@ -66,9 +67,9 @@ def require_single(**arguments: Any) -> None:
 
 
 def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument; () of what is no array, as None.
+    """Return the shape of an argument, a tuple; () of what is no array, as None.
 
-    value: what a caller gave; a list counts as an array, a ragged one as an array of objects.
+    value: what a caller gave; a list counts as an array, a ragged one as an array of objects.  Nothing is raised.
     """
     try:
         return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))

@@ -259,6 +259,7 @@ def _refuse_both(drive: Drive) -> None:
     Beside omega these loads are the torque, the brake and the drag, beside V the force.
 
     drive: :class:`Drive`; a field is None where nothing is given.
+    Returns None where nothing is in conflict.
     """
     if drive.V is not None and drive.omega is not None:
         raise exactly_one_error("V", "omega", both=True)

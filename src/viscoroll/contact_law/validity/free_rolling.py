@@ -272,6 +272,11 @@ class FreeRolling:
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
+            """Return [lost u, lost distance] for states of one material, (n,) each, in its own time and in l0.
+
+            curve: free rolling of the material.
+            u, g, rested: kappa |V| at the start, gamma/(1 + j), time of the standstill, (n,) each.
+            """
             distance = curve.distance(u)
             W = curve.work(u, distance / g, rested)
             part = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)

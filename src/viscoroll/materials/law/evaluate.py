@@ -25,6 +25,7 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
 
     slowest: slowest rate of creep b_1, > 0, in units of 1/T_ref.
     fastest: fastest rate of relaxation a_N, >= ``slowest``, in units of 1/T_ref; a smaller one and NaN are refused too.
+    Returns None for other times.
     """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
         allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} times T_ref"
