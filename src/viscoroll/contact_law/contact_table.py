@@ -44,7 +44,7 @@ def evaluate_contact(
 
     Parameters
     ----------
-    scene : dimensionless parameters of the roller, numbers or arrays.
+    scene : dimensionless parameters of the roller, numbers or arrays; its material, alpha, kappa and mu are read.
     V : velocities of the axis divided by R/T_ref, any sign, an array of any shape, () for a number.
     creep : angular velocities times T_ref if ``creep_is_omega``, else creepages (omega - V)/V; any shape.
     creep_is_omega : whether ``creep`` is omega.

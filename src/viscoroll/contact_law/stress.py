@@ -132,7 +132,7 @@ def stress(
 def _compute_stresses(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
     """Compute the stresses at points, material by material, and write them into ``p`` and ``tau``.
 
-    scene: dimensionless parameters of the roller.
+    scene: dimensionless parameters of the roller, of which the material alone is read.
     alpha: alphas, or for an array of materials their indices as floats, (n,) or (1,); for one material not used.
         Consecutive points of one material are computed together.
     points: record :class:`...kernels.rows.stress.Points`; its fields (position, kappa, mu, lam, epsilon, beta, zeta)

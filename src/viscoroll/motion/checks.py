@@ -84,7 +84,7 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
     rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller; None: a motion does not
     end at rest.
     max_steps: largest number of steps of a motion.
-    scale: :class:`Scale` of the roller.
+    scale: :class:`Scale` of the roller, of which the unit of ``rest`` is read.
     Returns (rtol, a float; threshold of rest, dimensionless, 0.0 for none; largest number of steps, an int).
     Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive and finite, max_steps outside [1, 10^7] or
     no whole number.

@@ -283,8 +283,10 @@ class Motion(RollResult):
 
     @cached_property
     def course(self) -> Motion:
-        """The same motion at 0, at the ends of its steps and at the last output time, each time once, ascending; NaN
-        where it was given up before.
+        """The same motion at 0, at the ends of its steps and at the last output time, each time once, ascending.
+
+        One that was given up before is NaN there, and at the end of its last step, where outputs are written by the
+        step after it.
         """
         ends, end = self._step_ends, self._problem.end
         return self.at(np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"])

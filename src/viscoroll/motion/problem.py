@@ -203,8 +203,8 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
 def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
     """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
-    start: :class:`DrivenStart`: start speeds, numbers or (n,), and drive, dimensionless.
-    scene: :class:`Parameters`, dimensionless, of the roller.
+    start: :class:`DrivenStart`: start speeds, numbers or (n,), and drive, of which only ``prescribed`` is read.
+    scene: :class:`Parameters`, dimensionless, of the roller, with gamma.
     rested: time of the standstill, in T_ref; 0: none; infinite: a long one.
     Returns (V0; omega0; whether the cylinder is too slow to leave its indentation), dimensionless.  If ``rested`` is 0,
     the speeds are returned as they are, with False.  Else V0 and omega0 of each motion are multiplied by the same
@@ -258,7 +258,7 @@ def integrate(
 def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
     """Integrate one motion.
 
-    problem: :class:`MotionProblem` of one motion.
+    problem: :class:`MotionProblem` of one motion; scene, functions, V0, omega0, immobile, limits and unsteady are read.
     times: output times, (times,), ascending, in T_ref.
     notes: the two arrays (k, 2) and (l,) of :func:`integrate`, which receive the switches and the ends of steps; none:
     neither is kept.

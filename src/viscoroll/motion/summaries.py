@@ -71,7 +71,8 @@ def _start_energy(motions: Any) -> NDArray:
 
     T_ref is the unit of time of dimensionless motions.
 
-    motions: an :class:`Ensemble`; its start speeds are those after the cost of a standstill.
+    motions: an :class:`Ensemble`, of which V0, omega0, scale and scene.j are read; its start speeds are those after the
+        cost of a standstill.
     """
     V, omega = (getattr(motions, name) / motions.scale[name] for name in ("V0", "omega0"))
     energy = V**2 + motions.scene.j * omega**2
@@ -185,11 +186,13 @@ def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
 def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summary:
     """Return the summary of the motions of a block, which merges with those of other blocks.
 
-    motions: an :class:`Ensemble`, or its dataset, which has no shares of energy.
-    names: names of quantities, keys of :data:`QUANTITIES`, whose fields the ensemble has.
+    motions: an :class:`Ensemble`, or its dataset, which has no shares of energy; t, status, flow and the fields of the
+        quantities are read.
+    names: names of quantities, keys of :data:`QUANTITIES` (else KeyError), whose fields the ensemble has.
     exact: whether to keep the values for exact quantiles.
     Returns the :class:`Summary`, in the units of the roller: a list of histograms for each name, one for each output
-    time, or a single one of a quantity that is one number for each motion.  Values that are not finite are left out.
+    time, or a single one of a quantity that is one number for each motion; its ``statuses`` have only those that occur.
+    Values that are not finite are left out.
     """
     histograms = {}
     for name in names:

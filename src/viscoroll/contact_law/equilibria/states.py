@@ -92,9 +92,10 @@ class States(NamedTuple):
         The contact is that of Carter (of two elastic bodies); of a cover its creep limit and its creepage of free
         rolling are used.  A disturbance decays as V' = -rate V, with omega in proportion to V.
 
-        loads : the loads, dimensionless: Q balances the torque, or where V and the force were given the force.
+        loads : the loads, dimensionless; all but V and ``shape`` is read.  Q balances the torque, or where V and the
+            force were given the force.
         load : index of the load of each state, (n,).
-        law : table of the material.
+        law : table of the material, of which T_mean and, of a cover, the rows of creep at rest are read.
         Returns the :class:`States`, (n,), with V = omega = M = 0: the eigenvalue of slip is -inf, the slow one is that
         of the less stable direction, 0 for elastic bodies without gains; delta and omega are NaN where the friction
         does not suffice, |Q| >= mu.
