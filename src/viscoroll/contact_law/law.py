@@ -253,7 +253,7 @@ def law(roller: Roller | LawGrid) -> Law:
     ------
     ParameterError
         What is no scene, cylinder or grid; arrays for alpha, kappa or mu; an array of materials; a layer beside a body
-        that relaxes too, since its slip is not known.
+        that relaxes too, since its slip is not known, or too thin for its law.
 
     Notes
     -----

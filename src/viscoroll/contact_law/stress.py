@@ -67,7 +67,7 @@ def stress(
     ------
     ParameterError
         NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega, shapes that do not broadcast,
-        a unit of another dimension.
+        a unit of another dimension; what is no scene and no cylinder; a layer too thin for its law.
 
     Examples
     --------

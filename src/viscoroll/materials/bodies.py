@@ -137,8 +137,8 @@ class Bodies(OneOrMany):
         """Return the half-space's part of each creep mode of :attr:`total`, divided by the mode's strength, slowest
         mode first.
 
-        Returns an array (..., modes) of numbers from 0 to 1: 1 - share for two equal series; 0 for a mode without
-        strength.
+        Returns a new array (..., modes) of numbers from 0 to 1: 1 - share for two equal series, else 0 for a mode
+        without strength.
         """
         J = self.total.J
         if self._same:

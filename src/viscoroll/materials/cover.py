@@ -48,7 +48,7 @@ class Cover(Bodies):
     Raises
     ------
     ParameterError
-        A value out of range, a series of many materials, a cover that is too thin.
+        A value out of range, a series of many materials; a cover that is too thin, where its law is computed.
 
     Examples
     --------

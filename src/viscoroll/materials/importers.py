@@ -64,7 +64,7 @@ class FromPrograms:
         -------
         Material
             With its long-time modulus, and T_ref = 1 s.  Without ``k``, and where k equals g, E is E0 (1 - sum g), or
-            E0 with ``long_term``, and nu is that given.
+            E0 with ``long_term``, and nu is that given; else both are those of the long-time moduli G and K.
 
         Raises
         ------
@@ -111,7 +111,7 @@ class FromPrograms:
         -------
         Material
             With its long-time modulus, and T_ref = 1 s.  Without ``k``, and where k equals alpha, E is E0 (1 - sum
-            alpha), and nu is that given.
+            alpha), and nu is that given; else both are those of the long-time moduli G and K.
 
         Raises
         ------

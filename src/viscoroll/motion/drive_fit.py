@@ -234,7 +234,7 @@ def fit_callable(
     difference seen between callable and fit, a float).
     Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that requires more than
     :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough, or that is not smooth
-    within the shortest piece.
+    within the shortest piece.  Exceptions of the callable pass.
     """
     samples = SAMPLES
     if resolve is not None:

@@ -53,7 +53,7 @@ def fill_layers(
     layer : (octave of kappa V at onset, octave of u, column, powers of u and kappa V), written; columns: ln(V/V0),
     delta, distance and angle beyond those at constant speed V0, slip loss.
     Raises :class:`NoFlowMap`, with nothing written, for the reason STICK_ENDS where a motion of the layer leaves
-    partial slip, and for OUT_OF_RANGE where its start is not finite.
+    partial slip, and for OUT_OF_RANGE where its start is not finite or k0 not positive.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa

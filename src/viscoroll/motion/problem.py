@@ -116,8 +116,9 @@ def make_problem(
     end: last output time, in its unit.
     options: :class:`SolverOptions`, not yet checked.
     single: whether only one motion is allowed (``roll``); else an ensemble.
-    Raises ParameterError for everything that :func:`viscoroll.roll` (``single``) or :func:`viscoroll.ensemble` refuses,
-    apart from output times, fields, method and ``speed``.
+    Raises ParameterError for what :func:`viscoroll.roll` (``single``) or :func:`viscoroll.ensemble` refuses, apart from
+    output times, units and labels, and of an ensemble arrays that do not broadcast, fields, method, ``speed``, threads
+    and progress.  The message states units where it has dimensionless numbers (:func:`.checks.with_scales`).
     Returns the :class:`MotionProblem`.  Its callables are fitted, loads that are 0 at all times are left out, the start
     speeds are reduced by the cost of a standstill, and the step limit is raised by the number of corners of the drive;
     nothing is integrated.

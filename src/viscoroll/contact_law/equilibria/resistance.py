@@ -155,7 +155,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     Raises
     ------
     ParameterError
-        Arrays in alpha or kappa, or an array of materials; what is no scene and no cylinder.
+        Arrays in alpha or kappa, an array of materials; what is no scene and no cylinder; a layer too thin for its law.
 
     Notes
     -----
@@ -185,8 +185,8 @@ def branches(law: LawTable, gain: float) -> Branches:
 
     law : table of the material.
     gain : G, slope of the load in V, dimensionless, any sign; 0 for a load that does not depend on V.
-    Returns the :class:`Branches` for u > 0, which are kept for the next call.  Where the curve has no extremum, as for
-    elastic bodies, there is one branch over all nodes.
+    Returns the :class:`Branches` for u > 0, which are kept for the next call (the last 16).  Where the curve has no
+    extremum, as for elastic bodies, there is one branch over all nodes.
 
     Raises
     ------

@@ -155,7 +155,7 @@ def _solve_node(
     stiffness: instantaneous divided by long-time stiffness, to solve fast rolling with the ``modes`` of elastic bodies;
         1: the modes have their own stiffness.
     Returns (lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,),
-    dimensionless; ln z; d ln H/d ln z).
+    dimensionless; ln z after the last secant step; d ln H/d ln z of that step, limited to [0.5, 8]).
     Raises ParameterError where the secant method reaches its limit of 40 steps.
     """
     goal, previous, thickness = -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
