@@ -60,7 +60,7 @@ class Roller:
         """Return the same roller on a slope, under the load P cos(slope), as a new object; subclasses implement it.
 
         slope: angle, rad, a number or an array, which broadcasts with the parameters.
-        Raises ParameterError for a slope outside (-pi/2, pi/2), and for shapes that do not broadcast.
+        Raises ParameterError for a slope outside (-pi/2, pi/2), and ValueError for shapes that do not broadcast.
         """
         raise NotImplementedError
 
@@ -256,7 +256,7 @@ class Parameters(Roller):
         Returns a new scene whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied
         by cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array
         of slopes gives as many covers.
-        Raises ParameterError for a slope out of range, and for shapes that do not broadcast.
+        Raises ParameterError for a slope out of range, and ValueError of numpy for shapes that do not broadcast.
         """
         cosine = slope_tan_cos(slope)[1]
         changes = {"kappa": self.kappa / np.sqrt(cosine), "gamma": None if self.gamma is None else self.gamma * cosine}
@@ -307,9 +307,9 @@ def resolve_model(
     Returns (the Scene or Cylinder under the load on the slope, the argument itself if ``slope`` is None; its
     dimensionless parameters; its :class:`Scale`: the factor by which each dimensionless quantity is multiplied to get
     the units of the roller, 1 for a Scene).
-    Raises ParameterError for what is no scene and no cylinder, a slope out of range or of a shape that does not
-    broadcast, a scene without gamma where ``moves``, and a layer beside a body that relaxes too in a function that does
-    not take it.
+    Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma where
+    ``moves``, and a layer beside a body that relaxes too in a function that does not take it; ValueError of numpy for a
+    slope of a shape that does not broadcast.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"

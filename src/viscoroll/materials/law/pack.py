@@ -281,7 +281,7 @@ def _pack_cover_front(cover: CoverRows) -> Floats:
     cover: :class:`CoverRows`, law of the cover, of which ``limits`` and the value of m_half_space at rest are read; the
         latter, if it is not 0, says that the cover is on the base.
     Returns shape (8,), in place of alpha, lam, and W and C of both bodies, of the half-space and of the cylinder:
-    1/L_1^2, L_1, and W = 0 with C proportional to L_1 a and to b.
+    1/L_1^2, L_1, 0, 4 L_1 a; then 0, 8 b for the body with the cover and 0, 0 for the other one.
     """
     L, _, _, L_slope, _, _, _, moment = cover.limits
     on_base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])
