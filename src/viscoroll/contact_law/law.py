@@ -55,7 +55,7 @@ class Law:
 
         roller: a scene or a cylinder whose alpha or material, kappa and mu are single; gamma and j are not used.
         Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape (1,)), for an array
-        of materials, and for a layer beside a body that relaxes too.
+        of materials, and for a layer beside a body that relaxes too or too thin for its law.
         """
         from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted

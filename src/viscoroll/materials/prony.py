@@ -396,7 +396,7 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
 
 
 def series_of_alpha(alpha: float) -> Prony:
-    """Return the standard linear solid of the paper, with both forms of its series without rounding.
+    """Return the standard linear solid of the paper, with both forms of its series by formulas, without a conversion.
 
     alpha: instantaneous divided by long-time modulus, >= 1, a float, not checked; for 1 the series is elastic.
     Returns a :class:`Prony` in creep form with times in units of T_epsilon: one mode, J = (alpha - 1)/alpha, T = 1, tau
