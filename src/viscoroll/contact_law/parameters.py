@@ -166,8 +166,9 @@ class Parameters(Roller):
     def table(self) -> LawTable | None:
         """Return the :class:`LawTable` of the scene, from which all its contact states are computed.
 
-        It is the one that was given as ``material``, else it is computed at first use and kept for the process.  None
-        for several materials (also of shape (1,)) and for an array of alphas, unless that has a single element.
+        It is the one that was given as ``material``, else it is computed at first use and kept for later calls (the
+        last 32 laws).  None for several materials (also of shape (1,)) and for an array of alphas, unless that has a
+        single element.
         Raises ParameterError for a material with times outside 1e-100 to 1e100 of their unit, or a layer too thin.
         """
         if self._law is not None:

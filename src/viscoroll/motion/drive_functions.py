@@ -176,6 +176,7 @@ class DriveFunctions:
 
         index: index of numpy, a slice or a vector of integers, that selects the motions; what is the same for all
         motions stays.
+        Returns a new object; its functions and tangent are those of the selected motions, in the order of ``index``.
         """
         functions = {name: take_motions(f, index) for name, f in self.functions.items()}
         return replace(

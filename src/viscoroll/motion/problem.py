@@ -161,6 +161,7 @@ def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
     resolve: the argument of the caller: the spacing in the unit of time of the roller, s, or T_ref of a scene.
     drive: :class:`Drive` of the motions.
     scale: :class:`Scale` of the roller, which converts s to T_ref.
+    Returns a float > 0.
     Raises ParameterError unless ``resolve`` is one finite number above 0 and the drive has a callable.
     """
     if not drive.has_callable:

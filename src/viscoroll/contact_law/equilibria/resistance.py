@@ -99,8 +99,8 @@ class Branches:
 
     @cached_property
     def maximum(self) -> tuple[float, float]:
-        """Return (largest value of the curve at a node, u of that node); without a gain that is the maximum of
-        kappa M.
+        """Return (largest value of the curve at a node, u of that node, of equal ones the first), floats; without a
+        gain that is the maximum of kappa M, for elastic bodies 0.
         """
         n = int(np.argmax(self.resistance))
         return float(self.resistance[n]), float(self.u[n])

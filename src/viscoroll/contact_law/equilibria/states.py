@@ -127,8 +127,8 @@ class States(NamedTuple):
         return cls(np.concatenate([each.load for each in parts]), np.concatenate([each.rows for each in parts], axis=1))
 
     def existing(self) -> States:
-        """Return the states for which the friction suffices (omega is finite), sorted by load, then by rising |V|; of
-        equal |V| in their order.
+        """Return the states for which the friction suffices (omega is finite) as new :class:`States`, maybe none,
+        sorted by load, then by rising |V|; of equal |V| in their order.
         """
         chosen = np.isfinite(self.rows[Field.OMEGA]).nonzero()[0]
         chosen = chosen[np.lexsort((np.abs(self.rows[Field.V, chosen]), self.load[chosen]))]
