@@ -113,7 +113,8 @@ def contact(
     ParameterError
         NaN or infinite input, kappa |V| above 1e300 (for Q by method "direct" above 1e12), both or neither of delta
         and omega, an unknown field or method, a field or method that these bodies do not have, shapes that do not
-        broadcast, a unit of another dimension.
+        broadcast, a unit of another dimension; a layer too thin for its law (half the contact at rest longer than six
+        thicknesses), times of a material beyond 1e-100 to 1e100 T_ref.
     ConvergenceError
         Method "direct": an iteration reached its limit.
 

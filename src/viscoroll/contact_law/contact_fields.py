@@ -139,9 +139,9 @@ def complete(
     computed: name of the field in each row, as of :func:`computed_fields`.
     rows: values, (rows, states), dimensionless; ``full_slip`` is 0 or 1.
     shape: shape of the call, whose product is the number of states; () for one state.
-    Returns a dict from each of ``names`` to an array of ``shape``, for shape () a float; ``full_slip`` is a boolean
-    array, for shape () a bool.  Arrays are views of ``rows``.  ``length`` and ``C_rr`` have the values of lam and M,
-    which the caller of a Cylinder multiplies by their units.
+    Returns a dict from each of ``names``, in their order, to an array of ``shape``, for shape () a float; ``full_slip``
+    is a boolean array, for shape () a bool.  Arrays that are a row of ``rows`` are views of it.  ``length`` and
+    ``C_rr`` have the values of lam and M, which the caller of a Cylinder multiplies by their units.
     """
     found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))
     if computed != names:

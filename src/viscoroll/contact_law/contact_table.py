@@ -44,7 +44,7 @@ def evaluate_contact(
 
     Parameters
     ----------
-    scene : dimensionless parameters of the roller, numbers or arrays.
+    scene : dimensionless parameters of the roller, numbers or arrays; its material, alpha, kappa and mu are read.
     V : velocities of the axis divided by R/T_ref, any sign, an array of any shape, () for a number.
     creep : angular velocities times T_ref if ``creep_is_omega``, else creepages (omega - V)/V; any shape.
     creep_is_omega : whether ``creep`` is omega.
@@ -180,8 +180,9 @@ def _kernel(direct: bool) -> tuple[Any, Any]:
 
     direct: whether it solves the printed equations; else it reads the rows of the law.
     Returns (the loop over states; the module :mod:`...kernels.rows.contact_states` with the types of its arguments).
-    The first loop is called as (alpha, request, count) and returns a status, 0 if all states were solved; the second
-    one as (laws, request, scratch, count).  Their first call compiles them, unless this machine has done so before.
+    The loop of the printed equations is called as (alpha, request, count) and returns a status, 0 if all states were
+    solved; that of the rows as (laws, request, scratch, count), and returns nothing.  The first call of a loop compiles
+    it, unless this machine has done so before.
     """
     from ..kernels.rows import contact_states as states
 
@@ -218,12 +219,12 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     """Return fields of the contact at zero creepage, delta = 0, for kappa = mu = 1 and the speed V = u.
 
     These are functions of u = kappa |V| alone, so that they serve every kappa: ``lam`` and ``epsilon`` as they are,
-    ``M`` as kappa M, ``dM_dV`` as it is.  (Of a cover the traction is not 0 at delta = 0.)
+    ``M`` as kappa M, ``dM_dV`` and ``N`` as they are.  (Of a cover the traction is not 0 at delta = 0.)
     law: table of the material.
     u: kappa |V|, >= 0, at most 1e300, (n,).
     names: fields that kernels compute, as "lam", "epsilon", "M", "dM_dV", "N"
         (:func:`.contact_fields.computed_fields`); all are those of kappa = mu = 1.
-    Returns an array (names, n), dimensionless.
+    Returns a new array (names, n), dimensionless, rows in the order of ``names``; N of a cover is NaN.
     """
     return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
 

@@ -55,7 +55,7 @@ class Law:
 
         roller: a scene or a cylinder whose alpha or material, kappa and mu are single; gamma and j are not used.
         Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape (1,)), for an array
-        of materials, and for a layer beside a body that relaxes too.
+        of materials, and for a layer beside a body that relaxes too or too thin for its law.
         """
         from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted
@@ -74,7 +74,7 @@ class Law:
         self._use(Jitted(scenes, table))
 
     def _use(self, jitted: Any) -> None:
-        """Keep the compiled law for calls.
+        """Keep the compiled law for calls, as attributes of this object.
 
         jitted: a :class:`.Jitted` law, or that of a grid, which has the C function, and the addresses of its user data
             for results without slopes (``plain``) and with slopes (``address``).
@@ -149,7 +149,8 @@ class Law:
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         """Return the law at arrays ``V`` and ``omega``, which broadcast, in the units of the roller.
 
-        The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape.
+        The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape.  Raises
+        and warns as :func:`contact` does.
         """
         return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
 
@@ -252,7 +253,7 @@ def law(roller: Roller | LawGrid) -> Law:
     ------
     ParameterError
         What is no scene, cylinder or grid; arrays for alpha, kappa or mu; an array of materials; a layer beside a body
-        that relaxes too, since its slip is not known.
+        that relaxes too, since its slip is not known, or too thin for its law.
 
     Notes
     -----

@@ -57,10 +57,10 @@ class Roller:
         raise NotImplementedError
 
     def on_slope(self, slope: Any) -> Self:
-        """Return the same roller on a slope, under the load P cos(slope).
+        """Return the same roller on a slope, under the load P cos(slope), as a new object; subclasses implement it.
 
-        slope: angle, rad, a number or an array.
-        Raises ParameterError for a slope outside (-pi/2, pi/2).
+        slope: angle, rad, a number or an array, which broadcasts with the parameters.
+        Raises ParameterError for a slope outside (-pi/2, pi/2), and ValueError for shapes that do not broadcast.
         """
         raise NotImplementedError
 
@@ -73,8 +73,9 @@ class Roller:
 
         index: index of numpy into an array (count,): an integer for one roller, a slice, a mask, or integers (k,).
         count: number of rollers; numbers and materials of shape (count,) are indexed, all others stay as they are.
-        Returns a roller of the same class whose indexed parameters are numbers, or arrays (k,); this object itself if
-        no parameter has that shape.
+        Returns a roller of the same class whose indexed parameters are numbers, or arrays (k,), in the order of the
+        index; this object itself if no parameter has that shape.
+        Raises IndexError for an index beyond ``count``, if a parameter has that shape.
         """
         parts = {name: value[index] for name, value in self._arrays.items() if getattr(value, "shape", ()) == (count,)}
         return self.replace(**parts) if parts else self
@@ -165,8 +166,9 @@ class Parameters(Roller):
     def table(self) -> LawTable | None:
         """Return the :class:`LawTable` of the scene, from which all its contact states are computed.
 
-        It is the one that was given as ``material``, else it is computed at first use and kept for the process.  None
-        for several materials (also of shape (1,)) and for an array of alphas, unless that has a single element.
+        It is the one that was given as ``material``, else it is computed at first use and kept for later calls (the
+        last 32 laws).  None for several materials (also of shape (1,)) and for an array of alphas, unless that has a
+        single element.
         Raises ParameterError for a material with times outside 1e-100 to 1e100 of their unit, or a layer too thin.
         """
         if self._law is not None:
@@ -209,8 +211,8 @@ class Parameters(Roller):
 
     @property
     def series(self) -> Prony | None:
-        """The series of the one material, or of both bodies together; None where alpha was given, and of several
-        materials.
+        """The :class:`Prony` series of the one material, of both bodies together where they differ (also of a cover);
+        None where alpha was given, and of several materials.
         """
         one: Any = None if self.material_array is not None else self.material
         return one.total if isinstance(one, Bodies) else one
@@ -252,10 +254,10 @@ class Parameters(Roller):
         """Return the scene under the load P cos(slope), the normal part of the weight on a slope.
 
         slope: angle, rad, in (-pi/2, pi/2), a number or an array, which broadcasts with the parameters; None: level.
-        Returns a scene whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied by
-        cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array of
-        slopes gives as many covers.
-        Raises ParameterError for a slope out of range, and for shapes that do not broadcast.
+        Returns a new scene whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied
+        by cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array
+        of slopes gives as many covers.
+        Raises ParameterError for a slope out of range, and ValueError of numpy for shapes that do not broadcast.
         """
         cosine = slope_tan_cos(slope)[1]
         changes = {"kappa": self.kappa / np.sqrt(cosine), "gamma": None if self.gamma is None else self.gamma * cosine}
@@ -306,9 +308,9 @@ def resolve_model(
     Returns (the Scene or Cylinder under the load on the slope, the argument itself if ``slope`` is None; its
     dimensionless parameters; its :class:`Scale`: the factor by which each dimensionless quantity is multiplied to get
     the units of the roller, 1 for a Scene).
-    Raises ParameterError for what is no scene and no cylinder, a slope out of range or of a shape that does not
-    broadcast, a scene without gamma where ``moves``, and a layer beside a body that relaxes too in a function that does
-    not take it.
+    Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma where
+    ``moves``, and a layer beside a body that relaxes too in a function that does not take it; ValueError of numpy for a
+    slope of a shape that does not broadcast.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
@@ -346,6 +348,7 @@ def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a sin
     scene: the dimensionless parameters of a roller.
     names: names of the parameters that must be numbers, as "alpha"; None as a value is accepted.
     allowed: words of the message that follow "must be".
+    Returns None if none of them is an array.
     """
     for name in names:
         if shape := np.shape(getattr(scene, name)):

@@ -67,7 +67,7 @@ def stress(
     ------
     ParameterError
         NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega, shapes that do not broadcast,
-        a unit of another dimension.
+        a unit of another dimension; what is no scene and no cylinder; a layer too thin for its law.
 
     Examples
     --------
@@ -108,6 +108,9 @@ def stress(
     p, tau = np.empty((2, int(np.prod(shape))))
 
     def work(start: int, stop: int) -> None:
+        """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1, and write them into ``p`` and
+        ``tau``; of a cover p alone.
+        """
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
         points = Points(mirrored, *(read(start, stop) for read in readers))
@@ -129,7 +132,7 @@ def stress(
 def _compute_stresses(scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats) -> None:
     """Compute the stresses at points, material by material, and write them into ``p`` and ``tau``.
 
-    scene: dimensionless parameters of the roller.
+    scene: dimensionless parameters of the roller, of which the material alone is read.
     alpha: alphas, or for an array of materials their indices as floats, (n,) or (1,); for one material not used.
         Consecutive points of one material are computed together.
     points: record :class:`...kernels.rows.stress.Points`; its fields (position, kappa, mu, lam, epsilon, beta, zeta)
@@ -162,7 +165,8 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     index: index of the cover, if the scene has an array of covers; else not used.
     points: record :class:`...kernels.rows.stress.Points`, of which position (divided by l0, in the frame where V > 0),
         kappa, lam, epsilon and zeta (infinite at V = 0) are used, (n,) or (1,).
-    Returns p/E', dimensionless, >= 0, 0 outside the contact, (n,), where n is the common length of these fields.
+    Returns p/E', dimensionless, >= 0 to rounding, 0 outside the contact, a new array (n,), where n is the common length
+    of these fields.
     """
     cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
     modes = CoverModes(cover)

@@ -94,7 +94,7 @@ class Bodies(OneOrMany):
 
     @cached_property
     def alpha(self) -> Any:
-        """Instantaneous divided by long-time stiffness of the pair, for each."""
+        """Instantaneous divided by long-time stiffness, >= 1, of the pair a float, of n pairs a read-only (n,)."""
         first, second = self.cylinder.alpha, self.base.alpha
         found = first if self._same else 1.0 / (self.share / first + (1.0 - self.share) / second)
         return np.broadcast_to(found, self.shape) if self.shape else found
@@ -124,7 +124,8 @@ class Bodies(OneOrMany):
     def total(self) -> Prony:
         """The :class:`Prony` series that stands for both in the contact law, of the shape of the pairs.
 
-        Of two equal series it is that series, whatever the share is.
+        Of two equal series it is that series, whatever the share is; else a series in creep form.
+        Raises ParameterError for a single pair of more than 64 modes, or times that span more than 32 decades.
         """
         if not self._same:
             return Prony.creep(*self._creep[:2], alpha=self.alpha)
@@ -136,8 +137,8 @@ class Bodies(OneOrMany):
         """Return the half-space's part of each creep mode of :attr:`total`, divided by the mode's strength, slowest
         mode first.
 
-        Returns an array (..., modes) of numbers from 0 to 1: 1 - share for two equal series; 0 for a mode without
-        strength.
+        Returns a new array (..., modes) of numbers from 0 to 1: 1 - share for two equal series, else 0 for a mode
+        without strength.
         """
         J = self.total.J
         if self._same:
@@ -148,9 +149,10 @@ class Bodies(OneOrMany):
     def blocks(self, which: Integers) -> Iterator[Block]:
         """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations on whole arrays.
 
-        which: indices of the pairs, (m,).
+        It is for n pairs, not for a single one.
+        which: indices of the pairs, (m,), int; empty: nothing is yielded.
         Yields a :class:`Block` with weights for each number of modes that occurs, ascending; its ``rows`` are places in
-        ``which``.
+        ``which``, ascending.
         """
         some = self[which]
         for block in some.total.blocks(np.arange(len(some))):
@@ -171,6 +173,7 @@ def total_series(material: float | Prony | Bodies) -> Prony:
     """Return the series of a material: that of an alpha, a series itself, or that of both bodies together.
 
     material: alpha >= 1 as a float, with T_epsilon for the unit of time; a :class:`Prony`; or :class:`Bodies`.
+    Returns a :class:`Prony`, of the shape of the material, () for an alpha, times in the unit of the material.
     """
     if isinstance(material, Bodies):
         return material.total

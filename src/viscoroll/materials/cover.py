@@ -48,7 +48,7 @@ class Cover(Bodies):
     Raises
     ------
     ParameterError
-        A value out of range, a series of many materials, a cover that is too thin.
+        A value out of range, a series of many materials; a cover that is too thin, where its law is computed.
 
     Examples
     --------
@@ -96,7 +96,8 @@ class Cover(Bodies):
         part: part of the layer in the long-time compliance of both bodies as half-spaces, in (0, 1].
         other_nu: Poisson's ratio of the other body, in [0, 0.5]; without effect if ``part`` is 1.
         other: series of the other body, times in units of T_ref; None: elastic.
-        Raises ParameterError for a value out of range, a series of many materials, and shapes that do not agree.  A
+        Raises ParameterError for a value out of range, a ``series`` of many materials or of another type, an ``other``
+        that is no Prony, and shapes that do not agree.  ``other`` must be one material too; that is not checked.  A
         cover that is too thin for its law is refused where the law is computed.
         """
         if isinstance(series, Real) and not isinstance(series, bool):
@@ -157,8 +158,10 @@ class Cover(Bodies):
     def of_thickness(self, thickness: ArrayLike, nu: ArrayLike | None = None) -> Cover:
         """Return the same bodies with other thicknesses and Poisson's ratios, as one :class:`Cover`.
 
-        thickness: thickness divided by l0, > 0, a number or (n,).
-        nu: Poisson's ratio of the layer, a number or, beside an array of thicknesses, (n,); None: that of this cover.
+        thickness: thickness divided by l0, in (0, 1e15], a number or (n,).
+        nu: Poisson's ratio of the layer, in [0, 0.5], a number or, beside an array of thicknesses, (n,); None: that of
+            this cover, which must then fit.
+        Returns a new cover of shape (), or (n,) of n thicknesses.
         Raises ParameterError for values out of range, and shapes that do not agree.
         """
         more: dict[str, Any] = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}

@@ -63,13 +63,15 @@ class FromPrograms:
         Returns
         -------
         Material
-            With its long-time modulus, and T_ref = 1 s.
+            With its long-time modulus, and T_ref = 1 s.  Without ``k``, and where k equals g, E is E0 (1 - sum g), or
+            E0 with ``long_term``, and nu is that given; else both are those of the long-time moduli G and K.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, an unknown keyword; where k differs from g, more than 64
-            creep modes of shear and bulk together.
+            A value out of range, lists of different lengths, a table of another shape or with ``k``, a ``long_term``
+            that is no truth value, an unknown keyword; where k differs from g, more than 64 creep modes of shear and
+            bulk together.
 
         Examples
         --------
@@ -108,7 +110,8 @@ class FromPrograms:
         Returns
         -------
         Material
-            With its long-time modulus, and T_ref = 1 s.
+            With its long-time modulus, and T_ref = 1 s.  Without ``k``, and where k equals alpha, E is E0 (1 - sum
+            alpha), and nu is that given; else both are those of the long-time moduli G and K.
 
         Raises
         ------
@@ -141,7 +144,7 @@ class FromPrograms:
         Returns
         -------
         Material
-            With T_ref = 1 s.
+            With the given E and nu, and T_ref = 1 s.
 
         Raises
         ------
@@ -191,7 +194,7 @@ class FromPrograms:
         Returns
         -------
         Material
-            With its long-time modulus, and T_ref = 1 s.
+            With its long-time modulus 2 (1 + nu) G(infinity), nu of long times, and T_ref = 1 s.
 
         Raises
         ------
@@ -281,7 +284,7 @@ class FromPrograms:
 
 
 def check_poisson(nu: Any) -> float:
-    """Return Poisson's ratio ``nu`` as a number in (-1, 0.5]; raises ParameterError."""
+    """Return Poisson's ratio ``nu`` as a float in (-1, 0.5]; raises ParameterError for what is no such number."""
     nu = check_number("nu", nu)
     if not -1.0 < nu <= 0.5:
         raise ParameterError("nu", nu, "in (-1, 0.5]")
@@ -294,7 +297,7 @@ def check_pairs(
     """Check two lists of equal length, and return them as arrays in SI units.
 
     name, values: name of the first list, for errors, and its numbers, >= 0; in Pa if it is called G or K, else
-        dimensionless.
+        dimensionless.  Values with a unit are converted.
     other, at: name of the second list, for errors, and its numbers, > 0; in s if it is called tau, else in 1/s.
     above: number that those of the second list must exceed; they must be >= 0 in any case, so that -inf allows 0.
     Returns (numbers of the first list, numbers of the second), (n,) each; n may be 0.

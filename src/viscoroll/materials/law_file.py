@@ -177,12 +177,14 @@ def dataset_content(dataset: Any) -> Content:
 
 
 def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
-    """Return the SHA-256 over names and numbers of all variables: little-endian doubles, last dimension fastest.
+    """Return the SHA-256 over the variables of a file: of each its name in UTF-8, then its numbers as little-endian
+    doubles, last dimension fastest.
 
     numbers: arrays by the names of the variables; names that the kind does not have are left out.
-    kind: kind of the file, a key of :data:`KINDS`, which determines the names and their order.
-    Returns the 64 hexadecimal digits.
-    Raises KeyError for a variable that is missing.
+    kind: kind of the file, a key of :data:`KINDS`, which determines the names and their order: its functions, then its
+        other variables.
+    Returns the 64 hexadecimal digits, in lower case.
+    Raises KeyError for another kind and for a variable that is missing, and ValueError for one that is not numeric.
     """
     digest = hashlib.sha256()
     for name in (*KINDS[kind].functions, *KINDS[kind].others):
@@ -193,15 +195,16 @@ def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
 def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], **attributes: str) -> xr.Dataset:
     """Return the dataset of a file: its numbers, their meaning and origin, and their checksum.
 
-    law: the law, an object with the variables of its kind as attributes, and ``coefficients`` with the functions along
-        the last axis, in the order of the kind.
+    law: the law, an object with the variables of its kind as attributes, and ``coefficients``, whose axes are those of
+        the kind (:attr:`Kind.dims`) and, last, its functions in their order.
     kind: kind of the file, a key of :data:`KINDS`, which lists the variables.
     title: bodies whose law it is, in words.
     errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each function of the kind,
         else KeyError.
     attributes: further global attributes of the dataset by name.
-    Returns the dataset, with one variable of coefficients for each function, the other variables of the kind, integers
-    as int32, and global attributes with the kind, the schema, the command line and the time of the call.
+    Returns the dataset, with one variable of coefficients for each function, whose error is its attribute
+    ``largest_relative_error``; the other variables of the kind, integers as int32; and global attributes with the kind,
+    the schema, the command line and the time (UTC) of the call, and the checksum of the numbers.
     """
     import xarray as xr
 
@@ -232,11 +235,14 @@ def stated_errors(dataset: Any) -> dict[str, float]:
 
 
 def is_law(path: str | PathLike[str]) -> bool:
-    """Return whether a file is the law of a material or cover, by its attribute alone.
+    """Return whether a file is the law of a material, a pair or a cover, by its attribute ``viscoroll_table``.
 
+    Neither the schema nor the checksum of the numbers is examined; :func:`read_law` does that.
     path: path of the file.
-    Returns False for the law of every alpha, another netCDF-4 file, and a file that is no HDF5.
-    Raises FileError for a file that cannot be read, or whose seal does not match it.
+    Returns True where the attribute is "law" (a material or pair) or "cover"; False where it is "axis" (the law of
+    every alpha), for another HDF5 file, and for a file that is no HDF5.
+    Raises FileError for a file that cannot be read, is larger than 128 MiB, or whose seal, the SHA-256 at its end, is
+    not that of its bytes.  A file without a seal is read as it is.
     """
     try:
         return read_content(path, "material or law of viscoroll", "write it again").attributes.get(KIND) in (LAW, COVER)
@@ -247,9 +253,10 @@ def is_law(path: str | PathLike[str]) -> bool:
 def read_law(path: str | PathLike[str]) -> Content:
     """Return the content of a law file, verified by its seal, schema and checksum.
 
-    path: path of the file; a file without a seal is verified by its checksum alone.
-    Returns :class:`Content`.
-    Raises FileError for a file that cannot be read, is damaged, is no law, or is of another schema.
+    path: path of the file; a file without a seal is verified by its schema and checksum alone.
+    Returns :class:`Content`, which has all variables of the kind, a key of :data:`KINDS`.
+    Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no law, is of another
+    schema, or lacks a variable.
     """
     try:
         content = read_content(path, "law file of viscoroll", REMEDY)
@@ -268,9 +275,9 @@ def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Conte
     expected: kind of file in words, for errors.
     remedy: what to do about a damaged file, for errors.
     Returns the :class:`Content`: arrays of all variables of the root group, of a scalar a numpy number; and global
-    attributes as texts and numbers.
+    attributes as :func:`_to_scalar` returns them.
     Raises FileError for a file that cannot be read, is larger than 128 MiB, or whose seal does not match it, and any
-    error of h5py, as OSError for a file that is no HDF5.
+    error of h5py, as OSError for a file that is no HDF5.  A file without a seal is read as it is.
     """
     import h5py
 
@@ -294,9 +301,12 @@ def _to_scalar(value: Any) -> Any:
 def check_law(content: Content, path: Any) -> None:
     """Raise FileError for a file that is no law of this schema, or whose numbers do not match its checksum.
 
-    It checks in turn: the kind, the schema, that no variable of the kind is missing, the checksum.
+    It checks in turn: that the attribute ``viscoroll_table`` is a key of :data:`KINDS`; that ``law_schema`` is an
+    integer equal to :data:`VERSION`; that no variable of the kind is missing; that the :func:`checksum` of the numbers
+    is the attribute ``sha256_of_numbers``.
     content: :class:`Content` of the file.
     path: path of the file, for errors.
+    Returns None for a file that is as it was written.
     """
     numbers, attributes = content
     kind = attributes.get(KIND)

@@ -213,7 +213,7 @@ class Material(FromPrograms):
         ----------
         temperature : degrees Celsius, one number.
         shift : :class:`WLF`, :class:`Arrhenius`, or any function of the temperature in degrees Celsius that returns
-            a_T, dimensionless, > 0.  Where the material has a ``temperature``, times are multiplied by
+            a_T, dimensionless, > 0, as a number.  Where the material has a ``temperature``, times are multiplied by
             a_T(temperature)/a_T(its own), so that constants that refer to another temperature (T0 of the glass
             transition, say) are converted; where it has none, it is taken to be at the temperature where the shift is
             1.
@@ -226,8 +226,14 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A temperature that the shift does not allow, an array of temperatures, a shift that is no function or does
-            not return a finite positive number.
+            A temperature that the shift does not allow, an array of temperatures, one at or below absolute zero; a
+            shift that is no function or does not return a finite positive number; a ratio of shifts or a time that no
+            double holds.
+
+        Warns
+        -----
+        ModelWarning
+            A temperature outside -150 to 200: it looks like one in kelvin.
 
         Examples
         --------
@@ -277,10 +283,10 @@ class Material(FromPrograms):
         return self.E * self._moduli(omega)[0]
 
     def loss(self, omega: ArrayLike) -> Any:
-        """Return the loss modulus E'', Pa.
+        """Return the loss modulus E'' in tension, E sum E_i x_i/(1 + x_i^2) with x_i = omega tau_i T_ref.
 
         omega: angular frequencies, rad/s, >= 0, of any shape.
-        Returns a number or an array of that shape; 0 of an elastic and of a rigid body.
+        Returns a number or an array of that shape, Pa, >= 0; 0 of an elastic and of a rigid body.
         Raises ParameterError for a frequency that is negative, NaN or infinite.
 
         Examples
@@ -293,10 +299,10 @@ class Material(FromPrograms):
         return self._moduli(omega)[1] * (0.0 if self.is_rigid else self.E)
 
     def tan_delta(self, omega: ArrayLike) -> Any:
-        """Return the loss factor E''/E', dimensionless.
+        """Return the loss factor E''/E' in tension, of :meth:`loss` and :meth:`storage`.
 
         omega: angular frequencies, rad/s, >= 0, of any shape.
-        Returns a number or an array of that shape; 0 of an elastic and of a rigid body.
+        Returns a number or an array of that shape, dimensionless, >= 0; 0 of an elastic and of a rigid body.
         Raises ParameterError for a frequency that is negative, NaN or infinite.
 
         Examples
@@ -336,10 +342,12 @@ class Material(FromPrograms):
         return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
 
     def creep(self, t: ArrayLike) -> Any:
-        """Return the creep compliance in tension times E, which rises from E/E(0) at t = 0 to 1, dimensionless.
+        """Return the creep compliance in tension times E, 1 - sum J_j exp(-t/(T_j T_ref)), with the creep form of
+        ``prony``.
 
+        It rises from E/E(0) at t = 0 to 1.
         t: times, s, >= 0, of any shape.
-        Returns a number or an array of that shape; 1 at all times for an elastic and a rigid body.
+        Returns a number or an array of that shape, dimensionless; 1 at all times for an elastic and a rigid body.
         Raises ParameterError for a time that is negative, NaN or infinite.
 
         Examples
@@ -375,9 +383,10 @@ class Material(FromPrograms):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return what the HTML of a notebook shows: a title, and a line for each property.
 
-        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value and unit as texts).
-        Properties that are None are left out, as are the relaxation times of an elastic material; of these the shortest
-        and the longest are shown.
+        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value and unit as texts,
+        numbers to six digits): E, instantaneous modulus, nu, number of modes, T_ref, relaxation times in s, density,
+        thickness, temperature, measured band.  Properties that are None are left out, as are the relaxation times of an
+        elastic material; of these the longest and the shortest are shown, in this order, to three digits.
         """
         times = self.prony.tau * self.T_ref
         values: list[tuple[str, Any, str]] = [
@@ -398,7 +407,7 @@ class Material(FromPrograms):
     plot = Result.plot
 
     def _figure(self) -> Figure:
-        """Draw E', E'' and tan delta over frequency, and E(t)."""
+        """Return a figure of E', E'' and tan delta over frequency, and of E(t)."""
         from ..core.plots.measurements import master_curve
 
         return master_curve(self)
@@ -487,8 +496,10 @@ class Material(FromPrograms):
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
     """Raise ParameterError where T_epsilon < T_sigma, as no material has it; equal times are allowed.
 
-    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast.  The error is
-        that of T_epsilon, and of the element with the longest T_sigma of those that are too long.
+    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast; nothing else is
+        checked, and NaN is no fault.
+    The error states, of the elements at fault, the T_epsilon and T_sigma of that with the longest T_sigma (of equal
+    ones the first).
     """
     slow, fast = np.broadcast_arrays(T_epsilon, T_sigma)
     short = fast > slow

@@ -55,8 +55,10 @@ def material_as_dataset(material: Any) -> xr.Dataset:
     material: a :class:`viscoroll.Material`.
     Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, of length 0 if elastic:
     strengths over the long-time modulus or compliance, times in units of T_ref; and the constants in SI units: E_long,
-    nu, T_ref, alpha, and those of density, thickness, temperature and the measured band that are given.  The attribute
-    ``given`` names the form from which the material is read, "relaxation" or "creep".
+    nu, T_ref, alpha, and those of density, thickness, temperature (degrees Celsius) and the measured band
+    (measured_low, measured_high, measured_misfit) that are given.  The attribute ``given`` names the form from which
+    the material is read, "relaxation" or "creep"; ``name`` and ``measured`` are the name and the source of the data, ""
+    without.
     """
     import xarray as xr
 
@@ -84,9 +86,11 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
     """Read a file of :meth:`viscoroll.Material.to_netcdf`.
 
     path: path of the file.
-    make: constructor of the material, called with the parameters of :class:`viscoroll.Material` by name.
+    make: constructor of the material, called with the parameters of :class:`viscoroll.Material` by name: E, prony,
+        name, nu and T_ref, and those of density, thickness, temperature and measured that the file has.
     Returns what ``make`` returns.
-    Raises FileError for a file that is missing, damaged, without a seal, no material, or has values out of range.
+    Raises FileError for a file that is missing, damaged, larger than 128 MiB, without a seal, no material, or has
+    values out of range.
     """
     try:
         numbers, about = read_content(path, "material of this package", "write it again")

@@ -131,8 +131,9 @@ def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[f
     content: sections of the file by name, as tomllib reads them.
     Returns a dict from "material" and "base", those with a key wlf or arrhenius, to a function of a temperature in
     degrees Celsius.  It returns the factor of all times, dimensionless, > 0, from the key ``temperature`` of the
-    section, at which it is 1, to that temperature; without the key it is the shift itself.
-    Raises FileError for a section that is wrong.
+    section, at which it is 1, to that temperature; without the key it is the shift itself.  The function raises
+    ParameterError for a temperature that the shift does not allow.
+    Raises FileError for a section that is wrong, also one with both wlf and arrhenius.
     """
     sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}
     return {
@@ -146,8 +147,8 @@ def material_as_toml(material: Material, section: str = "material") -> str:
 
     material: the :class:`Material`.
     section: name of the section, "material" or "base".
-    Returns the text, with a header, a line for each property that is given (``temperature`` as ``reference``) and the
-    series.
+    Returns the text, which ends with a line feed: a header; a line each for name, E, nu and T_ref, and for those of
+    density, thickness, temperature (as ``reference``) and measured that are given; the series.
     """
     band = material.measured
     values = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
@@ -163,6 +164,7 @@ def series_as_toml(series: Prony) -> str:
     """Return the key ``prony`` or ``creep``, in the form in which the series was given, that reads back to the bit.
 
     series: :class:`Prony` of one material; an elastic one has empty lists.
+    Returns one line of TOML without a line feed, as "prony = { E = [2.0], tau = [1.0] }"; of creep with alpha too.
     """
     if series.by_creep:
         return f"creep = {{ J = {series.J.tolist()}, T = {series.T.tolist()}, alpha = {series.alpha!r} }}"
@@ -244,6 +246,7 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
 def _material_of_law(path: Path) -> Material:
     """Return the :class:`Material` of the law in the file ``path``.
 
+    The attribute ``material`` of the file states it as TOML.
     Raises FileError for a pair, for a law without units, and for a file that is damaged or no law.
     """
     content = tomllib.loads(read_law(path).attributes["material"])
@@ -259,10 +262,11 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
 
     path, name: path of the file and name of the section, for errors.
     section: checked content of the section, without the key file.
-    Returns the :class:`Material`: with T_epsilon and T_sigma the standard linear solid, else with the series and T_ref
-    (1 s if it is not given); elastic if the section has neither times nor a series.
-    Raises FileError for T_epsilon without T_sigma, either beside T_ref or a series, and for a series that is wrong;
-    ParameterError for another value out of range.
+    Returns the :class:`Material`, at the temperature ``reference``: with T_epsilon and T_sigma the standard linear
+    solid, else with the series and T_ref (1 s if it is not given); elastic if the section has neither times nor a
+    series.
+    Raises FileError for a finite E without nu, one of T_epsilon and T_sigma without the other, either beside T_ref or a
+    series, both series, and a series that is wrong; ParameterError for another value out of range.
     """
     nu = section.nu
     if nu is None:
@@ -289,8 +293,9 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     given: keys and values of the section; prony is a dict of E and tau, creep of J, T and perhaps alpha.  Each but
         alpha is a list by mode, whose elements may be arrays (n,) of n materials; other keys are ignored, as is a key
         that is None.
-    Returns a :class:`Prony`, of shape () or (n,), None if neither key is given.
-    Raises FileError for both keys, and for values out of range.
+    Returns a :class:`Prony`, of shape () or (n,), also for empty lists (elastic); None if neither key is given.
+    Raises FileError for both keys, values out of range, and lists of different lengths; TypeError for another key in
+    such a dict, ValueError for arrays of different lengths in a list.
     """
     forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
     if len(forms) > 1:

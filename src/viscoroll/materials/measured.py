@@ -39,6 +39,10 @@ class Measured:
     source: str = ""
 
     def __post_init__(self) -> None:
+        """Check the fields, and replace the numbers by floats in rad/s; a value with a unit is converted.
+
+        Raises ParameterError as the class states, and for a source that is no text.
+        """
         check_fields(self, "rad s-1", low=0.0, high=0.0)
         object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
@@ -51,7 +55,8 @@ class Measured:
 
         a_T: factor of all times from the temperature of the band to the other one, dimensionless, > 0.
         Returns a new :class:`Measured` whose frequencies are divided by ``a_T``; misfit and source stay.
-        Raises ParameterError for a factor with which a frequency is 0, negative or infinite.
+        Raises ParameterError for a factor with which a frequency is 0, negative, infinite or NaN; ZeroDivisionError for
+        the float 0.0.
 
         Examples
         --------

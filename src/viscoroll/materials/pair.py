@@ -104,7 +104,7 @@ class Pair:
     def like(self) -> bool:
         """Whether both bodies deform and relax alike: one body is given for both, or E, nu, series and T_ref are equal.
 
-        Two different objects of which one is a :class:`Solid` are never alike.
+        Two different objects of which one is a :class:`Solid` are never alike.  A thickness is not compared.
         """
         one, other = self.cylinder, self.half_space
         if one is other or Solid in (type(one), type(other)):
@@ -155,7 +155,8 @@ class Pair:
         Raises
         ------
         ParameterError
-            A body with a thickness: its law depends on the load and the radius too (:meth:`cover`).
+            A body with a thickness: its law depends on the load and the radius too (:meth:`cover`); a time of the other
+            body that no double holds in units of ``T_ref``; n pairs of more than 64 modes.
         """
         if self.covered is not None:
             allowed = "left out, or in a Cylinder: the law of a layer depends on its load and radius"
@@ -238,7 +239,7 @@ def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "stra
     G_1, G_2: shear moduli in one unit, > 0; one of them may be infinite, and its nu then has no effect on the result.
     nu_1, nu_2: Poisson's ratios.
     plane: "strain"; any other text is taken as "stress".
-    Returns a number, dimensionless; its sign changes where the bodies are exchanged.
+    Returns a float, dimensionless; its sign changes where the bodies are exchanged, and it is 0.0 for like bodies.
     """
     k_1, k_2 = (3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu) for nu in (nu_1, nu_2))
     largest = max(G_1, G_2)

@@ -135,7 +135,7 @@ class Prony(OneOrMany):
         J : strengths divided by the long-time compliance, >= 0, of a sum below 1, dimensionless, (modes,) or (n,
             modes).
         T : retardation times in units of T_ref, > 0, in the shape of J; one of the two may be (modes,) where the other
-            is (n, modes).
+            is (n, modes), or one number for all modes.
         alpha : instantaneous divided by long-time modulus, 1/(1 - sum J), in [1, 1e12]; a number or, for arrays (n,
             modes), (n,). That difference loses digits where the sum is near 1: a value given here replaces it, and must
             agree with it to rounding of J: 1/alpha to 1e-14 for each mode and one more.  None: it is computed.
@@ -148,7 +148,8 @@ class Prony(OneOrMany):
         Raises
         ------
         ParameterError
-            As for the class, and where the sum of J is not below 1 or ``alpha`` does not agree with it.
+            As for the class, for shapes that do not fit, and where the sum of J is not below 1, 1/(1 - sum J) exceeds
+            1e12, or ``alpha`` does not agree with it.
 
         Examples
         --------
@@ -192,7 +193,7 @@ class Prony(OneOrMany):
 
     @classmethod
     def _make(cls, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> Prony:
-        """Make a material from checked values; arguments as of :meth:`_set`."""
+        """Return a new :class:`Prony` of checked values; arguments as of :meth:`_set`."""
         series = cls.__new__(cls)
         series._set(by_creep, strengths, times, alpha)
         return series
@@ -202,7 +203,7 @@ class Prony(OneOrMany):
 
         by_creep: whether the modes are those of creep, else of relaxation.
         strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength last; dimensionless,
-            times in units of T_ref.
+            times in units of T_ref.  Contiguous arrays are kept and locked themselves, of others a copy.
         alpha: instantaneous divided by long-time modulus, a number or (n,).
         """
         self.by_creep, self.shape = by_creep, strengths.shape[:-1]
@@ -213,7 +214,9 @@ class Prony(OneOrMany):
         """Return one of n materials for an index, or some for a slice or an array of indices; as a new :class:`Prony`.
 
         which: what numpy accepts along the first axis; of a single material nothing is accepted.
-        Of one material the modes without strength are dropped; of several the arrays keep their number of modes.
+        Returns one material, of shape (), for an integer, without the modes that have no strength; else some, (k,),
+        whose arrays keep their number of modes.
+        Raises TypeError or IndexError for a single material, IndexError for an index beyond the n materials.
         """
         strengths, times, alpha = self._strengths[which], self._times[which], self.alpha[which]
         if strengths.ndim == 1:
@@ -222,7 +225,7 @@ class Prony(OneOrMany):
         return Prony._make(self.by_creep, strengths, times, alpha)
 
     def repeated(self, count: int) -> Prony:
-        """Return ``count`` materials that are equal to this single one, as one :class:`Prony` of shape (count,)."""
+        """Return ``count`` >= 1 materials that are equal to this single one, as a :class:`Prony` of shape (count,)."""
         strengths, times = (np.broadcast_to(values, (count, values.size)) for values in (self._strengths, self._times))
         return Prony._make(self.by_creep, strengths, times, np.full(count, self.alpha))
 
@@ -241,9 +244,10 @@ class Prony(OneOrMany):
     def blocks(self, which: Integers) -> Iterator[Block]:
         """Yield materials in blocks of equal numbers of modes, for computations on whole arrays.
 
-        which: indices of the materials, (m,); empty: nothing is yielded.
+        It is for n materials, not for a single one, which has :attr:`modes`.
+        which: indices of the materials, (m,), int; empty: nothing is yielded.
         Yields a :class:`Block` for each number of modes that occurs, ascending, without weights; its ``rows`` are
-        places in ``which``.  Elastic materials make a block of 0 modes.
+        places in ``which``, ascending.  Elastic materials make a block of 0 modes.
         """
         counts = np.count_nonzero(self._strengths[which], axis=-1)
         for count in np.unique(counts).tolist():
@@ -303,7 +307,7 @@ class Prony(OneOrMany):
     @property
     def slow_time(self) -> float:
         """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean in units of T_ref, a float or (n,): slow rolling is kappa V below
-        its inverse.
+        its inverse, with V in units of R/T_ref.
 
         1.0 of an elastic material, also of one among others.
         """
@@ -313,10 +317,10 @@ class Prony(OneOrMany):
     def slower(self, factor: ArrayLike) -> Prony:
         """Return the material with all times multiplied by a factor, as of a colder rubber.
 
-        factor: dimensionless, > 0, a number or, of n materials, (n,).
-        Returns a new :class:`Prony` in the same form.
+        factor: dimensionless, > 0, a number, or (n,), one for each of n materials; of a single material (n,) makes n.
+        Returns a new :class:`Prony` in the same form, with the same strengths.
         Raises ParameterError for a factor that is not positive or not finite, and for one that makes a time 0 or
-        infinite.
+        infinite; ValueError of numpy for another number of factors than of materials.
 
         Examples
         --------
@@ -349,7 +353,7 @@ class Prony(OneOrMany):
         return self.by_creep, self._strengths.shape, self._strengths.tobytes(), self._times.tobytes(), alpha
 
     def __repr__(self) -> str:
-        """Return the call that makes the series or, of many materials, their number and form."""
+        """Return the call that makes the series, with numbers to the bit; of many materials their number and form."""
         if self.shape:
             form = "creep" if self.by_creep else "relaxation"
             return f"<{len(self)} series of {self._strengths.shape[-1]} modes, by {form}>"
@@ -364,9 +368,10 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
 
     names: names of strengths and times, for errors.
     strengths, times: strengths, >= 0, and times, > 0, of the modes, (modes,) or (n, modes), or one of them a number;
-        dimensionless, times in units of T_ref.
+        dimensionless, times in units of T_ref.  No modes, and no materials, are allowed.
     Returns (strengths, times) by descending time, (modes,) or (n, modes) with as many modes as the material with most
-    has; modes without strength are dropped or, of many materials, put after the others.
+    has; modes without strength are dropped or, of many materials, put after the others, where the times have no
+    meaning.  Modes of equal times are one, with the sum of their strengths.
     Raises ParameterError for numbers out of range, shapes that do not fit, more than :data:`MOST_MODES` modes, and
     times that span more than :data:`LARGEST_TIME_RATIO`.
     """
@@ -391,9 +396,9 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
 
 
 def series_of_alpha(alpha: float) -> Prony:
-    """Return the standard linear solid of the paper, with both forms of its series without rounding.
+    """Return the standard linear solid of the paper, with both forms of its series by formulas, without a conversion.
 
-    alpha: instantaneous divided by long-time modulus, >= 1, not checked; for 1 the series is elastic.
+    alpha: instantaneous divided by long-time modulus, >= 1, a float, not checked; for 1 the series is elastic.
     Returns a :class:`Prony` in creep form with times in units of T_epsilon: one mode, J = (alpha - 1)/alpha, T = 1, tau
     = 1/alpha; for 1 none.
     """
@@ -427,7 +432,7 @@ def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floa
 def _exact_sums(values: NDArray) -> Any:
     """Return sums over the modes, correctly rounded.
 
-    values: (modes,) or (n, modes).
+    values: one number for each mode, finite, (modes,) or (n, modes).
     Returns a float, or an array (n,); 0 without modes.
     """
     rows = values.tolist()

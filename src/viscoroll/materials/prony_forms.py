@@ -59,7 +59,8 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     E: strengths divided by the long-time modulus, > 0, (..., modes); of any number of modes, also 0.
     tau: relaxation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1 + sum E, a number or (...).
-    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``tau``; E is that of the argument.
+    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``tau``; E and alpha are the arguments
+    themselves.
     """
     a, modes = 1.0 / tau, tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
@@ -76,7 +77,8 @@ def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     J: strengths divided by the long-time compliance, > 0, (..., modes); of any number of modes, also 0.
     T: retardation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1/(1 - sum J), a number or (...).
-    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``T``; J is that of the argument.
+    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``T``; J and alpha are the arguments
+    themselves.
     """
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))
@@ -101,13 +103,15 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
     accuracy.
 
     The sum increases from pole to pole: one zero s_i lies between two neighbours, and one right of the last if
-        ``constant`` > 0.  Zeros are found by halving ln(distance from the nearer pole), then by Newton's method.
+    ``constant`` > 0.  A zero is measured from the nearer of its two poles, from the left one where it is in the middle.
+    ln of that distance is found by 20 halvings, the distance then by three steps of Newton's method; convergence is not
+    tested.
 
-    spread: pole_j - pole_l, (..., poles, poles), [..., j, l]; poles are ascending and different.
-    weight: weights of the poles, positive, (..., poles).
-    constant: the constant, (...): > 0 for all, or 0 for all.
+    spread: pole_j - pole_l, (..., poles, poles), [..., j, l], any unit; poles are ascending and different.
+    weight: weights of the poles, positive, (..., poles), in the unit of the constant times that of the poles.
+    constant: the constant, () or (...): > 0 for all, or 0 for all.
     Returns gap[..., j, i] = s_i - pole_j, (..., poles, zeros), in the unit of the poles, zeros ascending: as many as
-    poles for a positive constant, one fewer for 0.
+    poles for a positive constant, one fewer for 0; an empty array where there is no zero, as without poles.
     """
     poles, constant = weight.shape[-1], constant[..., None]
     half = 0.5 * np.diagonal(spread, -1, -2, -1)
@@ -142,7 +146,7 @@ def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
 def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
     """Return constant + sum weight_j/(pole_j - s) at one s for each zero, s = pole[origin] + step.
 
-    step: signed distance of s from the pole of its origin, not 0, (..., zeros).
+    step: signed distance of s from the pole of its origin, not 0, (..., zeros); s is at no other pole either.
     seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
     weight: weights of the poles, (..., poles).
     constant: the constant, (..., 1).
@@ -157,7 +161,7 @@ def _improve_distance(
     """Improve the distances of zeros from their poles by one step of Newton's method.
 
     The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.  A step
-    that would halve or double a distance is left out, and that distance stays as it is.
+    to at most half or at least twice the distance, or to NaN, is left out, and that distance stays as it is.
 
     distance: distance of each zero from its origin, the pole that it is measured from, > 0, (..., zeros).
     origin: index of that pole, (..., zeros).

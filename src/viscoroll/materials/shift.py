@@ -157,24 +157,24 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
     """Return the ratio of times at a temperature to those at a reference, a_T(temperature)/a_T(reference).
 
     The ratio is the same whatever temperature the constants of the shift refer to: WLF and Arrhenius keep their form
-        when they are converted to another (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, Ch. 11).
+    when they are converted to another (J. D. Ferry, Viscoelastic Properties of Polymers, 3rd ed., 1980, Ch. 11).
 
     Parameters
     ----------
-    shift : function that returns a_T, dimensionless, > 0, at a temperature in degrees Celsius.
+    shift : function of a temperature in degrees Celsius that returns a_T, a number, dimensionless, > 0.
     temperature : degrees Celsius; None: the temperature at which the shift is 1.
     reference : degrees Celsius; None likewise.
 
     Returns
     -------
     float
-        The ratio, dimensionless, > 0.
+        The ratio, dimensionless, > 0; 1.0 if both temperatures are None.
 
     Raises
     ------
     ParameterError
         A temperature that the shift does not allow; a shift that returns no finite positive number; a ratio that no
-        double holds.
+        double holds.  Other exceptions of the shift, and its warnings, pass.
     """
     factor, unit = (1.0 if at is None else check_number("a_T", shift(at), above=0.0) for at in (temperature, reference))
     return check_number("a_T", factor / unit, above=0.0)
@@ -196,7 +196,7 @@ def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
 def _shift(temperature: float, exponent: float) -> float:
     """Return a_T = exp(exponent), dimensionless, > 0.
 
-    temperature: degrees Celsius, for the error.
+    temperature: degrees Celsius, as the caller gave it, for the error.
     exponent: ln a_T; NaN is refused too.
     Raises ParameterError for an exponent of 700 or more in size, near which a_T leaves the range of doubles.
     """

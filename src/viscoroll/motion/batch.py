@@ -121,7 +121,7 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
     The map counts time in the material's own unit.  Speeds and times are converted to that unit for the look-up, and
     the results are converted back to T_ref.
 
-    batch: :class:`Batch`, free motions of one scene.
+    batch: :class:`Batch`, free motions of one scene; all but ``immobile`` is read.
     speed: highest speed for which the flow map is made, > 0, dimensionless; None: the largest |V0| or |omega0|.
     about: dict that receives "flow_error" and "flow_problem" of the map; it stays as it is where all motions are at
     rest.
@@ -193,7 +193,8 @@ def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
 def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
     """Return the function that gives the kernel's law of some motions.
 
-    scene: :class:`Parameters` of the motions, of one material or of several.
+    scene: :class:`Parameters` of the motions, of one material or of several; ``alpha``, ``material``,
+    ``material_array`` and ``table`` are read.
     unsteady: whether the added mass acts.  The function must then be called for one motion at a time if the materials
     differ, since the law with N belongs to one material.
     Returns a function of the alphas of the motions, (k,), and of their indices, (k,).  It returns (the record of the

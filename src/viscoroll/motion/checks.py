@@ -47,6 +47,7 @@ def refuse_end(end: float, T: float) -> None:
 
     end: last output time, in s, or of a scene in T_ref.
     T: T_ref, the unit of time of the dimensionless motion, s; 1 for a scene.
+    Returns None for any other time.
     """
     if end / T == math.inf:
         raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
@@ -55,8 +56,9 @@ def refuse_end(end: float, T: float) -> None:
 def require_single(**arguments: Any) -> None:
     """Raise ParameterError for an array where ``roll`` takes one number.
 
-    arguments: name of an argument of ``roll`` -> its value.  Numbers and None pass, and so does what is no array, which
-    is checked elsewhere.
+    arguments: name of an argument of ``roll`` -> its value.  Numbers, arrays of shape () and None pass, and so does
+    what is no array, which is checked elsewhere.
+    The error is that of the first argument with axes, also of shape (1,); without one None is returned.
     """
     for name, value in arguments.items():
         if type(value) is not float and (shape := _shape(value)):
@@ -65,9 +67,9 @@ def require_single(**arguments: Any) -> None:
 
 
 def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument; () of what is no array, as None.
+    """Return the shape of an argument, a tuple; () of what is no array, as None.
 
-    value: what a caller gave; a list counts as an array, a ragged one as an array of objects.
+    value: what a caller gave; a list counts as an array, a ragged one as an array of objects.  Nothing is raised.
     """
     try:
         return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
@@ -82,7 +84,7 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
     rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller; None: a motion does not
     end at rest.
     max_steps: largest number of steps of a motion.
-    scale: :class:`Scale` of the roller.
+    scale: :class:`Scale` of the roller, of which the unit of ``rest`` is read.
     Returns (rtol, a float; threshold of rest, dimensionless, 0.0 for none; largest number of steps, an int).
     Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive and finite, max_steps outside [1, 10^7] or
     no whole number.

@@ -48,8 +48,8 @@ class Drive(NamedTuple):
     def numbers(self) -> dict[str, Floats]:
         """Return name -> array, () or (n,), of each load or speed that is given as a number or as one for each motion.
 
-        The angle of a slope and the drag are among them.  Schedules, callables and feedbacks are left out.  Raises
-        ParameterError for what is not numeric or not finite.
+        Arrays are float64, and other shapes are not refused here.  The angle of a slope and the drag are among them.
+        Schedules, callables and feedbacks are left out.  Raises ParameterError for what is not numeric or not finite.
         """
         others = Feedback | Schedule
         return {n: check_array(n, x) for n, x in self.given.items() if not (callable(x) or isinstance(x, others))}
@@ -68,7 +68,8 @@ class Drive(NamedTuple):
         """Return the same without a force, torque, slope, brake or drag that is 0 at all times; prescribed speeds of 0
         stay.
 
-        Raises ParameterError for a load that is no number and no function of time.
+        Returns a new :class:`Drive`; an empty array and one of zeros are left out.
+        Raises ParameterError for a load that is no number and no function of time, or not finite.
         """
         loads = {name: value for name, value in self.given.items() if name not in ("omega", "V")}
         return self._replace(**{name: None for name, value in loads.items() if _is_zero(name, value)})
@@ -79,7 +80,7 @@ class Drive(NamedTuple):
         scale: :class:`Scale` of the roller: the SI values of 1 of each quantity.  Callables of the result take the time
         in T_ref, the unit of time of that scale.
         Raises ParameterError for what is not numeric or not finite, a brake or a drag below 0, and a callable for many
-        cylinders.
+        cylinders; ValueError of numpy for an array whose length is not the number of cylinders.
         """
         return (
             Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
@@ -93,8 +94,8 @@ def _is_zero(name: str, value: Any) -> bool:
 
     name: name of the argument, for refusals.
     value: what the caller gave: a number, an array, of which all must be 0, a Schedule, of which all values must be, a
-    callable or a Feedback, whose gains must be 0 too.
-    Raises ParameterError for what is no number and no function of time.
+    callable or a Feedback, whose gains must be 0 too.  An empty array counts as 0.
+    Raises ParameterError for what is no number and no function of time, and for numbers that are not finite.
     """
     if isinstance(value, Feedback):
         return not (np.any(value.V) or np.any(value.omega)) and _is_zero(name, value.value)

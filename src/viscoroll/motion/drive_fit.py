@@ -85,7 +85,7 @@ class Piece(NamedTuple):
     so_far: float
 
     def value(self, t: float) -> float:
-        """Return the polynomial at time t."""
+        """Return the polynomial at time t, in T_ref, a float; it is extrapolated outside of the piece."""
         return float(polyval((2.0 * t - self.start - self.stop) / (self.stop - self.start), self.terms))
 
 
@@ -131,7 +131,7 @@ class _Sampled:
         return values
 
     def value(self, t: float) -> float:
-        """Return the value at a time."""
+        """Return the value at a time t, in T_ref, a float; it counts in ``taken``.  Raises as :meth:`values`."""
         return float(self.values(np.array([t]))[0])
 
     def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
@@ -234,7 +234,7 @@ def fit_callable(
     difference seen between callable and fit, a float).
     Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that requires more than
     :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough, or that is not smooth
-    within the shortest piece.
+    within the shortest piece.  Exceptions of the callable pass.
     """
     samples = SAMPLES
     if resolve is not None:

@@ -91,17 +91,20 @@ class DriveFunctions:
 
     @property
     def counts(self) -> tuple[int, int]:
-        """(Number of motions with functions of their own, with gains of their own); 1 if all are driven alike."""
+        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if all are alike.
+
+        Raises ParameterError if two of the functions have values for different numbers of motions, both other than 1.
+        """
         return self._function_motions, self.gains.shape[1]
 
     @property
     def corners(self) -> int:
-        """Number of corners of a motion's schedules, and of pieces of its callables."""
+        """Number of corners of a motion's schedules, and of pieces of its callables; 0 for numbers alone."""
         return sum(map(count_corners, self.functions.values()))
 
     @property
     def error(self) -> float:
-        """Largest difference seen between a callable and its fit, dimensionless."""
+        """Largest difference seen between a callable and its fit, dimensionless; 0.0 without callables."""
         return max(getattr(function, "error", 0.0) for function in self.functions.values())
 
     def block(self, most: int) -> int:
@@ -116,7 +119,7 @@ class DriveFunctions:
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def _blocks(self, count: int) -> list[slice]:
-        """Return slices of ``count`` motions, each of one block."""
+        """Return slices that divide ``count`` motions into blocks, ascending, a list; for 0 motions one slice."""
         step = self.block(max(count, 1))
         return [slice(first, first + step) for first in range(0, max(count, 1), step)]
 
@@ -173,6 +176,7 @@ class DriveFunctions:
 
         index: index of numpy, a slice or a vector of integers, that selects the motions; what is the same for all
         motions stays.
+        Returns a new object; its functions and tangent are those of the selected motions, in the order of ``index``.
         """
         functions = {name: take_motions(f, index) for name, f in self.functions.items()}
         return replace(
@@ -192,7 +196,10 @@ class DriveFunctions:
 
 @cache
 def undriven() -> KernelDrive:
-    """Return the kernel's drive of free motions."""
+    """Return the :data:`KernelDrive` of free motions: pieces (1, 1, columns) and gains (4, 1), all 0; NOT_PRESCRIBED.
+
+    The same arrays are returned by every call.
+    """
     return np.zeros((1, 1, COL_COEFFICIENTS + N_DRIVE_FUNCTIONS)), np.zeros((4, 1)), NOT_PRESCRIBED
 
 
@@ -253,6 +260,7 @@ def _refuse_both(drive: Drive) -> None:
     Beside omega these loads are the torque, the brake and the drag, beside V the force.
 
     drive: :class:`Drive`; a field is None where nothing is given.
+    Returns None where nothing is in conflict.
     """
     if drive.V is not None and drive.omega is not None:
         raise exactly_one_error("V", "omega", both=True)
@@ -270,8 +278,9 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     stated: the start that the caller gave, a number or (n,), dimensionless; None without.
     functions: :class:`DriveFunctions` of the drive, with the prescribed speed.
     speed: the prescribed speed as in the drive: a number, an array, a Schedule or a callable.
-    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude, where the speed
-    jumps or is an empty array.
+    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude or is not finite,
+    and where the speed jumps or is an empty array; ValueError of numpy where both have values for different numbers of
+    motions.
     Returns (m,) where the speed has values for m > 1 motions.  Where it is the same for all motions: a float if
     ``stated`` is a number or None, else an array in the shape of ``stated``.  Of a callable it is the value of the
     callable itself, not of its fit.
@@ -309,10 +318,11 @@ def _gains(drive: Drive) -> Floats:
 def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
-    rest: rest threshold, the speed below which the motion ends, in the unit of the roller; it is only quoted in the
-    message.
+    rest: rest threshold, the speed below which the motion ends, in the unit of the roller.  It is not examined but only
+    quoted in the message, so that the caller must not call this function where it is None.
     functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`; None of free motions, which
     may end at rest.
+    Returns None where the motion may end at rest.
     """
     if functions is not None and functions.acts_at_end:
         sentence = f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of the motion: "

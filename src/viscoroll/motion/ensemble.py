@@ -146,7 +146,7 @@ def ensemble(
 def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
     """Return the parameters and start speeds of an ensemble, and the number of its motions.
 
-    problem: :class:`MotionProblem`, checked motions of the ensemble.
+    problem: :class:`MotionProblem`, checked motions of the ensemble; scene, V0, omega0 and functions are read.
     drives: name -> loads or prescribed speeds that are numbers or arrays, as the caller gave them; only their shapes
     matter.
     Returns (name -> read-only vector, (1,) where one value holds for all motions, else (n,): alpha, kappa, mu, gamma,
@@ -169,8 +169,9 @@ def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
 
     batch: :class:`Batch`, motions of the ensemble.
     solution: :class:`Solution`, dimensionless; of a cylinder its quantities are overwritten by those in SI units.
-    Returns name -> field: quantities (n, times), which are views of those of ``solution``; onset_time, rest_time, V0,
-    omega0, status, switches, steps, flow, (n,); drive_error, flow_error, floats; flow_problem, a text.
+    Returns name -> field: quantities (n, times) by their names in :attr:`Batch.rows`, which are views of those of
+    ``solution``, NaN at times that a motion did not reach; onset_time, rest_time (NaN where there is none), V0 and
+    omega0, read-only, status, switches, steps, flow, (n,); drive_error, flow_error, floats; flow_problem, a text.
     """
     found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
     rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))

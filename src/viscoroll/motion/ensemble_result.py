@@ -177,7 +177,7 @@ class Ensemble(RollResult):
         These are all motions, or, of more than 256, as many as that, evenly spaced.  The highest speed is the largest
         magnitude of the start and of the output times that the motion reached; of a speed that is not among the fields,
         that of the start.
-        Returns :class:`Fastest`, arrays (m,), m <= 256, in the unit of the roller; V is >= 0.
+        Returns :class:`Fastest`, arrays (m,), m <= 256, motions ascending, in the unit of the roller; V is >= 0.
         """
         speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
         for name, start in speeds.items():
@@ -191,8 +191,9 @@ class Ensemble(RollResult):
         """Return title and rows of the printed report, a list of :class:`SummaryRow`.
 
         The rows are: output times; median, 5 % and 95 % quantile of the last V, omega and x, of those that are fields,
-        over the motions that reached the last time, NaN if none did; number of motions with an onset of partial slip;
-        number of motions from the flow map, if any; how many motions ended in which way.
+        over the motions that reached the last time, NaN if none did, left out if there are no motions; number of
+        motions with an onset of partial slip; number of motions from the flow map and its stated error, if any; how
+        many motions ended in which way, a row each.
         """
         ends = [SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()]
         rows = [self._row_of_times()]

@@ -44,8 +44,9 @@ def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
 
     name: name of a field of a motion, of a start ("V0", "omega0"), or "t", "status", "flow".
     si: whether it is in the units of a cylinder, else of a scene.
-    Returns a dict: long_name and units; of the codes "regime", "status" and "flow" long_name, flag_values (int8,
-    (codes,)) and flag_meanings, one word for each code, and no units.
+    Returns a new dict: long_name and units, of some also symbol and equation (:func:`..core.symbols.attributes`); of
+    the codes "regime", "status" and "flow" long_name, flag_values (int8, (codes,)) and flag_meanings, one word for each
+    code in their order, and no units.
     """
     if name not in _FLAGS:
         return dict(attributes(name, si))
@@ -55,7 +56,7 @@ def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
 
 
 def provenance(title: str) -> dict[str, str]:
-    """Return the attributes that every dataset has."""
+    """Return the attributes that every dataset has, a new dict of texts: Conventions, title and source."""
     return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
 
 

@@ -50,8 +50,8 @@ _OCTAVE_STEP = 4
 def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
     """Return by what a flow map is found: the parameters that it depends on, and the speeds that it covers.
 
-    scene : :class:`Parameters` of one scene, numbers; gamma is ignored.
-    speed : highest speed, > 0, divided by R/T in the material's own unit of time T.
+    scene : :class:`Parameters` of one scene, numbers; its material in its own time, kappa, mu and j are read.
+    speed : highest speed, > 0 and finite, divided by R/T in the material's own unit of time T.
     Returns ((material, kappa, mu, j); octave): the map covers kappa V < 2**octave at the onset of partial slip.  The
     material is alpha, or the :class:`Prony` series in its own unit of time.  The octave is the least multiple of 4 with
     kappa ``speed`` <= 2**octave, but at least -16 and at most 14, the limits of the tables; a scene with faster motions

@@ -53,7 +53,7 @@ def fill_layers(
     layer : (octave of kappa V at onset, octave of u, column, powers of u and kappa V), written; columns: ln(V/V0),
     delta, distance and angle beyond those at constant speed V0, slip loss.
     Raises :class:`NoFlowMap`, with nothing written, for the reason STICK_ENDS where a motion of the layer leaves
-    partial slip, and for OUT_OF_RANGE where its start is not finite.
+    partial slip, and for OUT_OF_RANGE where its start is not finite or k0 not positive.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
@@ -188,6 +188,7 @@ def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
 def _pad(powers: Floats) -> Floats:
     """Return coefficients padded with zeros to the number of powers of functions of one variable.
 
-    powers : coefficients, ascending, (rows, powers).
+    powers : coefficients, ascending, (rows, powers), at most as many powers as :data:`NODES` has nodes.
+    Returns a new array (rows, nodes).
     """
     return np.pad(powers, [(0, 0), (0, NODES.t.size - powers.shape[-1])])

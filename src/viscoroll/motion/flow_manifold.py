@@ -108,7 +108,8 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
     problem : the :class:`FlowProblem`.
     Raises :class:`NoFlowMap` for FULL_SLIP_RETURNS where the motion leaves partial slip, and for OUT_OF_RANGE where its
     numbers are not finite or V does not fall.
-    Returns (:class:`Rows` over the slow logarithm; V; delta at their nodes, (rows, nodes) each, dimensionless).
+    Returns (:class:`Rows` over the slow logarithm, those of :data:`_SLOW_LOG_EDGES` that end below its value at the
+    first of these states; V; delta at their nodes, (rows, nodes) each, dimensionless).
     """
     kappa, j, rate = problem.parameters[1], problem.parameters[3], problem.slow_rate
     V, delta, gamma = np.array([2.0 ** (layout.HIGH + _RUN_IN_OCTAVES) / kappa]), np.zeros(1), np.ones(1)

@@ -91,7 +91,7 @@ class Rows:
         self.x = self.node_positions(NODES)
 
     def node_positions(self, nodes: Nodes) -> Floats:
-        """Interpolation nodes of all rows."""
+        """Return interpolation nodes of all rows, (rows, nodes), ascending; nodes: :class:`Nodes` in [-1, 1]."""
         return self.edges[:-1, None] + self.half[:, None] * (1.0 + nodes.t)
 
     def value(self, powers: Floats, x: Floats) -> Floats:
@@ -130,5 +130,5 @@ class Rows:
 
 
 def octaves(low: int, high: int) -> Rows:
-    """Rows for the octaves from 2^low to 2^high."""
+    """Return the :class:`Rows` of the high - low octaves from 2^low to 2^high; low, high: ints, low < high."""
     return Rows(np.ldexp(1.0, np.arange(low, high + 1)))

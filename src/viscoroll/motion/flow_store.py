@@ -46,7 +46,7 @@ class FlowMap:
 
     @property
     def slow_rate(self) -> float:
-        """Rate at which ln V falls at low speeds, in time gamma t: T_mean/(1 + j)."""
+        """Rate at which ln V falls at low speeds, in time gamma t: T_mean/(1 + j), a float; 0 if elastic."""
         material, _, _, j = self.parameters
         T_mean: float = material.T_mean if isinstance(material, Prony) else (material - 1.0) / material
         return T_mean / (1.0 + j)
@@ -62,7 +62,10 @@ class FlowMap:
 
 
 def folder() -> Path:
-    """Folder of the maps, named by the sources of kernels and modules that make and read them."""
+    """Return the path of the folder of the maps, named by the sources of kernels and modules that make and read them.
+
+    It may not exist yet.
+    """
     return cache_root() / f"flow-{_digest(Path(__file__).parents[1])}"
 
 
@@ -134,7 +137,8 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
 
     content: bytes of the file.
     parameters: (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
-    Raises ValueError for a file that is damaged or of another scene, KeyError for one that lacks an array.
+    Raises ValueError for a file without a seal, with one that is not that of its bytes, of another scene or with a
+    table of another size, KeyError for one that lacks an array, and what numpy raises for what is no file of arrays.
     """
     from ..kernels.flow.layout import SIZE
 
@@ -152,7 +156,8 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
 def save(new_map: FlowMap, path: Path) -> None:
     """Write a map, and delete the oldest maps of the folder beyond :data:`KEPT`.
 
-    Nothing is raised if it cannot be written, or an old map not deleted: the map is then not on disk, or too many are.
+    Nothing is raised if it cannot be written, or an old map not deleted (OSError): the map is then not on disk, or too
+    many are.
 
     new_map : the :class:`FlowMap`.
     path : path of the file, which is replaced if it exists.

@@ -105,9 +105,11 @@ class Motion(RollResult):
 
     @cached_property
     def _step_ends(self) -> Floats:
-        """Ends of the integration steps, ascending, in T_ref, the dimensionless unit of time, (accepted steps,).
+        """Ends of the accepted integration steps, ascending, in T_ref, the dimensionless unit of time, (accepted
+        steps,).
 
-        The motion is integrated anew for them.  Empty for one that stays in the indentation of a standstill.
+        The motion is integrated anew for them, with its last output time alone.  Empty for one that stays in the
+        indentation of a standstill.
         """
         ends = np.full(2 * self.steps + _MORE_STEPS, np.nan)
         integrate_single(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
@@ -120,7 +122,8 @@ class Motion(RollResult):
         It is integrated anew to that time.  If the last step, which is cut there, is given up before it, the last
         output time that was reached or the end of an earlier step is taken.
 
-        Returns a :class:`Motion` with one output time, (1,).
+        Returns a :class:`Motion` with one output time, (1,), at which its speeds are finite; at t = 0 if no step was
+        accepted.
         """
         outputs = self.t[self.regime >= 0] / self.scale["t"]
         times = np.union1d(np.append(self._step_ends, 0.0), outputs)
@@ -185,7 +188,7 @@ class Motion(RollResult):
         return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
 
     def validity(self) -> Validity:
-        """Report which assumptions of the model the motion violates, at its steps and between them too.
+        """Report which assumptions of the model the motion violates, at the ends of its steps and at its output times.
 
         See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far; of
         a cover it is not decided.  States at rest count as the last state before them, as the model has nothing to
@@ -263,7 +266,7 @@ class Motion(RollResult):
         Raises
         ------
         ParameterError
-            Times that are not ascending or lie beyond the end of the motion.
+            No times, times that are negative, not finite or not ascending, or lie beyond the end of the motion.
 
         Examples
         --------
@@ -280,12 +283,18 @@ class Motion(RollResult):
 
     @cached_property
     def course(self) -> Motion:
-        """The same motion at 0, at the ends of its steps, at points between them, and at its end."""
+        """The same motion at 0, at the ends of its steps and at the last output time, each time once, ascending.
+
+        One that was given up before is NaN there, and at the end of its last step, where outputs are written by the
+        step after it.
+        """
         ends, end = self._step_ends, self._problem.end
         return self.at(np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"])
 
     def _figure(self) -> Figure:
-        """Figure of the motion; of the whole course where only one output time was requested."""
+        """Return the figure of the motion at its output times; where only one was requested, at the ends of its steps
+        and at 201 times evenly spread over the whole motion.
+        """
         if self.t.size > 1:
             return RollResult._figure(self)
         t = self.course.t
@@ -364,10 +373,11 @@ def _describe_load(given: Any, unit: str) -> str:
 def _describe_values(t: NDArray, values: NDArray) -> str:
     """Return a text on values over time: the first, the last that was reached, the largest between them with its time.
 
-    t, values: times and values, (times,), in the unit of the roller; values are NaN at times that the motion did not
-    reach.
-    Returns "first A, largest B (at t = T), last C"; without the largest magnitude where it is printed like the first or
-    the last; the number alone for one time; "not reached" where all values are NaN.
+    t, values: times and values, (times,), at least one, in the unit of the roller; values are NaN at times that the
+    motion did not reach.
+    Returns "first A, largest B (at t = T), last C", with B the value of the largest magnitude, the first one of equal
+    ones, and numbers to six digits; without it where it is printed like the first or the last; the number alone for one
+    time; "not reached" where all values are NaN.
     """
     if np.isnan(values).all():
         return "not reached"

@@ -71,7 +71,7 @@ def check_function(
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for what is neither a number, a schedule nor a callable; an array of several dimensions;
     values that are not finite or below ``low``; a callable that cannot be called with a time alone, or that polynomials
-    do not follow; a ``resolve`` that requires too many samples.
+    do not follow; a ``resolve`` that requires too many samples.  Exceptions of the callable pass.
     Returns the function as :class:`TimeFunction`: a float64 array, () for None or a number and (m,) for m motions; the
     Schedule itself; or the fit of a callable as a :class:`Piecewise` of one row, which beyond ``end`` keeps its value
     there.
@@ -95,7 +95,7 @@ def check_function(
 
 
 def count_motions(function: TimeFunction) -> int:
-    """Return for how many motions a function of time is given, an int; 1 if all motions share it.
+    """Return for how many motions a function of time is given, an int; 1 if all motions share it, 0 of an empty array.
 
     function: :class:`TimeFunction`, as :func:`check_function` returns it: an array, () or (n,), a :class:`Schedule`, or
         a :class:`Piecewise`, the fit of a callable.

@@ -98,7 +98,9 @@ class MotionProblem(NamedTuple):
     def kernel_drive(self, index: Any = slice(None)) -> KernelDrive:
         """Return the drive of some motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
 
-        index : index of numpy that selects the motions; default: all.
+        index : index of numpy, a slice or a vector of integers, that selects the motions; default: all.
+        Returns the tuple of :meth:`.drive_functions.DriveFunctions.for_kernel`, of free motions that of
+        :func:`.drive_functions.undriven`.
         """
         return undriven() if self.functions is None else self.functions.for_kernel(index)
 
@@ -114,8 +116,9 @@ def make_problem(
     end: last output time, in its unit.
     options: :class:`SolverOptions`, not yet checked.
     single: whether only one motion is allowed (``roll``); else an ensemble.
-    Raises ParameterError for everything that :func:`viscoroll.roll` (``single``) or :func:`viscoroll.ensemble` refuses,
-    apart from output times, fields, method and ``speed``.
+    Raises ParameterError for what :func:`viscoroll.roll` (``single``) or :func:`viscoroll.ensemble` refuses, apart from
+    output times, units and labels, and of an ensemble arrays that do not broadcast, fields, method, ``speed``, threads
+    and progress.  The message states units where it has dimensionless numbers (:func:`.checks.with_scales`).
     Returns the :class:`MotionProblem`.  Its callables are fitted, loads that are 0 at all times are left out, the start
     speeds are reduced by the cost of a standstill, and the step limit is raised by the number of corners of the drive;
     nothing is integrated.
@@ -158,6 +161,7 @@ def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
     resolve: the argument of the caller: the spacing in the unit of time of the roller, s, or T_ref of a scene.
     drive: :class:`Drive` of the motions.
     scale: :class:`Scale` of the roller, which converts s to T_ref.
+    Returns a float > 0.
     Raises ParameterError unless ``resolve`` is one finite number above 0 and the drive has a callable.
     """
     if not drive.has_callable:
@@ -201,8 +205,8 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
 def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
     """Reduce the start speeds by the cost of leaving the indentation of a standstill.
 
-    start: :class:`DrivenStart`: start speeds, numbers or (n,), and drive, dimensionless.
-    scene: :class:`Parameters`, dimensionless, of the roller.
+    start: :class:`DrivenStart`: start speeds, numbers or (n,), and drive, of which only ``prescribed`` is read.
+    scene: :class:`Parameters`, dimensionless, of the roller, with gamma.
     rested: time of the standstill, in T_ref; 0: none; infinite: a long one.
     Returns (V0; omega0; whether the cylinder is too slow to leave its indentation), dimensionless.  If ``rested`` is 0,
     the speeds are returned as they are, with False.  Else V0 and omega0 of each motion are multiplied by the same
@@ -243,8 +247,8 @@ def integrate(
     that are not needed stay as they were.  Each motion overwrites those of the one before, so that they are of use for
     one motion.  Arrays of length 0 keep nothing.
     Returns (quantities, (rows, count, times), NaN at times that a motion did not reach; information on each motion,
-    (count, 5), floats: code of :class:`MotionStatus`, number of steps, number of changes of regime, onset time and rest
-    time in T_ref, NaN where there is none).
+    (count, 5), floats: code of :class:`MotionStatus`, number of steps, rejected ones included, number of changes of
+    regime, onset time and rest time in T_ref, NaN where there is none).
     """
     from ..kernels.motion.batch import N_INFO_COLUMNS, motion_loop
 
@@ -256,15 +260,15 @@ def integrate(
 def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> tuple[Floats, list[float]]:
     """Integrate one motion.
 
-    problem: :class:`MotionProblem` of one motion.
+    problem: :class:`MotionProblem` of one motion; scene, functions, V0, omega0, immobile, limits and unsteady are read.
     times: output times, (times,), ascending, in T_ref.
     notes: the two arrays (k, 2) and (l,) of :func:`integrate`, which receive the switches and the ends of steps; none:
     neither is kept.
     Returns (all quantities in the order of :data:`.drive.ROWS`, (rows, times), dimensionless, NaN at times that the
-    motion did not reach; a list of five floats: code of :class:`MotionStatus`, number of steps, number of changes of
-    regime, onset time and rest time in T_ref, NaN where there is none).  A cylinder that stays in its indentation is
-    not integrated: all its quantities and both times are NaN, its status is CAUGHT, its numbers of steps and changes
-    are 0, and ``notes`` stay as they were.
+    motion did not reach; a list of five numbers: code of :class:`MotionStatus`, number of steps, number of changes of
+    regime, onset time and rest time in T_ref, NaN where there is none; all of them floats).  A cylinder that stays in
+    its indentation is not integrated: its quantities are NaN, the list is [MotionStatus.CAUGHT, 0, 0, NaN, NaN], with
+    the member of the enum and two ints, and ``notes`` stay as they were.
     """
     scene = problem.scene
     if problem.immobile:

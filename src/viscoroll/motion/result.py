@@ -69,7 +69,8 @@ class RollResult(Result):
         """Add to a report whether the law of steady rolling may drive the motions, as its entry ``steady``.
 
         report: :class:`Validity` of the states of the motions.
-        roller: roller of the motions; not one with a cover, for which ParameterError is raised.
+        roller: :class:`Scene` or :class:`Cylinder` of the motions, with gamma; not one with a cover, for which
+            ParameterError is raised.  Its ``scene()`` and ``scale`` are read.
         V: speeds in its unit, (times, ...).
         rolls: mask, True where the motions are not in full slip, (times, ...).
         x: distances travelled, in the unit of the roller, (times, ...); NaN where they are not known.
@@ -81,9 +82,9 @@ class RollResult(Result):
         return report._replace(steady=Steadiness.along(free, rolls, x, ends=ends))
 
     def _unit(self, name: str) -> str:
-        """Unit of a quantity for a printed report."""
+        """Return the unit of the quantity ``name`` for a printed report, as "m s-1"; "" of a dimensionless one."""
         return unit_of(attributes(name, self.scale.si))
 
     def _row_of_times(self) -> SummaryRow:
-        """Row of a printed report: number of output times, and the last one."""
+        """Return the row of a printed report on the output times: their number, if above 1, and the last one."""
         return SummaryRow("t", f"{self.t.size} times to " * (self.t.size > 1) + f"{self.t[-1]:.6g}", self._unit("t"))

@@ -71,7 +71,8 @@ def _start_energy(motions: Any) -> NDArray:
 
     T_ref is the unit of time of dimensionless motions.
 
-    motions: an :class:`Ensemble`; its start speeds are those after the cost of a standstill.
+    motions: an :class:`Ensemble`, of which V0, omega0, scale and scene.j are read; its start speeds are those after the
+        cost of a standstill.
     """
     V, omega = (getattr(motions, name) / motions.scale[name] for name in ("V0", "omega0"))
     energy = V**2 + motions.scene.j * omega**2
@@ -79,12 +80,22 @@ def _start_energy(motions: Any) -> NDArray:
 
 
 def _translation(motions: Any, k: int) -> NDArray:
-    """Return the part of the kinetic energy at the start that is in translation, (n,)."""
+    """Return the part of the kinetic energy at the start that is in translation at output time k, (n,), dimensionless.
+
+    motions: an :class:`Ensemble` with the field V.
+    k: index of the output time.
+    Returns NaN for motions from rest, and for those that did not reach the time.
+    """
     return _dimensionless(motions, "V", k) ** 2 / _start_energy(motions)
 
 
 def _rotation(motions: Any, k: int) -> NDArray:
-    """Return the part of the kinetic energy at the start that is in rotation, (n,)."""
+    """Return the part of the kinetic energy at the start that is in rotation at output time k, (n,), dimensionless.
+
+    motions: an :class:`Ensemble` with the field omega.
+    k: index of the output time.
+    Returns NaN for motions from rest, and for those that did not reach the time.
+    """
     return motions.scene.j * _dimensionless(motions, "omega", k) ** 2 / _start_energy(motions)
 
 
@@ -92,14 +103,14 @@ def _loss(name: str, motions: Any, k: int) -> NDArray:
     """Return a loss divided by the kinetic energy at the start, (n,); NaN for motions from rest.
 
     name: name of the field, "slip_loss" or "rolling_loss", whose unit is m (R/T_ref)^2.
-    motions: an ensemble.
-    k: index of the output time.
+    motions: an :class:`Ensemble` with that field.
+    k: index of the output time, which motions that did not reach it have NaN at too.
     """
     return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
 
 
 def _field(name: str, motions: Any, k: int) -> NDArray:
-    """Return a field at an output time, (n,)."""
+    """Return the field ``name`` of ``motions`` at output time ``k``, (n,), in its unit; NaN where not reached."""
     return getattr(motions, name)[:, k]
 
 
@@ -175,11 +186,13 @@ def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
 def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summary:
     """Return the summary of the motions of a block, which merges with those of other blocks.
 
-    motions: an :class:`Ensemble`, or its dataset, which has no shares of energy.
-    names: names of quantities, keys of :data:`QUANTITIES`, whose fields the ensemble has.
+    motions: an :class:`Ensemble`, or its dataset, which has no shares of energy; t, status, flow and the fields of the
+        quantities are read.
+    names: names of quantities, keys of :data:`QUANTITIES` (else KeyError), whose fields the ensemble has.
     exact: whether to keep the values for exact quantiles.
     Returns the :class:`Summary`, in the units of the roller: a list of histograms for each name, one for each output
-    time, or a single one of a quantity that is one number for each motion.  Values that are not finite are left out.
+    time, or a single one of a quantity that is one number for each motion; its ``statuses`` have only those that occur.
+    Values that are not finite are left out.
     """
     histograms = {}
     for name in names:

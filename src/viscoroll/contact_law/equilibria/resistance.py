@@ -99,8 +99,8 @@ class Branches:
 
     @cached_property
     def maximum(self) -> tuple[float, float]:
-        """Return (largest value of the curve at a node, u of that node); without a gain that is the maximum of
-        kappa M.
+        """Return (largest value of the curve at a node, u of that node, of equal ones the first), floats; without a
+        gain that is the maximum of kappa M, for elastic bodies 0.
         """
         n = int(np.argmax(self.resistance))
         return float(self.resistance[n]), float(self.u[n])
@@ -155,7 +155,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     Raises
     ------
     ParameterError
-        Arrays in alpha or kappa, or an array of materials; what is no scene and no cylinder.
+        Arrays in alpha or kappa, an array of materials; what is no scene and no cylinder; a layer too thin for its law.
 
     Notes
     -----
@@ -185,8 +185,8 @@ def branches(law: LawTable, gain: float) -> Branches:
 
     law : table of the material.
     gain : G, slope of the load in V, dimensionless, any sign; 0 for a load that does not depend on V.
-    Returns the :class:`Branches` for u > 0, which are kept for the next call.  Where the curve has no extremum, as for
-    elastic bodies, there is one branch over all nodes.
+    Returns the :class:`Branches` for u > 0, which are kept for the next call (the last 16).  Where the curve has no
+    extremum, as for elastic bodies, there is one branch over all nodes.
 
     Raises
     ------

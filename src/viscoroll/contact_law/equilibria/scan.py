@@ -118,6 +118,7 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     Returns the :class:`States` of both directions of motion, with the signs of the motion, and those that spin at V = 0
     and omega other than 0; load by load, else unsorted.  In all of them the friction suffices.  Rest, V = omega = 0, is
     not among them.
+    Raises ParameterError where the gains on omega add to 0, for a gain on V that :func:`.resistance.branches` refuses.
     """
     gains = loads.gains
     gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
@@ -209,6 +210,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless, in the frame where V > 0, unsorted;
     empty arrays if there is no state.  States of partial slip are zeros over the slip, those of full slip follow from
     Q = mu or -mu.
+    Raises ParameterError for a gain on V out of range.
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
     _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))

@@ -92,9 +92,10 @@ class States(NamedTuple):
         The contact is that of Carter (of two elastic bodies); of a cover its creep limit and its creepage of free
         rolling are used.  A disturbance decays as V' = -rate V, with omega in proportion to V.
 
-        loads : the loads, dimensionless: Q balances the torque, or where V and the force were given the force.
+        loads : the loads, dimensionless; all but V and ``shape`` is read.  Q balances the torque, or where V and the
+            force were given the force.
         load : index of the load of each state, (n,).
-        law : table of the material.
+        law : table of the material, of which T_mean and, of a cover, the rows of creep at rest are read.
         Returns the :class:`States`, (n,), with V = omega = M = 0: the eigenvalue of slip is -inf, the slow one is that
         of the less stable direction, 0 for elastic bodies without gains; delta and omega are NaN where the friction
         does not suffice, |Q| >= mu.
@@ -126,8 +127,8 @@ class States(NamedTuple):
         return cls(np.concatenate([each.load for each in parts]), np.concatenate([each.rows for each in parts], axis=1))
 
     def existing(self) -> States:
-        """Return the states for which the friction suffices (omega is finite), sorted by load, then by rising |V|; of
-        equal |V| in their order.
+        """Return the states for which the friction suffices (omega is finite) as new :class:`States`, maybe none,
+        sorted by load, then by rising |V|; of equal |V| in their order.
         """
         chosen = np.isfinite(self.rows[Field.OMEGA]).nonzero()[0]
         chosen = chosen[np.lexsort((np.abs(self.rows[Field.V, chosen]), self.load[chosen]))]

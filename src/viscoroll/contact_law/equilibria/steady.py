@@ -65,10 +65,10 @@ def steady(
     ------
     ParameterError
         NaN or infinite input, a slope out of range, V together with both or neither of force and torque or
-        with a feedback, an array of alphas or materials, a layer beside a body that relaxes too, shapes that do not
-        broadcast, kappa |V| above 1e100; without a gain on omega also kappa |force + torque| in (0, 1e-120) or above
-        1e80; a gain on V, divided by the longest retardation time, of a size outside 1e-40 to 1e8; a feedback that
-        changes with time or has arrays of gains.
+        with a feedback, an array of alphas or materials, a layer beside a body that relaxes too or too thin for its
+        law, shapes that do not broadcast, kappa |V| above 1e100; without a gain on omega also kappa |force + torque| in
+        (0, 1e-120) or above 1e80; a gain on V, divided by the longest retardation time, of a size outside 1e-40 to 1e8;
+        a feedback that changes with time or has arrays of gains.
 
     Warns
     -----

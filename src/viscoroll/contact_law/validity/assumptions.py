@@ -63,6 +63,7 @@ class Assumption(NamedTuple):
     def worst_of_parts(self, last: Any) -> Assumption:
         """Return the assumption with one state for each part of a sequence of states, and the same sentence.
 
+        ``holds`` and ``value`` must be arrays over the states, (states,).
         last: index of the last state of each part, (parts,), ascending; a part begins after the one before.
         Returns the same kind of assumption, with holds and value of shape (parts,): those of the first state of the
         part that violates it, else those of its last state.

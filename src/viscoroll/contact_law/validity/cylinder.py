@@ -195,8 +195,8 @@ class BodyData:
         density: density of the cylinder, and of the base where they are alike or the cylinder is rigid, kg/m^3; None:
             as the materials have it.
         Returns a copy of the report with ``quasistatic`` (undecided without the density that decides), ``bodies``,
-        ``measured``
-        (undecided without a measured material) and ``plane``, which states the plane and is always undecided.
+        ``measured`` (undecided without a measured material) and ``plane``, which states the plane and is always
+        undecided.
         Raises ParameterError for a density that is not one finite number > 0.
         """
         if density is not None:

@@ -128,7 +128,8 @@ class FreeRolling:
     def of_scene(cls, scene: Parameters, V: Any) -> FreeRolling:
         """Return the states of a scene at given speeds.
 
-        scene: dimensionless parameters, numbers or arrays, with one or several materials or alphas, no cover.
+        scene: dimensionless parameters, numbers or arrays, with one or several materials or alphas, no cover; mu is not
+            read.
         V: speeds, dimensionless, any sign and shape; broadcasts with the scene.
         Returns the states: u = kappa |V| and the index of the material in the broadcast shape, the other fields as they
         broadcast with it; results will be divided by R/T_ref, T_ref and R.  u is infinite where kappa |V| overflows.
@@ -163,7 +164,10 @@ class FreeRolling:
         return replace(self, speed=speed, time=time, length=length, units=("m/s", "s", "m"))
 
     def take(self, index: tuple[Any, ...]) -> FreeRolling:
-        """Return the states at an ``index`` of numpy into u: a tuple of integers, one for each axis, or of arrays."""
+        """Return the states at an ``index`` of numpy into u: a tuple of integers, one for each axis, or of arrays.
+
+        All fields but ``materials`` and ``units`` are broadcast to u and indexed; IndexError of numpy passes.
+        """
         arrays = ("index", "u", "g", "speed", "time", "length")
         return replace(self, **{name: np.broadcast_to(getattr(self, name), self.u.shape)[index] for name in arrays})
 
@@ -225,7 +229,7 @@ class FreeRolling:
     def distance(self) -> Any:
         """Return the distance to rest by the law of steady rolling, in the unit of the caller and the shape of u.
 
-        It is 0 at V = 0, and infinite for elastic bodies, also at V = 0.
+        It is 0 at V = 0, and infinite for elastic bodies, also at V = 0; of other bodies it is NaN without gamma.
         """
         return self._evaluate(lambda curve, u, g: [curve.distance(u) / g], [np.inf])[0] * self.length
 
@@ -234,6 +238,7 @@ class FreeRolling:
 
         level: of the unsteadiness, which is about the relative error of V by the law of steady rolling; dimensionless,
             > 0.
+        Gamma must be known.
         Returns a :class:`Reach` in the shape of u and the units of the caller.  At rest N(0) decides which of its
         cases holds, though :attr:`unsteadiness` is 0 there.  Of elastic bodies speed and left are 0, time and distance
         infinite.
@@ -268,10 +273,15 @@ class FreeRolling:
             infinite for a long one.
         Returns a :class:`Start` in the shape of u and the units of the caller; the lost speed is all of |V|, and the
         lost distance the whole, where the work to leave the indentation exceeds the kinetic energy.  Both are 0 at V =
-        0 and for elastic bodies.
+        0 and for elastic bodies.  Gamma must be known.
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
+            """Return [lost u, lost distance] for states of one material, (n,) each, in its own time and in l0.
+
+            curve: free rolling of the material.
+            u, g, rested: kappa |V| at the start, gamma/(1 + j), time of the standstill, (n,) each.
+            """
             distance = curve.distance(u)
             W = curve.work(u, distance / g, rested)
             part = np.where(u > 0.0, np.minimum(0.5 * g * W / u / u, 1.0), 0.0)

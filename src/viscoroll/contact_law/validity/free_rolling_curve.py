@@ -72,27 +72,32 @@ class Curve:
         return np.log(inside), u / inside
 
     def N(self, u: Floats) -> Floats:
-        """Return N at u = kappa |V|, any shape, either sign; below the splines linear in u, above proportional to
-        u^-2.
+        """Return N, of either sign, at u = kappa |V| >= 0, any shape, in that shape, dimensionless; below the splines
+        linear in u, above proportional to u^-2.
         """
         ln_u, beyond = self._locate(u)
         return (self._N(ln_u) + self._N_slope * (np.minimum(beyond, 1.0) - 1.0)) / np.maximum(beyond, 1.0) ** 2
 
     def M(self, u: Floats) -> Floats:
-        """Return kappa M at u, any shape, >= 0; below the splines proportional to u, above to 1/u; 0 at u = 0."""
+        """Return kappa M >= 0 at u, any shape, in that shape, dimensionless; below the splines proportional to u, above
+        to 1/u; 0 at u = 0.
+        """
         ln_u, beyond = self._locate(u)
         return np.exp(2.0 * ln_u) / self._u2_over_M(ln_u) * np.where(beyond < 1.0, beyond, 1.0 / beyond)
 
     def time(self, u: Floats) -> Floats:
-        """Return the time from u, any shape, down to the lower end of the splines; 0 at and below that end.
+        """Return the time from u, any shape, down to the lower end of the splines, in that shape; 0 at and below it.
 
-        Only differences count: the time from u to a lower u2 is time(u) - time(u2), and that to rest is infinite.
+        Only differences count: the time from u to a lower u2 above that end is time(u) - time(u2), and that to rest is
+        infinite.
         """
         ln_u, beyond = self._locate(u)
         return self._time(ln_u) + 0.5 * self._high / self._M_high * (np.maximum(beyond, 1.0) ** 2 - 1.0)
 
     def distance(self, u: Floats) -> Floats:
-        """Return the distance from u, any shape, to rest, in units of l0; below the splines proportional to u."""
+        """Return the distance from u, any shape, to rest, in that shape and in units of l0; below the splines
+        proportional to u, 0 at u = 0.
+        """
         ln_u, beyond = self._locate(u)
         above = self._high**2 / (3.0 * self._M_high) * (np.maximum(beyond, 1.0) ** 3 - 1.0)
         return (self._first_distance + self._distance(ln_u)) * np.minimum(beyond, 1.0) + above

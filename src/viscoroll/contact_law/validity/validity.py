@@ -54,7 +54,7 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
     ------
     ParameterError
         NaN or infinite speeds, a density that is not one positive number, a density for a Scene, shapes that do not
-        broadcast.
+        broadcast, what is no scene and no cylinder, a layer too thin for its law.
 
     Examples
     --------

@@ -67,8 +67,8 @@ def local_strain(modes: CoverModes, z: float, state: CoverState) -> float:
     """Return the mean strain of the layer's surface by the coupling of half-spaces, less that of the other body.
 
     The strain at each point is -C J p: C = (1 - 2 nu)/(2 - 2 nu), J the compliance of the body with its memory, p the
-        pressure; the mean over the contact has the pressure as weight.  It is accurate to 1e-5 of itself, as the
-        pressure is taken as linear between points.
+    pressure; the mean over the contact has the pressure as weight.  It is accurate to 1e-5 of itself, as the pressure
+    is taken as linear between points.
     modes: :class:`CoverModes` of the cover and the other body.
     z: half contact length divided by V T_ref, dimensionless, > 0.
     state: :class:`CoverState` of the contact of that length.

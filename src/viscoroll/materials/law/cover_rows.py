@@ -155,7 +155,7 @@ def _solve_node(
     stiffness: instantaneous divided by long-time stiffness, to solve fast rolling with the ``modes`` of elastic bodies;
         1: the modes have their own stiffness.
     Returns (lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,),
-    dimensionless; ln z; d ln H/d ln z).
+    dimensionless; ln z after the last secant step; d ln H/d ln z of that step, limited to [0.5, 8]).
     Raises ParameterError where the secant method reaches its limit of 40 steps.
     """
     goal, previous, thickness = -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
@@ -265,15 +265,15 @@ def _fit_end(
     from numpy.polynomial.chebyshev import chebvander
 
     def basis(y: Any, n: int, log_terms: int) -> Any:
-        """Return the terms of quantity ``n`` at points ``y``, real or complex: polynomials, then those times ln y,
-        (points, terms).
+        """Return the terms of quantity ``n`` at points ``y``, (points,), real or complex, (points, terms): Chebyshev
+        polynomials of 2 y - 1, then the first ``log_terms`` of them times ln y.
         """
         terms = chebvander(2.0 * y - 1.0, _STRAIN_DEGREE if n == _FREE else _END_DEGREE)
         return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
 
     def fit(values: Floats, at: Any, log_terms: int) -> Any:
-        """Fit each quantity to its ``values`` at the nodes y, (5, n), and return the fits at the points ``at``, (5,
-        points).
+        """Fit each quantity to its ``values`` at the nodes y, (5, n), by its :func:`basis` with ``log_terms``, and
+        return the fits at the points ``at``, (points,), as (5, points), complex where ``at`` is.
         """
         fits = (np.linalg.lstsq(basis(y, n, log_terms), row, rcond=None)[0] for n, row in enumerate(values))
         return np.array([basis(at, n, log_terms) @ terms for n, terms in enumerate(fits)])

@@ -17,7 +17,7 @@ unknowns are the coefficients q up to order N = 14 + 6 theta; the exponentials o
 first N coefficients, so that alpha may be arbitrarily large.
 
 Sources of the method: the law of the half-space in closed form (:mod:`.evaluate`), and the layer's kernels as in
-    Johnson, Contact Mechanics (1985), Sect. 5.8.
+Johnson, Contact Mechanics (1985), Sect. 5.8.
 """
 
 from __future__ import annotations
@@ -157,7 +157,7 @@ def _compliance(instant: float, J: Floats, b: Floats, k: Floats) -> Any:
 
 
 def _half_space_coupling(nu: float) -> float:
-    """Return the coupling C of a half-space with Poisson's ratio ``nu``."""
+    """Return the coupling C = (1 - 2 nu)/(2 - 2 nu) of a half-space, in [0, 1/2]; nu: Poisson's ratio in [0, 0.5]."""
     return (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
 
 
@@ -169,7 +169,8 @@ def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tup
     step: distance of the nodes in s, > 0.
     scale: factor of ln(1 + e^s), > 0.
     ends: first and last s; the last one is left out.
-    Returns (nodes in the variable, ascending; weights), (n,) each, n the number of steps between the ends.
+    Returns (nodes in the variable, > 0, ascending; weights, > 0), (n,) each, in the unit of ``scale``; n is the number
+    of steps between the ends, rounded up.
     """
     s = np.arange(*ends, step)
     return scale * np.logaddexp(0.0, s), step * scale / (1.0 + np.exp(-s))
@@ -241,7 +242,7 @@ def _decays(beta: Floats, order: int) -> Floats:
 
 
 def _term_count(theta: float) -> int:
-    """Return the number of terms of the pressure at ``theta``."""
+    """Return the number of terms of the pressure, 14 + 6 theta rounded up; theta: half length over thickness, >= 0."""
     return math.ceil(_TERMS + _TERMS_PER_THETA * theta)
 
 

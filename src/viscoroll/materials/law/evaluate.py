@@ -24,7 +24,8 @@ def refuse_distant_times(slowest: float, fastest: float) -> None:
     """Raise ParameterError for times that rows cannot hold: shorter than 1e-100 T_ref or longer than 1e100 T_ref.
 
     slowest: slowest rate of creep b_1, > 0, in units of 1/T_ref.
-    fastest: fastest rate of relaxation a_N, >= ``slowest``, in units of 1/T_ref.
+    fastest: fastest rate of relaxation a_N, >= ``slowest``, in units of 1/T_ref; a smaller one and NaN are refused too.
+    Returns None for other times.
     """
     if not 1.0 / _LONGEST <= slowest <= fastest <= _LONGEST:
         allowed = f"within {1.0 / _LONGEST:g} to {_LONGEST:g} times T_ref"
@@ -38,9 +39,10 @@ def modes_record(modes: Modes, weights: Floats | None = None) -> Any:
         leading axes.
     weights: part of each creep mode that is the half-space's, 0 to 1, (..., modes), for two bodies that differ; None:
         they are alike, and the record has an empty array of weights.
-    Returns a Series with rates a and b in units of 1/T_ref, vectors e = sqrt(E_i/a_i) and t = sqrt(J_j/b_j), (...,
-    modes) each, and the matrix Q, (..., modes, modes), [..., j, i] for creep mode j and relaxation mode i; all empty
-    along these axes for an elastic material.
+    Returns a Series (a, b, e, t, weights, Q): rates a and b in units of 1/T_ref, ascending, those of ``modes``
+    themselves; vectors e = sqrt(E_i/a_i) and t = sqrt(J_j/b_j), in T_ref^(1/2), (..., modes) each; ``weights``; and the
+    dimensionless matrix Q = sqrt(J_j b_j E_i a_i)/(a_i - b_j), (..., modes, modes), [..., j, i].  All are empty along
+    these axes for an elastic material.
     """
     from ...kernels.rows.series import Series
 
@@ -54,9 +56,10 @@ def series_record(material: Any) -> tuple[Any, Floats]:
 
     material: a :class:`..prony.Prony` of one material, a :class:`..bodies.Bodies` of one pair, or alphas >= 1: a
         number, or one for each element that the kernel is called for, (n,).
-    Returns (record of the series, :class:`...kernels.rows.series.Series`; alphas).  For a series or bodies the alphas
-    are an empty array.  For alphas they are a copy, (n,), (1,) of a number, and the record has one mode, which the
-    kernel overwrites with each alpha in turn.
+    Returns (record of the series, :class:`...kernels.rows.series.Series`, as of :func:`modes_record`; alphas).  For a
+    series or bodies the alphas are an empty array; those of bodies have weights, also if they are alike.  For alphas
+    they are a copy, (n,), (1,) of a number, and the record has one mode, which the kernel overwrites with each alpha in
+    turn.
     """
     from ...kernels.rows.series import Series
 

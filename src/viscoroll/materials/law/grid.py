@@ -65,9 +65,9 @@ class LawGrid:
         """Raise the OutOfTableError of a state that the caller has found to be outside the axes.
 
         It always raises: for V if |V| is beyond the fastest speed, else for delta, without comparing delta with its
-            axis.
+        axis.
         V: speed in the unit of the grid, a number or an array of one; of V = 0 the error states an infinite or NaN
-            delta.
+            delta, and numpy gives a RuntimeWarning.
         omega: angular velocity in the unit of the grid, likewise.
         """
         if np.abs(V) > self.V[1]:
@@ -177,9 +177,11 @@ def _law_of(table: xr.Dataset) -> LawGrid:
 
     table: dataset of a grid at one alpha, in SI units or dimensionless; without M_half_space or M_cylinder that body
         has half of M.
-    Returns the :class:`LawGrid`.
+    Returns the :class:`LawGrid`, whose ends of V and delta are those of the axes; without the attribute ``mu`` Q is not
+    clipped and ``slips`` is False.
     Raises KeyError for a missing variable, and ValueError, of which ParameterError is one, for values that are not
-    finite, speeds that are not positive, axes that do not increase, other dimensions, or no R > 0.
+    finite, speeds that are not positive, axes that do not increase or have a single node, other dimensions, or no R >
+    0.
     """
     V, delta = check_array("V", table["V"].values, above=0.0), table["delta"].values
     axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}

@@ -69,8 +69,9 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
     law: the law of one material or cover, :class:`LawTable`, or of all alpha, :class:`LawAxis`.
     errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each function of the kind of
         file (:data:`..law_file.KINDS`), else KeyError.
-    Returns the dataset, with the coefficients of each function, and with what :func:`load_law` needs to make the law
-    again, of a table the text of its material.
+    Returns the dataset of :func:`..law_file.make_dataset`, with the coefficients of each function, and with what
+    :func:`load_law` needs to make the law again, of a table the text of its material as attribute ``material``
+    (:func:`bodies_as_toml`).  Of half-spaces N is computed if it was not yet.
     Raises ParameterError for a layer beside a body that relaxes too.
     """
     if isinstance(law, LawAxis):
@@ -90,7 +91,9 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
 
 
 def _title(table: LawTable) -> str:
-    """Return the bodies of a ``table`` in words: names of a pair in SI units, else alpha and the number of times."""
+    """Return the bodies of a ``table`` in words, for a title: the names of the materials of its ``pair``, joined by
+    " on "; without a pair alpha and the number of relaxation times.
+    """
     if table.pair is None:
         return f"alpha = {table.alpha:g}, {table.relaxation_time.size} relaxation times"
     bodies = (table.pair.cylinder, table.pair.base)
@@ -153,8 +156,8 @@ def parse_law(content: Content, path: Any) -> LawTable:
 
     content: :class:`..law_file.Content` of the file, verified.
     path: path of the file, for errors.
-    Returns a new :class:`LawTable`, with the coefficients, e0 and T_ref of the file, and the bodies as ``pair`` if it
-    states them in SI units.
+    Returns a new :class:`LawTable`, with the coefficients (those of N too but for a cover), e0 and T_ref of the file,
+    and the bodies as ``pair`` if it states them in SI units; of elastic half-spaces it has the constant functions.
     Raises FileError for the law of every alpha, and for a file that does not state its material or is incomplete.
     """
     numbers, attributes = content

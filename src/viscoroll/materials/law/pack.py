@@ -86,15 +86,16 @@ def steady_table(powers: Any, N: float = math.nan) -> Floats:
 
 
 def steady_columns(table: Floats) -> Floats:
-    """Return a table without N, (rows, 24 powers, 6 functions); the reverse of :func:`steady_table`."""
+    """Return the columns of a ``table`` but N as a new array (rows, 24 powers, 6 functions), in its order."""
     return table[..., _STEADY]
 
 
 def constant_rows(*values: float) -> Floats:
     """Return one row for each of several constants, the polynomials of functions that do not depend on the speed.
 
-    values: the constants.
-    Returns shape (number of values, 1 row, 24 powers): power 0 is the constant, all others are 0.
+    values: the constants, one for each function.
+    Returns a new array with the axes (function, row, power), of shape (number of values, 1, 24), functions in the order
+    of the arguments: power 0 is the constant, all others are 0.
     """
     rows = np.zeros((len(values), 1, TERMS))
     rows[:, 0, 0] = values
@@ -135,7 +136,7 @@ def interleave_pairs(a: Floats, b: Floats) -> Floats:
     ...
 
     Kernels evaluate two functions at once from this order.
-    a, b: coefficients, (rows, powers) each, with an even number of powers.
+    a, b: coefficients, (rows, powers) each, of one shape, with an even number of powers.
     Returns a new array (rows, 2 * powers).
     """
     both = np.stack([a.reshape(len(a), -1, 2), b.reshape(len(b), -1, 2)], axis=2)
@@ -200,7 +201,7 @@ def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floa
     """Return the rows of a record in the order in which kernels read them (:mod:`...kernels.rows.evaluate`).
 
     L is not taken from the table: two steps of Newton's method from that value make L^2 press(2 u/L) = 1 hold to
-        rounding, as Q would lose digits by an error in it.
+    rounding, as Q would lose digits by an error in it; that at rest is set to its exact limit.
     table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`; N is not
         read.
     e0: exponent of the end of the first row.
@@ -248,7 +249,7 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     """Return the rows of N of a record, with those of its integral over u, from which kernels take the added mass.
 
     The origin of a row is the place where its argument t is 0: u = 0 in the first row, three quarters of the end of the
-        octave in the others.  Beyond the last row N is (alpha - 1)/(16 alpha u^2), and the origin is infinity.
+    octave in the others.  Beyond the last row N is (alpha - 1)/(16 alpha u^2), and the origin is infinity.
     table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).  Of a cover N is NaN, and so is
         the result.
     e0: exponent of the end of the first row.
@@ -275,12 +276,12 @@ def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
 def _pack_cover_front(cover: CoverRows) -> Floats:
     """Return the numbers of a cover that stand in front of the rows of its record.
 
-    They are chosen so that the formulas of the fast limit of half-spaces give that of the cover, without logarithms: L
-        = L_1 (1 + a/u) and M = b V/u^2, with limits L_1, L_1 a and b of the cover.
+    They are chosen so that the formulas of the fast limit of half-spaces give that of the cover, without logarithms:
+    L = L_1 (1 + a/u) and M = b V/u^2, with limits L_1, L_1 a and b of the cover.
     cover: :class:`CoverRows`, law of the cover, of which ``limits`` and the value of m_half_space at rest are read; the
         latter, if it is not 0, says that the cover is on the base.
     Returns shape (8,), in place of alpha, lam, and W and C of both bodies, of the half-space and of the cylinder:
-    1/L_1^2, L_1, and W = 0 with C proportional to L_1 a and to b.
+    1/L_1^2, L_1, 0, 4 L_1 a; then 0, 8 b for the body with the cover and 0, 0 for the other one.
     """
     L, _, _, L_slope, _, _, _, moment = cover.limits
     on_base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])

@@ -45,8 +45,8 @@ def record_of_alphas(alpha: Floats) -> Any:
 
     The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
 
-    alpha: instantaneous divided by long-time modulus, dimensionless, in [1, 1e12]: one value for each element, (n,), or
-        one for all, (1,).
+    alpha: instantaneous divided by long-time modulus, dimensionless, in [1, 1e12], not checked: one value for each
+        element, (n,), n >= 1, or one for all, (1,).
     Returns :class:`...kernels.rows.record.Law`, with T_epsilon for the unit of time.
     """
     return records_of_alphas(alpha, 1)[0]
@@ -55,10 +55,10 @@ def record_of_alphas(alpha: Floats) -> Any:
 def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
     """Return several records as of :func:`record_of_alphas`, so that as many elements are evaluated together.
 
-    alpha: one value for each element, (n,), or one for all, (1,), dimensionless, in [1, 1e12].
+    alpha: one value for each element, (n,), n >= 1, or one for all, (1,), dimensionless, in [1, 1e12]; not checked.
     count: number of records, each of which holds the law of one element at a time.
-    Returns a tuple of ``count`` :class:`...kernels.rows.record.Law`.  Octaves of alpha that this process has not used
-    before are computed and kept until it ends.
+    Returns a tuple of ``count`` :class:`...kernels.rows.record.Law`, in which no element is selected yet.  Octaves of
+    alpha that this process has not used before are computed and kept until it ends.
     """
     from ...kernels.rows import alpha_axis
     from ...kernels.rows.record import E0
@@ -89,15 +89,16 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
 
     They then read rows that are close in memory: states in random order take half as long again.
     alpha, kappa, V: parameters and speed of the states, dimensionless, (n,), or (1,) for all; contiguous doubles.
-    Returns indices (n,), the states of one octave in the order given; an empty array, which stands for the order given,
-    for a single state.
+        Octaves of kappa |V| below 2^-5 count as one, as do those from 2^99 on.
+    Returns indices (n,), int64, by ascending octave of alpha, then of kappa |V|, the states of one octave in the order
+    given; an empty array, which stands for the order given, for a single state.
     """
     octaves = (256 * _exponents(alpha) + np.clip(_exponents(kappa * V), -5, 100)).astype(np.int16)
     return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
 
 
 def _exponents(x: Floats) -> Integers:
-    """Return n with 2^(n-1) <= |x| < 2^n for each x, from its bits; -1022 of 0 and of numbers below the normal ones.
+    """Return n with 2^(n-1) <= |x| < 2^n for each x, from its bits; -1022 for 0 and for subnormal numbers.
 
     ``np.frexp`` takes four times as long.
     x: contiguous doubles, finite.
@@ -112,9 +113,10 @@ def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
     The record holds the law of one element at a time (:func:`...kernels.rows.record.select_material`).
     materials: :class:`..prony.Prony` of n materials, :class:`..bodies.Bodies` of n pairs, or :class:`..cover.Cover` of
         n covers; elastic ones may be among them.
-    which: index of the material of each element, (elements,), or (1,) for all.
-    Returns :class:`...kernels.rows.record.Law`.  Of series and pairs nothing is computed before kernels read it; of
-    covers the laws at the nodes of :func:`count_laws` are.
+    which: index of the material of each element, int, (elements,), at least one, or (1,) for all.
+    Returns :class:`...kernels.rows.record.Law`, in which no element is selected yet.  Of series and pairs no row is
+    computed before kernels read it; of covers the laws at the nodes of :func:`count_laws` are, and kept for later
+    calls.
     Raises ParameterError for times of half-spaces beyond 1e-100 to 1e100 times T_ref, and for a cover that is too thin.
     """
     used, index = np.unique(which, return_inverse=True)
@@ -196,7 +198,7 @@ def count_laws(covers: Cover) -> int:
 
 
 def _octave_of(thickness: Floats) -> Floats:
-    """Return the binary exponent n of the octave [2^n, 2^(n + 1)) that contains each thickness, divided by l0."""
+    """Return the exponent n, a float, of the octave [2^n, 2^(n + 1)) that contains each ``thickness`` > 0 over l0."""
     return np.floor(np.log2(thickness))
 
 

@@ -4,9 +4,9 @@ The variable is u = kappa |V|, v = 1/F(eta) or w = 1/z (:mod:`.fit`), dimensionl
 material, in which its rates are given.
 
 Slopes are fitted and integrated, and one constant is added: value, slope and secant of a polynomial are then all
-    accurate to rounding, where a polynomial fitted to values has lost three digits in its slopes.  Powers are computed
-    from the rapidly decreasing Chebyshev coefficients, which keeps rounding errors small.  No library of linear algebra
-    is used: its last digits differ from machine to machine.
+accurate to rounding, where a polynomial fitted to values has lost three digits in its slopes.  Powers are computed from
+the rapidly decreasing Chebyshev coefficients, which keeps rounding errors small.  No library of linear algebra is used:
+its last digits differ from machine to machine.
 """
 
 from __future__ import annotations
@@ -78,7 +78,8 @@ class Rows:
         powers: coefficients, (functions, rows, 24 powers).
         x: points, > 0 and below the end of the last row, (n,).  They are not checked: 0 is not found in row 0 if e0 <
             0, and a point beyond the last row raises IndexError.
-        Returns (values; derivatives with respect to ln x), (functions, n) each.
+        Returns (values; derivatives with respect to ln x, in the unit of the values), new arrays (functions, n) each,
+        functions in the order of ``powers``.
         """
         mantissa, exponent = np.frexp(x)
         row = np.maximum(exponent - self.e0, 0)

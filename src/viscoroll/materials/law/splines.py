@@ -79,9 +79,9 @@ def pack_spline(found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds
     -------
     vector
         Six numbers: the bounds, and the indices in the vector where the axes V, delta and alpha and the coefficients
-            begin; the three axes as of :func:`_axis`, with no interval and one basis spline, the constant 1, for an
-            axis that the field does not depend on; the coefficients, with zeros after the last ones of an axis of a
-            degree below 3.
+        begin; the three axes as of :func:`_axis`, with no interval and one basis spline, the constant 1, for an axis
+        that the field does not depend on; the coefficients, last axis fastest, with 3 - degree zeros after the last
+        ones of each axis.
     """
     # an axis that the field is not over: no interval, one basis spline, which is 1
     vectors = dict.fromkeys(("V", "delta", "alpha"), np.array([0.0, 1.0, 0.0, 0.0, 0.0, 1.0] + [0.0] * 15))

@@ -79,7 +79,8 @@ class LawTable:
     def coefficients(self) -> Floats:
         """Return the coefficients (rows, 24 powers, 7 functions), functions in the order of :data:`.pack.FUNCTIONS`.
 
-        Those of N are computed at the first use.  For a cover N is not known: its column is NaN.
+        Those of N, in units of P T_ref^2, are computed at the first use.  For a cover N is not known: its column is
+        NaN.
         """
         table = self.steady_coefficients
         if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
@@ -93,7 +94,7 @@ class LawTable:
 
     @cached_property
     def unsteady_record(self) -> Any:
-        """As :attr:`record`, with N."""
+        """As :attr:`record`, with the rows of N (:func:`.pack.pack_unsteady`), which are NaN for a cover."""
         return self.record._replace(N_rows=lock_array(pack_unsteady(self.coefficients, self.e0, self.alpha)))
 
 
@@ -118,8 +119,8 @@ def law_table(material: float | Prony | Bodies | LawTable, coefficients: Floats 
     Raises
     ------
     ParameterError
-        Many materials; times beyond 1e-100 to 1e100 of their unit (of half-spaces); a cover that is too thin.  An alpha
-        below 1 is not refused here, but by :func:`.netcdf.law_table_of`.
+        Many materials; times beyond 1e-100 to 1e100 of their unit (of half-spaces), which is also the message for an
+        alpha in (0, 1) or NaN; a cover that is too thin.  :func:`.netcdf.law_table_of` refuses an alpha by its range.
     """
     if isinstance(material, LawTable):
         return material
@@ -149,7 +150,7 @@ def make_table(
     computed.
 
     material: alpha >= 1 as a float, a :class:`..prony.Prony` of one material, :class:`..bodies.Bodies` of one pair, or
-        one :class:`..cover.Cover`.
+        one :class:`..cover.Cover`.  Bodies are taken as unlike: :func:`law_table` replaces alike or elastic ones.
     coefficients: rows of the law, (rows, 24 powers, 7 functions); None: they are computed.  Ignored for a cover and for
         elastic bodies, whose functions are the constants 1 and 0.
     cover: :class:`.pack.CoverRows`, rows of the law of a cover; None: they are computed if ``material`` is one.
