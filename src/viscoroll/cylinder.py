@@ -259,7 +259,9 @@ class Cylinder(Methods):
         >>> bool(roller.on_slope(0.1).load < roller.load)
         True
         """
-        return self.replace(load=self.load * slope_tan_cos(slope)[1])
+        cosine = slope_tan_cos(slope)[1]
+        broadcast_shape(slope=np.asarray(cosine), **{name: np.asarray(value) for name, value in self.numbers.items()})
+        return self.replace(load=self.load * cosine)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return (the title; a list of :class:`SummaryRow`) of the printed report.

@@ -10,7 +10,7 @@ from collections.abc import Iterable
 from typing import Literal, overload
 
 from ..core.array_types import Numbers
-from ..core.checks import check_array, check_array_extent, check_bool
+from ..core.checks import check_array, check_array_extent, check_bool, divide_by_unit
 from ..core.errors import check_one_given
 from ..core.labels import strip_labels
 from ..core.results import Values
@@ -164,8 +164,8 @@ def contact(
     if scale.si:
         warn_of_contact(roller, speed, ends)
         about = roller.about
-        speed = speed / scale["V"]
-        creep = creep / scale["omega"] if delta is None else creep
+        speed = divide_by_unit("V", speed, scale["V"])
+        creep = divide_by_unit(creep_name, creep, scale[creep_name])
     found = evaluate_contact(scene, speed, creep, delta is None, names, method)
     if scale.si:
         found = {name: value * scale[name] if name in DIMENSIONS else value for name, value in found.items()}

@@ -60,7 +60,7 @@ class Roller:
         """Return the same roller on a slope, under the load P cos(slope), as a new object; subclasses implement it.
 
         slope: angle, rad, a number or an array, which broadcasts with the parameters.
-        Raises ParameterError for a slope outside (-pi/2, pi/2), and ValueError for shapes that do not broadcast.
+        Raises ParameterError for a slope outside (-pi/2, pi/2), and for shapes that do not broadcast.
         """
         raise NotImplementedError
 
@@ -257,9 +257,11 @@ class Parameters(Roller):
         Returns a new scene whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied
         by cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array
         of slopes gives as many covers.
-        Raises ParameterError for a slope out of range, and ValueError of numpy for shapes that do not broadcast.
+        Raises ParameterError for a slope out of range, and for shapes that do not broadcast.
         """
         cosine = slope_tan_cos(slope)[1]
+        sizes = self.numbers | ({} if self.cover is None else {"thickness": self.cover.thickness})
+        broadcast_shape(slope=np.asarray(cosine), **{name: np.asarray(value) for name, value in sizes.items()})
         changes = {"kappa": self.kappa / np.sqrt(cosine), "gamma": None if self.gamma is None else self.gamma * cosine}
         if self.cover is not None:  # its thickness is divided by the l0 of that load
             changes["material"] = self.cover.of_thickness(self.cover.thickness / np.sqrt(cosine))
@@ -309,8 +311,8 @@ def resolve_model(
     dimensionless parameters; its :class:`Scale`: the factor by which each dimensionless quantity is multiplied to get
     the units of the roller, 1 for a Scene).
     Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma where
-    ``moves``, and a layer beside a body that relaxes too in a function that does not take it; ValueError of numpy for a
-    slope of a shape that does not broadcast.
+    ``moves``, a layer beside a body that relaxes too in a function that does not take it, and a slope of a shape that
+    does not broadcast.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"

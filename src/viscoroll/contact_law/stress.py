@@ -13,7 +13,7 @@ import numpy as np
 
 from ..core.array_types import Floats, Numbers
 from ..core.blocks import block_reader, run_blocks
-from ..core.checks import broadcast_shape, check_array
+from ..core.checks import broadcast_shape, check_array, divide_by_unit
 from ..core.errors import check_one_given
 from ..core.labels import strip_labels
 from ..core.results import Values
@@ -95,7 +95,9 @@ def stress(
         warn_of_contact(roller, speed)
         # A position that overflows lies outside the contact, a speed that overflows is refused.
         with np.errstate(over="ignore"):
-            position, speed, creep = position / scale["length"], speed / scale["V"], creep / scale[creep_name]
+            position = divide_by_unit("x", position, scale["length"])
+            speed = divide_by_unit("V", speed, scale["V"])
+            creep = divide_by_unit(creep_name, creep, scale[creep_name])
     lam, epsilon, beta, zeta, delta = evaluate_contact(scene, speed, creep, creep_name == "omega", _FIELDS).values()
     # For V < 0 positions are mirrored, and tau changes its sign.
     mirror = np.where(speed < 0.0, -1.0, 1.0)

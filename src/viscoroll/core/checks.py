@@ -204,6 +204,22 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
         ) from None
 
 
+def divide_by_unit(name: str, values: NDArray, unit: Any) -> Any:
+    """Return a quantity divided by its unit.
+
+    name: name of the quantity, for errors.
+    values: the quantity in that unit's system, as m/s, an array.
+    unit: value of one unit, a number, or (n,) of n cylinders.
+    Returns the quotient, of the common shape by numpy's rule; a number of numpy if that is ().
+    Raises ParameterError if the shapes do not broadcast; the message lists both.
+    """
+    try:
+        return values / unit
+    except ValueError:
+        broadcast_shape(**{name: np.asarray(values), "cylinders": np.asarray(unit)})
+        raise
+
+
 def read_only(array: Floats) -> float | Floats:
     """Return a float of an ``array`` without axes, else a read-only copy of it."""
     if array.ndim == 0:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .checks import check_array, read_only
+from .checks import broadcast_shape, check_array, divide_by_unit, read_only
 from .errors import ParameterError, shape_error
 from .quantities import convert, split_unit, to_unit
 from .scale import HasUnits, Scale
@@ -241,7 +241,7 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     ------
     ParameterError
         A value that is not numeric or not finite, a brake or a drag < 0, a function for an array of cylinders or one
-        that cannot be called with a time alone.
+        that cannot be called with a time alone, and an array whose length is not the number of cylinders.
     """
     if value is None or not scale.si:
         return value
@@ -249,6 +249,8 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     if type(value) is type(unit) is float and low < value < np.inf:
         return value / unit
     if isinstance(value, Feedback):
+        sizes = {"gain on V": value.V, "gain on omega": value.omega, "cylinders": unit * scale["V"] * scale["omega"]}
+        broadcast_shape(**{label: np.asarray(size) for label, size in sizes.items()})
         gains = value.V * scale["V"] / unit, value.omega * scale["omega"] / unit
         return Feedback(make_dimensionless(name, value.value, scale), *gains)
     if callable(value):
@@ -260,6 +262,7 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
         return lambda t: check_array(f"{name}(t)", value(t * scale["t"]), unit=scale.unit(name), low=low) / unit
     if isinstance(value, Schedule):
         values = check_array(f"values of {name}", value.values, low=low)
-        return Schedule(value.times / scale["t"], values / (unit[:, np.newaxis] if np.ndim(unit) else unit))
-    quotient = check_array(name, value, unit=scale, low=low) / unit
+        units = unit[:, np.newaxis] if np.ndim(unit) else unit
+        return Schedule(value.times / scale["t"], divide_by_unit(name, values, units))
+    quotient = divide_by_unit(name, check_array(name, value, unit=scale, low=low), unit)
     return quotient if quotient.ndim else float(quotient)

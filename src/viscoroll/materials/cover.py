@@ -96,9 +96,8 @@ class Cover(Bodies):
         part: part of the layer in the long-time compliance of both bodies as half-spaces, in (0, 1].
         other_nu: Poisson's ratio of the other body, in [0, 0.5]; without effect if ``part`` is 1.
         other: series of the other body, times in units of T_ref; None: elastic.
-        Raises ParameterError for a value out of range, a ``series`` of many materials or of another type, an ``other``
-        that is no Prony, and shapes that do not agree.  ``other`` must be one material too; that is not checked.  A
-        cover that is too thin for its law is refused where the law is computed.
+        Raises ParameterError for a value out of range, a ``series`` or ``other`` of many materials or of another type,
+        and shapes that do not agree.  A cover that is too thin for its law is refused where the law is computed.
         """
         if isinstance(series, Real) and not isinstance(series, bool):
             series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
@@ -115,6 +114,8 @@ class Cover(Bodies):
         if ratio.shape not in ((), given.shape):
             raise shape_error("nu", ratio.shape, "a number, or one for each thickness, (n,)")
         other = Prony.elastic() if other is None else other
+        if not isinstance(other, Prony) or other.shape:
+            raise ParameterError("other", f"{other!r:.60}", "a Prony series of one material, or None")
         bodies = (series, other) if on == "cylinder" else (other, series)
         share = part if on == "cylinder" else 1.0 - part
         values: Any = dict(zip(("cylinder", "base"), bodies, strict=True), share=share, on=on, other_nu=other_nu)

@@ -245,9 +245,10 @@ def is_law(path: str | PathLike[str]) -> bool:
     not that of its bytes.  A file without a seal is read as it is.
     """
     try:
-        return read_content(path, "material or law of viscoroll", "write it again").attributes.get(KIND) in (LAW, COVER)
+        content = read_content(path, "material or law of viscoroll", "write it again")
     except OSError:  # no HDF5: the reader of materials reports that
         return False
+    return str(content.attributes.get(KIND)) in (LAW, COVER)
 
 
 def read_law(path: str | PathLike[str]) -> Content:
@@ -309,7 +310,7 @@ def check_law(content: Content, path: Any) -> None:
     Returns None for a file that is as it was written.
     """
     numbers, attributes = content
-    kind = attributes.get(KIND)
+    kind = str(attributes.get(KIND))  # another writer may have stored an array
     if kind not in KINDS:
         raise FileError(path, "is not a law file of viscoroll: `viscoroll tables law` writes one")
     schema = attributes.get(SCHEMA)

@@ -320,7 +320,7 @@ class Prony(OneOrMany):
         factor: dimensionless, > 0, a number, or (n,), one for each of n materials; of a single material (n,) makes n.
         Returns a new :class:`Prony` in the same form, with the same strengths.
         Raises ParameterError for a factor that is not positive or not finite, and for one that makes a time 0 or
-        infinite; ValueError of numpy for another number of factors than of materials.
+        infinite, and for another number of factors than of materials.
 
         Examples
         --------
@@ -328,7 +328,9 @@ class Prony(OneOrMany):
         >>> vr.Prony([2.0], [1.0]).slower(10.0).tau
         array([10.])
         """
-        times = self._times * check_array("factor", factor, above=0.0)[..., np.newaxis]
+        factors = check_array("factor", factor, above=0.0)
+        broadcast_shape(factor=factors, materials=np.empty(self.shape))
+        times = self._times * factors[..., np.newaxis]
         if self.by_creep:
             return Prony.creep(self._strengths, times, alpha=self.alpha)
         return Prony(self._strengths, times)

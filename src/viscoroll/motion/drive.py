@@ -79,8 +79,8 @@ class Drive(NamedTuple):
 
         scale: :class:`Scale` of the roller: the SI values of 1 of each quantity.  Callables of the result take the time
         in T_ref, the unit of time of that scale.
-        Raises ParameterError for what is not numeric or not finite, a brake or a drag below 0, and a callable for many
-        cylinders; ValueError of numpy for an array whose length is not the number of cylinders.
+        Raises ParameterError for what is not numeric or not finite, a brake or a drag below 0, a callable for many
+        cylinders, and an array whose length is not the number of cylinders.
         """
         return (
             Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))

@@ -279,8 +279,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     functions: :class:`DriveFunctions` of the drive, with the prescribed speed.
     speed: the prescribed speed as in the drive: a number, an array, a Schedule or a callable.
     Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude or is not finite,
-    and where the speed jumps or is an empty array; ValueError of numpy where both have values for different numbers of
-    motions.
+    where the speed jumps or is an empty array, and where both have values for different numbers of motions.
     Returns (m,) where the speed has values for m > 1 motions.  Where it is the same for all motions: a float if
     ``stated`` is a number or None, else an array in the shape of ``stated``.  Of a callable it is the value of the
     callable itself, not of its fit.
@@ -290,10 +289,12 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     start, scale = functions.speed_at_start(name)
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
-    if stated is not None and not (np.abs(check_array(f"{name}0", stated) - start) <= _START * scale).all():
-        raise mark_dimensionless(
-            ParameterError(f"{name}0", stated, f"None, or {float(start[0]):.12g}, the prescribed speed at t = 0")
-        )
+    if stated is not None:
+        given = check_array(f"{name}0", stated)
+        broadcast_shape(**{f"{name}0": given, name: start if start.size > 1 else np.empty(())})
+        if not (np.abs(given - start) <= _START * scale).all():
+            allowed = f"None, or {float(start[0]):.12g}, the prescribed speed at t = 0"
+            raise mark_dimensionless(ParameterError(f"{name}0", stated, allowed))
     if start.size > 1:
         return start
     return float(start[0]) if np.ndim(stated) == 0 else np.full(np.shape(stated), start[0])

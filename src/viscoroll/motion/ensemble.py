@@ -156,7 +156,7 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
     arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
     arrays |= {"V0": np.asarray(problem.V0), "omega0": np.asarray(problem.omega0)}
     counts = (1, 1) if problem.functions is None else problem.functions.counts
-    own = {name: np.zeros(n) for name, n in zip(("pieces", "gains"), counts, strict=True) if n > 1}
+    own = {name: np.zeros(n) for name, n in zip(("drive", "gains"), counts, strict=True) if n > 1}
     shape = broadcast_shape(**arrays, **drives, **own)
     if len(shape) > 1:
         raise shape_error("V0 or omega0", shape, "a number or a vector (n,)")

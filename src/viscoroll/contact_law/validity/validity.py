@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from ...core.array_types import Numbers
-from ...core.checks import broadcast_shape, check_array
+from ...core.checks import broadcast_shape, check_array, divide_by_unit
 from ...core.errors import ParameterError
 from ..contact_table import evaluate_contact
 from ..parameters import Roller, resolve_model
@@ -67,7 +67,8 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
     speeds = {"V": V} if omega is None else {"V": V, "omega": omega}
     given = {name: check_array(name, value, unit=scale) for name, value in speeds.items()}
     with np.errstate(over="ignore"):
-        speed, spin = given["V"] / scale["V"], given["omega"] / scale["omega"] if omega is not None else None
+        scaled = {name: divide_by_unit(name, array, scale[name]) for name, array in given.items()}
+    speed, spin = scaled["V"], scaled.get("omega")
     broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
     if scene.cover is None:
         free = FreeRolling.of_scene(scene, speed)

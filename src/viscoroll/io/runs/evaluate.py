@@ -55,8 +55,8 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     -------
     Ensemble
         The motions, ``count`` of them, at the output times of the run, in the units of its file, with the fields that
-        the run keeps or summarises (``run.fields``); the other fields are None.  A motion that cannot be rolled to its end raises nothing: its ``status`` says so,
-        and its outputs from there on are NaN.
+        the run keeps or summarises (``run.fields``); the other fields are None.  A motion that cannot be rolled to its
+        end raises nothing: its ``status`` says so, and its outputs from there on are NaN.
 
     Raises
     ------

@@ -144,7 +144,7 @@ def _roller_of(what: Any) -> Scene | Cylinder:
     Raises ParameterError for anything else (the law of a layer or of every alpha too), and for a roller whose
     parameters are arrays; FileError for a dataset of a law that is incomplete.
     """
-    if getattr(what, "attrs", {}).get(schema.KIND) == "law":
+    if str(getattr(what, "attrs", {}).get(schema.KIND)) == "law":
         what = parse_law(dataset_content(what), "law")
     if isinstance(what, LawTable) and what.cover is None:
         what = Scene(kappa=1.0, mu=1.0, material=what)

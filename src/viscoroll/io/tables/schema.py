@@ -127,7 +127,7 @@ def check(table: Any, path: Any) -> None:
     if not hasattr(table, "attrs"):
         raise FileError(path, f"needs a dataset, not {table!r:.60}: read a file by vr.tables.load")
     about = table.attrs
-    if about.get(KIND) not in KINDS:
+    if str(about.get(KIND)) not in KINDS:
         raise FileError(path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
     version, major = about.get("schema_version"), SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:

@@ -23,7 +23,7 @@ _ERROR_NAMES = {"spline_error": "spline", "linear_error": "linear", "interpolati
 
 def is_law(table: Any) -> bool:
     """Whether a dataset ``table`` is the law of a material or of every alpha; else it is a grid, or no table."""
-    return getattr(table, "attrs", {}).get(schema.KIND) in law_file.KINDS
+    return str(getattr(table, "attrs", {}).get(schema.KIND)) in law_file.KINDS
 
 
 def check(table: Any, path: Any) -> None:
