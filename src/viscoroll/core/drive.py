@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .checks import broadcast_shape, check_array, divide_by_unit, read_only
-from .errors import ParameterError, shape_error
+from .errors import ParameterError, described_error, shape_error
 from .quantities import convert, split_unit, to_unit
 from .scale import HasUnits, Scale
 
@@ -63,12 +63,12 @@ class Schedule:
             shapes = f"times {np.shape(times)}, values {np.shape(values)}"
             allowed = "(k,) for both, or (n, k) for n motions"
             raise ParameterError("shapes of a Schedule", shapes, allowed)
-        for wrong, allowed in (
-            (times[..., 1:] < times[..., :-1], "in ascending order"),
-            (times[..., 2:] == times[..., :-2], "given once, or twice for a jump"),
+        for wrong, found, allowed in (
+            (times[..., 1:] < times[..., :-1], "fall after {:.6g}", "in ascending order"),
+            (times[..., 2:] == times[..., :-2], "have {:.6g} three times", "given once, or twice for a jump"),
         ):
             if wrong.any():
-                raise ParameterError("times", times[..., : wrong.shape[-1]][wrong][0], allowed)
+                raise described_error("times", found.format(times[..., : wrong.shape[-1]][wrong][0]), allowed)
 
 
 @dataclass(frozen=True, eq=False)

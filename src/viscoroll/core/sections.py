@@ -79,7 +79,8 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
         words = [key for key in keys if not key.isdecimal()]
         if missing := _MISSING.fullmatch(problem):
             raise section_error(path, ".".join((name, *words)), "", f"needs {missing[1]}") from error
-        found = f"{words[-1]} = {value!r:.40}" if words else ""
+        text = repr(value)
+        found = f"{words[-1]} = {text if len(text) <= 40 else f'{text:.37}...'}" if words else ""
         if expected := _WRONG_TYPE.fullmatch(problem):
             types = " or ".join(_TYPE_NAMES[name] for name in expected[1].split(" | ") if name != "null")
             problem = f"{'.'.join(words)} = {value!r:.40}: must be {types}"
@@ -87,6 +88,8 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
             problem = f"{found}: must be {bounds[1]}"
         elif words and (choices := _list_choices(kind, words)):
             problem = f"{found}: must be one of {choices}"
+        elif problem == "Number out of range":
+            problem = f"{found}: is larger than a double can be, 1.8e+308"
         elif words and not isinstance(value, dict):
             problem = f"{found}: {problem}"
         raise section_error(path, ".".join((name, *words[:-1])), words[-1] if words else "", problem) from error

@@ -181,7 +181,8 @@ def differentiate(name: str, speed: Piecewise) -> Piecewise:
     jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
     if jumps.any():
         when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
-        raise mark_dimensionless(described_error(name, f"jumps at t = {when:.6g}", "continuous, as a prescribed speed"))
+        allowed = "continuous, as it is a prescribed speed"
+        raise mark_dimensionless(described_error(name, f"jumps at t = {when:.6g}", allowed))
     order = np.arange(1, speed.terms.shape[-1])
     dx_dt = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
     terms = speed.terms[..., 1:] * order * dx_dt[..., None]

@@ -134,12 +134,12 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     present = [name for name, column in columns.items() if column is not None]
     for name in (*kind.COORDINATES, *section.columns):
         if name not in present:
-            raise missing_column(table, headings[name], f": write columns = {{ {name} = HEADING }}")
+            raise missing_column(table, headings[name], f": name one of these in columns = {{ {name} = ... }}")
     others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]
     if others and not set(present) & set(kind.QUANTITIES):
         name = kind.QUANTITIES[0]
         problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}"
-        advice = f"if one of them is {name}, write columns = {{ {name} = HEADING }}; to plan a test, delete them"
+        advice = f"if one of them is {name}, name it in columns = {{ {name} = ... }}; to plan a test, delete them"
         raise FileError(path, f"{problem}: {advice}")
     if others:
         text = f"{path.name}: unused columns: {', '.join(others)}"

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike
 
 from ...core.array_types import Floats
 from ...core.checks import check_array, check_choice, check_integer, check_number
-from ...core.errors import ParameterError, shape_error
+from ...core.errors import ParameterError, described_error
 from ...cylinder import Cylinder
 from ...scene import Scene
 
@@ -121,5 +121,7 @@ def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
     if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
-        raise shape_error(name, axis.shape, "one-dimensional and strictly increasing")
+        found = "does not increase strictly" if axis.size else "is empty"
+        found = found if axis.ndim == 1 else f"has shape {axis.shape}"
+        raise described_error(name, found, "a number, or a vector that increases strictly")
     return axis
