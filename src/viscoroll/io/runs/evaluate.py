@@ -47,7 +47,8 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     Parameters
     ----------
     run : a run of :func:`read_run`.
-    values : name of each uncertain input -> a number or (count,), in the units of the file; other names have no effect.
+    values : name of each uncertain input -> a number, (1,) or (count,), in the units of the file; other names have no
+        effect.
     count : number of motions, >= 1.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, else all cores available.
 
@@ -76,7 +77,7 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     (1, 2)
     """
     for name in run.inputs.uncertain:
-        if np.shape(values[name]) not in ((), (count,)):
+        if np.shape(values[name]) not in ((), (1,), (count,)):
             raise shape_error(name, np.shape(values[name]), f"a number or one for each motion, count = {count}")
     content, settings = run.inputs.filled(values), run.settings
     start = content["start"]
