@@ -204,7 +204,7 @@ class Steady(Values):
         """Return the title and the rows of the printed report.
 
         Returns (title; list of :class:`SummaryRow`).  Of one load the rows are its equilibria one after another, each
-        with "stable" or "not stable" and nine quantities to six digits, or the reason why there is none; of an array
+        with "stable" or "unstable" and nine quantities to six digits, or the reason why there is none; of an array
         of loads the number of all equilibria and of the stable ones, and their speeds.
         """
         if np.ndim(self.count):
@@ -215,7 +215,7 @@ class Steady(Values):
             return "Steady rolling: no equilibrium", [SummaryRow("reason", str(self.reason))]
         rows = []
         for n in range(self.count):
-            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "not stable"))
+            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "unstable"))
             for name in ("V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"):
                 rows.append(SummaryRow(f"  {name}", f"{self[name][n]:.6g}", unit_of(self._attributes(name))))
         return "Steady rolling", rows

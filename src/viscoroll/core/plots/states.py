@@ -116,7 +116,7 @@ def equilibria(data: xr.Dataset) -> Figure:
     figure, axes = new_figure("Steady rolling: stable (filled) and not (open)")
     x, V, stable = (data[name].broadcast_like(data["V"]).values.ravel() for name in (load, "V", "stable"))
     style: dict[str, Any] = {"color": LINES[1]["color"], "marker": "o", "linestyle": "", "markersize": 4}
-    for chosen, face, text in ((stable != 0, style["color"], "stable"), (stable == 0, "white", "not stable")):
+    for chosen, face, text in ((stable != 0, style["color"], "stable"), (stable == 0, "white", "unstable")):
         drawn = chosen & np.isfinite(V)
         axes.plot(x[drawn], V[drawn], markerfacecolor=face, label=text, **style)
     axes.set(xlabel=variable_label(data[load]), ylabel=variable_label(data["V"]))
