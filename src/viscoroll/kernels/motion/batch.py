@@ -48,9 +48,11 @@ class Drives(NamedTuple):
 
 @kernel
 def _value_of_motion(array, i):
-    """Return the value of motion ``i``, an int: ``array[i]``, or the last value where ``array`` is shorter.
+    """Return the value of a motion: ``array[i]``, or the last value where ``array`` is shorter.
 
     array: (1,) or (n,), one value for all motions, or one for each; not empty.
+    i: int, index of the motion, 0 ... n - 1.
+    Returns a value of the type of the array.
     """
     return array[min(i, array.size - 1)]
 
@@ -65,7 +67,8 @@ def _drive_of_motion(drives, gamma, i, segments):
     drives: Drives, over t; one for all motions, or one for each.
     gamma: float, tau = gamma t, dimensionless, above 0.
     i: int, index of the motion.
-    segments: (k, columns), written: k segments, columns as COL_* of :mod:`records`.
+    segments: (k, columns), written: k segments over tau, columns as COL_* of :mod:`records`, k and columns as in
+    ``drives.segments``.
     Returns the Gains of the motion, those of the last one given if there are fewer; they are not converted.
     """
     source = drives.segments[min(i, drives.segments.shape[0] - 1)]
@@ -86,12 +89,12 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
 
     Batch, Drives and Options come as plain tuples: numba needs microseconds to find the type of a record.
 
-    batch: fields of a :class:`Batch`, parameters and starts of n motions; n is the length of the second axis of
-    ``out``.
-    drives: fields of :class:`Drives`, over t.
+    batch: fields of a :class:`Batch`: law, moments_differ, and kappa, mu, gamma, j, V0 and omega0, arrays (1,) or (n,),
+    of n motions; n is the length of the second axis of ``out``.
+    drives: fields of :class:`Drives`, over t: segments, gains, prescribed.
     t: (k,), output times, dimensionless, increasing, k >= 1, the first at least 0.
-    options: fields of :class:`Options`, of the integration.
-    rows: (q,) int, requested output rows of :mod:`output`.
+    options: fields of :class:`Options`: rtol, rest_speed (0: no rest threshold), max_steps of a motion.
+    rows: (q,) int, requested output rows, 0 ... 12 of :mod:`output`; not checked.
     out: (q, n, k), [quantity, motion, time], filled; NaN at times that a motion did not reach.
     info: (n, 5), [motion, INFO_COLUMNS], filled: status (a code of :mod:`records`), trial steps, regime changes, and t
     of the onset of stick and of coming to rest, NaN where they do not occur.  A motion that fails has its status here;

@@ -104,8 +104,8 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     D is the differentiation matrix.  Node 0 is given, not an unknown: the column of node 0 is not written, and in the
     other columns the entry of node 0 is 0.
 
-    weights, diagonal: int, indices in ``nodes`` of the rows with the numbers of either diagonal matrix; the weight of
-    node 0 must be finite, its entry in ``diagonal`` is not read.
+    weights: int, index in ``nodes`` at which the row of the weights begins; that of node 0 must be finite.
+    diagonal: int, index in ``nodes`` at which the row of the subtracted diagonal begins; its node 0 is not read.
     nodes: Workspace.nodes.
     matrix: pointer to ROW_LENGTH^2 numbers, of which columns 1 ... N are written; column 0 keeps its values, 0 from the
     start of the motion.
@@ -243,7 +243,9 @@ def evaluate_integral(v, first, nodes, row):
 def row_range(row, nodes):
     """Return the smallest and the largest of the values of a row at all nodes.
 
-    row: int, index in ``nodes`` of the row.
+    Event functions are compared with their range, and V with its largest value.
+
+    row: int, index in ``nodes`` at which the row begins.
     nodes: Workspace.nodes.
     Returns (smallest, largest), floats in the unit of the row.  Both are NaN if node 0 is; a NaN at another node is
     passed over.

@@ -52,8 +52,11 @@ _ZERO_SPEED_ROUNDINGS = 30.0
 
 @inline_kernel
 def n_coefficients(row):
-    """Return the number of coefficients of each of the five functions of a segment, an int; row: (columns,), the
-    segment.
+    """Return the number of coefficients of each of the five functions of a segment, an int.
+
+    It is not stored: it follows from the length of the row, two columns and five times that number.
+
+    row: (columns,), the segment.
     """
     return (row.size - COL_COEFFICIENTS) // N_DRIVE_FUNCTIONS
 
@@ -243,7 +246,7 @@ def drive_rounding(segment, drive):
     moduli.
 
     segment: int, index of the segment.
-    drive: Drive, that of the motion.
+    drive: Drive, of which ``segments`` is read.
     Returns a float, dimensionless; 0 where all of these functions are 0.
     """
     return ROUNDING * _sum_of_moduli(drive.segments[segment], DRIVE_FORCE, DRIVE_RATE + 1)
@@ -286,7 +289,8 @@ def is_constant(segment, drive):
     bool.
 
     All their coefficients but the constant ones are exactly 0 then.  The prescribed speed itself may be linear in time.
-    Functions that are 0 are constant.
+    Functions that are 0 are constant.  Only on such a segment is an equilibrium of the motion sought, which is then
+    continued in closed form.
 
     segment: int, index of the segment.
     drive: Drive, of which ``segments`` is read.
@@ -300,8 +304,10 @@ def is_constant(segment, drive):
 
 @kernel
 def has_brake(segment, drive):
-    """Return whether a brake acts anywhere on a segment, a bool; segment: int, its index; drive: Drive, that of the
-    motion.
+    """Return whether a brake acts anywhere on a segment: whether a coefficient of its largest torque is not 0; a bool.
+
+    segment: int, index of the segment.
+    drive: Drive, of which ``segments`` is read.
     """
     return _sum_of_moduli(drive.segments[segment], DRIVE_BRAKE, DRIVE_BRAKE + 1) > 0.0
 
@@ -327,7 +333,7 @@ def is_undriven(segment, drive):
     It is :func:`is_unloaded` with all gains of the feedback 0.
 
     segment: int, index of the segment; all later ones are considered too.
-    drive: Drive, that of the motion.
+    drive: Drive, of which ``segments``, ``prescribed`` and ``gains`` are read.
     """
     gains = drive.gains
     size = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)

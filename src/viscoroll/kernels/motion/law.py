@@ -53,7 +53,8 @@ def evaluate_moments(u, scene):
 def rest_limits(scene):
     """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for half-spaces.
 
-    L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.
+    L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.  Departure from rest and exponential decay
+    are decided with these limits.
 
     scene: Scene, of which kappa and ``law`` are read.
     """
@@ -129,7 +130,7 @@ def added_inertia(V, scene):
     The equations are in docs/theory_materials.md, Slowly changing speed.
 
     V: float, speed of the axis of either sign, dimensionless.
-    scene: Scene, of which ``law``, kappa and gamma are read.
+    scene: Scene, of which ``law``, kappa and gamma are read; motions of a cover have none.
     Returns (n, its derivative in V, its integral over V), floats, dimensionless; all are 0 for a law without added
     mass.  n is even and its derivative odd in V; at V = 0 the derivative is that of V > 0.  The integral begins at V =
     0, but at infinity where n <= -4 at V = 0, as V = 0 is not reached then.

@@ -36,7 +36,7 @@ COMPLETED = 0
 CAME_TO_REST = 1
 #: Status of a motion: the allowed number of steps was used up.
 STEP_LIMIT = 2
-#: Status of a motion: every step, however short, was rejected.
+#: Status of a motion: all trials of one step, ever shorter, were rejected.
 STEP_TOO_SMALL = 3
 #: Status of a motion: the departure from rest is not unique.
 NOT_UNIQUE = 4

@@ -119,9 +119,9 @@ def _end_at_V_zero(step, remaining, state, regime, work):
 
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.
-    state: State, at the left end.
-    regime: Regime, at that state.
-    work: Workspace, with V' at node 0, and the Drive.
+    state: State, at the left end; V is read.
+    regime: Regime, at that state; full_slip, direction and locked are read.
+    work: Workspace, with V' at node 0; the Drive and j are read too.
     Returns (Step, whether it ends at the expected time of V = 0, a bool); the Step is unchanged where that time is
     after its end, or inf, and then the second is False; at V = 0 with V' < 0 its length is 0.
     """
@@ -220,20 +220,24 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
 
     A step whose error exceeds its tolerance is repeated shorter.  One that cannot be shortened is accepted with up to
     ten times its tolerance.  At an equilibrium under a constant drive the rest of the segment is one step in closed
-    form.
+    form; that is not tried where from this segment on no force, torque, brake or prescribed speed acts.
 
     stick_formed: bool, whether the stick zone has just formed; it matters to the first step alone.
     state: State, at the start.
     regime: Regime, to integrate.
-    step_state: StepState, at the start; h = 0: the length of the first step is chosen here.
-    work: Workspace, of the motion; outputs, quadratures and ends of steps are written.
-    Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start without one; the
-    StepState counts the rejected steps too.  The Regime is still the one that ends, but sigma may have changed at d =
-    0.  The event is its code (:mod:`workspace`), or
+    step_state: StepState, at the start; h = 0: the length of the first step is chosen here; h > 0 is raised to 1e-14
+    tau (SHORTEST_STEP) where it is shorter.
+    work: Workspace, of the motion; nodes, Newton matrices, dense output, outputs, quadratures and ends of steps are
+    written.
+    Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start without one.  The
+    StepState counts the rejected steps too; its h is the length that follows from the error of the last trial step, as
+    passed if there was none, and 0 after an equilibrium.  The Regime is still the one that ends, but sigma may have changed at d = 0.  The event is its
+    code (:mod:`workspace`), or
 
     - NO_EVENT at the end of the segment, if the allowed steps are used up, or if the rest of the motion is exponential
       (:func:`is_coasting`);
-    - STEP_FAILED if every step was rejected, however short.
+    - STEP_FAILED if all trials of one step were rejected and the error of the last one, the 61st or one after which a
+      shorter step would not change tau, was above ten times its tolerance, or NaN.
     """
     nodes, segment, drive = work.nodes, step_state.segment, work.drive
     end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0

@@ -156,11 +156,12 @@ def has_strong_friction(load, regime, scene):
     """Return whether friction is so strong that V is collocated in place of p, with Q in its rate; a bool.
 
     With k = mu/(2 kappa) it is where k inverse_mass > 0.8 (inverse_mass + inverse_inertia), in partial slip with sigma
-    < 0: only there may dp/dV vanish.  It is False in full slip and where V is prescribed.
+    < 0: only there may dp/dV vanish.  0.8 is a fraction of the k at which dp/dV of half-spaces at rest is 0 at d = -1.
+    The result is False in full slip and where V is prescribed.
 
     load: Load, whose ``inverse_mass`` and ``inverse_inertia`` are read.
     regime: Regime, that of the state; ``full_slip`` and ``sigma`` are read.
-    scene: Scene, of which mu and kappa are read.
+    scene: Scene, of which mu and kappa > 0 are read.
     """
     inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
     strong = k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
