@@ -102,9 +102,9 @@ def _spin_against_brake(load, scene):
 
     load: Load, at V = 0, of a segment with a brake, whose torque may be 0 at the time.
     scene: Scene, of which kappa, mu > 0, ``law`` and, for the added mass (n > -1 at V = 0), gamma are read.
-    Returns (sign, held): sign of omega in the direction of ``load``, 1.0 where d at omega = 0 is at most -1, as omega then grows with V, else that
-    of the torque that is left, 0.0 for none; held, a bool, whether the brake holds omega at 0 (also where both torques
-    are equal), in which case the sign is to be ignored.
+    Returns (sign, held): sign of omega in the direction of ``load``, 1.0 where d at omega = 0 is at most -1, as omega
+    then grows with V, else that of the torque that is left, 0.0 for none; held, a bool, whether the brake holds omega
+    at 0 (also where both torques are equal), in which case the sign is to be ignored.
     """
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
@@ -147,8 +147,8 @@ def _local_maximum_of_residual(load, scene):
         -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
 
     where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so that the larger zero of
-    the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the residual is quadratic, and its only maximum is
-    returned.
+    the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the residual is quadratic, and its only maximum
+    is returned.
 
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.

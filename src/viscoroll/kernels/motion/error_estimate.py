@@ -89,8 +89,9 @@ def _d_weight(d):
 def _rounding_scale_of_V(step, work):
     """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's iteration.
 
-    V' = Q - M + f, traction less rolling moment plus force, may be a small difference of Q and f.  Its rounding changes V during the step, or during the
-    relaxation time of V if that is shorter.  It is used under a drive without feedback of omega on V'.
+    V' = Q - M + f, traction less rolling moment plus force, may be a small difference of Q and f.  Its rounding changes
+    V during the step, or during the relaxation time of V if that is shorter.  It is used under a drive without feedback
+    of omega on V'.
 
     step: Step, the trial step; ``h`` is read.
     work: Workspace, with the force and the Newton diagonal of p at the last node, mu and rtol.

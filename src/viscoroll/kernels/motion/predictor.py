@@ -122,8 +122,8 @@ def _predict_relaxation(step, relaxation, regime, nodes):
     step: Step, the one to predict, with V > 0 or in full slip at its left end; ``h`` is read.
     relaxation: float, derivative of the slope of the second unknown in itself, per unit of tau; below 0 it relaxes.
     regime: Regime, that of the step; ``full_slip`` is read.
-    nodes: Workspace.nodes, with V, V', the second unknown and the weighted rate at node 0; V and the second unknown are written at nodes 1 ... N, limited as by
-    :func:`_store_unknowns`.
+    nodes: Workspace.nodes, with V, V', the second unknown and the weighted rate at node 0; V and the second unknown are
+    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.
     """
     omega_or_d_rate = nodes[ROW_WEIGHTED_RATE] if regime.full_slip else nodes[ROW_WEIGHTED_RATE] / nodes[ROW_V]
     for i in range(1, N + 1):
@@ -144,8 +144,8 @@ def _predict_from_rest(step, regime, work):
 
     step: Step, the one to predict.
     regime: Regime, that of the step.
-    work: Workspace, with V', the weighted rate and d at node 0; Scene and Drive are read.  V and the second unknown are written at nodes 1 ... N,
-    limited as by :func:`_store_unknowns`.
+    work: Workspace, with V', the weighted rate and d at node 0; Scene and Drive are read.  V and the second unknown are
+    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.
     """
     nodes = work.nodes
     load, d = evaluate_load(step.tau + step.h, step.segment, regime, work), 0.0

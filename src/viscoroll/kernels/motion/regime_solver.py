@@ -231,8 +231,8 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     written.
     Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start without one.  The
     StepState counts the rejected steps too; its h is the length that follows from the error of the last trial step, as
-    passed if there was none, and 0 after an equilibrium.  The Regime is still the one that ends, but sigma may have changed at d = 0.  The event is its
-    code (:mod:`workspace`), or
+    passed if there was none, and 0 after an equilibrium.  The Regime is still the one that ends, but sigma may have
+    changed at d = 0.  The event is its code (:mod:`workspace`), or
 
     - NO_EVENT at the end of the segment, if the allowed steps are used up, or if the rest of the motion is exponential
       (:func:`is_coasting`);
