@@ -165,11 +165,12 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     at : int, first column to write.
     tau_out : output times tau = gamma t, ascending, > 0 from column ``at`` on, (times,).
     until : float, time tau of the onset; an output at that time is not written.
-    slide : :class:`FullSlipStart`: frame, V - j omega, and (T, X) of the start.
-    level : SPEEDS, PATH or LOSS: distance, angle and slip loss are 0 below PATH.
-    flow : Flow, of the scene.
+    slide : :class:`FullSlipStart`: frame; w = V - j omega at the start, in the mirrored frame; T and X, time tau and
+        gamma times the distance of sliding between rest and the V of the start.
+    level : SPEEDS, PATH or LOSS: distance, angle and slip loss are written from PATH on, and 0 below it.
+    flow : Flow, of the scene; ``table``, kappa, mu and j are read.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller; delta is +inf where V
-        = 0.  Columns from the onset on stay.
+        = 0.  Columns with ``tau_out`` >= ``until`` stay.
     Returns the index of the next column to write, int; it is the number of times where no output is left.
     """
     mu, per_j = flow.mu, 1.0 / flow.j
@@ -234,11 +235,12 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     """Write all outputs from the onset of partial slip to the last output time, those after coming to rest included.
 
-    at : int, first column to write.
-    tau_out : output times tau = gamma t, ascending, (times,).
+    at : int, first column to write; nothing is written if it is the number of columns.
+    tau_out : output times tau = gamma t, ascending, (times,), at least one.
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
-    request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
+    request : :class:`.records.Request`: level; rest, the value of max(|V|, |omega|) below which a motion is at rest, 0
+        for none; rest_slow_log, the slow logarithm at that value.
     flow : Flow, of the scene.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller; rows beyond the level
         have no meaning.

@@ -95,7 +95,7 @@ def unsteady_loop(law, kappa, V, out):
     law : :class:`Law` that has N (``N_rows`` is not empty); marks, rows and ``N_rows`` are read.
     kappa, V : slenderness, > 0, and speed, of either sign, finite, dimensionless, of length 1 or n.
     out : (n,) floats, written: N in units of P T_epsilon^2.  Of a cover it is NaN in the rows of the law, and without
-        meaning beyond the last row.
+        meaning beyond the last row.  Returns nothing.
     """
     for n in range(out.size):
         _, out[n], _, _ = _evaluate_N(element(kappa, n) * abs(element(V, n)), law)

@@ -169,14 +169,16 @@ def traction_slopes(u, L, dL, D, law):
     """Return the slopes of |Q|/mu: over u at fixed D, and over D at fixed u.
 
     u : float, kappa |V|, dimensionless, >= 0.
-    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is not read at small D.
+    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is read only where the plain
+        formula below is used: neither with the mean slopes nor in full slip.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
     Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) in full slip (L <= D), and where L or D is
     NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they are -2 w (A dL + d(H/F^2)/dv) and 2 w A.
 
     As in :func:`traction_over_mu`, mean slopes of H/F^2 and of its slope are used where D is below L/16 or a difference
-    would lose digits; at D = 0 or u = 0 the slope over u then is 0.
+    would lose digits.  With them the slope over u is 0 at D = 0 and at u = 0; from D = L/16 on the plain formula holds
+    at u = 0 too, unless a difference would lose digits.
     """
     w = L - D
     if not w > 0.0:
@@ -269,8 +271,8 @@ def Q_slopes(u, L, dL, D, state, law):
 
 @inline_kernel
 def _index(k, request):
-    """Return the index of the state at position ``k``, an int >= 0, in the order of evaluation: ``request.order[k]``,
-    or k itself if ``order`` of the :class:`Request` is empty.
+    """Return the index of the state at position ``k``, an int >= 0, in the order of evaluation, an int:
+    ``request.order[k]``, or k itself if ``order`` of the :class:`Request` is empty.  k is not checked.
     """
     return request.order[np.uint64(k)] if request.order.size > 0 else k
 
@@ -292,12 +294,14 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
 
     arguments : unsigned int, index in ``scratch`` of the arguments of column 0: _U or _STICK.
     positions : unsigned int, index in ``scratch`` of the positions: _POSITION for u, _STICK_POSITION for v.
-    begin, end : int, first column, which is the place of a state in its block, and the one after the last.
+    begin, end : int, first column, which is the place of a state in its block, and the one after the last; 0 <= begin
+        <= end <= TOGETHER = 64, the states in a block.
     laws : tuple of :class:`Law`; the state in column k belongs to law k modulo their number, which must have its
         material selected.
     scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.  Three numbers a state are written: at ``positions`` the
         number of its row, an int (-1 beyond the last row) whose bits are stored as a double; TOGETHER numbers further
-        t; again TOGETHER further dt/dx.
+        t; again TOGETHER further dt/dx.  With row -1, which an infinite argument has too, t and dt/dx have no meaning;
+        of a NaN t is NaN.
     Returns nothing.
     """
     for k in range(begin, end):

@@ -129,7 +129,9 @@ def locate_row(x, law):
 
 @inline_kernel
 def in_fast_limit(position):
-    """Return whether a :class:`RowPosition` lies beyond the last row, in the fast limit, a bool."""
+    """Return whether a :class:`RowPosition` lies beyond the last row, in the fast limit, a bool; LLVM is told that this
+    is rare.
+    """
     return unlikely(position.row < 0)
 
 
@@ -223,9 +225,9 @@ def body_moments(position, u, law):
         parts: there each is half of M/V.
 
     Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), floats, dimensionless; the first
-    two are divided by ``scale`` of the :class:`LengthAndMoment` at u, which is 1 in the rows and z in the fast limit;
-    the slopes are not.  Of a cover all of M counts as that of the body with the layer, and the other body has 0; where
-    both relax, these parts have no meaning.
+    two are divided by ``scale`` of the :class:`LengthAndMoment` at u, which is 1 in the rows and z = lam_fast/(2 u) in
+    the fast limit; the slopes are not.  Of a cover all of M counts as that of the body with the layer, and the other
+    body has 0; where both relax, these parts have no meaning.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
@@ -252,6 +254,8 @@ def free_creep_and_slopes(u, law):
 @inline_kernel
 def limits_at_rest(kappa, law):
     """Return L = 2 kappa delta_star/mu and the creepage of free rolling in the limit V -> 0.
+
+    The departure from rest and the exponential decay of a motion are decided with them.
 
     kappa : float, slenderness R/l0, dimensionless, > 0; not read for half-spaces.
     law : :class:`Law` of the material, of which, if it is a cover, L and delta_0 in row 0 are read.
