@@ -387,7 +387,7 @@ def layer_state(stick, asymptote, elapsed, level, flow):
     asymptote : :class:`.records.Asymptote` of the motion, of which rate k0 and split are read.
     elapsed : float, time tau = gamma t since the onset, >= 0 and at most LAYER_END/k0.
     level : SPEEDS, PATH or LOSS: quantities to compute.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
 
     Returns (V, delta, distance, angle, slip loss), floats: speed > 0; creepage, of either sign; distance and angle
     since the onset, times gamma, 0 below level PATH; slip loss since the onset, divided by m (R/T_epsilon)^2, 0 below

@@ -101,7 +101,7 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
     the others are not affected.
     notes: (switches, step_ends), arrays (m, 2) and (l,).  Each motion writes its regime changes, t and code, and the
     ends t of its steps from their starts on, as far as they have room: they are meant for a single motion, as entries
-    that a motion does not write are left as they were.
+    that a motion does not write are left as they were.  Returns nothing.
     """
     motions, drives, options = Batch(*batch), Drives(*drives), Options(*options)
     (with_quadratures, with_forces), (switches, step_ends) = requested_groups(rows), notes

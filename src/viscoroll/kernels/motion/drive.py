@@ -190,7 +190,7 @@ def store_drive(step, work):
 
     step: Step, within one segment; tau, h, segment and undriven are read.
     work: Workspace; the four rows from ROW_DRIVE on are written, nodes 0 ... N.  They are left as they are where
-    nothing drives from the first segment on: they are 0 from the start of the motion then.
+    nothing drives from the first segment on: they are 0 from the start of the motion then.  Returns nothing.
     """
     nodes = work.nodes
     if step.undriven and step.segment == 0:  # The rows are 0 from the start of the motion.

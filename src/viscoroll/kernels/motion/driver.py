@@ -96,7 +96,8 @@ def _advance_at_rest(step_state, work):
 def _is_below_rest_speed(moving, state, regime, step_state, work):
     """Return whether nothing drives any more and both speeds are at most the rest threshold; a bool.
 
-    It is False without a threshold and while something drives or will; a cylinder that does not move counts as below.
+    It is asked where a regime begins; within a regime the event BELOW_REST_SPEED is located.  It is False without a
+    threshold and while something drives or will; a cylinder that does not move counts as below.
 
     moving: bool, whether the cylinder moves.
     state: State, the present one; ignored unless it moves, as is ``regime``.

@@ -115,7 +115,7 @@ def evaluate_event_functions(step, regime, work):
     regime: Regime, that of the step.
     work: Workspace, with the unknowns and the drive at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written as
     above.  The values are dimensionless: speeds for V_ZERO and BELOW_REST_SPEED, in full slip also for STICK_EDGE and
-    OMEGA_ZERO; a squared torque for BRAKE_RELEASE; ratios for all others.
+    OMEGA_ZERO; a squared torque for BRAKE_RELEASE; ratios for all others.  Returns nothing.
     """
     nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
     for i in range(N + 1):

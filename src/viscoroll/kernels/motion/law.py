@@ -30,7 +30,7 @@ def evaluate_moments(u, scene):
     All seven numbers are finite at u = 0 too, where they are the limits of slow rolling.  The added mass is not in the
     moments.  The moments are 0 where both bodies are elastic (alpha = 1).
 
-    u: float, kappa |V|, dimensionless, at least 0.
+    u: float, kappa |V|, dimensionless, at least 0 and finite.
     scene: Scene, of which ``law`` and ``moments_differ`` are read; with ``moments_differ`` False each body takes half
     of the moment.
     Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), floats, dimensionless; L = lam
@@ -54,7 +54,7 @@ def rest_limits(scene):
     """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for half-spaces.
 
     L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.  Departure from rest and exponential decay
-    are decided with these limits.
+    are decided with these limits; :func:`.evaluate.limits_at_rest` gives them for a law.
 
     scene: Scene, of which kappa and ``law`` are read.
     """

@@ -63,7 +63,7 @@ def predict(step, relaxation, dense_step, regime, work):
     none.
     regime: Regime, that of the step.
     work: Workspace, with node 0 of the step (V, the second unknown, V', the weighted rate and ROW_SPEED); V and the
-    second unknown are written at nodes 1 ... N, in partial slip with V >= 0 and |d| <= 1.
+    second unknown are written at nodes 1 ... N, in partial slip with V >= 0 and |d| <= 1.  Returns nothing.
     """
     usable = step.tau > dense_step.tau or step.h > _SHORTER_STEP * dense_step.h
     if usable and dense_step.h > 0.0 and step.tau + step.h <= dense_step.tau + (1.0 + _EXTRAPOLATION) * dense_step.h:
@@ -101,7 +101,7 @@ def _extrapolate(step, dense_step, regime, nodes):
     dense_step: Step, whose dense output is stored; its length is above 0.
     regime: Regime, that of both steps; ``full_slip`` is read.
     nodes: Workspace.nodes, with node 0 of ``step`` and the dense output; V and the second unknown are written at nodes
-    1 ... N, limited as by :func:`_store_unknowns`.
+    1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
     """
     v_start = dense_position(step.tau, dense_step)
     V0 = nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V)
@@ -123,7 +123,7 @@ def _predict_relaxation(step, relaxation, regime, nodes):
     relaxation: float, derivative of the slope of the second unknown in itself, per unit of tau; below 0 it relaxes.
     regime: Regime, that of the step; ``full_slip`` is read.
     nodes: Workspace.nodes, with V, V', the second unknown and the weighted rate at node 0; V and the second unknown are
-    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.
+    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
     """
     omega_or_d_rate = nodes[ROW_WEIGHTED_RATE] if regime.full_slip else nodes[ROW_WEIGHTED_RATE] / nodes[ROW_V]
     for i in range(1, N + 1):
@@ -145,7 +145,7 @@ def _predict_from_rest(step, regime, work):
     step: Step, the one to predict.
     regime: Regime, that of the step.
     work: Workspace, with V', the weighted rate and d at node 0; Scene and Drive are read.  V and the second unknown are
-    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.
+    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
     """
     nodes = work.nodes
     load, d = evaluate_load(step.tau + step.h, step.segment, regime, work), 0.0

@@ -169,8 +169,8 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     - v: position at which the regime ends: on the step, or 2, its right end;
     - Step: the last one tried, whose solution is at the nodes;
     - error: its error divided by its tolerance; the caller rejects a step above 1, whatever the event.  It is inf where
-      Newton's iteration did not converge; at least 10, or NaN, where no trial ended at the event; at most 1 where the
-      event was missed by the shortest step that time resolves;
+      Newton's iteration did not converge; at least 10, or NaN, where no trial ended at the event or the error of one
+      was above 1e6; at most 1 where the event was missed by the shortest step that time resolves;
     - dense_step: the Step whose dense output is stored now: the last one whose iteration converged, or the one passed
       if none did.
     """

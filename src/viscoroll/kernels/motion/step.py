@@ -94,7 +94,7 @@ def store_rhs(i, rates, nodes):
     i: int, the node, 0 ... N.
     rates: Rates, the right-hand side at the node; p, p_rate, weighted_rate and omega are read.
     nodes: Workspace.nodes, with V at the node; entry ``i`` of ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED is
-    written.
+    written.  Returns nothing.
     """
     nodes[ROW_P_RATE + i], nodes[ROW_WEIGHTED_RATE + i] = rates.p_rate, rates.weighted_rate
     nodes[ROW_P + i], nodes[ROW_SPEED + i] = rates.p, max(abs(nodes[ROW_V + i]), abs(rates.omega))
@@ -114,7 +114,7 @@ def _evaluate_residuals(refactor, step, regime, work):
     ROW_P_RESIDUAL, ROW_D_RESIDUAL, ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED are written; with ``refactor``
     also those of ROW_DV_DP, ROW_DP_DD, ROW_COUPLING, ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK, ROW_P_DIAGONAL and
     ROW_D_DIAGONAL.  ROW_P_SLOPE and ROW_D_SLOPE are written whole, with 0 at node 0 (NaN if p or the second unknown is
-    not finite at a node).  ROW_RELAXATION is not finite where V is 0 in partial slip.
+    not finite at a node).  ROW_RELAXATION is not finite where V is 0 in partial slip.  Returns nothing.
     """
     values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
     multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)
@@ -143,7 +143,7 @@ def _add_feedback_to_matrix(work):
 
     work: Workspace, with S^-1 in ``d_matrix``, F in ROW_FEEDBACK and c in ROW_COUPLING; rows and columns 1 ... N of
     ``p_matrix`` are changed.  Both matrices are flat vectors by columns, element (i, k) at ROW_LENGTH k + i; row and
-    column 0 are not used.
+    column 0 are not used.  Returns nothing.
     """
     for k in range(1, ROW_LENGTH):
         for i in range(1, ROW_LENGTH):

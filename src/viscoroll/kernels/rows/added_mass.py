@@ -74,6 +74,7 @@ def _evaluate_added_mass(law, V, kappa, gamma):
 def added_mass(law, V, kappa, gamma):
     """Return the factor gamma N of the added mass, with its slope and its integral; zeros for a law of steady rolling.
 
+    It is :func:`_evaluate_added_mass` behind a test, which is inlined so that steady rolling costs nothing else.
     The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4 there), at infinity.
 
     law : :class:`Law` of the material: polynomials of each octave; ``N_rows`` is empty for steady rolling, where

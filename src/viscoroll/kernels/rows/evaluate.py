@@ -243,6 +243,8 @@ def body_moments(position, u, law):
 def free_creep_and_slopes(u, law):
     """Return 2 kappa delta_0, from the creepage of free rolling, with its first two derivatives over u.
 
+    It is :func:`.cover.free_creep_at` for callers that have not located u.
+
     u : float, kappa |V|, dimensionless, >= 0.
     law : :class:`Law` of the material, of which marks and ``cover_rows`` are read.
     Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; 0.0 each of

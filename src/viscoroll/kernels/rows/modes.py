@@ -40,6 +40,8 @@ _FAST = 1e-9
 def _evaluate_asymptotic(terms, x):
     """Evaluate the asymptotic series sum a_n x^-n of r or k, with its first two derivatives.
 
+    Of large x the Riccati equations would give derivatives as differences that have lost their digits.
+
     terms : coefficients a_0, a_1, ..., of which a_0 = 1 is not read, (terms,), floats.
     x : float, argument a_i z or b_j z, 64 or more, dimensionless; it may be infinite.
     Returns (value, first derivative, second derivative) over x, floats, dimensionless; (1, 0, 0) at infinity.
@@ -56,6 +58,8 @@ def _evaluate_asymptotic(terms, x):
 @inline_kernel
 def _jet(rate, z, function):
     """Return the jet of a function of x = (rate - s) z at s = 0: a vector of four, value, d/dz, d/ds, d2/dz ds.
+
+    It turns derivatives over x, which the ratios of Bessel functions have, into those over z and s (:mod:`.series`).
 
     rate : float, a_i or b_j, rate of the mode, > 0.
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the rate.
