@@ -119,7 +119,7 @@ def prescribed_speed(tau, segment, drive):
     """Return the prescribed speed at one time, V or omega, as ``drive.prescribed`` tells.
 
     tau: float, the time.
-    segment: int, index of the segment that contains tau.
+    segment: int, index of the segment that contains tau; outside it the polynomial is extrapolated.
     drive: Drive, with a prescribed speed; without one the result is 0.
     Returns a float, dimensionless, in a fixed direction, not in that of the regime; exactly 0 where it is rounding: at
     most 30 units of rounding of the sum of its coefficients' moduli on the segment.

@@ -49,6 +49,8 @@ def in_40_digits(function: Callable) -> Callable:
 class Interpolation:
     """Matrices from values at nodes to coefficients, values, slopes and integrals of the polynomial through them.
 
+    Arguments are given by position only (:func:`in_40_digits`).
+
     Parameters
     ----------
     nodes : n distinct numbers, Decimals.
