@@ -63,7 +63,7 @@ _NEGLIGIBLE_FORCE = 1e-75
 
 @inline_kernel
 def _residual_of_d(d, load, scene):
-    """Evaluate the equation of d at V = 0, of the module: its left side less its right side.
+    """Evaluate the equation of d at V = 0, of the module: its left side less its right side, divided by L.
 
     d: float, delta/delta_star, in [-1, 1]; of a cover that of the excess over free rolling.
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).

@@ -241,8 +241,8 @@ def _come_to_rest(code, state, regime, step_state, work):
     code: int, regime in the outputs before; -1 before the first one.
     state, regime: State and Regime, the present ones; of a cylinder at rest State(0, 0).
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; outputs, switches, REST_TIME (t = tau/gamma) and the total of the loss in rolling
-    are written.
+    work: Workspace, of the motion; Scene and Drive are read; outputs, switches, REST_TIME (t = tau/gamma) and the total
+    of the loss in rolling are written.
     Returns the StepState at the last output time, with one trial step more and all outputs written.
     """
     nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]

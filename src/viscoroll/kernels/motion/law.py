@@ -85,7 +85,7 @@ def critical_creepage(V, scene):
     On a cover it is the excess over the creepage of free rolling.  It is above 0, even in V, and mu L/(2 kappa) with L
     of :func:`rest_limits` at V = 0.
 
-    V: float, speed of the axis of either sign, dimensionless.
+    V: float, speed of the axis of either sign, finite, dimensionless.
     scene: Scene, of which kappa, mu and ``law`` are read.
     """
     u, law = scene.kappa * abs(V), by_value(scene.law)

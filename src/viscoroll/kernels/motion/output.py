@@ -175,7 +175,7 @@ def _write_state(column, state, segment, regime, work):
 
 @kernel
 def write_due_outputs(state, regime, step_state, work):
-    """Write the outputs at times up to the time reached, times (1 + rtol), by the state reached.
+    """Write the outputs at times up to (1 + rtol) times the time reached, by the state reached.
 
     They are those at the end of the last step, which :func:`accept_step` leaves to the next one.  The quadratures keep
     their totals.

@@ -137,10 +137,10 @@ def _find_crossed_event(step, remaining, regime, work):
 
     A prescribed V that is 0 at the end of its segment does not count: the next segment decides its direction.
 
-    step: Step, the solved one.
+    step: Step, the solved one; ``h`` and ``undriven`` are read.
     remaining: float, time in tau to the end of the segment.
-    regime: Regime, that of the step.
-    work: Workspace, with the event functions.
+    regime: Regime, that of the step; ``full_slip``, ``spin_sign`` and ``locked`` are read.
+    work: Workspace, with the event functions, ROW_SPEED, Drive and rest threshold; ROW_DENSE_EVENT is written.
     Returns (event, v): code of the event and its position in [0, 2]; NO_EVENT for none, and v has no meaning then.
     """
     event, v = find_first_event(step, regime, work)

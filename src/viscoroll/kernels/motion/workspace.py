@@ -127,8 +127,9 @@ def change_slip(regime, full_slip, sigma):
 
 @inline_kernel
 def last_output_tau(work):
-    """Return tau of the last output, at which the motion ends, a float; work: Workspace of the motion, with at least
-    one output time.
+    """Return tau of the last output, at which the motion ends, a float.
+
+    work: Workspace, of the motion, with at least one output time.
     """
     return work.output_tau[work.output_tau.size - 1]
 
@@ -144,8 +145,10 @@ def shorten_step(step, h):
 
 @inline_kernel
 def node_time(step, i):
-    """Return tau, a float, at node ``i``, an int 0 ... N, of a step; step: Step, of which tau at its left end, node 0,
-    and ``h`` are read.
+    """Return tau at a node of a step, a float.
+
+    step: Step, of which tau at its left end, node 0, and ``h`` are read.
+    i: int, the node, 0 ... N.
     """
     return step.tau + step.h * NODE_FRACTIONS[i]
 

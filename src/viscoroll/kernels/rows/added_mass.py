@@ -79,7 +79,7 @@ def added_mass(law, V, kappa, gamma):
 
     law : :class:`Law` of the material: polynomials of each octave; ``N_rows`` is empty for steady rolling, where
         nothing else is read.
-    V : float, speed of the axis, of either sign, dimensionless; N is even in V.
+    V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
     Returns (gamma N, its slope over V, its integral over V), floats, dimensionless; (0.0, 0.0, 0.0) for steady rolling.

@@ -271,16 +271,21 @@ def Q_slopes(u, L, dL, D, state, law):
 
 @inline_kernel
 def _index(k, request):
-    """Return the index of the state at position ``k``, an int >= 0, in the order of evaluation, an int:
-    ``request.order[k]``, or k itself if ``order`` of the :class:`Request` is empty.  k is not checked.
+    """Return the index of the state at a position in the order of evaluation, an int.
+
+    k : int, the position, from 0 to ``count`` - 1 of :func:`contact_loop`; not checked.
+    request : :class:`Request`, of which ``order`` is read: the index is ``order[k]``, or k itself if it is empty.
     """
     return request.order[np.uint64(k)] if request.order.size > 0 else k
 
 
 @inline_kernel
 def _state(c, scratch, request):
-    """Return the :class:`State` of numbers in column ``c``, unsigned, of ``scratch``, (SCRATCH_SIZE,), as of
-    :func:`contact_loop`; ``creep_is_omega`` is that of the states of ``request``.
+    """Return the :class:`State` of numbers of a state of the block, from the copy in the scratch.
+
+    c : unsigned int, column of the state in the scratch, its place in the block, from 0 to TOGETHER - 1.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`, of which kappa, mu, V and the creep are read.
+    request : :class:`Request`, of whose states ``creep_is_omega`` is read.
     """
     return State(
         scratch[_KAPPA + c], scratch[_MU + c], scratch[_V + c], scratch[_CREEP + c], request.states.creep_is_omega
@@ -314,8 +319,11 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
 
 @inline_kernel
 def _position(place, c, scratch):
-    """Return the :class:`RowPosition` of column ``c``, unsigned, of ``scratch``; ``place``: _POSITION for u or
-    _STICK_POSITION for v, where :func:`_write_positions` has written it.
+    """Return the :class:`RowPosition` of a state of the block, as :func:`_write_positions` has written it.
+
+    place : unsigned int, index in ``scratch`` of the positions: _POSITION for u, _STICK_POSITION for v.
+    c : unsigned int, column of the state in the scratch, its place in the block, from 0 to TOGETHER - 1.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.
     """
     return RowPosition(float_to_bits(scratch[place + c]), scratch[place + _T + c], scratch[place + _DT_DX + c])
 

@@ -103,8 +103,8 @@ def locate_octave(x, e0):
 
     Returns (row, t, dt/dx).  row: int, number of the row, without upper bound, as the number of rows of a law is not
     known here.  t: float, argument of its polynomials: x 2^-e0, in [0, 1), in row 0, else in [-1, 1).  dt/dx: float,
-    slope of t, constant in a row.  An infinite x is beyond the rows of every law; a NaN is in row 0 or beyond all rows,
-    by its sign bit; t of both is NaN.
+    slope of t, constant in a row.  -0.0 is in row 0, an infinite x is beyond the rows of every law; a NaN is in row 0
+    or beyond all rows, by its sign bit; t of both is NaN.
     """
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
     # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
@@ -299,7 +299,8 @@ def eta_over_F(position, v, law):
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material, of which the polynomials of eta/F are read.
+    law : :class:`Law` of the material, of which the polynomials of eta/F or, beyond the last row, the head and
+        ``cover_rows`` are read.
     Returns a float, dimensionless: for half-spaces it is in (0, 1], and 1 at v = 0 and at infinity; for a cover it is
     lam/L of the speed at which v = 2 u/L.
     """

@@ -87,15 +87,17 @@ _VECTORS = len(Workspace._fields) - 2
 
 
 def series_size(modes: int) -> int:
-    """Return the number of doubles of a series of ``modes`` modes, an int >= 0: five vectors of one number a mode, then
-    Q; an int.
+    """Return the number of doubles in which a series is stored, an int: five vectors of one number a mode, then Q.
+
+    modes : int, number of modes, >= 0.
     """
     return modes * (len(Series._fields) - 1 + modes)
 
 
 def workspace_size(modes: int) -> int:
-    """Return the number of doubles of the workspace of a series of ``modes`` modes, an int >= 0: an int, which
-    :func:`split_workspace` expects.
+    """Return the number of doubles of the workspace of a series, an int, that :func:`split_workspace` needs.
+
+    modes : int, number of modes, >= 0.
     """
     return LANES * (modes * (_VECTORS + modes) + FUNCTIONS)
 

@@ -197,8 +197,10 @@ def grid_size(count: int, alpha: float) -> int:
 
 
 def work_size(nodes: int) -> int:
-    """Return the number of doubles of the scratch of a grid of ``nodes`` nodes, an int of :func:`grid_size`: that of
-    :mod:`newton_interpolation`, then twelve functions at each node; an int.
+    """Return the number of doubles of the scratch of a grid: that of :mod:`newton_interpolation`, then twelve functions
+    at each node; an int.
+
+    nodes : int, number of nodes, as of :func:`grid_size`.
     """
     return SCRATCH_SIZE + _FUNCTIONS * nodes
 
