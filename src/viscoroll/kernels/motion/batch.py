@@ -94,14 +94,16 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
     drives: fields of :class:`Drives`, over t: segments, gains, prescribed.
     t: (k,), output times, dimensionless, increasing, k >= 1, the first at least 0.
     options: fields of :class:`Options`: rtol, rest_speed (0: no rest threshold), max_steps of a motion.
-    rows: (q,) int, requested output rows, 0 ... 12 of :mod:`output`; not checked.
+    rows: (q,) int, requested output rows, unchecked: V 0, omega 1, x 2, angle 3, delta 4, regime 5, force 6, torque 7,
+    work of force 8 and of torque 9, losses in the brake 10, in slip 11, in rolling 12.
     out: (q, n, k), [quantity, motion, time], filled; NaN at times that a motion did not reach.
-    info: (n, 5), [motion, INFO_COLUMNS], filled: status (a code of :mod:`records`), trial steps, regime changes, and t
-    of the onset of stick and of coming to rest, NaN where they do not occur.  A motion that fails has its status here;
-    the others are not affected.
-    notes: (switches, step_ends), arrays (m, 2) and (l,).  Each motion writes its regime changes, t and code, and the
-    ends t of its steps from their starts on, as far as they have room: they are meant for a single motion, as entries
-    that a motion does not write are left as they were.  Returns nothing.
+    info: (n, 5), [motion, INFO_COLUMNS], filled: status (COMPLETED 0, CAME_TO_REST 1, STEP_LIMIT 2, STEP_TOO_SMALL 3,
+    NOT_UNIQUE 4, ADDED_MASS_EXHAUSTED 5), trial steps, regime changes, and t of the onset of stick and of coming to
+    rest, NaN where they do not occur.  A motion that fails has its status here; the others are not affected.
+    notes: (switches, step_ends), arrays (m, 2) and (l,).  Each motion writes its regime changes, t and code (FULL_SLIP
+    0, PARTIAL_SLIP 1, AT_REST 2, OMEGA_LOCKED 3, HELD_AT_REST 4; DIRECTION_REVERSED -1), and the ends t of its steps
+    from their starts on, as far as they have room: they are meant for a single motion, as entries that a motion does
+    not write are left as they were.  Returns nothing.
     """
     motions, drives, options = Batch(*batch), Drives(*drives), Options(*options)
     (with_quadratures, with_forces), (switches, step_ends) = requested_groups(rows), notes

@@ -68,7 +68,8 @@ def evaluate_polynomial(row, function, x):
     The torque of the brake may come out below 0.
 
     row: (columns,), the segment; its coefficients, in ascending powers of x, are read.
-    function: int, DRIVE_FORCE, DRIVE_TORQUE, DRIVE_RATE, DRIVE_BRAKE or DRIVE_SPEED (:mod:`records`).
+    function: int, DRIVE_FORCE 0, DRIVE_TORQUE 1, DRIVE_RATE 2 (slope in tau of the prescribed speed), DRIVE_BRAKE 3 or
+    DRIVE_SPEED 4 (prescribed speed).
     x: float, position in [-1, 1] on the segment; outside the polynomial is extrapolated.
     """
     n_terms = n_coefficients(row)

@@ -351,10 +351,11 @@ def integrate_motion(V0, omega0, record):
     record: Workspace, by value; ``nodes`` are 0 on entry, but for the row of ones, and the matrices are 0.  Outputs,
     switches and ends of steps are written; outputs beyond an early end keep their values.
     Returns (status, number of trial steps, number of regime changes, t of the onset of stick, t of coming to rest): the
-    status is a code of :mod:`records`, COMPLETED ... ADDED_MASS_EXHAUSTED, an int as the number of trial steps; all
-    others are floats.  Reversals of direction are no regime changes; the times are dimensionless, tau/gamma, NaN where
-    the event does not occur.  The onset is the first time at which a stick zone forms in full slip; a start or a
-    departure from rest in partial slip is none.  Coming to rest is that below the rest threshold, NaN without one.
+    status is COMPLETED (0), CAME_TO_REST (1), STEP_LIMIT (2), STEP_TOO_SMALL (3), NOT_UNIQUE (4) or
+    ADDED_MASS_EXHAUSTED (5) of :mod:`records`, an int as the number of trial steps; all others are floats.  Reversals
+    of direction are no regime changes; the times are dimensionless, tau/gamma, NaN where the event does not occur.  The
+    onset is the first time at which a stick zone forms in full slip; a start or a departure from rest in partial slip
+    is none.  Coming to rest is that below the rest threshold, NaN without one.
     """
     work = by_reference(record)
     nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)

@@ -76,7 +76,7 @@ def write_column(column, speeds, code, forces, work):
 
     column: int, index of the output time.
     speeds: (V, omega, delta), dimensionless; V and omega in fixed directions, not in those of the regime.
-    code: int, regime in the outputs: FULL_SLIP, PARTIAL_SLIP, AT_REST, OMEGA_LOCKED or HELD_AT_REST (:mod:`.records`).
+    code: int, regime in the outputs: FULL_SLIP 0, PARTIAL_SLIP 1, AT_REST 2, OMEGA_LOCKED 3 or HELD_AT_REST 4.
     forces: (force, torque), dimensionless, in fixed directions too.
     work: Workspace, of whose ``outputs`` rows 0, 1, 4, 5, 6 and 7 are written at ``column``.  Returns nothing.
     """
@@ -129,8 +129,7 @@ def record_switch(code, step_state, work):
 
 @kernel
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
-    """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, and the quadratures keep their
-    totals.
+    """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, the quadratures keep their totals.
 
     Force and torque are those of the drive at the output times, not those that hold a prescribed speed.
 

@@ -309,7 +309,9 @@ def initial_regime(V, omega, step_state, work):
 
 @kernel
 def regime_code(regime):
-    """Return the code of a moving cylinder's regime in the outputs: OMEGA_LOCKED, FULL_SLIP or PARTIAL_SLIP, an int.
+    """Return the code of a moving cylinder's regime in the outputs, an int.
+
+    It is OMEGA_LOCKED (3), FULL_SLIP (0) or PARTIAL_SLIP (1); :func:`rest_code` gives that of a cylinder at rest.
 
     regime: Regime, the present one; ``locked`` comes first, then ``full_slip``.
     """
@@ -320,8 +322,8 @@ def regime_code(regime):
 def rest_code(step_state, work):
     """Return the code of V = omega = 0 in the outputs, an int.
 
-    It is HELD_AT_REST if the segment has a brake anywhere on it, or if a speed is prescribed in the motion; else
-    AT_REST.
+    It is HELD_AT_REST (4) if the segment has a brake anywhere on it, or if a speed is prescribed in the motion; else
+    AT_REST (2).
 
     step_state: StepState, of which the segment is read.
     work: Workspace, of which the Drive is read.

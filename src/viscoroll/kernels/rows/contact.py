@@ -393,7 +393,9 @@ def contact_loop(laws, request, scratch, count):
         a time; the loop selects them.
     request : :class:`Request`: ``states`` (arrays of length 1 or with one number for each state), ``order`` of
         evaluation, ``to`` (for each quantity its row of ``out``, -1 if it is not requested), ``out``, (quantities,
-        columns), of which column ``first`` + n is written for state n.
+        columns), of which column ``first`` + n is written for state n.  The quantities are lam, zeta, epsilon,
+        delta_star, delta, full_slip, beta, grip, Q, M, dQ_dV, dQ_ddelta, dQ_domega, dM_dV, M_half_space, M_cylinder,
+        dM_half_space_dV, dM_cylinder_dV and delta_0.
     scratch : (SCRATCH_SIZE,) doubles, overwritten.
     count : int, number of states, >= 0; with an ``order`` its first ``count`` entries are evaluated, else the states 0
         to ``count`` - 1.
