@@ -129,7 +129,7 @@ def record_switch(code, step_state, work):
 
 @kernel
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
-    """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, the quadratures keep their totals.
+    """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, quadratures keep their totals.
 
     Force and torque are those of the drive at the output times, not those that hold a prescribed speed.
 
