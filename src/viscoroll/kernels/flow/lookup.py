@@ -122,7 +122,7 @@ def speed_at_slide_time(T, flow):
 def slide_distance(start, tau, flow):
     """Return the distance of sliding during a time from a given state of full slip.
 
-    start : (T, X) at the beginning, the first two of what :func:`full_slip_integrals` returns at level PATH: time and
+    start : (T, X) at the beginning, the first two values of :func:`full_slip_integrals` at level PATH: time and
         distance between rest and the speed there, in the mirrored frame.
     tau : float, time gamma t of sliding, > 0; T + tau is within the tables.
     flow : Flow, of the scene; ``table``, kappa and mu are read.

@@ -63,8 +63,8 @@ class LawType(types.Callable):
         return signature(returned, types.float64, types.float64, recvr=self).replace(pysig=_SIGNATURE)
 
     def get_call_signatures(self):
-        """Return what numba names in its messages of errors: a list of one signature, (double, double) -> double, and
-        False, as it has no type parameters.
+        """Return the list of signatures that numba names in messages of errors, one, (double, double) -> double, and
+        False, as there are no type parameters.
         """
         return [signature(types.float64, types.float64, types.float64)], False
 
