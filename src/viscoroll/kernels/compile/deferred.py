@@ -156,7 +156,10 @@ def defer(whole, options: dict[str, Any]):
         )
 
     def get_call_template(args, kws):
-        """Return numba's template of a call of the part, or of ``whole`` after a failure."""
+        """Return numba's template of a call of the part, or of ``whole`` after a failure.
+
+        args, kws : tuple and dict of numba's types of positional and named arguments; literals count as their types.
+        """
         # numba compiles again for every literal integer among the arguments
         args = tuple(map(types.unliteral, args))
         kws = {name: types.unliteral(kind) for name, kind in kws.items()}
@@ -202,7 +205,7 @@ def _pipelines():
         def add_llvm_module(self, module):
             """Take a module of LLVM over, which numba would link into an empty one; further ones are linked into it.
 
-            module : the module, which belongs to the library from then on.
+            module : the module, which belongs to the library from then on.  Returns nothing.
             """
             if next(iter(self._final_module.functions), None) is None:
                 self._optimize_functions(module)
@@ -247,7 +250,7 @@ def _pipelines():
         def _verify_declare_only_symbols(self):
             """Raise RuntimeError if a function that the module calls is missing, where LLVM would end the process.
 
-            Names of numba's functions begin with _ZN; others, of the C library, may be missing here.
+            Names of numba's functions begin with _ZN; others, of the C library, may be missing here.  Returns nothing.
             """
             for function in self._final_module.functions:
                 if function.is_declaration and function.name.startswith("_ZN"):

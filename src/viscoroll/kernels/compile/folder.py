@@ -60,7 +60,8 @@ def read_private(path: Path) -> bytes:
 
     path : the file.
     Returns its bytes.  Raises OSError if the file does not exist or cannot be read, and PermissionError, which is an
-    OSError too, if others may have written it (:func:`refuse_writable_by_others`).
+    OSError too, if others may write to it or to a folder above it, or if one belongs to another user
+    (:func:`refuse_writable_by_others`).
     """
     refuse_writable_by_others(path)
     return path.read_bytes()
@@ -71,8 +72,9 @@ def write_private(path: Path, content: bytes) -> None:
 
     path : the file; an existing one is replaced.
     content : its bytes.
-    Returns None.  Raises OSError if it cannot be written, PermissionError if others may write to a folder above it; an
-    existing file then keeps its content, and no temporary file is left.
+    Returns None.  Raises OSError if it cannot be written, PermissionError if others may write to a folder above it or
+    one belongs to another user (:func:`refuse_writable_by_others`); an existing file then keeps its content, and no
+    temporary file is left.
     """
     make_private_folder(path.parent)
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
@@ -89,8 +91,8 @@ def make_private_folder(folder: Path) -> None:
     """Make a folder of the cache and the folders above it, as far as they do not exist, writable by this user alone.
 
     folder : path of the folder; one that exists keeps its rights.
-    Returns None.  Raises PermissionError if others may write to an existing one of these folders
-    (:func:`refuse_writable_by_others`), else OSError if one cannot be made.
+    Returns None.  Raises PermissionError if others may write to an existing one of these folders or one belongs to
+    another user (:func:`refuse_writable_by_others`), else OSError if one cannot be made.
     """
     refuse_writable_by_others(folder)
     for parent in reversed((folder, *folder.parents)):

@@ -21,15 +21,17 @@ def kernel(function: Callable | None = None, *, inline: bool = False, allocates:
     Parameters
     ----------
     function : the function; None, for a decorator with the other arguments.
-    inline : bool, for the few short functions at the bottom of every loop: a call of a numba function costs as much as
-        a polynomial, and LLVM by itself does not always spare it.
+    inline : bool, whether every call of the function by another kernel is replaced by its body, for the few short
+        functions at the bottom of every loop: a call of a numba function costs as much as a polynomial, and LLVM by
+        itself does not always spare it.
     allocates : bool, whether the function makes arrays, or assigns to them as a whole.  Without it no references are
         counted; numba counts those of constant tables too, which took a fifth of the time of a motion.
 
     Returns
     -------
     numba's dispatcher of the function, which is called like the function; without ``function``, a decorator that
-    returns it.
+    returns it.  Errors of compilation come with the first call; OSError is raised here if the sources of the kernels,
+    of which the cache needs a hash, cannot be read.
     """
     if function is None:
         return lambda f: kernel(f, inline=inline, allocates=allocates)

@@ -113,7 +113,7 @@ def views(table: NDArray) -> FlowTables:
 
     table : vector of :data:`SIZE` doubles.
     Returns :class:`FlowTables` of arrays in the shapes :data:`SHAPES`, which follow each other in the vector; what is
-    written to them is written to ``table``.
+    written to them is written to ``table``.  Raises ValueError if ``table`` is shorter.
     """
     parts = zip(STARTS, SHAPES, strict=True)
     return FlowTables(*(table[start : start + prod(shape)].reshape(shape) for start, shape in parts))

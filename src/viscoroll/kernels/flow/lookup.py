@@ -85,7 +85,7 @@ def full_slip_integrals(V, level, flow):
     V : float, speed of the axis in the mirrored frame (omega > V), of either sign or 0, kappa |V| < 2^layout.HIGH,
         which is not checked.
     level : SPEEDS, PATH or LOSS: the distance is read from the table from PATH on.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table``, kappa and mu are read.
 
     Returns (T, X, limit): time tau from V = 0 to V, with the sign of V; distance times gamma between rest and V, >= 0;
     delta_star |V|, the least omega - V of full slip, >= 0.  For kappa |V| < 2^layout.LOW, below the table, they are
@@ -105,8 +105,8 @@ def full_slip_integrals(V, level, flow):
 def speed_at_slide_time(T, flow):
     """Return V in full slip, in the mirrored frame, at a time before or after V = 0.
 
-    T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^layout.HIGH.
-    flow : Flow, of the scene.
+    T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^layout.HIGH, which is not checked.
+    flow : Flow, of the scene; ``table``, kappa and mu are read.
 
     Returns V, a float, with the sign of T; for kappa mu |T| < 2^layout.LOW, below the table, its limit mu T for small
     T.
@@ -122,10 +122,10 @@ def speed_at_slide_time(T, flow):
 def slide_distance(start, tau, flow):
     """Return the distance of sliding during a time from a given state of full slip.
 
-    start : (T, X) at the beginning, as :func:`full_slip_integrals` returns them at level PATH: time and distance
-        between rest and the speed there, in the mirrored frame.
+    start : (T, X) at the beginning, the first two values of :func:`full_slip_integrals` at level PATH: time and
+        distance between rest and the speed there, in the mirrored frame.
     tau : float, time gamma t of sliding, > 0; T + tau is within the tables.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table``, kappa and mu are read.
 
     Returns a float, gamma times the displacement of the axis in the mirrored frame, signed (of opposite motions before
     and after V = 0 the sum): the difference of X; or, for tau up to 0.02 |T|, where that difference cancels, the
@@ -147,7 +147,7 @@ def read_onset(I, level, flow):
     I : float, V - j omega - 2 mu T, which is constant while sliding, with T the time that :func:`full_slip_integrals`
         gives for V.
     level : SPEEDS, PATH or LOSS: X is computed from PATH on.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table``, kappa and j are read.
 
     Returns (V, T, X): speed at the onset, with the sign opposite to that of I; time tau of full slip between rest and
     that speed, with the sign of V; distance times gamma between rest and that speed, >= 0, but 0 at level SPEEDS.  All
@@ -192,7 +192,7 @@ def manifold_speeds(slow_log, table):
 
     Both are floats; below the table they fall as exp(slow_log).
 
-    slow_log : float, slow logarithm, below the end of the table (:func:`_locate_on_manifold`).
+    slow_log : float, slow logarithm, not a NaN, below 2^SLOW_OCTAVES - 1, the end of the table; not checked.
     table : vector of all tables, ``table`` of Flow.
     """
     at, t, share = _locate_on_manifold(slow_log)
@@ -202,9 +202,9 @@ def manifold_speeds(slow_log, table):
 
 @inline_kernel
 def _remaining_path(slow_log, table):
-    """Return the path that remains to rest on the slow manifold.
+    """Return the path that remains to rest on the slow manifold, of which :func:`manifold_path` forms differences.
 
-    slow_log : float, slow logarithm, below the end of the table (:func:`_locate_on_manifold`).
+    slow_log : float, slow logarithm, not a NaN, below 2^SLOW_OCTAVES - 1, the end of the table; not checked.
     table : vector of all tables, ``table`` of Flow.
     Returns (distance, angle), floats, each times gamma, >= 0 for the V > 0 of the mirrored frame; below the table they
     fall as exp(slow_log).
@@ -218,7 +218,7 @@ def _remaining_path(slow_log, table):
 def manifold_path(start, span, rate, table):
     """Return distance and angle along the slow manifold while the slow logarithm falls by ``span``.
 
-    start : float, slow logarithm at the beginning.
+    start : float, slow logarithm at the beginning, below 2^SLOW_OCTAVES - 1; not checked.
     span : float, decrease of the slow logarithm, >= 0.
     rate : float, decrease of the slow logarithm in unit time tau = gamma t, > 0: ``slow_rate`` of Flow.
     table : vector of all tables, ``table`` of Flow.
@@ -244,7 +244,8 @@ def manifold_path(start, span, rate, table):
 def remaining_slip_loss(slow_log, table):
     """Return the slip loss that remains to rest on the slow manifold, a float >= 0, divided by m (R/T_epsilon)^2.
 
-    slow_log : float, slow logarithm; below the table the loss falls as V^3.
+    slow_log : float, slow logarithm, not a NaN, below 2^SLOW_OCTAVES - 1, the end of the table; not checked.  Below
+        the table the loss falls as V^3.
     table : vector of all tables, ``table`` of Flow.
     """
     at, t, share = _locate_on_manifold(slow_log)
@@ -280,7 +281,7 @@ def read_asymptote(family, v, level, flow):
     family : PLUS if omega > V at the onset, MINUS if omega < V, with V > 0.
     v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES); it is not checked.
     level : SPEEDS, PATH or LOSS: quantities to compute.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table`` and ``first`` are read.
 
     Returns an :class:`.records.Asymptote` of floats: slow_log, that of the asymptote at the time of the onset; rate,
     the k0 of the stiff time E, > 0; split, the E that divides the layer, exactly 1 in octaves of v where motions of the
@@ -317,7 +318,7 @@ def locate_in_layer(family, v, u, flow):
     family : PLUS or MINUS.
     v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES).
     u : float, layer coordinate, from 2^LAYER_LOW to below 2^LAYER_HIGH.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``first`` is read.
 
     Returns (position, t, s): index in the map's vector at which the polynomials of column 0 begin, int; their arguments
     in [-1, 1), floats, t over v and s over u, each linear within an octave.  That v and u are inside of the table is
@@ -368,7 +369,13 @@ def layer_value_and_slopes(table, column, at, t, s):
 
 @kernel
 def layer_value(table, column, at, t, s):
-    """Return the value alone of one column of the layer; arguments as of :func:`layer_value_and_slopes`."""
+    """Return the value alone of one quantity of the boundary layer; the search for an onset needs slopes too.
+
+    table : vector of all tables, ``table`` of Flow.
+    column : int, the quantity, LAYER_LN_V ... LAYER_LOSS, as of :func:`layer_value_and_slopes`.
+    at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and over u, in [-1, 1].
+    Returns a float, dimensionless.
+    """
     return layer_value_and_slopes(table, column, at, t, s)[0]
 
 
@@ -380,7 +387,7 @@ def layer_state(stick, asymptote, elapsed, level, flow):
     asymptote : :class:`.records.Asymptote` of the motion, of which rate k0 and split are read.
     elapsed : float, time tau = gamma t since the onset, >= 0 and at most LAYER_END/k0.
     level : SPEEDS, PATH or LOSS: quantities to compute.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
 
     Returns (V, delta, distance, angle, slip loss), floats: speed > 0; creepage, of either sign; distance and angle
     since the onset, times gamma, 0 below level PATH; slip loss since the onset, divided by m (R/T_epsilon)^2, 0 below
@@ -405,7 +412,7 @@ def slow_log_at_rest(rest, flow):
     """Return the slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest threshold.
 
     rest : float, threshold, > 0; one above half the highest V of a start, HIGHEST/kappa, is replaced by that half.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table`` and kappa are read.
     Returns the slow logarithm, a float, after four steps of a fixed-point iteration for V (a negative delta counts as
     0, as |V| then is the larger speed); below the tables, where delta counts as 0, that of their lowest V plus the
     logarithm of the ratio of the speeds.

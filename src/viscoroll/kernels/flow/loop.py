@@ -75,7 +75,7 @@ ROWS = 8
 
 @inline_kernel
 def _write_output(out, column, state):
-    """Write one output state.
+    """Write one output state, of any part of a motion, into the rows of the module.
 
     out : outputs (ROWS, times), of which one column is written, all rows but ROLLING_LOSS.
     column : int, index of the output time.
@@ -93,7 +93,7 @@ def _write_rest(at, x, angle, loss, out):
     """Write outputs at rest, V = omega = delta = 0 and regime AT_REST, from a column to the last.
 
     at : int, first column to write; nothing is written if it is the number of columns.
-    x, angle : float, distance and angle, times gamma, of all of them.
+    x, angle : float, distance and angle, times gamma, of all of them, in the frame of the caller.
     loss : float, slip loss of all of them.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS.  Returns nothing.
     """
@@ -109,7 +109,7 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
     V, omega : float, initial speeds in the mirrored frame, omega >= V.
     start : (T, X), time tau and distance times gamma of sliding between rest and V, from the table of full slip.
     level : SPEEDS, PATH or LOSS: quantities to compute.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; all fields but ``slow_rate`` are read.
 
     Returns (:class:`FullSlipStart`; :class:`StickOnset` at a time tau >= 0, in the frame in which V > 0 at the onset;
     whether the map covers the motion: its V at onset is tabulated and |V| and |omega| at the start are at most 4096
@@ -138,7 +138,7 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     V0, omega0 : float, initial speeds, not mirrored; V0 != 0, and |omega0 - V0| < edge |V0|.
     edge : float, delta_star at V0, dimensionless.
     level : SPEEDS, PATH or LOSS: quantities to compute.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
 
     Returns (:class:`StickOnset` at a time tau <= 0; its :class:`Asymptote`; whether the map covers the motion, without
     which the other two have no meaning).  Distance, angle and slip loss of the onset are minus those from there to the
@@ -165,11 +165,12 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     at : int, first column to write.
     tau_out : output times tau = gamma t, ascending, > 0 from column ``at`` on, (times,).
     until : float, time tau of the onset; an output at that time is not written.
-    slide : :class:`FullSlipStart`: frame, V - j omega, and (T, X) of the start.
-    level : SPEEDS, PATH or LOSS: distance, angle and slip loss are 0 below PATH.
-    flow : Flow, of the scene.
+    slide : :class:`FullSlipStart`: frame; w = V - j omega at the start, in the mirrored frame; T and X, time tau and
+        gamma times the distance of sliding between rest and the V of the start.
+    level : SPEEDS, PATH or LOSS: distance, angle and slip loss are written from PATH on, and 0 below it.
+    flow : Flow, of the scene; ``table``, kappa, mu and j are read.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller; delta is +inf where V
-        = 0.  Columns from the onset on stay.
+        = 0.  Columns with ``tau_out`` >= ``until`` stay.
     Returns the index of the next column to write, int; it is the number of times where no output is left.
     """
     mu, per_j = flow.mu, 1.0 / flow.j
@@ -200,7 +201,7 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
     level : SPEEDS, PATH or LOSS: quantities beyond it are those of ``stick`` at all times, which have no meaning then.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller: of the times from
         column ``at`` to ``until``; the others stay.
     Returns the index of the next column to write, int; it is the number of times where no output is left.
@@ -234,12 +235,13 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
 def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     """Write all outputs from the onset of partial slip to the last output time, those after coming to rest included.
 
-    at : int, first column to write.
-    tau_out : output times tau = gamma t, ascending, (times,).
+    at : int, first column to write; nothing is written if it is the number of columns.
+    tau_out : output times tau = gamma t, ascending, (times,), at least one.
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
     asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
-    request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that threshold.
-    flow : Flow, of the scene.
+    request : :class:`.records.Request`: level; rest, the value of max(|V|, |omega|) below which a motion is at rest, 0
+        for none; rest_slow_log, the slow logarithm at that value.
+    flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller; rows beyond the level
         have no meaning.
 
@@ -286,9 +288,10 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     The time of rest is NaN unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
 
     The map does not cover a motion if kappa |V0| is at least HIGHEST, if a start speed is NaN, if the onset of partial
-    slip is not tabulated or more than 4096 times slower than the start, if V there is below twice the rest threshold,
-    or if the motion comes to rest within the boundary layer.  A start with V0 = omega0 = 0 is not covered without a
-    rest threshold.
+    slip is not tabulated or more than 4096 times slower than the start, if a start in partial slip is no state of a
+    tabulated motion (:func:`find_onset`), if V at the onset is below twice the rest threshold, or if the motion comes
+    to rest within the boundary layer or before the start.  A start with V0 = omega0 = 0 is not covered without a rest
+    threshold.
     """
     kappa, level = flow.kappa, request.level
     if max(abs(V0), abs(omega0)) < request.rest:

@@ -78,7 +78,7 @@ def find_onset(V, delta, edge, flow):
     V : float, speed of the axis, > 0.
     delta : float, creepage, |delta| < delta_star.
     edge : float, delta_star at V, > 0; it serves the first guess only.
-    flow : Flow, of the scene.
+    flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
 
     Returns (family, kappa V at that onset, E, whether the map covers the state): int, float, float, bool.  family is
     PLUS or MINUS; E is the stiff time since that onset, in [0, LAYER_END].  A state on the slow manifold has family

@@ -129,7 +129,7 @@ def find_equilibrium(state, regime, noise, step_state, work):
     regime: Regime, at that state.
     noise: float, rounding error of p' at the equilibrium, dimensionless.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; it is only read.
+    work: Workspace, of which Scene, Drive and rtol are read.
     Returns (reached, State): a bool, and the State after the Newton step, reached or not, with V at least 0 in partial
     slip; nothing limits its d.  (False, state) where the equilibrium is not stable, in full slip where V has none, and
     in partial slip where a speed is prescribed or the brake holds omega.
@@ -201,7 +201,7 @@ def is_coasting(state, regime, step_state, work):
     state: State, the present one.
     regime: Regime, at that state; ``full_slip`` is read.
     step_state: StepState, of which the segment is read.
-    work: Workspace, of the motion; it is only read.
+    work: Workspace, of which Scene, Drive and rtol are read.
     Returns False in full slip, at V = 0 and where resistance and feedback are equal; :func:`coast_to_end` is for True.
     """
     rtol = work.options.rtol
@@ -217,7 +217,8 @@ def _energies_of_decay(rate, inertia, torque_difference, work):
     """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the start.
 
     Of half-spaces the loss in slip is of higher order and counts as 0, and the loss in rolling is the kinetic energy
-    plus the works of the feedback.  Of a cover, which slips in free rolling, both follow from traction and moments.
+    plus the works of the feedback.  Of a cover, which slips in free rolling with the creepage delta_0, both follow from
+    the traction Q and the moments.
 
     rate: float, rate of the decay of V per unit of tau, above 0.
     inertia: float, factor of V' in the equation of the decay, dimensionless.

@@ -48,9 +48,11 @@ class Drives(NamedTuple):
 
 @kernel
 def _value_of_motion(array, i):
-    """Return the value of motion ``i``, an int: ``array[i]``, or the last value where ``array`` is shorter.
+    """Return the value of a motion: ``array[i]``, or the last value where ``array`` is shorter.
 
     array: (1,) or (n,), one value for all motions, or one for each; not empty.
+    i: int, index of the motion, 0 ... n - 1.
+    Returns a value of the type of the array.
     """
     return array[min(i, array.size - 1)]
 
@@ -65,7 +67,8 @@ def _drive_of_motion(drives, gamma, i, segments):
     drives: Drives, over t; one for all motions, or one for each.
     gamma: float, tau = gamma t, dimensionless, above 0.
     i: int, index of the motion.
-    segments: (k, columns), written: k segments, columns as COL_* of :mod:`records`.
+    segments: (k, columns), written: k segments over tau, columns as COL_* of :mod:`records`, k and columns as in
+    ``drives.segments``.
     Returns the Gains of the motion, those of the last one given if there are fewer; they are not converted.
     """
     source = drives.segments[min(i, drives.segments.shape[0] - 1)]
@@ -86,19 +89,21 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
 
     Batch, Drives and Options come as plain tuples: numba needs microseconds to find the type of a record.
 
-    batch: fields of a :class:`Batch`, parameters and starts of n motions; n is the length of the second axis of
-    ``out``.
-    drives: fields of :class:`Drives`, over t.
+    batch: fields of a :class:`Batch`: law, moments_differ, and kappa, mu, gamma, j, V0 and omega0, arrays (1,) or (n,),
+    of n motions; n is the length of the second axis of ``out``.
+    drives: fields of :class:`Drives`, over t: segments, gains, prescribed.
     t: (k,), output times, dimensionless, increasing, k >= 1, the first at least 0.
-    options: fields of :class:`Options`, of the integration.
-    rows: (q,) int, requested output rows of :mod:`output`.
+    options: fields of :class:`Options`: rtol, rest_speed (0: no rest threshold), max_steps of a motion.
+    rows: (q,) int, requested output rows, unchecked: V 0, omega 1, x 2, angle 3, delta 4, regime 5, force 6, torque 7,
+    work of force 8 and of torque 9, losses in the brake 10, in slip 11, in rolling 12.
     out: (q, n, k), [quantity, motion, time], filled; NaN at times that a motion did not reach.
-    info: (n, 5), [motion, INFO_COLUMNS], filled: status (a code of :mod:`records`), trial steps, regime changes, and t
-    of the onset of stick and of coming to rest, NaN where they do not occur.  A motion that fails has its status here;
-    the others are not affected.
-    notes: (switches, step_ends), arrays (m, 2) and (l,).  Each motion writes its regime changes, t and code, and the
-    ends t of its steps from their starts on, as far as they have room: they are meant for a single motion, as entries
-    that a motion does not write are left as they were.
+    info: (n, 5), [motion, INFO_COLUMNS], filled: status (COMPLETED 0, CAME_TO_REST 1, STEP_LIMIT 2, STEP_TOO_SMALL 3,
+    NOT_UNIQUE 4, ADDED_MASS_EXHAUSTED 5), trial steps, regime changes, and t of the onset of stick and of coming to
+    rest, NaN where they do not occur.  A motion that fails has its status here; the others are not affected.
+    notes: (switches, step_ends), arrays (m, 2) and (l,).  Each motion writes its regime changes, t and code (FULL_SLIP
+    0, PARTIAL_SLIP 1, AT_REST 2, OMEGA_LOCKED 3, HELD_AT_REST 4; DIRECTION_REVERSED -1), and the ends t of its steps
+    from their starts on, as far as they have room: they are meant for a single motion, as entries that a motion does
+    not write are left as they were.  Returns nothing.
     """
     motions, drives, options = Batch(*batch), Drives(*drives), Options(*options)
     (with_quadratures, with_forces), (switches, step_ends) = requested_groups(rows), notes

@@ -57,7 +57,7 @@ def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
 
 
 def _column_major(matrix: np.ndarray) -> np.ndarray:
-    """Return a matrix as a vector, column after column, as the kernels load it; matrix: (ROW_LENGTH, ROW_LENGTH)."""
+    """Return a matrix, (ROW_LENGTH, ROW_LENGTH), as a vector, column after column, as the kernels load it."""
     return np.ascontiguousarray(matrix.T).ravel()
 
 
@@ -80,13 +80,13 @@ _OFF_DIAGONAL = 1.0 - _IDENTITY
 def multiply_matrix(matrix, row, offset, values, target, result):
     """Write the product of a matrix and a row, from whose values ``offset`` is subtracted.
 
-    matrix: ROW_LENGTH^2 numbers, column by column.
+    matrix: array or pointer of ROW_LENGTH^2 numbers, column by column.
     row: int, index in ``values`` at which the row of ROW_LENGTH numbers begins.
     offset: float, subtracted from each value of the row.
     values: array or pointer that contains the row.
     target: int, index in ``result`` from which the product is written.
     result: array or pointer, ROW_LENGTH numbers of which are written; it may be ``values``, as all are read before.  A
-    NaN or inf in the row makes the whole product NaN or inf, even where the matrix is 0.
+    NaN or inf in the row makes the whole product NaN or inf, even where the matrix is 0.  Returns nothing.
     """
     low = high = broadcast(0.0)
     for k in range(ROW_LENGTH):
@@ -104,11 +104,11 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     D is the differentiation matrix.  Node 0 is given, not an unknown: the column of node 0 is not written, and in the
     other columns the entry of node 0 is 0.
 
-    weights, diagonal: int, indices in ``nodes`` of the rows with the numbers of either diagonal matrix; the weight of
-    node 0 must be finite, its entry in ``diagonal`` is not read.
+    weights: int, index in ``nodes`` at which the row of the weights begins; that of node 0 must be finite.
+    diagonal: int, index in ``nodes`` at which the row of the subtracted diagonal begins; its node 0 is not read.
     nodes: Workspace.nodes.
     matrix: pointer to ROW_LENGTH^2 numbers, of which columns 1 ... N are written; column 0 keeps its values, 0 from the
-    start of the motion.
+    start of the motion.  Returns nothing.
     """
     low, high = load(nodes, weights), load(nodes, weights + LANES)
     for k in range(1, ROW_LENGTH):
@@ -131,7 +131,7 @@ def _eliminate(i, matrix):
     i: int, 1 ... N, number of the step and index of the row and column of its pivot; row and column of node 0 are left
     out.
     matrix: pointer to ROW_LENGTH^2 numbers, column by column; columns 1 ... N are changed, their entries of node 0 stay
-    0.  A pivot of 0 leaves inf and NaN.
+    0.  A pivot of 0 leaves inf and NaN.  Returns nothing.
     """
     column = ROW_LENGTH * i
     pivot = broadcast(1.0 / matrix[column + i])
@@ -155,7 +155,7 @@ def invert_matrix(matrix):
     the step is repeated shorter; a pivot of 0 leaves inf and NaN in the matrix, with the same effect.
 
     matrix: pointer to ROW_LENGTH^2 numbers, column by column, as :func:`assemble_newton_matrix` writes them;
-    overwritten by the inverse.
+    overwritten by the inverse.  Returns nothing.
     """
     for i in range(1, ROW_LENGTH):
         _eliminate(i, matrix)
@@ -166,6 +166,7 @@ def invert_two_matrices(first, second):
     """Invert two Newton matrices in place, step by step in turn: the processor works on one while the other waits.
 
     first, second: pointers to ROW_LENGTH^2 numbers each, column by column, overwritten as by :func:`invert_matrix`.
+    Returns nothing.
     """
     for i in range(1, ROW_LENGTH):
         _eliminate(i, first)
@@ -185,7 +186,7 @@ def fit_dense_output(row, target, nodes):
     row: int, index in ``nodes`` of the values at all nodes.
     target: int, index in ``nodes`` from which ROW_LENGTH numbers are written: c_0 ... c_(N-1) in the unit of the row,
     and a 0.
-    nodes: Workspace.nodes.
+    nodes: Workspace.nodes.  Returns nothing.
     """
     multiply_matrix(_DENSE_MATRIX, row, nodes[row], nodes, target, nodes)
 
@@ -204,7 +205,7 @@ def fit_integral(row, target, nodes):
     row: int, index in ``nodes`` of the values at all nodes.
     target: int, index in ``nodes`` from which ROW_LENGTH numbers are written: c_0 ... c_(N-1) in the unit of the row,
     and a 0.
-    nodes: Workspace.nodes.
+    nodes: Workspace.nodes.  Returns nothing.
     """
     multiply_matrix(_INTEGRAL_MATRIX, row, nodes[row], nodes, target, nodes)
 
@@ -243,7 +244,9 @@ def evaluate_integral(v, first, nodes, row):
 def row_range(row, nodes):
     """Return the smallest and the largest of the values of a row at all nodes.
 
-    row: int, index in ``nodes`` of the row.
+    Event functions are compared with their range, and V with its largest value.
+
+    row: int, index in ``nodes`` at which the row begins.
     nodes: Workspace.nodes.
     Returns (smallest, largest), floats in the unit of the row.  Both are NaN if node 0 is; a NaN at another node is
     passed over.

@@ -13,6 +13,8 @@ to the limit of friction the departure is not unique.
 
 Terms of this file, dimensionless (fields of the records in :mod:`records`):
 
+- L = 2 kappa delta_star/mu and delta_0, the creepage of free rolling, in the limit V -> 0: 1 and 0 for half-spaces.
+- d = delta/delta_star, of a cover (delta - delta_0)/delta_star; Q: traction; M: rolling moment, 0 at V = 0.
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
   whether the brake holds omega at 0.
@@ -61,7 +63,7 @@ _NEGLIGIBLE_FORCE = 1e-75
 
 @inline_kernel
 def _residual_of_d(d, load, scene):
-    """Evaluate the equation of d at V = 0, of the module: its left side less its right side.
+    """Evaluate the equation of d at V = 0, of the module: its left side less its right side, divided by L.
 
     d: float, delta/delta_star, in [-1, 1]; of a cover that of the excess over free rolling.
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
@@ -99,10 +101,10 @@ def _spin_against_brake(load, scene):
     (:func:`_d_at_zero_omega`); it holds it where the torque that the traction there leaves is at most its own.
 
     load: Load, at V = 0, of a segment with a brake, whose torque may be 0 at the time.
-    scene: Scene, parameters of Eq. (22).
-    Returns (sign, held): sign of omega, 1.0 where d at omega = 0 is at most -1, as omega then grows with V, else that
-    of the torque that is left, 0.0 for none; held, a bool, whether the brake holds omega at 0 (also where both torques
-    are equal), in which case the sign is to be ignored.
+    scene: Scene, of which kappa, mu > 0, ``law`` and, for the added mass (n > -1 at V = 0), gamma are read.
+    Returns (sign, held): sign of omega in the direction of ``load``, 1.0 where d at omega = 0 is at most -1, as omega
+    then grows with V, else that of the torque that is left, 0.0 for none; held, a bool, whether the brake holds omega
+    at 0 (also where both torques are equal), in which case the sign is to be ignored.
     """
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
@@ -121,7 +123,8 @@ def _effective_load(load, spin_sign, scene):
 
     load: Load, at V = 0.
     spin_sign: float, sign of omega against which the brake acts; 0 for none.
-    scene: Scene, with the added mass; n > -1 at V = 0 where V is free, else the result is not finite or has no meaning.
+    scene: Scene, of which ``law``, kappa and gamma are read, for the factor n = gamma N of the added mass at V = 0; n >
+    -1 where V is free, else the result is not finite or has no meaning.
     Returns ``load`` with other ``torque``, ``inverse_mass`` and ``inverse_inertia``; without brake and added mass they
     stay too.  The field ``brake`` stays although its torque is in ``torque``.
     """
@@ -143,12 +146,12 @@ def _local_maximum_of_residual(load, scene):
 
         -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
 
-    where C = inverse_mass f + V_rate, so that the larger zero of the slope is the maximum.  Of a half-space at rest L =
-    1 and delta_0 = 0.  Where V is prescribed, inverse_mass = 0, the residual is quadratic, and its only maximum is
-    returned.
+    where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so that the larger zero of
+    the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the residual is quadratic, and its only maximum
+    is returned.
 
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
-    scene: Scene, parameters of Eq. (22).
+    scene: Scene, of which kappa, mu > 0 and ``law`` are read.
     Returns d there, a float, dimensionless, which may lie outside [-1, 0]; -inf where the cubic decreases for all d.
     """
     L, delta_0 = rest_limits(scene)
@@ -170,7 +173,7 @@ def solve_d_at_departure(load, spin_sign, scene):
 
     load: Load, at V = 0.
     spin_sign: float, sign of omega against which a brake acts; 0 without one, or where it holds omega.
-    scene: Scene, parameters of Eq. (22).
+    scene: Scene, of which kappa, mu > 0, ``law`` and, for the added mass, gamma are read.
     Returns (can_roll, d): whether the cylinder can roll off in partial slip, a bool, that is there is a root with |d| <
     1 and V' > 0 there; d of the root, also where V' <= 0, a float, dimensionless, to rounding; a root at 0 comes out as
     a |d| of about 1e-60, not as 0.0.  (False, 0.0) where there is no root with |d| < 1.
@@ -253,7 +256,7 @@ def find_departure_time(tau, segment, work):
 
     tau: float, time from which the search starts, at which the cylinder stays.
     segment: int, index of the segment that contains it.
-    work: Workspace, of the motion.
+    work: Workspace, of which mu, Drive and output times are read.
     Returns a float in [tau, end of the segment or of the motion]; the margin is negative there, unless it is the end.
     """
     end = segment_end(segment, work)
@@ -280,14 +283,15 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
     """Decide whether the cylinder departs in full slip: under full slip its accelerations must increase the slip.
 
     The sign sigma = 1 of the slip is tried first, then -1; the first is returned for which sigma (omega' - V' (1 +
-    delta_0)) exceeds ``stick_zone_slip`` times L |V'|.
+    delta_0)) exceeds ``stick_zone_slip`` times L |V'|.  Neither feedback nor added mass acts, as V = omega = 0 and slip
+    is full.
 
     tau: float, time at which the drive is evaluated.
     segment: int, index of the segment of the drive that contains the time.
     braked: bool, whether a brake acts on the segment.
     stick_zone_slip: float, limit of the excess slip divided by L V, dimensionless: mu/(2 kappa), or 0 where no
     departure in partial slip was found.
-    work: Workspace, of the motion.
+    work: Workspace, of which Scene and Drive are read.
     Returns (kind, Regime, 0.0) in the form of :func:`depart_from_rest`: SLIDES_OFF with the Regime of full slip, in the
     direction in which V grows (1.0 where V' is 0), with the sign of the slip in that direction as ``sigma`` and the
     ``spin_sign`` and ``locked`` that the brake causes; or STAYS_AT_REST with REGIME_AT_REST if neither sign passes.
@@ -322,7 +326,7 @@ def depart_from_rest(tau, segment, work):
 
     tau: float, the time.
     segment: int, index of the segment of the drive that contains the time.
-    work: Workspace, of the motion.
+    work: Workspace, of which Scene, Drive and output times are read.
     Returns (kind, Regime, d):
 
     - STAYS_AT_REST: friction and brake hold the cylinder, or no departure satisfies the equations; REGIME_AT_REST, 0;

@@ -52,8 +52,11 @@ _ZERO_SPEED_ROUNDINGS = 30.0
 
 @inline_kernel
 def n_coefficients(row):
-    """Return the number of coefficients of each of the five functions of a segment, an int; row: (columns,), the
-    segment.
+    """Return the number of coefficients of each of the five functions of a segment, an int.
+
+    It is not stored: it follows from the length of the row, two columns and five times that number.
+
+    row: (columns,), the segment.
     """
     return (row.size - COL_COEFFICIENTS) // N_DRIVE_FUNCTIONS
 
@@ -65,7 +68,8 @@ def evaluate_polynomial(row, function, x):
     The torque of the brake may come out below 0.
 
     row: (columns,), the segment; its coefficients, in ascending powers of x, are read.
-    function: int, DRIVE_FORCE, DRIVE_TORQUE, DRIVE_RATE, DRIVE_BRAKE or DRIVE_SPEED (:mod:`records`).
+    function: int, DRIVE_FORCE 0, DRIVE_TORQUE 1, DRIVE_RATE 2 (slope in tau of the prescribed speed), DRIVE_BRAKE 3 or
+    DRIVE_SPEED 4 (prescribed speed).
     x: float, position in [-1, 1] on the segment; outside the polynomial is extrapolated.
     """
     n_terms = n_coefficients(row)
@@ -116,7 +120,7 @@ def prescribed_speed(tau, segment, drive):
     """Return the prescribed speed at one time, V or omega, as ``drive.prescribed`` tells.
 
     tau: float, the time.
-    segment: int, index of the segment that contains tau.
+    segment: int, index of the segment that contains tau; outside it the polynomial is extrapolated.
     drive: Drive, with a prescribed speed; without one the result is 0.
     Returns a float, dimensionless, in a fixed direction, not in that of the regime; exactly 0 where it is rounding: at
     most 30 units of rounding of the sum of its coefficients' moduli on the segment.
@@ -187,7 +191,7 @@ def store_drive(step, work):
 
     step: Step, within one segment; tau, h, segment and undriven are read.
     work: Workspace; the four rows from ROW_DRIVE on are written, nodes 0 ... N.  They are left as they are where
-    nothing drives from the first segment on: they are 0 from the start of the motion then.
+    nothing drives from the first segment on: they are 0 from the start of the motion then.  Returns nothing.
     """
     nodes = work.nodes
     if step.undriven and step.segment == 0:  # The rows are 0 from the start of the motion.
@@ -243,7 +247,7 @@ def drive_rounding(segment, drive):
     moduli.
 
     segment: int, index of the segment.
-    drive: Drive, that of the motion.
+    drive: Drive, of which ``segments`` is read.
     Returns a float, dimensionless; 0 where all of these functions are 0.
     """
     return ROUNDING * _sum_of_moduli(drive.segments[segment], DRIVE_FORCE, DRIVE_RATE + 1)
@@ -286,7 +290,8 @@ def is_constant(segment, drive):
     bool.
 
     All their coefficients but the constant ones are exactly 0 then.  The prescribed speed itself may be linear in time.
-    Functions that are 0 are constant.
+    Functions that are 0 are constant.  Only on such a segment is an equilibrium of the motion sought, which is then
+    continued in closed form.
 
     segment: int, index of the segment.
     drive: Drive, of which ``segments`` is read.
@@ -300,8 +305,10 @@ def is_constant(segment, drive):
 
 @kernel
 def has_brake(segment, drive):
-    """Return whether a brake acts anywhere on a segment, a bool; segment: int, its index; drive: Drive, that of the
-    motion.
+    """Return whether a brake acts anywhere on a segment: whether a coefficient of its largest torque is not 0; a bool.
+
+    segment: int, index of the segment.
+    drive: Drive, of which ``segments`` is read.
     """
     return _sum_of_moduli(drive.segments[segment], DRIVE_BRAKE, DRIVE_BRAKE + 1) > 0.0
 
@@ -327,7 +334,7 @@ def is_undriven(segment, drive):
     It is :func:`is_unloaded` with all gains of the feedback 0.
 
     segment: int, index of the segment; all later ones are considered too.
-    drive: Drive, that of the motion.
+    drive: Drive, of which ``segments``, ``prescribed`` and ``gains`` are read.
     """
     gains = drive.gains
     size = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)

@@ -73,7 +73,7 @@ def _advance_at_rest(step_state, work):
     """Advance a cylinder at V = omega = 0 until it departs or the segment ends, and write the outputs on the way.
 
     step_state: StepState, at the time reached.
-    work: Workspace, of the motion; outputs are written.
+    work: Workspace, of the motion; Scene, Drive and output times are read, outputs are written.
     Returns (kind, State, Regime, StepState):
 
     - ROLLS_OFF, SLIDES_OFF: it departs now; State with V = 0 and d in partial slip, omega = 0 in full slip; the Regime
@@ -96,13 +96,14 @@ def _advance_at_rest(step_state, work):
 def _is_below_rest_speed(moving, state, regime, step_state, work):
     """Return whether nothing drives any more and both speeds are at most the rest threshold; a bool.
 
-    It is False without a threshold and while something drives or will; a cylinder that does not move counts as below.
+    It is asked where a regime begins; within a regime the event BELOW_REST_SPEED is located.  It is False without a
+    threshold and while something drives or will; a cylinder that does not move counts as below.
 
     moving: bool, whether the cylinder moves.
     state: State, the present one; ignored unless it moves, as is ``regime``.
-    regime: Regime, at that state.
+    regime: Regime, at that state; ``full_slip`` is read.
     step_state: StepState, of which the segment is read.
-    work: Workspace, of the motion; it is only read.
+    work: Workspace, of which Scene, Drive and the rest threshold in ``options`` are read.
     """
     rest_speed = rest_threshold(step_state.segment, work)
     if rest_speed == 0.0 or not moving:
@@ -118,7 +119,7 @@ def added_mass_exhausted(event, state, regime, work):
     the product of the margin and 1 - |d|, is due to the margin, the smaller factor of the two.  In full slip it is
     False.  A law without added mass has a margin of 1: the result is False then, as sigma d is about 1 at STICK_EDGE.
 
-    event: int, code of the last event, or NO_EVENT.
+    event: int, code of the last event (:mod:`workspace`), or NO_EVENT.
     state: State, the present one.
     regime: Regime, at that state; ``full_slip`` and ``sigma`` are read.
     work: Workspace, of the motion; its Scene is read.
@@ -137,7 +138,7 @@ def _relaxes_within_rounding(state, regime, step_state, work):
 
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; it is only read.
+    work: Workspace, of which Scene and Drive are read.
     """
     if regime.full_slip:
         return False
@@ -154,7 +155,7 @@ def _vanishes_within_rounding(state, regime, step_state, work):
 
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; it is only read.
+    work: Workspace, of which Scene and Drive are read.
     """
     if state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive):
         return True
@@ -170,7 +171,7 @@ def relax_creep(state, regime, step_state, work):
     state: State, the present one, in partial slip.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; it is only read.
+    work: Workspace, of which Scene and Drive are read.
     Returns (moves, State, Regime, StepState):
 
     - moves: False where V falls to 0 within rounding (:func:`_vanishes_within_rounding`): the other three are unchanged
@@ -240,8 +241,8 @@ def _come_to_rest(code, state, regime, step_state, work):
     code: int, regime in the outputs before; -1 before the first one.
     state, regime: State and Regime, the present ones; of a cylinder at rest State(0, 0).
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; outputs, switches, REST_TIME (t = tau/gamma) and the total of the loss in rolling
-    are written.
+    work: Workspace, of the motion; Scene and Drive are read; outputs, switches, REST_TIME (t = tau/gamma) and the total
+    of the loss in rolling are written.
     Returns the StepState at the last output time, with one trial step more and all outputs written.
     """
     nodes, omega = work.nodes, omega_and_delta(state, regime, work.scene)[0]
@@ -289,7 +290,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
     - COMPLETED: the last output time is reached;
     - CAME_TO_REST: both speeds fell below the rest threshold; all outputs are written;
     - STEP_LIMIT: the allowed number of trial steps is used up;
-    - STEP_TOO_SMALL: every step, however short, was rejected;
+    - STEP_TOO_SMALL: all trials of one step were rejected, and d does not relax within the rounding of time there, or
+      has been relaxed at this time already;
     - NOT_UNIQUE: the departure from rest is ambiguous;
     - ADDED_MASS_EXHAUSTED: the added mass leaves the range in which the equations are regular.
 
@@ -338,19 +340,22 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
 
 @kernel
 def integrate_motion(V0, omega0, record):
-    """Integrate one motion of Eq. (22) with its drive from t = 0 to its last output time.
+    """Integrate the equations of motion of V and omega, Eq. (22) of the paper, with a drive from t = 0 to the last
+    output time.
 
-    Where something drives or will, two speeds below 1e-75 count as 0; V0 counts as 0 up to 1e-150 of |omega0|.  From V
-    = omega = 0 the cylinder stays at rest until the drive moves it.
+    Where something drives or will, two speeds below 1e-75 count as 0; where nothing does, two speeds below 1e-150 are
+    both replaced by (V0 + j omega0)/(1 + j).  V0 counts as 0 up to 1e-150 of |omega0|.  From V = omega = 0 the cylinder
+    stays at rest until the drive moves it.
 
     V0, omega0: float, initial speeds of either sign, dimensionless.
-    record: Workspace, by value; ``nodes`` are 0 on entry, but for the row of ones.  Outputs, switches and ends of steps
-    are written.
+    record: Workspace, by value; ``nodes`` are 0 on entry, but for the row of ones, and the matrices are 0.  Outputs,
+    switches and ends of steps are written; outputs beyond an early end keep their values.
     Returns (status, number of trial steps, number of regime changes, t of the onset of stick, t of coming to rest): the
-    status is a code of :mod:`records`, COMPLETED ... ADDED_MASS_EXHAUSTED, an int as the number of trial steps; all
-    others are floats.  Reversals of direction are no regime changes; the times are dimensionless, tau/gamma, NaN where
-    the event does not occur.  The onset is the first one of the motion; coming to rest is that below the rest
-    threshold, NaN without a threshold.
+    status is COMPLETED (0), CAME_TO_REST (1), STEP_LIMIT (2), STEP_TOO_SMALL (3), NOT_UNIQUE (4) or
+    ADDED_MASS_EXHAUSTED (5) of :mod:`records`, an int as the number of trial steps; all others are floats.  Reversals
+    of direction are no regime changes; the times are dimensionless, tau/gamma, NaN where the event does not occur.  The
+    onset is the first time at which a stick zone forms in full slip; a start or a departure from rest in partial slip
+    is none.  Coming to rest is that below the rest threshold, NaN without one.
     """
     work = by_reference(record)
     nodes, step_state = work.nodes, StepState(0.0, 0, 0, 0, 0, 0.0)

@@ -89,11 +89,12 @@ def _d_weight(d):
 def _rounding_scale_of_V(step, work):
     """Return the V of full slip below which rounding of V' exceeds the tolerance of Newton's iteration.
 
-    V' = Q - M + f may be a small difference of Q and f.  Its rounding changes V during the step, or during the
-    relaxation time of V if that is shorter.  It is used under a drive without feedback of omega on V'.
+    V' = Q - M + f, traction less rolling moment plus force, may be a small difference of Q and f.  Its rounding changes
+    V during the step, or during the relaxation time of V if that is shorter.  It is used under a drive without feedback
+    of omega on V'.
 
-    step: Step, the trial step.
-    work: Workspace, with the drive and the Newton diagonal of p at its nodes; those of the last node are read.
+    step: Step, the trial step; ``h`` is read.
+    work: Workspace, with the force and the Newton diagonal of p at the last node, mu and rtol.
     Returns a float above 0, dimensionless.
     """
     nodes = work.nodes
@@ -188,8 +189,8 @@ def _relative_speed_at_first_output(step, work):
     taken at the last node that is not after the first output time after the left end; at node 1 if all are after it,
     or at the next node where V is 0 there.  With all nodes before the output time, V at the end of the step is taken.
 
-    step: Step, from V = omega = 0 on.
-    work: Workspace, with V at its nodes.
+    step: Step, from V = omega = 0 on; tau and ``h`` are read.
+    work: Workspace, with V at nodes 1 ... N and the output times.
     Returns a float in [0, 1], dimensionless; 1 where V is 0 at all nodes.  It is 0 only if V has come back to exactly 0
     at the last node, and the step is then rejected, as its error is inf or NaN.
     """
@@ -213,8 +214,8 @@ def _strong_friction_rounding(regime, work):
     V' may be a small difference of Q and f, so that 30 units of rounding of mu are left in it.  Friction is strong
     (:func:`has_strong_friction`) only where mu > kappa, so that other scenes need not ask.
 
-    regime: Regime, that of the step.
-    work: Workspace, with the Scene, and the drive at node 0, of which only the inverse mass and inertia matter.
+    regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``locked`` are read.
+    work: Workspace, with Scene and Drive, and the drive at node 0, of which only the inverse mass and inertia matter.
     Returns a float: 6.6e-15 mu under strong friction in partial slip with sigma < 0, else 0.0.
     """
     strong = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)

@@ -115,7 +115,7 @@ def evaluate_event_functions(step, regime, work):
     regime: Regime, that of the step.
     work: Workspace, with the unknowns and the drive at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written as
     above.  The values are dimensionless: speeds for V_ZERO and BELOW_REST_SPEED, in full slip also for STICK_EDGE and
-    OMEGA_ZERO; a squared torque for BRAKE_RELEASE; ratios for all others.
+    OMEGA_ZERO; a squared torque for BRAKE_RELEASE; ratios for all others.  Returns nothing.
     """
     nodes, scene, rest = work.nodes, by_value(work.scene), work.options.rest_speed
     for i in range(N + 1):
@@ -250,9 +250,9 @@ def find_first_event(step, regime, work):
     which event is first; at equal zeros it is the one with the smaller code.  If no function is negative at a node, in
     full slip the stick edge is also searched between the nodes (:func:`_locate_double_crossing`).
 
-    step: Step, the solved one.
-    regime: Regime, that of the step.
-    work: Workspace, with the event functions; the row ROW_DENSE_EVENT is written.
+    step: Step, the solved one; ``undriven`` is read.
+    regime: Regime, that of the step; ``full_slip``, ``spin_sign`` and ``locked`` are read.
+    work: Workspace, with the event functions, ROW_SPEED and the rest threshold; the row ROW_DENSE_EVENT is written.
     Returns (event, v in [0, 2]), an int and a float; (NO_EVENT, 2.0) for none.
     """
     event, last, v, nodes = NO_EVENT, N, 2.0, work.nodes
@@ -279,9 +279,9 @@ def find_missed_event(step, regime, work):
     unless V is prescribed.  BELOW_REST_SPEED is left out, and in partial slip STICK_EDGE, as the equations of partial
     slip continue into full slip.
 
-    step: Step, the solved one.
-    regime: Regime, that of the step.
-    work: Workspace, with the event functions, and speeds and drive at the nodes.
+    step: Step, the solved one; ``undriven`` is read.
+    regime: Regime, that of the step; ``full_slip``, ``spin_sign`` and ``locked`` are read.
+    work: Workspace, with the event functions, ROW_SPEED and the drive at the nodes, and rtol, rest threshold and Drive.
     Returns an int, the first such event in the order of the codes, or NO_EVENT.
     """
     nodes = work.nodes
@@ -309,7 +309,7 @@ def _event_function(event, v, regime, work):
     event: int, STICK_EDGE; BELOW_REST_SPEED, in full slip only; or OMEGA_ZERO, in partial slip only.
     v: float, position on the step, in [0, 2] or a little outside.
     regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
-    work: Workspace, with the dense output, and the unknowns at node 0.
+    work: Workspace, with the dense output, the unknowns at node 0, Scene and the rest threshold.
     """
     V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:
@@ -329,8 +329,8 @@ def refine_event(event, v, regime, work):
 
     event: int, code of the event.
     v: float, position of the event by the interpolant, in [0, 2].
-    regime: Regime, that of the step.
-    work: Workspace, with the dense output.
+    regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
+    work: Workspace, with the dense output, V and the second unknown at node 0, Scene and the rest threshold.
     Returns the position v, a float in [0, 2]; for all other events ``v`` unchanged.
     """
     if event not in ((STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)):

@@ -30,7 +30,7 @@ def evaluate_moments(u, scene):
     All seven numbers are finite at u = 0 too, where they are the limits of slow rolling.  The added mass is not in the
     moments.  The moments are 0 where both bodies are elastic (alpha = 1).
 
-    u: float, kappa |V|, dimensionless, at least 0.
+    u: float, kappa |V|, dimensionless, at least 0 and finite.
     scene: Scene, of which ``law`` and ``moments_differ`` are read; with ``moments_differ`` False each body takes half
     of the moment.
     Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), floats, dimensionless; L = lam
@@ -53,7 +53,8 @@ def evaluate_moments(u, scene):
 def rest_limits(scene):
     """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for half-spaces.
 
-    L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.
+    L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.  Departure from rest and exponential decay
+    are decided with these limits; :func:`.evaluate.limits_at_rest` gives them for a law.
 
     scene: Scene, of which kappa and ``law`` are read.
     """
@@ -84,7 +85,7 @@ def critical_creepage(V, scene):
     On a cover it is the excess over the creepage of free rolling.  It is above 0, even in V, and mu L/(2 kappa) with L
     of :func:`rest_limits` at V = 0.
 
-    V: float, speed of the axis of either sign, dimensionless.
+    V: float, speed of the axis of either sign, finite, dimensionless.
     scene: Scene, of which kappa, mu and ``law`` are read.
     """
     u, law = scene.kappa * abs(V), by_value(scene.law)
@@ -129,7 +130,7 @@ def added_inertia(V, scene):
     The equations are in docs/theory_materials.md, Slowly changing speed.
 
     V: float, speed of the axis of either sign, dimensionless.
-    scene: Scene, of which ``law``, kappa and gamma are read.
+    scene: Scene, of which ``law``, kappa and gamma are read; motions of a cover have none.
     Returns (n, its derivative in V, its integral over V), floats, dimensionless; all are 0 for a law without added
     mass.  n is even and its derivative odd in V; at V = 0 the derivative is that of V > 0.  The integral begins at V =
     0, but at infinity where n <= -4 at V = 0, as V = 0 is not reached then.

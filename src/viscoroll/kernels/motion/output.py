@@ -72,13 +72,13 @@ def requested_groups(rows):
 
 @kernel
 def write_column(column, speeds, code, forces, work):
-    """Write V, omega, delta, regime, force and torque to one output column.
+    """Write V, omega, delta, regime, force and torque to one output column, of a step, at rest or in closed form.
 
     column: int, index of the output time.
     speeds: (V, omega, delta), dimensionless; V and omega in fixed directions, not in those of the regime.
-    code: int, regime in the outputs: FULL_SLIP, PARTIAL_SLIP, AT_REST, OMEGA_LOCKED or HELD_AT_REST (:mod:`.records`).
+    code: int, regime in the outputs: FULL_SLIP 0, PARTIAL_SLIP 1, AT_REST 2, OMEGA_LOCKED 3 or HELD_AT_REST 4.
     forces: (force, torque), dimensionless, in fixed directions too.
-    work: Workspace, of whose ``outputs`` rows 0, 1, 4, 5, 6 and 7 are written at ``column``.
+    work: Workspace, of whose ``outputs`` rows 0, 1, 4, 5, 6 and 7 are written at ``column``.  Returns nothing.
     """
     out, (V, omega, delta), (force, torque) = work.outputs, speeds, forces
     out[0, column], out[1, column], out[4, column], out[5, column] = V, omega, delta, code
@@ -93,16 +93,17 @@ def write_quadrature(column, n, increase, work):
     n: int, the quadrature: 0 distance x, 1 angle, 2 loss in slip, 3 loss in rolling, 4 work of the force, 5 work of the
     torque, 6 loss in the brake; they are written to rows 2, 3, 11, 12, 8, 9 and 10 of the outputs.
     increase: float, since the last accepted step, dimensionless.
-    work: Workspace, with the totals; one number of its ``outputs`` is written.
+    work: Workspace, with the totals; one number of its ``outputs`` is written.  Returns nothing.
     """
     work.outputs[_OUT_QUADRATURES[n], column] = work.nodes[QUADRATURE_TOTALS + n] + increase
 
 
 @kernel
 def _write_totals(column, work):
-    """Write the totals of all quadratures to one output column: rows 2, 3 and 8 ... 12 of ``work.outputs``.
+    """Write the totals of all quadratures to one output column, as at rest and at the end of the last accepted step.
 
-    column: int, its index; work: Workspace, with the totals up to the last accepted step.
+    column: int, its index.
+    work: Workspace, with these totals; rows 2, 3 and 8 ... 12 of its ``outputs`` are written.  Returns nothing.
     """
     for n in range(N_QUADRATURES):
         write_quadrature(column, n, 0.0, work)
@@ -116,7 +117,7 @@ def record_switch(code, step_state, work):
     step_state: StepState, with that time.
     work: Workspace: t = tau/gamma and ``code`` are written to the next row of ``switches`` if it has one.  The number
     of entries, N_RECORDED in ``nodes``, grows by 1 in any case; the number of regime changes, N_SWITCHES, grows by 1
-    unless the code is DIRECTION_REVERSED.
+    unless the code is DIRECTION_REVERSED.  Returns nothing.
     """
     nodes, switches = work.nodes, work.switches
     n = int(nodes[N_RECORDED])
@@ -128,8 +129,7 @@ def record_switch(code, step_state, work):
 
 @kernel
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
-    """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, and the quadratures keep their
-    totals.
+    """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, quadratures keep their totals.
 
     Force and torque are those of the drive at the output times, not those that hold a prescribed speed.
 
@@ -160,7 +160,7 @@ def _write_state(column, state, segment, regime, work):
     state: State, at that time, in the direction of the regime; it is written in fixed directions.
     segment: int, index of the segment of the drive at that time.
     regime: Regime, at that time.
-    work: Workspace, of the motion; rows 0, 1, 4, 5, 6 and 7 of its outputs are written at ``column``.
+    work: Workspace, of the motion; rows 0, 1, 4, 5, 6 and 7 of its outputs are written at ``column``.  Returns nothing.
     """
     direction, force, torque = regime.direction, 0.0, 0.0
     omega, delta = omega_and_delta(state, regime, work.scene)
@@ -174,7 +174,7 @@ def _write_state(column, state, segment, regime, work):
 
 @kernel
 def write_due_outputs(state, regime, step_state, work):
-    """Write the outputs at times up to the time reached, times (1 + rtol), by the state reached.
+    """Write the outputs at times up to (1 + rtol) times the time reached, by the state reached.
 
     They are those at the end of the last step, which :func:`accept_step` leaves to the next one.  The quadratures keep
     their totals.
@@ -217,7 +217,7 @@ def _evaluate_integrands(regime, work):
 
     regime: Regime, that of the step.
     work: Workspace, with unknowns and drive at nodes 0 ... N; there N_QUADRATURES rows from ROW_INTEGRANDS on are
-    written, also those that are 0 as nothing drives.
+    written, also those that are 0 as nothing drives.  Returns nothing.
     """
     nodes, values = work.nodes, by_value(work)
     direction_over_gamma = regime.direction / values.scene.gamma

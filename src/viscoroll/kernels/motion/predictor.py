@@ -63,7 +63,7 @@ def predict(step, relaxation, dense_step, regime, work):
     none.
     regime: Regime, that of the step.
     work: Workspace, with node 0 of the step (V, the second unknown, V', the weighted rate and ROW_SPEED); V and the
-    second unknown are written at nodes 1 ... N, in partial slip with V >= 0 and |d| <= 1.
+    second unknown are written at nodes 1 ... N, in partial slip with V >= 0 and |d| <= 1.  Returns nothing.
     """
     usable = step.tau > dense_step.tau or step.h > _SHORTER_STEP * dense_step.h
     if usable and dense_step.h > 0.0 and step.tau + step.h <= dense_step.tau + (1.0 + _EXTRAPOLATION) * dense_step.h:
@@ -78,11 +78,14 @@ def predict(step, relaxation, dense_step, regime, work):
 def _store_unknowns(i, V, omega_or_d, full_slip, nodes):
     """Store V and the second unknown at a node; in partial slip limited to V >= 0 and |d| <= 1.
 
+    That is the range in which the law of partial slip is defined; a prediction may leave it.
+
     i: int, the node, 1 ... N.
     V: float, speed of the axis, dimensionless.
-    omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip; a NaN is stored as NaN.
+    omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
     full_slip: bool, whether the whole contact slips; True: both are stored as they are.
-    nodes: Workspace.nodes; entry ``i`` of ROW_V and ROW_OMEGA_OR_D is written.
+    nodes: Workspace.nodes; entry ``i`` of ROW_V and ROW_OMEGA_OR_D is written.  A NaN of either is stored as NaN.
+    Returns nothing.
     """
     nodes[ROW_V + i] = V if full_slip else max(V, 0.0)
     nodes[ROW_OMEGA_OR_D + i] = omega_or_d if full_slip else min(max(omega_or_d, -1.0), 1.0)
@@ -95,10 +98,10 @@ def _extrapolate(step, dense_step, regime, nodes):
     Both are shifted by constants, so that they continue the values at node 0.
 
     step: Step, the one to predict; its left end lies on ``dense_step`` or at either of its ends.
-    dense_step: Step, whose dense output is stored.
-    regime: Regime, that of both steps.
+    dense_step: Step, whose dense output is stored; its length is above 0.
+    regime: Regime, that of both steps; ``full_slip`` is read.
     nodes: Workspace.nodes, with node 0 of ``step`` and the dense output; V and the second unknown are written at nodes
-    1 ... N, limited as by :func:`_store_unknowns`.
+    1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
     """
     v_start = dense_position(step.tau, dense_step)
     V0 = nodes[ROW_V] - evaluate_dense_output(v_start, nodes, ROW_DENSE_V)
@@ -116,11 +119,11 @@ def _predict_relaxation(step, relaxation, regime, nodes):
 
     Where the second unknown does not relax, ``relaxation`` times the time being above -1e-8, it is linear in time too.
 
-    step: Step, the one to predict, with V > 0 or in full slip at its left end.
+    step: Step, the one to predict, with V > 0 or in full slip at its left end; ``h`` is read.
     relaxation: float, derivative of the slope of the second unknown in itself, per unit of tau; below 0 it relaxes.
-    regime: Regime, that of the step.
-    nodes: Workspace.nodes, with node 0; V and the second unknown are written at nodes 1 ... N, limited as by
-    :func:`_store_unknowns`.
+    regime: Regime, that of the step; ``full_slip`` is read.
+    nodes: Workspace.nodes, with V, V', the second unknown and the weighted rate at node 0; V and the second unknown are
+    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
     """
     omega_or_d_rate = nodes[ROW_WEIGHTED_RATE] if regime.full_slip else nodes[ROW_WEIGHTED_RATE] / nodes[ROW_V]
     for i in range(1, N + 1):
@@ -134,15 +137,15 @@ def _predict_relaxation(step, relaxation, regime, nodes):
 def _predict_from_rest(step, regime, work):
     """Store the unknowns of a step that starts at V = 0, in full slip at V = omega = 0.
 
-    V' changes linearly from its value at the left end, which may be 0, to that of the drive at the right end, evaluated
-    at V = 0; V is its integral.  In full slip omega' does the same, evaluated at omega = 0.  In partial slip d changes
+    V' changes linearly from its value at the left end, which may be 0, to that at V = 0 under the drive at the right
+    end; V is its integral.  In full slip omega' does the same, evaluated at omega = 0.  In partial slip d changes
     linearly to its value at a departure under the drive at the right end, or stays if no departure in partial slip is
-    possible there; V' at the right end is that of p' at this d, at least 0.
+    possible there; V' at the right end is that of p' at this d, but taken as at least 0.
 
     step: Step, the one to predict.
     regime: Regime, that of the step.
-    work: Workspace, with V', the weighted rate and d at node 0; V and the second unknown are written at nodes 1 ... N,
-    limited as by :func:`_store_unknowns`.
+    work: Workspace, with V', the weighted rate and d at node 0; Scene and Drive are read.  V and the second unknown are
+    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
     """
     nodes = work.nodes
     load, d = evaluate_load(step.tau + step.h, step.segment, regime, work), 0.0

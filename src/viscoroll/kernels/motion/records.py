@@ -1,9 +1,9 @@
 """Records of the solver of motions, the codes in its results and the columns of a segment of the drive; without
 numba.
 
-Times are tau = gamma t, dimensionless.  Speeds are V T_epsilon/R and omega T_epsilon, forces are divided by the load
-P, torques by P R, as in Eq. (22).  `omega_or_d` is the second unknown: omega in full slip, d = delta/delta_star in
-partial slip.
+Times are tau = gamma t, dimensionless.  Speeds are V T_epsilon/R and omega T_epsilon, forces are divided by the load P,
+torques by P R, as in the equations of motion of V and omega, Eq. (22) of the paper.  `omega_or_d` is the second
+unknown: omega in full slip, d = delta/delta_star in partial slip.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ COMPLETED = 0
 CAME_TO_REST = 1
 #: Status of a motion: the allowed number of steps was used up.
 STEP_LIMIT = 2
-#: Status of a motion: every step, however short, was rejected.
+#: Status of a motion: all trials of one step, ever shorter, were rejected.
 STEP_TOO_SMALL = 3
 #: Status of a motion: the departure from rest is not unique.
 NOT_UNIQUE = 4

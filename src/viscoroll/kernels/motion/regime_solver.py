@@ -119,9 +119,9 @@ def _end_at_V_zero(step, remaining, state, regime, work):
 
     step: Step, the trial step.
     remaining: float, time in tau to the end of the segment.
-    state: State, at the left end.
-    regime: Regime, at that state.
-    work: Workspace, with V' at node 0, and the Drive.
+    state: State, at the left end; V is read.
+    regime: Regime, at that state; full_slip, direction and locked are read.
+    work: Workspace, with V' at node 0; the Drive and j are read too.
     Returns (Step, whether it ends at the expected time of V = 0, a bool); the Step is unchanged where that time is
     after its end, or inf, and then the second is False; at V = 0 with V' < 0 its length is 0.
     """
@@ -137,10 +137,10 @@ def _find_crossed_event(step, remaining, regime, work):
 
     A prescribed V that is 0 at the end of its segment does not count: the next segment decides its direction.
 
-    step: Step, the solved one.
+    step: Step, the solved one; ``h`` and ``undriven`` are read.
     remaining: float, time in tau to the end of the segment.
-    regime: Regime, that of the step.
-    work: Workspace, with the event functions.
+    regime: Regime, that of the step; ``full_slip``, ``spin_sign`` and ``locked`` are read.
+    work: Workspace, with the event functions, ROW_SPEED, Drive and rest threshold; ROW_DENSE_EVENT is written.
     Returns (event, v): code of the event and its position in [0, 2]; NO_EVENT for none, and v has no meaning then.
     """
     event, v = find_first_event(step, regime, work)
@@ -169,8 +169,8 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     - v: position at which the regime ends: on the step, or 2, its right end;
     - Step: the last one tried, whose solution is at the nodes;
     - error: its error divided by its tolerance; the caller rejects a step above 1, whatever the event.  It is inf where
-      Newton's iteration did not converge; at least 10, or NaN, where no trial ended at the event; at most 1 where the
-      event was missed by the shortest step that time resolves;
+      Newton's iteration did not converge; at least 10, or NaN, where no trial ended at the event or the error of one
+      was above 1e6; at most 1 where the event was missed by the shortest step that time resolves;
     - dense_step: the Step whose dense output is stored now: the last one whose iteration converged, or the one passed
       if none did.
     """
@@ -220,20 +220,24 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
 
     A step whose error exceeds its tolerance is repeated shorter.  One that cannot be shortened is accepted with up to
     ten times its tolerance.  At an equilibrium under a constant drive the rest of the segment is one step in closed
-    form.
+    form; that is not tried where from this segment on no force, torque, brake or prescribed speed acts.
 
     stick_formed: bool, whether the stick zone has just formed; it matters to the first step alone.
     state: State, at the start.
     regime: Regime, to integrate.
-    step_state: StepState, at the start; h = 0: the length of the first step is chosen here.
-    work: Workspace, of the motion; outputs, quadratures and ends of steps are written.
-    Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start without one; the
-    StepState counts the rejected steps too.  The Regime is still the one that ends, but sigma may have changed at d =
-    0.  The event is its code (:mod:`workspace`), or
+    step_state: StepState, at the start; h = 0: the length of the first step is chosen here; h > 0 is raised to 1e-14
+    tau (SHORTEST_STEP) where it is shorter.
+    work: Workspace, of the motion; nodes, Newton matrices, dense output, outputs, quadratures and ends of steps are
+    written.
+    Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start without one.  The
+    StepState counts the rejected steps too; its h is the length that follows from the error of the last trial step, as
+    passed if there was none, and 0 after an equilibrium.  The Regime is still the one that ends, but sigma may have
+    changed at d = 0.  The event is its code (:mod:`workspace`), or
 
     - NO_EVENT at the end of the segment, if the allowed steps are used up, or if the rest of the motion is exponential
       (:func:`is_coasting`);
-    - STEP_FAILED if every step was rejected, however short.
+    - STEP_FAILED if all trials of one step were rejected and the error of the last one, the 61st or one after which a
+      shorter step would not change tau, was above ten times its tolerance, or NaN.
     """
     nodes, segment, drive = work.nodes, step_state.segment, work.drive
     end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0

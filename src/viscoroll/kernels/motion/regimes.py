@@ -59,7 +59,7 @@ def _torque_at_locked_wheel(state, regime, step_state, work):
     state: State, with omega = 0.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
+    work: Workspace, of which Scene and Drive are read.
     Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q and M_cylinder,
     signed, in the direction of the regime; the largest torque of the brake at that time, at least 0, and 0 where no
     brake acts.  In partial slip M_cylinder contains n V'/2 of the added mass, with V' of the present regime.
@@ -90,7 +90,7 @@ def brake_holds_omega(state, regime, step_state, work):
     state: State, with omega = 0.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
+    work: Workspace, of which Scene and Drive are read.
     """
     torque, limit = _torque_at_locked_wheel(state, regime, step_state, work)
     return abs(torque) <= limit
@@ -103,7 +103,7 @@ def release_brake(state, regime, step_state, work):
     state: State, with omega = 0.
     regime: Regime, the one before.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion.
+    work: Workspace, of which Scene and Drive are read.
     Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the torque of
     :func:`_torque_at_locked_wheel` that accelerates the wheel from omega = 0 (1, -1, or 0 for no torque) where the
     segment has a brake anywhere on it, to 0 where it has none.
@@ -124,8 +124,8 @@ def comes_to_rest(state, regime, step_state, work):
     - in all other cases: V is at most 1e-14 times V at the left end of the step, as rounding leaves it.
 
     state: State, at the event.
-    regime: Regime, of full slip.
-    step_state: StepState, at the event.
+    regime: Regime, of full slip; ``locked`` is read.
+    step_state: StepState, at the event; tau and segment are read.
     work: Workspace, with V at the nodes of the step that ends there, the Drive and rtol.
     Returns a bool; True at equality with a threshold, and so where V is exactly 0.
     """
@@ -167,7 +167,7 @@ def impose_prescribed_speed(state, regime, step_state, work):
     state: State, as integrated, with V >= 0.
     regime: Regime, at that state.
     step_state: StepState, with the time and its segment, whose prescribed speed is taken.
-    work: Workspace, of the motion; it is only read.
+    work: Workspace, of which Scene and Drive are read.
     Returns (State, Regime), with V >= 0; ``locked`` and, but for a reversal, all of the Regime stay.
     """
     drive, full_slip = work.drive, regime.full_slip
@@ -206,7 +206,7 @@ def apply_event(event, state, regime, step_state, work):
     state: State, at the event.
     regime: Regime, the one that ends.
     step_state: StepState, at the event.
-    work: Workspace, with the step that ends there.
+    work: Workspace, with V at the nodes of the step that ends there; Scene, Drive and rtol are read too.
     Returns (whether the cylinder moves, State, Regime): it does not move where it comes to rest, or where V is 0 in the
     partial slip that begins; where it comes to rest by V_ZERO or by :func:`comes_to_rest`, State and Regime are those
     that were passed.
@@ -252,7 +252,7 @@ def enter_segment(state, regime, step_state, work):
     state: State, at the end of the segment before, or the start of the motion.
     regime: Regime, at that state.
     step_state: StepState, with the time and the index of the new segment.
-    work: Workspace, of the motion; it is only read.
+    work: Workspace, of which Scene and Drive are read.
     Returns (State, Regime): V is at least 0; where the brake takes hold, ``locked`` is True and ``spin_sign`` stays.
     """
     if step_state.segment > 0:  # A start keeps its given speeds.
@@ -281,7 +281,7 @@ def initial_regime(V, omega, step_state, work):
 
     V, omega: float, initial speeds of either sign, dimensionless.
     step_state: StepState, at the start.
-    work: Workspace, of the motion.
+    work: Workspace, of which Scene and Drive are read.
     Returns (State, Regime, stick_formed): the State in the direction of the Regime, which is that of V, or of omega
     where V is 0, with omega in full slip and d = excess slip/(delta_star V) in partial slip; the Regime with the sign
     of the excess slip as ``sigma`` (1 for 0) and without a brake; ``stick_formed``, a bool, True only for a start in
@@ -309,7 +309,9 @@ def initial_regime(V, omega, step_state, work):
 
 @kernel
 def regime_code(regime):
-    """Return the code of a moving cylinder's regime in the outputs: OMEGA_LOCKED, FULL_SLIP or PARTIAL_SLIP, an int.
+    """Return the code of a moving cylinder's regime in the outputs, an int.
+
+    It is OMEGA_LOCKED (3), FULL_SLIP (0) or PARTIAL_SLIP (1); :func:`rest_code` gives that of a cylinder at rest.
 
     regime: Regime, the present one; ``locked`` comes first, then ``full_slip``.
     """
@@ -320,8 +322,8 @@ def regime_code(regime):
 def rest_code(step_state, work):
     """Return the code of V = omega = 0 in the outputs, an int.
 
-    It is HELD_AT_REST if the segment has a brake anywhere on it, or if a speed is prescribed in the motion; else
-    AT_REST.
+    It is HELD_AT_REST (4) if the segment has a brake anywhere on it, or if a speed is prescribed in the motion; else
+    AT_REST (2).
 
     step_state: StepState, of which the segment is read.
     work: Workspace, of which the Drive is read.

@@ -156,11 +156,12 @@ def has_strong_friction(load, regime, scene):
     """Return whether friction is so strong that V is collocated in place of p, with Q in its rate; a bool.
 
     With k = mu/(2 kappa) it is where k inverse_mass > 0.8 (inverse_mass + inverse_inertia), in partial slip with sigma
-    < 0: only there may dp/dV vanish.  It is False in full slip and where V is prescribed.
+    < 0: only there may dp/dV vanish.  0.8 is a fraction of the k at which dp/dV of half-spaces at rest is 0 at d = -1.
+    The result is False in full slip and where V is prescribed.
 
     load: Load, whose ``inverse_mass`` and ``inverse_inertia`` are read.
     regime: Regime, that of the state; ``full_slip`` and ``sigma`` are read.
-    scene: Scene, of which mu and kappa are read.
+    scene: Scene, of which mu and kappa > 0 are read.
     """
     inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
     strong = k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
@@ -245,7 +246,7 @@ def partial_slip_rates(V, d, load, regime, scene):
 
 @inline_kernel
 def full_slip_rates(V, omega, load, regime, scene):
-    """Evaluate the right-hand side in full slip, where Q = sigma mu, with all derivatives, Eqs. (17), (22).
+    """Evaluate the right-hand side of the equations of motion, Eq. (22), in full slip, where Q = sigma mu, Eq. (17).
 
     V may have either sign, as the moments are odd in V.  The added mass of slow speed changes does not act in full
     slip.
@@ -256,7 +257,8 @@ def full_slip_rates(V, omega, load, regime, scene):
     scene: Scene, of which kappa, mu, moments_differ and ``law`` are read, the law of the pair of materials of this
     motion (:class:`..rows.record.Law`).  It is a tuple of numbers and arrays, not a reference (:func:`by_value`): the
     caller stores numbers in a loop, after each of which LLVM would read the fields of a reference again.
-    Returns Rates, dimensionless: the second unknown is omega, the weight is 1, p is V.  All are finite, at V = 0 too.
+    Returns Rates with all derivatives, dimensionless: the second unknown is omega, the weight is 1, p is V.  All are
+    finite, at V = 0 too.
     """
     u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
     _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
@@ -298,7 +300,8 @@ def evaluate_rhs(state, load, regime, scene):
     state: State, the unknowns, in the direction of the regime.
     load: Load, the drive at the time.
     regime: Regime, full or partial slip.
-    scene: Scene, parameters of Eq. (22): a reference (:mod:`..compile.by_reference`), one address to pass, or a tuple.
+    scene: Scene, of which ``law``, moments_differ, kappa, mu and, in partial slip, gamma are read: a reference
+    (:mod:`..compile.by_reference`), one address to pass, or a tuple.
     Returns Rates, dimensionless, as :func:`full_slip_rates` or :func:`partial_slip_rates` returns them.
     """
     return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
@@ -325,7 +328,7 @@ def rhs_and_forces_at_node(i, regime, work):
     i: int, the node, 0 ... N.
     regime: Regime, that of the step.
     work: Workspace, with V, the second unknown and the four functions of the drive (:func:`.drive.store_drive`) at the
-    node.
+    node; Scene and Drive are read too.
     Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless, in the direction of the regime,
     as :func:`required_forces` returns them.
     """

@@ -94,7 +94,7 @@ def store_rhs(i, rates, nodes):
     i: int, the node, 0 ... N.
     rates: Rates, the right-hand side at the node; p, p_rate, weighted_rate and omega are read.
     nodes: Workspace.nodes, with V at the node; entry ``i`` of ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED is
-    written.
+    written.  Returns nothing.
     """
     nodes[ROW_P_RATE + i], nodes[ROW_WEIGHTED_RATE + i] = rates.p_rate, rates.weighted_rate
     nodes[ROW_P + i], nodes[ROW_SPEED + i] = rates.p, max(abs(nodes[ROW_V + i]), abs(rates.omega))
@@ -113,8 +113,8 @@ def _evaluate_residuals(refactor, step, regime, work):
     work: Workspace, with V, the second unknown and the drive at the nodes, and p at node 0.  Entries 1 ... N of
     ROW_P_RESIDUAL, ROW_D_RESIDUAL, ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED are written; with ``refactor``
     also those of ROW_DV_DP, ROW_DP_DD, ROW_COUPLING, ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK, ROW_P_DIAGONAL and
-    ROW_D_DIAGONAL.  ROW_P_SLOPE and ROW_D_SLOPE are written whole, with 0 at node 0.  ROW_RELAXATION is not finite
-    where V is 0 in partial slip.
+    ROW_D_DIAGONAL.  ROW_P_SLOPE and ROW_D_SLOPE are written whole, with 0 at node 0 (NaN if p or the second unknown is
+    not finite at a node).  ROW_RELAXATION is not finite where V is 0 in partial slip.  Returns nothing.
     """
     values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
     multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)
@@ -143,7 +143,7 @@ def _add_feedback_to_matrix(work):
 
     work: Workspace, with S^-1 in ``d_matrix``, F in ROW_FEEDBACK and c in ROW_COUPLING; rows and columns 1 ... N of
     ``p_matrix`` are changed.  Both matrices are flat vectors by columns, element (i, k) at ROW_LENGTH k + i; row and
-    column 0 are not used.
+    column 0 are not used.  Returns nothing.
     """
     for k in range(1, ROW_LENGTH):
         for i in range(1, ROW_LENGTH):
@@ -160,12 +160,13 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     coupled: bool, whether p' depends on the second unknown, so that the system of p contains feedback.
     step: Step, the trial step.
     regime: Regime, that of the step.
-    work: Workspace, with V, the second unknown and the drive at the nodes.  All that follows is written at nodes 1 ...
-    N: the unknowns ROW_V, ROW_OMEGA_OR_D and ROW_P after the update; ROW_P_UPDATE, ROW_D_UPDATE, ROW_P_RESIDUAL and
+    work: Workspace, with V, the second unknown and the drive at all nodes, and p and the larger speed at node 0.
+    Written at nodes 1 ... N are the unknowns ROW_V, ROW_OMEGA_OR_D and ROW_P after the update; ROW_P_RESIDUAL and
     ROW_D_RESIDUAL, the residuals with terms of the other equation; and, of the unknowns before the update, ROW_P_RATE,
-    ROW_WEIGHTED_RATE, ROW_SPEED, ROW_P_SLOPE and ROW_D_SLOPE.  With ``refactor`` also ``p_matrix``, ``d_matrix`` and
-    the derivatives before the update: ROW_DV_DP, ROW_DP_DD, ROW_COUPLING, ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK,
-    ROW_P_DIAGONAL and ROW_D_DIAGONAL.
+    ROW_WEIGHTED_RATE and ROW_SPEED.  ROW_P_UPDATE, ROW_D_UPDATE and, before the update, ROW_P_SLOPE and ROW_D_SLOPE are
+    written whole, with 0 at node 0 (NaN if the row that is multiplied has a NaN or inf).  With ``refactor`` also
+    ``p_matrix``, ``d_matrix`` and, at nodes 1 ... N, the derivatives before the update: ROW_DV_DP, ROW_DP_DD,
+    ROW_COUPLING, ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK, ROW_P_DIAGONAL and ROW_D_DIAGONAL.
     Returns the largest update of V or of the second unknown, each divided by its error scale (:func:`error_scales`, of
     the updated unknowns), a float >= 0, dimensionless; NaN if an update is NaN.
     """
@@ -207,20 +208,22 @@ def _newton_iteration(refactor, coupled, step, regime, work):
 def solve_step(step, relaxation, dense_step, regime, work):
     """Solve a trial step from node 0 on by a simplified Newton iteration and store its dense output.
 
-    The iteration has converged when the last update times the ratio of the last two updates, an estimate of the error
-    that is left, is at most 0.016 times the tolerance of the step, max(0.25 rtol, 1e-14), or at most 1e-14.  At the
-    first iteration the ratio is taken to be at most 0.1, less for a small update.
+    An update counts by the largest change of V and of the second unknown, each divided by its error scale.  The
+    iteration has converged when the last update times the ratio of the last two updates, an estimate of the error that
+    is left, is at most 0.016 times the tolerance of the step, max(0.25 rtol, 1e-14), or at most 1e-14.  At the first
+    iteration the ratio is taken to be at most 0.1, less for a small update.
 
     step: Step, the trial step.
     relaxation: float, derivative of the slope of the second unknown in itself at node 0, per unit of tau; only the
     predictor reads it.
     dense_step: Step, whose dense output is stored on entry, for the predictor; one with h = 0 if none is.
     regime: Regime, that of the step.
-    work: Workspace, with node 0; the drive, nodes 1 ... N and the Newton matrices are written.  The rates, slopes and
-    ROW_SPEED at nodes 1 ... N are those before the last update, the derivatives those of the last matrices.
+    work: Workspace, with V, the second unknown, p, V', the weighted rate and the larger speed at node 0; the drive at
+    all nodes, nodes 1 ... N of all rows of :func:`_newton_iteration` and the Newton matrices are written.  The rates,
+    slopes, residuals and ROW_SPEED there are those before the last update, the derivatives those of the last matrices.
     Returns True if the iteration converged: the dense output of V and of the second unknown is then that of ``step``.
-    Returns False if it did not within _MAX_ITERATIONS, or if an update was 1e6 or more times its scale, twice the one
-    before or larger, or NaN: nodes 1 ... N then hold the last iterate, and the dense output is still that of
+    Returns False if it did not within _MAX_ITERATIONS, or if an update was 1e6 or more, at least twice the one before,
+    or NaN: nodes 1 ... N then hold the last iterate, and the dense output is still that of
     ``dense_step``.
     """
     nodes, tolerance = work.nodes, max(ERROR_FRACTION * work.options.rtol, LEAST_TOLERANCE)

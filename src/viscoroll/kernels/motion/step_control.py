@@ -87,7 +87,9 @@ def moderate_speed(scene):
     It is 2^(e0 + 4)/kappa, with 2^e0 the end of the first row of the law in kappa |V|: between 0.5 and 1 times 1/kappa
     divided by the longest time of the material in units of T_epsilon.
 
-    scene: Scene, of which kappa and the marks of ``law`` are read.
+    Steps from V = 0 and the limit of exponential decay (:func:`.asymptotics.is_coasting`) are measured by it.
+
+    scene: Scene, of which kappa > 0 and e0 in the marks of ``law`` are read.
     """
     return 2.0 ** (scene.law.marks[E0] + _ROWS_BELOW_LONGEST_TIME) / scene.kappa
 
@@ -102,7 +104,7 @@ def _time_to_reach_V(V_change, step_state, regime, work):
     V_change: float, that V, above 0, dimensionless.
     step_state: StepState, at V = 0, before the end of its segment.
     regime: Regime, of partial slip, at that state.
-    work: Workspace, with V' and d at node 0.
+    work: Workspace, with V' and d at node 0; Scene, Drive and the last output time are read too.
     Returns a float, at least 0: the time at which V has its maximum if V does not reach V_change, which is 0 if V'
     falls from 0; a very large number or inf if V' and its slope are 0.
     """
@@ -131,7 +133,8 @@ def first_step_length(stick_formed, step_state, regime, work):
     slip; ignored in full slip and at V = 0.
     step_state: StepState, at the start of the regime.
     regime: Regime, the new one.
-    work: Workspace, with V, V', the weighted rate, ROW_SPEED and the relaxation rate at node 0.
+    work: Workspace, with V, V', the weighted rate, ROW_SPEED and the relaxation rate at node 0; Scene, Drive, rtol
+    and the last output time are read too.
     Returns a float, at least 0; it is 0 where the stick zone has just formed and d' is exactly 0, and inf in full slip
     at rest or without any rate.  The caller limits it to the rest of the segment and to 1e-14 of the time from below.
     """
@@ -165,10 +168,11 @@ def time_to_V_zero(step, state, regime, work):
     without feedback do not act against V.
 
     step: Step, the trial step; tau, segment and undriven are read.
-    state: State, at its left end.
-    regime: Regime, that of the step.
-    work: Workspace, with V' at node 0, and the Drive.
-    Returns a float, at least 0; 0 at V = 0 if it decreases from there; inf for a V' of NaN.
+    state: State, at its left end; V is read.
+    regime: Regime, that of the step; full_slip, direction and locked are read.
+    work: Workspace, with V' at node 0; the Drive and j are read too.
+    Returns a float, at least 0; 0 at V = 0 if V' < 0 and, in partial slip, the drive acts against V; inf for a V' of
+    NaN.
     """
     V_rate = work.nodes[ROW_V_RATE]
     if not V_rate < 0.0:
@@ -191,9 +195,9 @@ def step_length_after_relaxation(step, regime, work):
     After it d follows V, which changes slowly: V may change by 4 rtol^(1/8) of itself, at the rate p' dV/dp or, if
     that is larger, at the rate V dp'/dp.
 
-    step: Step, the accepted one.
-    regime: Regime, that of the step.
-    work: Workspace, with the rates and derivatives at its last node.
+    step: Step, the accepted one; ``h`` is read.
+    regime: Regime, that of the step; ``full_slip`` is read.
+    work: Workspace, with V, p', dV/dp, the Newton diagonal of p and the relaxation rate at its last node, and rtol.
     Returns a float, at least 0; the caller takes it if it is larger than the length by the error.  It is 0 in full
     slip, if the step spans six relaxation times of d or fewer, and where V is 0 at the last node (NaN if p' is 0 too);
     inf where p' and dp'/dp are 0.

@@ -88,7 +88,7 @@ BELOW_REST_SPEED = OMEGA_ZERO + ROW_LENGTH
 BRAKE_RELEASE = BELOW_REST_SPEED + ROW_LENGTH
 #: Code beside the events: the segment of the drive or the allowed number of steps ended.
 NO_EVENT = 0
-#: Code beside the events: every step, however short, was rejected.
+#: Code beside the events: all trials of one step, ever shorter, were rejected.
 STEP_FAILED = -1
 #: First of N_NODE_FUNCTIONS rows of the functions of the drive.
 ROW_DRIVE = BRAKE_RELEASE + ROW_LENGTH
@@ -127,19 +127,29 @@ def change_slip(regime, full_slip, sigma):
 
 @inline_kernel
 def last_output_tau(work):
-    """Return tau of the last output, at which the motion ends; work: Workspace of the motion."""
+    """Return tau of the last output, at which the motion ends, a float.
+
+    work: Workspace, of the motion, with at least one output time.
+    """
     return work.output_tau[work.output_tau.size - 1]
 
 
 @inline_kernel
 def shorten_step(step, h):
-    """Return the Step with the same left end and the length ``h`` in tau; step: Step, the longer one."""
+    """Return the Step with the same left end and the length ``h``, a float in tau.
+
+    step: Step, the one to shorten, whose other fields stay.
+    """
     return Step(step.tau, h, step.segment, step.initial_slope_known, step.undriven)
 
 
 @inline_kernel
 def node_time(step, i):
-    """Return tau at node ``i`` (0 ... N) of a step; step: Step, whose left end is node 0."""
+    """Return tau at a node of a step, a float.
+
+    step: Step, of which tau at its left end, node 0, and ``h`` are read.
+    i: int, the node, 0 ... N.
+    """
     return step.tau + step.h * NODE_FRACTIONS[i]
 
 

@@ -49,6 +49,8 @@ def in_40_digits(function: Callable) -> Callable:
 class Interpolation:
     """Matrices from values at nodes to coefficients, values, slopes and integrals of the polynomial through them.
 
+    Arguments are given by position only (:func:`in_40_digits`).
+
     Parameters
     ----------
     nodes : n distinct numbers, Decimals.
@@ -122,8 +124,8 @@ class Interpolation:
 def radau(n: int, side: int) -> list[Decimal]:
     """Return the nodes of Radau's rule on [-1, 1]: one end, and n - 1 nodes inside.
 
-    n : number of nodes, the end included, > 1.
-    side : the end that is a node, -1 or 1.
+    n : number of nodes, the end included, an int > 1; both arguments by position only.
+    side : the end that is a node, int, -1 or 1.
     Returns n Decimals, ascending, rounded to 36 digits after the point.
     """
     inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
@@ -134,7 +136,8 @@ def radau(n: int, side: int) -> list[Decimal]:
 def gauss(n: int) -> tuple[_Floats, _Floats]:
     """Return nodes and weights of the Gauss-Legendre rule on [0, 1].
 
-    n : number of points, >= 1.
+    n : number of points, int, 1 to about 70, by position only: with more, cancellation takes more than the spare digits
+        of 40 (1e-13 is lost at 80).
     Returns (nodes, ascending; weights in their order, which add up to 1), doubles, (n,) each.
     """
     legendre = leg2poly(_unit_series(n, 1))
@@ -147,7 +150,7 @@ def gauss(n: int) -> tuple[_Floats, _Floats]:
 def chebyshev(n: int) -> list[Decimal]:
     """Return the zeros of the Chebyshev polynomial T_n on [-1, 1].
 
-    n : number of zeros, >= 1.
+    n : number of zeros, an int >= 1, by position only.
     Returns n Decimals, ascending, rounded to 36 digits after the point.
     """
     return _zeros(cheb2poly(_unit_series(n, 1)), [(k - 0.5) / n for k in range(1, n + 1)])
@@ -159,7 +162,7 @@ def to_chebyshev(n: int) -> _Floats:
 
     It gives the series of the polynomial of degree n - 1 through the values.
 
-    n : number of nodes and terms, > 1.
+    n : number of nodes and terms, an int > 1, by position only.
     Returns doubles, (n, n), [term, node], the term of T_0 first.
     """
     x = np.array(chebyshev(n))

@@ -74,11 +74,12 @@ def _evaluate_added_mass(law, V, kappa, gamma):
 def added_mass(law, V, kappa, gamma):
     """Return the factor gamma N of the added mass, with its slope and its integral; zeros for a law of steady rolling.
 
+    It is :func:`_evaluate_added_mass` behind a test, which is inlined so that steady rolling costs nothing else.
     The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4 there), at infinity.
 
     law : :class:`Law` of the material: polynomials of each octave; ``N_rows`` is empty for steady rolling, where
         nothing else is read.
-    V : float, speed of the axis, of either sign, dimensionless; N is even in V.
+    V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
     Returns (gamma N, its slope over V, its integral over V), floats, dimensionless; (0.0, 0.0, 0.0) for steady rolling.
@@ -95,7 +96,7 @@ def unsteady_loop(law, kappa, V, out):
     law : :class:`Law` that has N (``N_rows`` is not empty); marks, rows and ``N_rows`` are read.
     kappa, V : slenderness, > 0, and speed, of either sign, finite, dimensionless, of length 1 or n.
     out : (n,) floats, written: N in units of P T_epsilon^2.  Of a cover it is NaN in the rows of the law, and without
-        meaning beyond the last row.
+        meaning beyond the last row.  Returns nothing.
     """
     for n in range(out.size):
         _, out[n], _, _ = _evaluate_N(element(kappa, n) * abs(element(V, n)), law)

@@ -47,7 +47,8 @@ def _half_space_law(V, omega, out, scenes):
     """Evaluate the law of half-spaces at one state: the C function, which calls :func:`_evaluate` without a cover.
 
     V, omega : floats, speed and angular velocity in the units of the caller, of any sign.
-    out, scenes : pointers to RESULTS = 8 doubles, written as the module says, and to a SCENE record.
+    out, scenes : pointers to RESULTS = 8 doubles, written in the units of the caller as by :func:`_evaluate` (without
+        slopes numbers 4 and 5 keep their values and 6 and 7 have no meaning), and to a SCENE record.
     Returns the status, an int: 0; or 1, with all results NaN, if the dimensionless V or omega is not finite or kappa
     |V| exceeds MAX_U.
     """
@@ -56,11 +57,14 @@ def _half_space_law(V, omega, out, scenes):
 
 @kernel(allocates=True)
 def _cover_law(V, omega, out, scenes):
-    """Evaluate the law of a cover at one state: the C function, which calls :func:`_evaluate` with the cover's numbers.
+    """Evaluate the law of a cover, a layer of finite thickness on one body, at one state: the C function, which calls
+    :func:`_evaluate` with the numbers that only a cover has.
 
     V, omega : floats, speed and angular velocity in the units of the caller, of any sign.
-    out, scenes : pointers to RESULTS = 8 doubles, written as the module says, and to a SCENE record, whose
-        ``cover_rows`` is an address.
+    out, scenes : pointers to RESULTS = 8 doubles, written in the units of the caller as by :func:`_evaluate` (without
+        slopes numbers 4 and 5 keep their values and 6 and 7 have no meaning), and to a SCENE record, whose
+        ``cover_rows`` is the address of COVER_FRONT_SIZE + COVER_ROW_SIZE (row_count - 1) doubles that exist during the
+        call.
     Returns the status, an int: 0; or 1, with all results NaN, if the dimensionless V or omega is not finite or kappa
     |V| exceeds MAX_U.
     """
@@ -77,7 +81,8 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     pointer : address of RESULTS = 8 doubles, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``, dQ/dV
         at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV.  Without slopes numbers 4 and 5 stay as
         they were, and numbers 6 and 7 are overwritten by numbers without meaning.
-    scene : a SCENE record: rows of the law, kappa, mu and the units of the caller.
+    scene : a SCENE record, of which all fields but ``function`` and ``cover_rows`` are read: rows and marks of the law,
+        kappa, mu > 0 and the units of the caller.
     cover_rows : vector of the numbers that only a cover has, as in :class:`Law`; None of half-spaces.
 
     Returns the status, an int: 0; or 1, and all eight results are NaN, if the dimensionless V or omega is not finite or
@@ -124,13 +129,16 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
 def pack_scenes(law: Law, unlike: bool, kappa: float, mu: float, scale: Mapping[str, float]) -> NDArray[Any]:
     """Return the user data for the C function of a law: two SCENE records, without slopes and with slopes.
 
-    law : :class:`Law` of one material, with all rows complete; its arrays must outlive the records, which hold their
-        addresses.
+    A record also holds the address of the C function, of half-spaces or of a cover, which is compiled here if it is not
+    yet.
+
+    law : :class:`Law` of one material, with all rows complete; rows, marks and cover_rows are read.  Its arrays must
+        outlive the records, which hold their addresses.
     unlike : bool, whether the two bodies differ, so that they take unequal parts of M.
     kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
     scale : "V", "omega", "Q" and "M" -> the unit of this dimensionless quantity in the units of the caller, a float: a
         dimensionless number times it is the caller's.
-    Returns an array of shape (2,) and dtype SCENE.
+    Returns an array of shape (2,) and dtype SCENE.  Raises KeyError if ``scale`` lacks a name.
     """
     cover_rows = law.cover_rows
     function, address = (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)
@@ -144,7 +152,8 @@ def c_function_address(function, record: np.dtype) -> int:
 
     function : the kernel (V, omega, pointer to results, pointer to a record) -> status, numba's dispatcher.
     record : numpy dtype of the record.
-    Returns an int, valid in this process; a further call returns the same.
+    Returns an int, valid in this process; a further call returns the same.  Raises numba's error if the kernel cannot
+    be compiled for these types.
     """
     arguments = types.float64, types.float64, types.CPointer(types.float64)
     return function_address(function, record, types.int32, *arguments)

@@ -169,14 +169,16 @@ def traction_slopes(u, L, dL, D, law):
     """Return the slopes of |Q|/mu: over u at fixed D, and over D at fixed u.
 
     u : float, kappa |V|, dimensionless, >= 0.
-    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is not read at small D.
+    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is read only where the plain
+        formula below is used: neither with the mean slopes nor in full slip.
     D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
     Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) in full slip (L <= D), and where L or D is
     NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they are -2 w (A dL + d(H/F^2)/dv) and 2 w A.
 
     As in :func:`traction_over_mu`, mean slopes of H/F^2 and of its slope are used where D is below L/16 or a difference
-    would lose digits; at D = 0 or u = 0 the slope over u then is 0.
+    would lose digits.  With them the slope over u is 0 at D = 0 and at u = 0; from D = L/16 on the plain formula holds
+    at u = 0 too, unless a difference would lose digits.
     """
     w = L - D
     if not w > 0.0:
@@ -269,16 +271,21 @@ def Q_slopes(u, L, dL, D, state, law):
 
 @inline_kernel
 def _index(k, request):
-    """Return the index of the state at position ``k``, an int >= 0, in the order of evaluation: ``request.order[k]``,
-    or k itself if ``order`` of the :class:`Request` is empty.
+    """Return the index of the state at a position in the order of evaluation, an int.
+
+    k : int, the position, from 0 to ``count`` - 1 of :func:`contact_loop`; not checked.
+    request : :class:`Request`, of which ``order`` is read: the index is ``order[k]``, or k itself if it is empty.
     """
     return request.order[np.uint64(k)] if request.order.size > 0 else k
 
 
 @inline_kernel
 def _state(c, scratch, request):
-    """Return the :class:`State` of numbers in column ``c``, unsigned, of ``scratch``, (SCRATCH_SIZE,), as of
-    :func:`contact_loop`; ``creep_is_omega`` is that of the states of ``request``.
+    """Return the :class:`State` of numbers of a state of the block, from the copy in the scratch.
+
+    c : unsigned int, column of the state in the scratch, its place in the block, from 0 to TOGETHER - 1.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`, of which kappa, mu, V and the creep are read.
+    request : :class:`Request`, of whose states ``creep_is_omega`` is read.
     """
     return State(
         scratch[_KAPPA + c], scratch[_MU + c], scratch[_V + c], scratch[_CREEP + c], request.states.creep_is_omega
@@ -292,12 +299,14 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
 
     arguments : unsigned int, index in ``scratch`` of the arguments of column 0: _U or _STICK.
     positions : unsigned int, index in ``scratch`` of the positions: _POSITION for u, _STICK_POSITION for v.
-    begin, end : int, first column, which is the place of a state in its block, and the one after the last.
+    begin, end : int, first column, which is the place of a state in its block, and the one after the last; 0 <= begin
+        <= end <= TOGETHER = 64, the states in a block.
     laws : tuple of :class:`Law`; the state in column k belongs to law k modulo their number, which must have its
         material selected.
     scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.  Three numbers a state are written: at ``positions`` the
         number of its row, an int (-1 beyond the last row) whose bits are stored as a double; TOGETHER numbers further
-        t; again TOGETHER further dt/dx.
+        t; again TOGETHER further dt/dx.  With row -1, which an infinite argument has too, t and dt/dx have no meaning;
+        of a NaN t is NaN.
     Returns nothing.
     """
     for k in range(begin, end):
@@ -310,8 +319,11 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
 
 @inline_kernel
 def _position(place, c, scratch):
-    """Return the :class:`RowPosition` of column ``c``, unsigned, of ``scratch``; ``place``: _POSITION for u or
-    _STICK_POSITION for v, where :func:`_write_positions` has written it.
+    """Return the :class:`RowPosition` of a state of the block, as :func:`_write_positions` has written it.
+
+    place : unsigned int, index in ``scratch`` of the positions: _POSITION for u, _STICK_POSITION for v.
+    c : unsigned int, column of the state in the scratch, its place in the block, from 0 to TOGETHER - 1.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.
     """
     return RowPosition(float_to_bits(scratch[place + c]), scratch[place + _T + c], scratch[place + _DT_DX + c])
 
@@ -381,7 +393,9 @@ def contact_loop(laws, request, scratch, count):
         a time; the loop selects them.
     request : :class:`Request`: ``states`` (arrays of length 1 or with one number for each state), ``order`` of
         evaluation, ``to`` (for each quantity its row of ``out``, -1 if it is not requested), ``out``, (quantities,
-        columns), of which column ``first`` + n is written for state n.
+        columns), of which column ``first`` + n is written for state n.  The quantities are lam, zeta, epsilon,
+        delta_star, delta, full_slip, beta, grip, Q, M, dQ_dV, dQ_ddelta, dQ_domega, dM_dV, M_half_space, M_cylinder,
+        dM_half_space_dV, dM_cylinder_dV and delta_0.
     scratch : (SCRATCH_SIZE,) doubles, overwritten.
     count : int, number of states, >= 0; with an ``order`` its first ``count`` entries are evaluated, else the states 0
         to ``count`` - 1.

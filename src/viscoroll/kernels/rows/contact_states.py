@@ -59,16 +59,22 @@ class Request(NamedTuple):
 
 @inline_kernel
 def element(values, n):
-    """Return element ``n``, an int, of an array ``values``: of one of length 1, whose value holds for all n, its only
-    element.
+    """Return an element of an array that has one value for all states, or one for each.
+
+    values : array of one axis, not empty.
+    n : int, index of the state, >= 0; not checked.
+    Returns ``values[n]``; of an array of length 1 its only element, whatever n is.
     """
     return values[np.uint64(n * (values.size > 1))]
 
 
 @inline_kernel
 def read_state(states, n):
-    """Return the :class:`State` of numbers with index ``n``, an int, of ``states``, a :class:`State` of arrays, of
-    which those of length 1 hold for all states.
+    """Return one state of arrays of states.
+
+    states : :class:`State` of arrays, each of length 1, for all states, or with one number for each.
+    n : int, index of the state, >= 0; not checked.
+    Returns a :class:`State` of numbers, dimensionless, with the ``creep_is_omega`` of ``states``.
     """
     return State(
         element(states.kappa, n), element(states.mu, n), element(states.V, n), element(states.creep, n),

@@ -103,8 +103,8 @@ def locate_octave(x, e0):
 
     Returns (row, t, dt/dx).  row: int, number of the row, without upper bound, as the number of rows of a law is not
     known here.  t: float, argument of its polynomials: x 2^-e0, in [0, 1), in row 0, else in [-1, 1).  dt/dx: float,
-    slope of t, constant in a row.  An infinite x is beyond the rows of every law; a NaN is in row 0 or beyond all rows,
-    by its sign bit; t of both is NaN.
+    slope of t, constant in a row.  -0.0 is in row 0, an infinite x is beyond the rows of every law; a NaN is in row 0
+    or beyond all rows, by its sign bit; t of both is NaN.
     """
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
     # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
@@ -129,7 +129,9 @@ def locate_row(x, law):
 
 @inline_kernel
 def in_fast_limit(position):
-    """Return whether a :class:`RowPosition` lies beyond the last row, in the fast limit, a bool."""
+    """Return whether a :class:`RowPosition` lies beyond the last row, in the fast limit, a bool; LLVM is told that this
+    is rare.
+    """
     return unlikely(position.row < 0)
 
 
@@ -223,9 +225,9 @@ def body_moments(position, u, law):
         parts: there each is half of M/V.
 
     Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), floats, dimensionless; the first
-    two are divided by ``scale`` of the :class:`LengthAndMoment` at u, which is 1 in the rows and z in the fast limit;
-    the slopes are not.  Of a cover all of M counts as that of the body with the layer, and the other body has 0; where
-    both relax, these parts have no meaning.
+    two are divided by ``scale`` of the :class:`LengthAndMoment` at u, which is 1 in the rows and z = lam_fast/(2 u) in
+    the fast limit; the slopes are not.  Of a cover all of M counts as that of the body with the layer, and the other
+    body has 0; where both relax, these parts have no meaning.
     """
     if in_fast_limit(position):
         z, half_space, part = _fast_terms(u, FAST_HALF_SPACE, law)
@@ -241,6 +243,8 @@ def body_moments(position, u, law):
 def free_creep_and_slopes(u, law):
     """Return 2 kappa delta_0, from the creepage of free rolling, with its first two derivatives over u.
 
+    It is :func:`.cover.free_creep_at` for callers that have not located u.
+
     u : float, kappa |V|, dimensionless, >= 0.
     law : :class:`Law` of the material, of which marks and ``cover_rows`` are read.
     Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; 0.0 each of
@@ -252,6 +256,8 @@ def free_creep_and_slopes(u, law):
 @inline_kernel
 def limits_at_rest(kappa, law):
     """Return L = 2 kappa delta_star/mu and the creepage of free rolling in the limit V -> 0.
+
+    The departure from rest and the exponential decay of a motion are decided with them.
 
     kappa : float, slenderness R/l0, dimensionless, > 0; not read for half-spaces.
     law : :class:`Law` of the material, of which, if it is a cover, L and delta_0 in row 0 are read.
@@ -293,7 +299,8 @@ def eta_over_F(position, v, law):
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material, of which the polynomials of eta/F are read.
+    law : :class:`Law` of the material, of which the polynomials of eta/F or, beyond the last row, the head and
+        ``cover_rows`` are read.
     Returns a float, dimensionless: for half-spaces it is in (0, 1], and 1 at v = 0 and at infinity; for a cover it is
     lam/L of the speed at which v = 2 u/L.
     """

@@ -63,11 +63,13 @@ class LawType(types.Callable):
         return signature(returned, types.float64, types.float64, recvr=self).replace(pysig=_SIGNATURE)
 
     def get_call_signatures(self):
-        """Return the signatures that numba names in its messages, and that they have no parameters."""
+        """Return the list of signatures that numba names in messages of errors, one, (double, double) -> double, and
+        False, as there are no type parameters.
+        """
         return [signature(types.float64, types.float64, types.float64)], False
 
     def get_impl_key(self, _):
-        """Return the key under which numba finds :func:`_lower_call`."""
+        """Return the key under which numba finds :func:`_lower_call`, the class itself: one for all laws."""
         return LawType
 
 
@@ -131,7 +133,7 @@ class _LawModel(models.PrimitiveModel):
 
 @unbox(LawType)
 def _unbox(kind, law, c):
-    """Return the address of the user data of a law that Python passes to jitted code.
+    """Return instructions that read the address of the user data of a law that Python passes to jitted code.
 
     kind, c : numba's type of the law, not used, and its context of unboxing.
     law : the Python object, a :class:`Jitted`, as a value of LLVM.

@@ -7,10 +7,10 @@ N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed ch
     U = H g_s - g H_s + z^2 (y_s + T_mean g)
     N = -[(3/2) U - (theta/2) U' + (theta g' - g) W]/H
 
-z is half the transit time of the contact, a_i and b_j are the rates of the modes, g, h and X_i functions of z
-(:mod:`.series`), H = z^2 + 2 z h, and T_mean = sum E_i tau_i.  _s is the slope over s of a jet.  (Divided by 1 + T_mean
-s, which makes the long-time modulus 1 again, h and y gain T_mean times themselves and g nothing: hence the last term of
-U.)  Unit of N: that of time squared.
+z is half the transit time of the contact, a_i = 1/tau_i and b_j = 1/T_j are the rates of the modes, E_i the strengths
+of relaxation, g, h and X_i functions of z (:mod:`.series`), H = z^2 + 2 z h, and T_mean = sum E_i tau_i.  _s is the
+slope over s of a jet.  (Divided by 1 + T_mean s, which makes the long-time modulus 1 again, h and y gain T_mean times
+themselves and g nothing: hence the last term of U.)  Unit of N: that of time squared.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -40,6 +40,8 @@ _FAST = 1e-9
 def _evaluate_asymptotic(terms, x):
     """Evaluate the asymptotic series sum a_n x^-n of r or k, with its first two derivatives.
 
+    Of large x the Riccati equations would give derivatives as differences that have lost their digits.
+
     terms : coefficients a_0, a_1, ..., of which a_0 = 1 is not read, (terms,), floats.
     x : float, argument a_i z or b_j z, 64 or more, dimensionless; it may be infinite.
     Returns (value, first derivative, second derivative) over x, floats, dimensionless; (1, 0, 0) at infinity.
@@ -56,6 +58,8 @@ def _evaluate_asymptotic(terms, x):
 @inline_kernel
 def _jet(rate, z, function):
     """Return the jet of a function of x = (rate - s) z at s = 0: a vector of four, value, d/dz, d/ds, d2/dz ds.
+
+    It turns derivatives over x, which the ratios of Bessel functions have, into those over z and s (:mod:`.series`).
 
     rate : float, a_i or b_j, rate of the mode, > 0.
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the rate.
@@ -146,7 +150,9 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
 def set_alpha_of_state(n, alpha, series):
     """Write the alpha of state ``n`` into a series of one mode, whose creep time is the unit of time.
 
-    n : int, index of the state.
+    Loops over states whose alphas differ call it before each state, and so reuse one series and one workspace.
+
+    n : int, index of the state, >= 0.
     alpha : alphas >= 1, of length 1 for all states or with one for each; empty: the series is complete and nothing is
         written.
     series : :class:`Series` of one mode with b = 1 and Q = 1, of which a[0] = alpha and e[0] = t[0] = sqrt((alpha -

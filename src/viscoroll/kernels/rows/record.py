@@ -88,9 +88,12 @@ class Law(NamedTuple):
 
 @inline_kernel
 def select_material(law, n):
-    """Make ``law`` that of state or motion ``n``, an int >= 0: its kernel writes the heads of rows and marks.
+    """Make a law that of one state or motion: the kernel at its address ``selector`` writes heads of rows and marks.
 
-    Nothing is done if one law serves all or that of n is selected already.  Returns nothing.
+    law : :class:`Law`, of which ``selector`` and ``source`` are read.  Nothing is done if one law serves all (selector
+        0), and nothing is written if the material of ``n`` is selected already.
+    n : int, index of the state or motion, >= 0, of those for which the law was made; not checked.
+    Returns nothing.
     """
     if law.selector != 0:
         call_address(law.selector, n, law.source)

@@ -87,20 +87,29 @@ _VECTORS = len(Workspace._fields) - 2
 
 
 def series_size(modes: int) -> int:
-    """Return the number of doubles of a series of ``modes`` modes: its vectors, then Q."""
+    """Return the number of doubles in which a series is stored, an int: five vectors of one number a mode, then Q.
+
+    modes : int, number of modes, >= 0.
+    """
     return modes * (len(Series._fields) - 1 + modes)
 
 
 def workspace_size(modes: int) -> int:
-    """Return the number of doubles of the workspace of a series of ``modes`` modes."""
+    """Return the number of doubles of the workspace of a series, an int, that :func:`split_workspace` needs.
+
+    modes : int, number of modes, >= 0.
+    """
     return LANES * (modes * (_VECTORS + modes) + FUNCTIONS)
 
 
 @inline_kernel
 def unpack_series(numbers, n, unlike):
-    """Return the :class:`Series` of ``n`` modes in the vector ``numbers``, as views; ``unlike``: whether it keeps its
-    weights, which are empty otherwise.  The vector begins with a, b, e, t and weights, ``n`` numbers each, and Q by
-    rows.
+    """Return the :class:`Series` of a material as views of the vector in which it is stored.
+
+    numbers : vector of doubles that begins with a, b, e, t and weights, ``n`` numbers each, and Q by rows; at least
+        (5 + n) n numbers.
+    n : int, number of modes, >= 0.
+    unlike : bool, whether the bodies differ, so that the weights are kept; else they are empty.
     """
     row = numbers[: (5 + n) * n].reshape(5 + n, n)
     return Series(row[0], row[1], row[2], row[3], row[4, : n if unlike else 0], row[5:])
@@ -108,8 +117,10 @@ def unpack_series(numbers, n, unlike):
 
 @inline_kernel
 def split_workspace(numbers, modes):
-    """Return the :class:`Workspace` of a series of ``modes`` modes, as views of the vector ``numbers``, which has
-    :func:`workspace_size` doubles.
+    """Return the :class:`Workspace` of a series as views of one vector; nothing is written.
+
+    numbers : vector of :func:`workspace_size` doubles.
+    modes : int, number of modes, >= 0.
     """
     n = LANES * modes
     end = (_VECTORS + modes) * n
@@ -118,7 +129,7 @@ def split_workspace(numbers, modes):
 
 
 def new_workspace(modes: int) -> Workspace:
-    """Return a new :class:`Workspace` for a series of ``modes`` modes."""
+    """Return a new :class:`Workspace` for a series of ``modes`` modes, an int >= 0; its arrays are not initialized."""
     return split_workspace.py_func(np.empty(workspace_size(modes)), modes)
 
 
@@ -195,7 +206,7 @@ def _strength(jets, strength, rate):
 
 @inline_kernel
 def _value(jets, p):
-    """Return the value of a jet, four times; without ``jets`` p itself."""
+    """Return the value of a jet ``p``, four times, a vector of four; if the bool ``jets`` is False, ``p`` itself."""
     return broadcast(unpack(p)[0]) if jets else p
 
 

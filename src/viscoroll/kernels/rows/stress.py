@@ -110,8 +110,8 @@ def _memory_integral(u, w, a, r_complement):
 
 
 def new_memory_weights(series) -> MemoryWeights:
-    """Return :class:`MemoryWeights` for ``series``, a :class:`Series`, that belong to no z yet: z is NaN, and the other
-    arrays are not initialized.
+    """Return :class:`MemoryWeights` for ``series``, a :class:`Series`, whose number of modes is read; they belong to no
+    z yet: z is NaN, and the other arrays are not initialized.
     """
     n = series.a.size
     return MemoryWeights(np.empty(n), np.empty(n), np.full(1, np.nan), new_workspace(n))

@@ -197,8 +197,10 @@ def grid_size(count: int, alpha: float) -> int:
 
 
 def work_size(nodes: int) -> int:
-    """Return the number of doubles of the scratch of a grid of ``nodes`` nodes: that of :mod:`newton_interpolation`,
-    then twelve functions at each node.
+    """Return the number of doubles of the scratch of a grid: that of :mod:`newton_interpolation`, then twelve functions
+    at each node; an int.
+
+    nodes : int, number of nodes, as of :func:`grid_size`.
     """
     return SCRATCH_SIZE + _FUNCTIONS * nodes
 
@@ -305,8 +307,9 @@ def _make_functions(part, row, grid):
 
 @inline_kernel
 def _is_times_u(function):
-    """Return whether a function is stored at the nodes as its product with u: True for _M, _LAM, _HALF_SPACE and
-    _CYLINDER, False for other columns ``function``, an int, of the grid.
+    """Return whether a function is stored at the nodes of the grid as its product with u, a bool.
+
+    function : int, column of the function in the grid: True for _M, _LAM, _HALF_SPACE and _CYLINDER, else False.
     """
     return function == _M or function == _LAM or function == _HALF_SPACE or function == _CYLINDER
 

@@ -83,6 +83,7 @@ def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Ji
 
     Returns the :class:`Jitted` law: (V, omega) -> :class:`LoadsAndSlopes`, eight floats in the units of the grid: Q, M,
     M_half_space, M_cylinder and the slopes of :func:`_grid_law`; all NaN where the law of the grid is not defined.
+    Raises ValueError of numpy if a name is no field of GRID; that all are given is not checked.
     """
     grids = np.zeros(2, GRID)
     grids["slopes"] = 0, 1
