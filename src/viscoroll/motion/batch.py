@@ -91,7 +91,8 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     speed: highest speed, > 0, for which the flow map is made, dimensionless; None: the largest |V0| or |omega0|.  It is
     ignored, and not checked, where no map is tried.
     Raises ParameterError for method "flow" with parameters that are arrays, with driven or unsteady motions, or with
-    bodies that differ (covers included); where a map is tried, also for a ``speed`` above 1e100.
+    bodies that differ (covers included); where a map is tried, also for a ``speed`` above 1e100; for a number of
+    threads that is no whole number >= 1.
     Returns the :class:`Solution`; a motion that could not be integrated to its end has a status above RESTED, and NaN
     at the times that it did not reach.
     """
