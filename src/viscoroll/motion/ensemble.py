@@ -96,6 +96,15 @@ def ensemble(
         unknown fields or method; method "flow" with parameters that differ between motions, with a drive, with
         ``unsteady`` or with bodies that differ; arrays with labels beside arrays without, or with other labels; a
         number of threads that is no whole number >= 1; what :func:`roll` refuses.
+    Exception
+        What a callable raises.
+
+    Warns
+    -----
+    ModelWarning
+        Where starts or speeds violate assumptions of the model grossly.
+    RuntimeWarning
+        Where a flow map on disk is damaged; it is built again.
 
     Examples
     --------

@@ -104,7 +104,8 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     """Describe the drive of a result by variables and attributes of its dataset.
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion, drive_force_time), or where
-    motions have times of their own (motion, drive_force_corner).  Gains of a feedback are attributes of its variable.
+    motions have times of their own (motion, drive_force_corner).  Attributes are those of :func:`column_attributes`
+    with "given: " before long_name, of a schedule ``comment``, of a feedback gain_V and gain_omega.
 
     result: :class:`Motion` or :class:`Ensemble`.
     Returns (name -> (dimensions, values, attributes) of variables as ``drive_force`` and ``drive_force_time``, in the
@@ -207,8 +208,8 @@ def motion_dataset(motion: Any) -> xr.Dataset:
 
     motion: a :class:`Motion`.
     Returns the dataset of :func:`_dataset`, in the units of the roller, of a driven motion with ``reversals`` over
-    reversal.  Its attributes are also the numbers of the scene by name, onset_time and rest_time (NaN where there is
-    none), switches ("t = T: REGIME; ..."), status in words, and steps.
+    reversal.  Its attributes are also the numbers of the scene by name (but j of a cylinder is its moment of inertia),
+    onset_time and rest_time (NaN where there is none), switches ("t = T: REGIME; ..."), status in words, and steps.
     """
     about_reversals = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
     about = motion.scene.numbers | {

@@ -219,8 +219,8 @@ class FlowResult(NamedTuple):
     out : quantities, (rows, motions, times), float64.
     status : code of the :class:`MotionStatus` of each motion, (motions,), int8; below 0 for a motion without a result,
     as it is outside the map or was not computed yet, whose other entries are undefined.
-    onset, rest : times of the onset of partial slip and of rest, (motions,); NaN where there is none up to the last
-    output time.
+    onset, rest : times from the start to the onset of partial slip and to rest, (motions,); NaN where there is none up
+    to the last output time.
     switches : number of changes of regime, (motions,), int64.
     """
 

@@ -49,11 +49,12 @@ def fill_layers(
     sign : sign of omega - V at onset, 1.0 or -1.0.
     first : binary exponent of the lowest kappa V at onset.
     slow : the :class:`SlowManifold`.
-    asymptote : (octave of kappa V at onset, numbers of a row), written.
+    asymptote : (octave of kappa V at onset, numbers of a row), written: the slow logarithm at onset and k0; the split;
+    distance and angle, and slip loss, in excess of the motion on the slow manifold.
     layer : (octave of kappa V at onset, octave of u, column, powers of u and kappa V), written; columns: ln(V/V0),
     delta, distance and angle beyond those at constant speed V0, divided by V0/k0, and slip loss divided by V0^2.
-    Raises :class:`NoFlowMap`, with nothing written, for the reason STICK_ENDS where a motion of the layer leaves
-    partial slip, and for OUT_OF_RANGE where its start is not finite or k0 not positive.
+    Returns nothing.  Raises :class:`NoFlowMap`, with nothing written, for the reason STICK_ENDS where a motion of the
+    layer leaves partial slip, and for OUT_OF_RANGE where its start is not finite or k0 not positive.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
@@ -97,7 +98,7 @@ def fill_layers(
 def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
     """Return k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes in time gamma t.
 
-    problem : the :class:`FlowProblem`, of which j and the law are read.
+    problem : the :class:`FlowProblem`; kappa, j and the law matter.
     V : speeds, > 0, dimensionless, of any shape.
     Returns the rates, > 0, dimensionless, in the shape of V.
     """
@@ -137,7 +138,7 @@ def _layer_motions(
     (octaves, nodes).
     Raises :class:`NoFlowMap` where a motion leaves partial slip, or its numbers are not finite.
     Returns (V; delta, both (octave, node of V, octave of u, node of u); V at the end of the layer, (octave, node of
-    V)).
+    V)), dimensionless.
     """
     u, gamma = _LAYER.node_positions(_COARSE), (split / k0).ravel()
     starts = _state_before_onset(problem, sign, V0.ravel(), gamma)

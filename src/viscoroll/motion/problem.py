@@ -244,7 +244,7 @@ def integrate(
     batch: (law, the kernel's record of one material or of several; whether the two bodies take unequal parts of M;
     kappa, mu, gamma, j, V0, omega0, read-only vectors of one value or ``count`` values), dimensionless.
     drive: drive of the motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
-    times: output times, (times,), at least one, >= 0, ascending, in T_ref.
+    times: output times since the start, (times,), at least one, >= 0, ascending, in T_ref.
     limits: (rtol; threshold of rest, 0 for none; largest number of steps).
     rows: (rows,), int, indices into :data:`.drive.ROWS`: the quantities to compute.
     notes: (switches, (k, 2): time in T_ref and new regime, or -1 where V changes its sign; ends of steps, (l,), in
@@ -266,7 +266,7 @@ def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> 
     """Integrate one motion.
 
     problem: :class:`MotionProblem` of one motion; scene, functions, V0, omega0, immobile, limits and unsteady are read.
-    times: output times, (times,), ascending, in T_ref.
+    times: output times since the start, (times,), at least one, >= 0, ascending, in T_ref.
     notes: the two arrays (k, 2) and (l,) of :func:`integrate`, which receive the switches and the ends of steps; none:
     neither is kept.
     Returns (all quantities in the order of :data:`.drive.ROWS`, (rows, times), dimensionless, NaN at times that the
@@ -300,7 +300,7 @@ def integrate_motions(
     time.
     starts: V0 and omega0, (n,) each, n >= 1, dimensionless.
     gamma: P T^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, > 0, (n,) or (1,).
-    t: output times, (times,), >= 0, ascending, common to all, in the material's unit of time T.
+    t: output times since the start, (times,), >= 0, ascending, common to all, in the material's unit of time T.
     threads: number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     Raises ParameterError for a number of threads that is no whole number >= 1, ValueError for n = 0.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times), dimensionless, NaN at times that
