@@ -178,7 +178,7 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
 def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
     """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its roller.
 
-    batch: :class:`Batch`, motions of the ensemble.
+    batch: :class:`Batch`, motions of the ensemble, of which problem, inputs, rows and the size of immobile are read.
     solution: :class:`Solution`, dimensionless; of a cylinder its quantities are overwritten by those in SI units.
     Returns name -> field: quantities (n, times) by their names in :attr:`Batch.rows`, which are views of those of
     ``solution``, NaN at times that a motion did not reach; onset_time, rest_time (NaN where there is none), V0 and

@@ -107,7 +107,7 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     motions have times of their own (motion, drive_force_corner).  Attributes are those of :func:`column_attributes`
     with "given: " before long_name, of a schedule ``comment``, of a feedback gain_V and gain_omega.
 
-    result: :class:`Motion` or :class:`Ensemble`.
+    result: :class:`Motion` or :class:`Ensemble`, of which drive and scale are read.
     Returns (name -> (dimensions, values, attributes) of variables as ``drive_force`` and ``drive_force_time``, in the
     units of the roller; name -> text of attributes that describe callables with their gains).  Both are empty without a
     drive.

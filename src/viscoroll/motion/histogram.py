@@ -47,7 +47,7 @@ class Histogram(msgspec.Struct):
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
         """Make the histogram of those values that are finite.
 
-        values: numbers, (n,), in the unit of the quantity; those that are not finite are left out, and -0 counts as 0.
+        values: float64, (n,), in the unit of the quantity; those that are not finite are left out, and -0 counts as 0.
         exact: whether to keep the values that are finite, (count,), for exact quantiles.
         Returns the :class:`Histogram`; without finite values it has no bins, its moments are NaN, and its ``values``
         None.

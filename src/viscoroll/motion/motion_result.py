@@ -323,7 +323,7 @@ class Motion(RollResult):
 def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     """Integrate one motion.
 
-    problem: :class:`MotionProblem` of one motion.
+    problem: :class:`MotionProblem` of one motion, which the result keeps, to be integrated anew at other times.
     times: output times, (times,), at least one, ascending, in the unit of its roller; a time beyond the end of the
     motion counts as its end.  The motion is integrated to its end in any case, so that steps and status do not depend
     on them.

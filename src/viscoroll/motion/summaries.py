@@ -1,7 +1,9 @@
-"""Summaries of motions: of an ensemble in memory, and of blocks of a run, which merge to the same bits in any order.
+"""Summaries of motions: of an ensemble in memory, and of blocks of a run, with the same bits in whatever order these
+were computed.
 
 Counts are whole numbers, and moments are kept for each block and merged in the order of blocks.  A quantile of blocks
-is known to 2^-8 of the values beside it (``tests/runs/test_runs.py``); that of an ensemble in memory is exact.
+lies between two values that are known to 2^-8 each (``tests/runs/test_runs.py``); that of an ensemble in memory is
+exact.
 """
 
 from __future__ import annotations
@@ -59,8 +61,7 @@ def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
     """Return a field at an output time, made dimensionless, (n,); NaN for motions that did not reach it.
 
     motions: an :class:`Ensemble`, of which the field and scale are read.
-    name: name of a field over (motion, t) that it has.
-    k: index of the output time.
+    name, k: name of a field over (motion, t) that it has, and index of the output time.
     """
     return getattr(motions, name)[:, k] / motions.scale[name]
 
@@ -104,9 +105,8 @@ def _loss(name: str, motions: Any, k: int) -> NDArray:
     """Return a loss up to an output time divided by the kinetic energy at the start, dimensionless, (n,); NaN for
     motions from rest, and for those that did not reach the time.
 
-    name: name of the field, "slip_loss" or "rolling_loss", whose unit is m (R/T_ref)^2, of a cylinder J/m.
+    name, k: name of the field, "slip_loss" or "rolling_loss", in m (R/T_ref)^2 or J/m; index of the output time.
     motions: an :class:`Ensemble` with that field; V0, omega0, scale and scene.j are read too.
-    k: index of the output time.
     """
     return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
 
