@@ -29,7 +29,7 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     units: unit of time as "s", or the units of a roller (a :class:`Scale`), of which that of time is taken; "1":
     dimensionless.
     Returns a new vector (n,), float64, in ``units``; of one time (1,).
-    Raises ParameterError unless they are numeric, in a unit of time if they carry one, finite, >= 0, ascending (equal
+    Raises ParameterError unless they are numeric, without a unit of another dimension, finite, >= 0, ascending (equal
     times are allowed), at least one, and of one axis at most.
     """
     times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
@@ -82,14 +82,14 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
     """Check the limits of an integration.
 
     rtol: relative tolerance of the motion, dimensionless.
-    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller, or with a unit of its
-    own; None: a motion does not end at rest.
+    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller, perhaps with a unit;
+    None: a motion does not end at rest.
     max_steps: largest number of steps of a motion.
     scale: :class:`Scale` of the roller, of which the unit of ``rest`` is read; if ``rest`` is given it must be one
     number for all motions.
     Returns (rtol, a float; threshold of rest, dimensionless, 0.0 for none; largest number of steps, an int).
     Raises ParameterError for rtol that is no single number in [1e-12, 1e-2], rest that is no single number, not
-    positive and finite or in a unit that is none of speed, max_steps outside [1, 10^7] or no whole number.
+    positive and finite or in a unit of another dimension, max_steps outside [1, 10^7] or no whole number.
     """
     low, high = RTOL_RANGE
     if not low <= check_number("rtol", rtol) <= high:

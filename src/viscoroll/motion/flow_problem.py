@@ -65,8 +65,8 @@ class FlowProblem(NamedTuple):
 
         V, delta : start speeds, > 0 (not checked), and creepages, (n,), n >= 1, dimensionless.
         gamma : ratio of the load to inertia, which sets the time scale, of each motion, > 0, (n,) or (1,).
-        t : output times since the start, >= 0, ascending, (times,), common to all, dimensionless: gamma t is the time
-        that the tables count, so that t is in units of 1/gamma of it.
+        t : output times since the start, >= 0, ascending, (times,), common to all, dimensionless; the tables count the
+        time gamma t, so that t is the time of the tables divided by the gamma of each motion.
         reason : message of :class:`NoFlowMap` if a motion is not in partial slip with V > 0 at an output time.
         Raises :class:`NoFlowMap` for this reason, which includes motions that could not be integrated to the end; and
         for OUT_OF_RANGE if V, delta, gamma, their product or t is not finite, or gamma is not positive.

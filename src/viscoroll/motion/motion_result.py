@@ -268,7 +268,7 @@ class Motion(RollResult):
         Raises
         ------
         ParameterError
-            No times, times of several axes, in a unit that is none of time, negative, not finite or not ascending, or
+            No times, times of several axes, in a unit of another dimension, negative, not finite or not ascending, or
             that lie beyond the end of the motion.
 
         Examples

@@ -159,12 +159,12 @@ def make_problem(
 def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
     """Check ``resolve``, the largest spacing of the samples of a callable, and return it in T_ref.
 
-    resolve: the argument of the caller, not None: one number, in s of a cylinder and in T_ref of a scene, or one with a
-    unit of time.
+    resolve: the argument of the caller, not None: one number, in T_ref of a scene, in s or with a unit of time of a
+    cylinder.
     drive: :class:`Drive` of the motions, of which only :attr:`Drive.has_callable` is read.
     scale: :class:`Scale` of the roller, which converts s to T_ref.
     Returns a float > 0.
-    Raises ParameterError unless ``resolve`` is one finite number above 0, of no other dimension than time, and the
+    Raises ParameterError unless ``resolve`` is one finite number above 0 without a unit of another dimension, and the
     drive has a callable.
     """
     if not drive.has_callable:
@@ -195,8 +195,8 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
 
     rested: argument of the caller: False (none), True (a long one), or a finite time >= 0 in the unit of the roller.
     units: units of the roller, an object with a method ``unit`` as :class:`Scale` has it.
-    Raises ParameterError for what is neither a truth value nor one finite number >= 0, and for one with a unit that is
-    none of time.
+    Raises ParameterError for what is neither a truth value nor one finite number >= 0, and for one with a unit of
+    another dimension.
     """
     if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
