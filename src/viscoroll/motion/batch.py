@@ -44,7 +44,7 @@ class Batch(NamedTuple):
     gamma, j, V0, omega0.
     immobile : whether a motion is too slow to leave the indentation of a standstill, (n,); its size is the number of
     motions.
-    times : output times, (times,), ascending, in T_ref.
+    times : output times since the start, (times,), >= 0, ascending, in T_ref.
     rows : names, out of :data:`.drive.ROWS`, of the quantities to compute.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     progress : title of a progress bar, None for none.
@@ -79,8 +79,8 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     A flow map is a table of all free motions of one scene (:mod:`.flow`).  It is tried only for free motions (no drive,
     no added mass) of one scene whose bodies are alike.  Where its stated error exceeds rtol, as the infinite one of a
     scene without a map does, the map is not used, and all motions are integrated; "flow_error" and "flow_problem" of
-    the result say so.  All are integrated too where all start at rest.  Nothing is raised in these cases, with method
-    "flow" neither.
+    the result say so.  All are integrated too where all start at rest and ``speed`` is None.  Nothing is raised in
+    these cases, with method "flow" neither.  A damaged map on disk is built again, with a RuntimeWarning.
 
     Motions that stay in the indentation of a standstill (``immobile``) are not integrated: they have status CAUGHT and
     NaN in all quantities, onset and rest times, no switches, and ``flow`` is False.
@@ -91,7 +91,8 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     speed: highest speed, > 0, for which the flow map is made, dimensionless; None: the largest |V0| or |omega0|.  It is
     ignored, and not checked, where no map is tried.
     Raises ParameterError for method "flow" with parameters that are arrays, with driven or unsteady motions, or with
-    bodies that differ (covers included); where a map is tried, also for a ``speed`` above 1e100.
+    bodies that differ (covers included); where a map is tried, also for a ``speed`` above 1e100; for a number of
+    threads that is no whole number >= 1.
     Returns the :class:`Solution`; a motion that could not be integrated to its end has a status above RESTED, and NaN
     at the times that it did not reach.
     """
@@ -157,7 +158,7 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
 
 
 def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
-    """Integrate the motions that have no result yet: those with status < 0.
+    """Integrate the motions that have no result yet, those with status < 0, in blocks on the threads of the batch.
 
     found: :class:`.flow.FlowResult`, into which quantities, status, number of switches, onset and rest times of these
     motions are written, dimensionless, times in T_ref; entries of the other motions stay.

@@ -29,7 +29,8 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     units: unit of time as "s", or the units of a roller (a :class:`Scale`), of which that of time is taken; "1":
     dimensionless.
     Returns a new vector (n,), float64, in ``units``; of one time (1,).
-    Raises ParameterError unless they are finite, >= 0, ascending (equal times are allowed), and at least one.
+    Raises ParameterError unless they are numeric, without a unit of another dimension, finite, >= 0, ascending (equal
+    times are allowed), at least one, and of one axis at most.
     """
     times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
     if times.ndim != 1 or times.size == 0:
@@ -45,8 +46,8 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
 def refuse_end(end: float, T: float) -> None:
     """Raise ParameterError where the last output time becomes infinite when it is divided by T_ref.
 
-    end: last output time, in s, or of a scene in T_ref.
-    T: T_ref, the unit of time of the dimensionless motion, s; 1 for a scene.
+    end: last output time, finite, >= 0, in s, or of a scene in T_ref.
+    T: T_ref, the unit of time of the dimensionless motion, > 0, s; 1 for a scene.
     Returns None for any other time.
     """
     if end / T == math.inf:
@@ -81,13 +82,14 @@ def controls(rtol: float, rest: float | None, max_steps: int, scale: Scale) -> t
     """Check the limits of an integration.
 
     rtol: relative tolerance of the motion, dimensionless.
-    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller; None: a motion does not
-    end at rest.
+    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller, perhaps with a unit;
+    None: a motion does not end at rest.
     max_steps: largest number of steps of a motion.
-    scale: :class:`Scale` of the roller, of which the unit of ``rest`` is read.
+    scale: :class:`Scale` of the roller, of which the unit of ``rest`` is read; if ``rest`` is given it must be one
+    number for all motions.
     Returns (rtol, a float; threshold of rest, dimensionless, 0.0 for none; largest number of steps, an int).
-    Raises ParameterError for rtol outside [1e-12, 1e-2], rest not positive and finite, max_steps outside [1, 10^7] or
-    no whole number.
+    Raises ParameterError for rtol that is no single number in [1e-12, 1e-2], rest that is no single number, not
+    positive and finite or in a unit of another dimension, max_steps outside [1, 10^7] or no whole number.
     """
     low, high = RTOL_RANGE
     if not low <= check_number("rtol", rtol) <= high:
@@ -102,8 +104,8 @@ def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
     Returns (V0, omega0): as they are where both are of type float and not both 0; else both as float64 arrays in their
     own shapes, () for a number.
-    Raises ParameterError unless both are finite and at most 1e100 in magnitude, the larger of |V0| and |omega0| of each
-    motion is 0 or at least 1e-300, and the shapes broadcast.
+    Raises ParameterError unless both are numeric, finite and at most 1e100 in magnitude, the larger of |V0| and
+    |omega0| of each motion is 0 or at least 1e-300, and the shapes broadcast.
     """
     low, high = SPEED_RANGE
     # each by itself: max() of a NaN and another may be the other

@@ -41,7 +41,7 @@ class Drive(NamedTuple):
 
     @property
     def given(self) -> dict[str, Any]:
-        """What is given, by name."""
+        """What is given, name of the field -> value as the caller gave it, a new dict without what is None."""
         return {name: value for name, value in self._asdict().items() if value is not None}
 
     @property
@@ -68,7 +68,7 @@ class Drive(NamedTuple):
         """Return the same without a force, torque, slope, brake or drag that is 0 at all times; prescribed speeds of 0
         stay.
 
-        Returns a new :class:`Drive`; an empty array and one of zeros are left out.
+        Returns a new :class:`Drive`; an empty array and one of zeros are left out, a callable never is.
         Raises ParameterError for a load that is no number and no function of time, or not finite.
         """
         loads = {name: value for name, value in self.given.items() if name not in ("omega", "V")}
@@ -80,7 +80,8 @@ class Drive(NamedTuple):
         scale: :class:`Scale` of the roller: the SI values of 1 of each quantity.  Callables of the result take the time
         in T_ref, the unit of time of that scale.
         Raises ParameterError for what is not numeric or not finite, a brake or a drag below 0, a callable for many
-        cylinders, and an array whose length is not the number of cylinders.
+        cylinders or one that cannot be called with a time alone, and an array whose length is not the number of
+        cylinders.
         """
         return (
             Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
@@ -118,12 +119,13 @@ class PlainArguments(NamedTuple):
 def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainArguments:
     """Return start speeds and drive in the units of a roller, as plain numbers, and the labels that they had.
 
-    start: V0 and omega0, as the caller gave them.
+    start: V0 and omega0, as the caller gave them; None where a speed is prescribed.
     drive: :class:`Drive`, loads and prescribed speeds, as the caller gave them.
     units: units of the roller, an object with a method ``unit`` as :class:`Scale` has it.
-    Raises ParameterError for a unit of another dimension, and for arrays with labels beside arrays without, or with
-    other labels.
-    Returns :class:`PlainArguments`; what had neither a unit nor labels is unchanged, and callables are.
+    Raises ParameterError for a unit of another dimension, for arrays with labels beside arrays without, or with other
+    labels, and, where any argument has a unit or labels, for a Feedback that is neither force nor torque.
+    Returns :class:`PlainArguments`; what had neither a unit nor labels is unchanged, and callables are.  Numbers are
+    not checked otherwise.
     """
     plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
     return PlainArguments((plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels)

@@ -92,6 +92,7 @@ class Piece(NamedTuple):
 class _Sampled:
     """A callable with its samples, evenly spread over the whole time; dimensionless, times in T_ref.
 
+    name, function, low : name of the argument; the callable; the smallest value allowed.
     times, samples : times of the samples and values there, (samples,).
     taken : number of values taken so far.
     share : error allowed, divided by the largest value so far.
@@ -105,11 +106,12 @@ class _Sampled:
 
         name: name of the argument, for refusals.
         function: takes t in T_ref, returns a number, dimensionless.
-        end: last time, in T_ref.
+        end: last time, >= 0, in T_ref.
         rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the largest magnitude so far.
         low: smallest value allowed, in the unit of the values of the function.
-        samples: number of samples, which are taken at the middle of as many equal parts of the time from 0 to ``end``.
-        Raises ParameterError for values that are no finite numbers or below ``low``.
+        samples: number of samples, >= 1, which are taken at the middle of as many equal parts of the time from 0 to
+        ``end``.
+        Raises ParameterError for values that are no finite numbers or below ``low``.  Exceptions of the function pass.
         """
         self.name, self.function, self.low, self.taken = name, function, low, 0
         self.share = _SHARE * rtol
@@ -122,7 +124,7 @@ class _Sampled:
 
         t: times, (n,), in T_ref.
         Raises ParameterError for a value that is no finite number, no single number, or below the smallest value
-        allowed.
+        allowed.  Exceptions of the callable pass.
         """
         self.taken += t.size
         values = check_array(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
@@ -137,14 +139,17 @@ class _Sampled:
     def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
         """Fit the callable between two times by one polynomial.
 
-        start, stop: ends of the piece, in T_ref.
+        It passes through the values at 14 Chebyshev nodes, and is good if it agrees with the callable to the error
+        allowed at these, at points between them and at the samples.  ``largest`` and ``taken`` are updated.
+
+        start, stop: ends of the piece, start <= stop, in T_ref.
         so_far: largest magnitude of the callable before the piece, dimensionless; 0: it has not risen yet.
         Returns (piece, cut).  ``piece`` is the :class:`Piece` if the fit is good, and None if it is not; its polynomial
         is 0 where no value exceeds the error allowed, or, before the callable has risen, a thousand times the least
         error allowed.  ``cut`` says where to divide the interval if the fit is not good: between two neighbouring
         doubles, in T_ref, where the callable first rises from 0 or where it jumps; None: in the middle.  With a piece
         it is None.
-        Raises ParameterError for values that are no finite numbers or below the smallest one allowed.
+        Raises as :meth:`values`.
         """
         middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
         t = middle + half * _POINTS
@@ -183,7 +188,7 @@ class _Sampled:
         allowed: absolute error allowed to a fit at its end, dimensionless; a change up to it is no jump.
         Returns (last time before the jump, first time after it), in T_ref.  Returns None unless the largest change
         between two neighbouring times exceeds ``allowed`` and half of the sum of all changes, and more than half of it
-        is left where the interval has shrunk to two neighbouring doubles.
+        is left where the interval has shrunk to two neighbouring doubles.  Raises as :meth:`values`.
         """
         change = np.abs(np.diff(values))
         n = int(change.argmax())
@@ -223,7 +228,7 @@ def fit_callable(
 
     name: name of the argument, for errors.
     function: takes the time in T_ref, returns a dimensionless number.
-    end: last time, in T_ref.
+    end: last time, >= 0, in T_ref.
     rtol: relative tolerance of the motion.  The fit may differ by a tenth of it times the largest magnitude so far;
     below 1e-9 of the largest magnitude of all it is not compared with values so far, and it is 0 there until the
     callable has risen.
@@ -257,7 +262,8 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
     Returns the pieces from 0 to ``end``, at least one, in the order of time.  Each starts where the one before it
     stops, or, at a jump, at the next double; the first starts at 0, or, where the callable jumps there, at the smallest
     double above 0.
-    Raises ParameterError where a piece of the shortest length is not fitted, or too many values were taken.
+    Raises ParameterError where a piece of the shortest length (64 spacings of doubles) is not fitted, or where more
+    than :data:`MOST` values beside the samples were taken before all is fitted, and as :meth:`_Sampled.values`.
     """
     pieces: list[Piece] = []
     failed: set[tuple[float, float]] = set()
@@ -295,6 +301,7 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     pieces: consecutive pieces of the fit, in the order of time.
     sampled: the callable, a :class:`_Sampled`; more values of it are taken.
     Returns a new list; a short piece stays where its extended neighbours would not fit.
+    Raises as :meth:`_Sampled.values`.
     """
     merged: list[Piece] = []
     rest = pieces[::-1]

@@ -65,8 +65,8 @@ class DriveFunctions:
 
     Attributes
     ----------
-    functions : name -> function; always "force", "torque" and "brake" (0 where not given), and the prescribed speed if
-        there is one.
+    functions : name -> :data:`.piecewise.TimeFunction`; always "force", "torque" and "brake" (0 where not given), and
+        the prescribed speed, "omega" or "V", if there is one.
     tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
     gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last less the drag.
@@ -83,7 +83,10 @@ class DriveFunctions:
     def _function_motions(self) -> int:
         """Number of motions that have functions or slopes of their own; 1 if all are alike.
 
-        Raises ParameterError if two of the functions have values for different numbers of motions, both other than 1.
+        By it :meth:`block` and :meth:`for_kernel` decide whether all motions share their pieces; :attr:`counts` has the
+        number of the gains too.
+        Raises ParameterError if two of the functions, or a function and the slope, have values for different numbers of
+        motions, both other than 1.
         """
         counts = {name: count_motions(f) for name, f in (self.functions | {"slope": self.tangent}).items()}
         shape = broadcast_shape(**{name: np.empty(count) for name, count in counts.items() if count != 1})
@@ -93,7 +96,8 @@ class DriveFunctions:
     def counts(self) -> tuple[int, int]:
         """(Number of motions with functions or slopes of their own, with gains of their own); 1 if all are alike.
 
-        Raises ParameterError if two of the functions have values for different numbers of motions, both other than 1.
+        Raises ParameterError if two of the functions, or a function and the slope, have values for different numbers of
+        motions, both other than 1.  Whether the two numbers agree is not checked here.
         """
         return self._function_motions, self.gains.shape[1]
 
@@ -110,8 +114,9 @@ class DriveFunctions:
     def block(self, most: int) -> int:
         """Return how many motions to pack at a time, so that their pieces take some :data:`_BLOCK_BYTES`.
 
-        most: largest number to return, >= 1; it is returned where all motions have the same functions.
+        most: largest number to return, >= 1; it is returned where all motions have the same functions and slope.
         Returns an int in 1 ... ``most``.
+        Raises ParameterError as :attr:`counts` does.
         """
         if self._function_motions == 1:
             return most
@@ -126,7 +131,7 @@ class DriveFunctions:
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
         """Return the value of a prescribed speed at t = 0, and a bound of its largest magnitude.
 
-        name: name of the speed, "omega" or "V".
+        name: name of the prescribed speed, "omega" or "V" (KeyError for one that is not prescribed).
         Raises ParameterError where it jumps.
         Returns (values at t = 0; upper bounds of the magnitude over all times: the largest sum of the magnitudes of the
         coefficients of a piece), dimensionless, (1,) each where the speed is the same for all motions, else (m,).
@@ -146,7 +151,7 @@ class DriveFunctions:
         Columns of the result, (1 or m, k, columns): start of the piece in T_ref; 2 divided by its length, 0 where it
         has no length or no end; then as many coefficients of powers of x in [-1, 1] for each of force (with the pull of
         the slope), torque, derivative of the prescribed speed, brake, prescribed speed.  The coefficients of what is
-        not given are 0.
+        not given are 0.  Here m is the number of motions that have functions, times or slopes of their own.
         Raises ParameterError where a prescribed speed jumps.
         """
         zero, name = piecewise(np.zeros(())), self.prescribed
@@ -187,7 +192,7 @@ class DriveFunctions:
     def acts_at_end(self) -> bool:
         """Whether a load, a prescribed speed or a gain still acts on any motion at the end: in the last piece of time.
 
-        A prescribed speed counts even where it is 0, and a brake and a drag do too.
+        A prescribed speed counts even where it is 0, and a brake and a drag other than 0 do too.
         """
         if self.prescribed or self.gains.any():
             return True
@@ -222,12 +227,12 @@ def prepare_drive(
 
     drive: :class:`Drive`, dimensionless.
     V0, omega0: start speeds, dimensionless, numbers or (n,); None where they are prescribed.
-    end: last time, in T_ref.
+    end: last time, >= 0, in T_ref.
     rtol: relative tolerance of the motion.
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
     Raises ParameterError for a load or speed that :func:`viscoroll.roll` refuses; for V and omega both prescribed, or a
     load beside the prescribed speed from which it follows; for a start that is missing, out of range, or not the
-    prescribed one.
+    prescribed one; for shapes of V0 and omega0 that do not broadcast.  Exceptions of a callable pass.
     Returns the :class:`DrivenStart`; its ``functions`` are None where the drive is empty, in which case ``end``,
     ``rtol`` and ``resolve`` are ignored.
     """
@@ -278,8 +283,8 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     stated: the start that the caller gave, a number or (n,), dimensionless; None without.
     functions: :class:`DriveFunctions` of the drive, with the prescribed speed.
     speed: the prescribed speed as in the drive: a number, an array, a Schedule or a callable.
-    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude or is not finite,
-    where the speed jumps or is an empty array, and where both have values for different numbers of motions.
+    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude, is not numeric or
+    not finite, where the speed jumps or is an empty array, and where both have values for different numbers of motions.
     Returns (m,) where the speed has values for m > 1 motions.  Where it is the same for all motions: a float if
     ``stated`` is a number or None, else an array in the shape of ``stated``.  Of a callable it is the value of the
     callable itself, not of its fit.
@@ -306,7 +311,7 @@ def _gains(drive: Drive) -> Floats:
     The drag, a torque against omega, is subtracted from the last.
 
     drive: :class:`Drive`, dimensionless.
-    Raises ParameterError for a drag below 0, and for gains whose numbers of motions differ.
+    Raises ParameterError for a drag below 0, not numeric or not finite, and for gains whose numbers of motions differ.
     Returns (4, 1) where the gains are the same for all motions, else (4, m), dimensionless; 0 where nothing is given.
     """
     pairs = [(x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0) for x in (drive.force, drive.torque)]

@@ -57,7 +57,8 @@ def ensemble(
     Parameters
     ----------
     roller : a :class:`Scene`, or a :class:`Cylinder` in SI units; its numbers may be arrays of n too: every motion can
-        have a scene of its own.
+        have a scene of its own.  The unit of time T_ref of a scene is T_epsilon of an ``alpha``, else that of its
+        material.
     V0, omega0 : start speeds, numbers or arrays (n,), divided by R/T_ref and 1/T_ref, or in m/s and rad/s; None where
         they are prescribed.  Labels of xarray and pandas come back in ``to_xarray``.
     t : output times, (times,), >= 0, ascending, common to all, divided by T_ref or in s; one number: the final state
@@ -80,8 +81,8 @@ def ensemble(
     speed : highest speed, > 0, in the unit of V0, that the flow map is made for; default the largest of the starts.
         Where a large ensemble is computed in several calls, one number for all makes the
         bits independent of how it is divided.  Ignored where no flow map is used.
-    threads : threads to use; default ``$VISCOROLL_THREADS`` or the cores available.
-    progress : draw a progress bar if the call takes longer than a second.
+    threads : threads to use, >= 1; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    progress : draw a progress bar on standard error if the call takes longer than a second.
 
     Returns
     -------
@@ -93,7 +94,17 @@ def ensemble(
     ParameterError
         NaN or infinite input, unsorted times, shapes that do not broadcast to (n,),
         unknown fields or method; method "flow" with parameters that differ between motions, with a drive, with
-        ``unsteady`` or with bodies that differ; what :func:`roll` refuses.
+        ``unsteady`` or with bodies that differ; arrays with labels beside arrays without, or with other labels; a
+        number of threads that is no whole number >= 1; what :func:`roll` refuses.
+    Exception
+        What a callable raises.
+
+    Warns
+    -----
+    ModelWarning
+        Where starts or speeds violate assumptions of the model grossly.
+    RuntimeWarning
+        Where a flow map on disk is damaged; it is built again.
 
     Examples
     --------
@@ -144,7 +155,7 @@ def ensemble(
 
 
 def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
-    """Return the parameters and start speeds of an ensemble, and the number of its motions.
+    """Broadcast the parameters and start speeds of an ensemble to the number of its motions.
 
     problem: :class:`MotionProblem`, checked motions of the ensemble; scene, V0, omega0 and functions are read.
     drives: name -> loads or prescribed speeds that are numbers or arrays, as the caller gave them; only their shapes
@@ -167,11 +178,12 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
 def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
     """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its roller.
 
-    batch: :class:`Batch`, motions of the ensemble.
+    batch: :class:`Batch`, motions of the ensemble, of which problem, inputs, rows and the size of immobile are read.
     solution: :class:`Solution`, dimensionless; of a cylinder its quantities are overwritten by those in SI units.
     Returns name -> field: quantities (n, times) by their names in :attr:`Batch.rows`, which are views of those of
     ``solution``, NaN at times that a motion did not reach; onset_time, rest_time (NaN where there is none), V0 and
-    omega0, read-only, status, switches, steps, flow, (n,); drive_error, flow_error, floats; flow_problem, a text.
+    omega0, read-only, status (codes of :class:`MotionStatus`), switches, steps, flow, (n,); drive_error, which stays
+    dimensionless, flow_error, floats; flow_problem, a text.
     """
     found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
     rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))

@@ -48,8 +48,8 @@ class Ensemble(RollResult):
     t : output times, (times,), divided by T_ref or in s.
     V, omega, x, angle, delta, regime : shape (n, times), in the units of a :class:`Motion`; those not requested are
         None.  Codes of the regime are those of a :class:`Motion` as floats, NaN where it was not reached.
-    slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_epsilon)^2 or in J/m: the
-        integrals of gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Their sum is what (V^2 + j
+    slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_ref)^2 or in J/m: the integrals
+        of gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.  Without a drive their sum is what (V^2 + j
         omega^2)/2 has fallen by (at rest: all of it).
     force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0 without a drive.
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
@@ -111,16 +111,18 @@ class Ensemble(RollResult):
 
         Parameters
         ----------
-        quantiles : levels of the quantiles, numbers in [0, 1].
+        quantiles : levels of the quantiles, numbers in [0, 1], in any order.
 
         Returns
         -------
         xarray.Dataset
-            In the units of the roller.  Of every field kept but the regime, with x also of the distance |x|, of
-            onset_time and rest_time: ``NAME_counted`` (motions that have a value: outputs that one did not reach do not
-            count), ``_mean``, ``_std``, ``_min``, ``_max``, ``_quantiles`` over (quantile, t), which are exact, those
-            of a run to their bin (``comment``), and ``_histogram`` over ``_bin_low``, ``_bin_high``.  ``ended``: how
-            many motions ended in which way.
+            In the units of the roller.  Of every field kept but the regime, with x also of ``distance``, |x|, and of
+            onset_time and rest_time, which have no axis t: over t ``NAME_counted``, the number of motions with a finite
+            value, ``_mean``, ``_std`` (divided by that number), ``_min`` and ``_max`` of these values;
+            ``_quantiles`` over (quantile, t), exact; ``_histogram`` over (NAME_bin, t), whose bins run from
+            ``NAME_bin_low`` to ``NAME_bin_high``.  Without finite values they are NaN, counts 0.  ``ended`` over
+            status: how many motions have each :class:`MotionStatus`.  Attributes: ``motions``, ``failed_motions`` and
+            ``motions_from_the_flow_map``, numbers of motions; Conventions, title, source.
 
         Raises
         ------
@@ -211,7 +213,8 @@ class Ensemble(RollResult):
     def to_xarray(self) -> xr.Dataset:
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status, drive and scene.
 
-        Fields that were not requested are left out; labels of the starts become coordinates of the axis "motion".
+        It is in the units of the roller, alpha, kappa, mu, gamma and j dimensionless.  Fields that were not requested
+        are left out; labels of the starts become coordinates of the axis "motion".
 
         Examples
         --------

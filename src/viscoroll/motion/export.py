@@ -42,7 +42,8 @@ _FLAGS = {
 def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
     """Return the attributes of a column of a dataset.
 
-    name: name of a field of a motion, of a start ("V0", "omega0"), or "t", "status", "flow".
+    name: name of a field of a motion, of a start ("V0", "omega0"), or "t", "status", "flow"; another name gives
+    long_name "" and units "1".
     si: whether it is in the units of a cylinder, else of a scene.
     Returns a new dict: long_name and units, of some also symbol and equation (:func:`..core.symbols.attributes`); of
     the codes "regime", "status" and "flow" long_name, flag_values (int8, (codes,)) and flag_meanings, one word for each
@@ -65,15 +66,17 @@ def _dataset(
 ) -> xr.Dataset:
     """Return the dataset of a motion or an ensemble.
 
-    result: :class:`Motion` or :class:`Ensemble`, whose quantities, drive and roller are put into the dataset.
+    result: :class:`Motion` or :class:`Ensemble`, whose quantities, t, drive, scene and roller are put into the dataset.
     title: title of the dataset.
     dims: names of the dimensions of the quantities, ("t",) or ("motion", "t").
     variables: further variables: name -> (dimensions, values, attributes).
     about: further attributes by name.
     Returns the dataset over ``dims``, in the units of the roller; without loads, works and losses for a free single
     motion, and without quantities that an ensemble does not keep.  The regime is int8, -1 where it was not reached.
-    Its attributes are ``about``, the modes of a series, the numbers of a cover, and of a cylinder its radius, mass,
-    moment of inertia, g, load and T_ref.
+    Its attributes are those of :func:`provenance`, ``about``, drive_error of driven motions and of ensembles; of one
+    material relaxation_strengths and relaxation_times, also of a series given by its creep; of a cover cover_on, and
+    cover_thickness_over_l0 and cover_nu if they are numbers; of a cylinder R, m, j, g, load and T_ref; and the texts of
+    :func:`_describe_drive`.
     """
     si = result.scale.si
     acts = result.drive.acts or "motion" in dims
@@ -101,9 +104,10 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     """Describe the drive of a result by variables and attributes of its dataset.
 
     Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion, drive_force_time), or where
-    motions have times of their own (motion, drive_force_corner).  Gains of a feedback are attributes of its variable.
+    motions have times of their own (motion, drive_force_corner).  Attributes are those of :func:`column_attributes`
+    with "given: " before long_name, of a schedule ``comment``, of a feedback gain_V and gain_omega.
 
-    result: :class:`Motion` or :class:`Ensemble`.
+    result: :class:`Motion` or :class:`Ensemble`, of which drive and scale are read.
     Returns (name -> (dimensions, values, attributes) of variables as ``drive_force`` and ``drive_force_time``, in the
     units of the roller; name -> text of attributes that describe callables with their gains).  Both are empty without a
     drive.
@@ -132,15 +136,17 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
 
 
 def _material_variables(materials: Any, count: int) -> dict[str, Any]:
-    """Return strengths and times of several materials as they were given, and share or thickness, as variables.
+    """Return strengths and times of several materials, and share or thickness, as variables.
 
     materials: :class:`Prony`, :class:`Bodies` or :class:`Cover` of several motions; for one material, or None, the
     result is empty.
-    count: number of motions.
-    Returns name -> (dimensions, values, attributes), dimensionless.  Of series: strengths and times over (motion,
-    mode).  Of two bodies: the same of each, over (motion, cylinder_mode) and (motion, base_mode), and ``share`` over
-    (motion).  Of covers: ``cover_thickness`` over (motion); the layer's strengths and times, divided by E and T_ref,
-    are its attributes.
+    count: number of motions; what is the same for all of them is repeated.
+    Returns name -> (dimensions, values, attributes), dimensionless.  Of series, in the form that was given:
+    relaxation_strengths and relaxation_times (or creep_strengths and creep_times) over (motion, mode).  Of two bodies:
+    the same of each, with the prefix cylinder_ or base_, over (motion, cylinder_mode) and (motion, base_mode), and
+    ``share`` over (motion).  Of covers: ``cover_thickness`` over (motion), whose attributes are also the layer's
+    relaxation_strengths and relaxation_times, divided by its long-time modulus and T_ref, in whichever form it was
+    given.
     """
     if materials is None or not materials.shape:
         return {}
@@ -201,9 +207,9 @@ def motion_dataset(motion: Any) -> xr.Dataset:
     reverses.
 
     motion: a :class:`Motion`.
-    Returns the dataset, in the units of the roller.  Its attributes are the numbers of the scene, onset_time and
-    rest_time (NaN where there is none), the changes of regime as text, the status in words, the number of steps, and
-    those of every dataset (:func:`provenance`).
+    Returns the dataset of :func:`_dataset`, in the units of the roller, of a driven motion with ``reversals`` over
+    reversal.  Its attributes are also the numbers of the scene by name (but j of a cylinder is its moment of inertia),
+    onset_time and rest_time (NaN where there is none), switches ("t = T: REGIME; ..."), status in words, and steps.
     """
     about_reversals = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
     about = motion.scene.numbers | {
@@ -221,9 +227,10 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     """Return the dataset over (motion, t) of an ensemble.
 
     result: an :class:`Ensemble`; labels of its starts of length n become coordinates, unless a variable has their name.
-    Returns the dataset, in the units of the roller: quantities that the ensemble keeps; starts, onset and rest times,
-    status and flow over motion; parameters, materials and drive over motion, or without dimension where all motions
-    have the same.
+    Returns the dataset of :func:`_dataset`, in the units of the roller: quantities that the ensemble keeps over
+    (motion, t); V0, omega0, onset_time, rest_time, status and flow over motion; alpha, kappa, mu, gamma and j,
+    dimensionless, and the drive over motion, or without dimension where all motions have the same; of several materials
+    the variables of :func:`_material_variables`; attributes flow_error and flow_problem.
     """
     si, variables = result.scale.si, _material_variables(result.scene.material, len(result))
     for name in PARAMETERS:

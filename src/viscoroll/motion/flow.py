@@ -72,7 +72,8 @@ def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> 
     limits of :func:`map_key` the map covers slower motions only.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     Returns the :class:`FlowMap`.  Nothing is raised if the scene has none: its ``problem`` then says why, and its
-    stated errors are infinite.
+    stated errors are infinite.  Raises ParameterError where one is built with a number of threads that is no whole
+    number >= 1.
 
     A damaged map on disk is built again, with a RuntimeWarning.  A new map is written to disk, that of a scene without
     one too; if that fails it is kept in memory alone.
@@ -88,7 +89,8 @@ def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowM
     time.
     octave : the map covers kappa V < 2**octave at the onset of partial slip.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
-    Returns the :class:`FlowMap`, as :func:`build_map` does.
+    Returns the :class:`FlowMap`, as :func:`build_map` does, and raises as it does; one of :data:`_MAPS_IN_MEMORY` for
+    equal arguments is returned again.
     """
     path = path_of(parameters, octave)
     found = load(path, parameters)
@@ -107,6 +109,7 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     Returns a :class:`FlowMap`.  If the scene has none, as an elastic one (alpha = 1), its ``problem`` says why, its
     errors are infinite, and its table is incomplete.
+    Raises ParameterError for a number of threads that is no whole number >= 1, unless the scene is elastic.
     """
     from ..kernels.flow.layout import OCTAVES, SIZE
     from .flow_fill import fill_tables
@@ -216,8 +219,8 @@ class FlowResult(NamedTuple):
     out : quantities, (rows, motions, times), float64.
     status : code of the :class:`MotionStatus` of each motion, (motions,), int8; below 0 for a motion without a result,
     as it is outside the map or was not computed yet, whose other entries are undefined.
-    onset, rest : times of the onset of partial slip and of rest, (motions,); NaN where there is none up to the last
-    output time.
+    onset, rest : times from the start to the onset of partial slip and to rest, (motions,); NaN where there is none up
+    to the last output time.
     switches : number of changes of regime, (motions,), int64.
     """
 

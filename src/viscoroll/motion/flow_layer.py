@@ -31,8 +31,8 @@ _OCTAVES_BEFORE_SPLIT = -layout.LAYER_LOW
 _LOWEST_U = 2.0**layout.LAYER_LOW
 #: E after the split at which a motion has reached the slow manifold, dimensionless.
 _JOIN_E = 2.0**layout.LAYER_HIGH - 1.0
-#: Time before the onset of partial slip at which a motion of the layer starts, divided by the time to the split: the
-#: change of state in it is near the rounding of the integrator.
+#: Time before the onset of partial slip at which a motion of the layer starts, divided by that from onset to split, or
+#: by 1/k0 where the split is still sought: the change of state in it is near the rounding of the integrator.
 _LEAD = 1e-6
 #: Values of E between which a zero of delta is searched; beyond them the kink of the law is below rounding.
 _CROSSINGS = np.linspace(0.0, 14.0, 71)[1:]
@@ -49,11 +49,12 @@ def fill_layers(
     sign : sign of omega - V at onset, 1.0 or -1.0.
     first : binary exponent of the lowest kappa V at onset.
     slow : the :class:`SlowManifold`.
-    asymptote : (octave of kappa V at onset, numbers of a row), written.
+    asymptote : (octave of kappa V at onset, numbers of a row), written: the slow logarithm at onset and k0; the split;
+    distance and angle, and slip loss, in excess of the motion on the slow manifold.
     layer : (octave of kappa V at onset, octave of u, column, powers of u and kappa V), written; columns: ln(V/V0),
-    delta, distance and angle beyond those at constant speed V0, slip loss.
-    Raises :class:`NoFlowMap`, with nothing written, for the reason STICK_ENDS where a motion of the layer leaves
-    partial slip, and for OUT_OF_RANGE where its start is not finite or k0 not positive.
+    delta, distance and angle beyond those at constant speed V0, divided by V0/k0, and slip loss divided by V0^2.
+    Returns nothing.  Raises :class:`NoFlowMap`, with nothing written, for the reason STICK_ENDS where a motion of the
+    layer leaves partial slip, and for OUT_OF_RANGE where its start is not finite or k0 not positive.
     """
     kappa, onsets = problem.parameters[1], octaves(first, first + layout.OCTAVES)
     V0 = onsets.node_positions(_COARSE) / kappa
@@ -97,7 +98,7 @@ def fill_layers(
 def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
     """Return k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes in time gamma t.
 
-    problem : the :class:`FlowProblem`.
+    problem : the :class:`FlowProblem`; kappa, j and the law matter.
     V : speeds, > 0, dimensionless, of any shape.
     Returns the rates, > 0, dimensionless, in the shape of V.
     """
@@ -105,15 +106,16 @@ def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
 
 
 def _state_before_onset(problem: FlowProblem, sign: float, V: Floats, gamma: Floats) -> tuple[Floats, Floats]:
-    """Return the state in full slip a short time, gamma t = :data:`_LEAD` times ``gamma``, before the onset of partial
+    """Return the state in full slip the time :data:`_LEAD` times ``gamma`` (in gamma t) before the onset of partial
     slip.
 
     A motion of the layer starts there, so that the integrator finds the onset itself.
 
     problem : the :class:`FlowProblem`.
     sign : sign of omega - V, 1.0 or -1.0.
-    V : speeds at onset, > 0, (n,).
-    gamma : time from onset to split of each motion, in gamma t, which is the unit of its times, (n,), dimensionless.
+    V : speeds at onset, > 0, (n,), dimensionless.
+    gamma : unit of the times with which each motion is integrated, in gamma t: the time from onset to split, or 1/k0
+    where the split is still sought; > 0, (n,), dimensionless.
     Returns (V, delta), (n,) each, dimensionless, to first order in that time.
     """
     _, _, mu, j = problem.parameters
@@ -136,7 +138,7 @@ def _layer_motions(
     (octaves, nodes).
     Raises :class:`NoFlowMap` where a motion leaves partial slip, or its numbers are not finite.
     Returns (V; delta, both (octave, node of V, octave of u, node of u); V at the end of the layer, (octave, node of
-    V)).
+    V)), dimensionless.
     """
     u, gamma = _LAYER.node_positions(_COARSE), (split / k0).ravel()
     starts = _state_before_onset(problem, sign, V0.ravel(), gamma)

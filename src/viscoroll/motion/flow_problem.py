@@ -63,12 +63,13 @@ class FlowProblem(NamedTuple):
     def integrate(self, V: Floats, delta: Floats, gamma: Floats, t: Floats, reason: str) -> tuple[Floats, Floats]:
         """Integrate motions that start and stay in partial slip, or start just before its onset.
 
-        V, delta : start speeds, > 0, and creepages, (n,), dimensionless.
+        V, delta : start speeds, > 0 (not checked), and creepages, (n,), n >= 1, dimensionless.
         gamma : ratio of the load to inertia, which sets the time scale, of each motion, > 0, (n,) or (1,).
-        t : output times, (times,), ascending, common to all, dimensionless.
+        t : output times since the start, >= 0, ascending, (times,), common to all, dimensionless; the tables count the
+        time gamma t, so that t is the time of the tables divided by the gamma of each motion.
         reason : message of :class:`NoFlowMap` if a motion is not in partial slip with V > 0 at an output time.
         Raises :class:`NoFlowMap` for this reason, which includes motions that could not be integrated to the end; and
-        for OUT_OF_RANGE if the input is not finite or gamma is not positive.
+        for OUT_OF_RANGE if V, delta, gamma, their product or t is not finite, or gamma is not positive.
         Returns (V, delta), each (n, times), dimensionless.
         """
         if not (np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()):

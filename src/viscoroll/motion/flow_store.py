@@ -157,7 +157,7 @@ def save(new_map: FlowMap, path: Path) -> None:
     """Write a map, and delete the oldest maps of the folder beyond :data:`KEPT`.
 
     Nothing is raised if it cannot be written, or an old map not deleted (OSError): the map is then not on disk, or too
-    many are.
+    many are.  The file has the fields of :class:`FlowMap`, with the parameters as of :func:`_numbers`, and a seal.
 
     new_map : the :class:`FlowMap`.
     path : path of the file, which is replaced if it exists.

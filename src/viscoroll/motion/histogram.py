@@ -1,8 +1,10 @@
-"""Counts and moments of one quantity, which merge to the same bits in any order: :class:`Histogram`.
+"""Counts and moments of one quantity, which merge with those of further values: :class:`Histogram`.
+
+Counts merge to the same bits in any order, moments to rounding.
 
 A bin holds the doubles that share sign, exponent and the first eight bits after the point: 256 bins
-to the octave, so each is at most 2^-8 of its value wide, with no range to choose beforehand (as in
-DDSketch: C. Masson, J. Rim, H. Lee, VLDB 2019).
+to the octave, so each is at most 2^-8 of its value wide (of magnitudes from 2^-1022 on), with no
+range to choose beforehand (as in DDSketch: C. Masson, J. Rim, H. Lee, VLDB 2019).
 """
 
 from __future__ import annotations
@@ -45,7 +47,7 @@ class Histogram(msgspec.Struct):
     def of(cls, values: Floats, exact: bool = False) -> Histogram:
         """Make the histogram of those values that are finite.
 
-        values: numbers, (n,), in the unit of the quantity; those that are not finite are left out, and -0 counts as 0.
+        values: float64, (n,), in the unit of the quantity; those that are not finite are left out, and -0 counts as 0.
         exact: whether to keep the values that are finite, (count,), for exact quantiles.
         Returns the :class:`Histogram`; without finite values it has no bins, its moments are NaN, and its ``values``
         None.
@@ -68,7 +70,7 @@ class Histogram(msgspec.Struct):
 
         other: :class:`Histogram`, the second histogram.
         Returns a new histogram, which does not keep the values, so that its quantiles are not exact.  If one of the two
-        has no values it is the other one itself, with the values that that keeps.
+        has no values the other one itself is returned, with the values that it keeps.
         """
         if not self.count or not other.count:
             return self if self.count else other
@@ -91,10 +93,12 @@ class Histogram(msgspec.Struct):
     def quantiles(self, levels: tuple[float, ...]) -> Floats:
         """Return the quantiles, (levels,), in the unit of the quantity; NaN without values.
 
-        If the values were kept, a quantile is exact, linear between neighbouring values.  If not, it is linear between
-        the two values beside it, each of which is known to its bin, 2^-8 of a value wide.
+        A quantile lies at rank level (count - 1), counted from 0, linear between the values of the two nearest ranks.
+        If the values were kept it is exact.  If not, the values of each bin count as evenly spread in it, within the
+        least and the largest value, so that each is known to the width of its bin, 2^-8 of the value.
 
-        levels: levels of the quantiles, in [0, 1].
+        levels: levels of the quantiles, in [0, 1], in any order; not checked.  For others numpy raises ValueError if
+            the values were kept; else the result has no meaning, or IndexError is raised.
         """
         if not self.count:
             return np.full(len(levels), np.nan)

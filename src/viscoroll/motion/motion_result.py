@@ -66,10 +66,10 @@ class Motion(RollResult):
     reversals : times at which V changes its sign under a drive, (reversals,).
     force, torque : divided by P and P R, or N/m and N m/m: the loads with the pull of a slope, or the loads that a
         prescribed speed required; without the brake.
-    work_force, work_torque : work of either since t = 0, divided by m (R/T_epsilon)^2 or in J/m.
+    work_force, work_torque : work of either since t = 0, divided by m (R/T_ref)^2 or in J/m.
     brake_loss, slip_loss, rolling_loss : energy lost since t = 0 in brake, slip and rolling, likewise.  The works
         are the change of (V^2 + j omega^2)/2 plus the three losses.
-    power_force, power_torque : force V and torque omega, divided by P R/T_epsilon or in W/m.
+    power_force, power_torque : force V and torque omega, divided by P R/T_ref or in W/m.
     drive_error : largest difference seen between a callable and the polynomials that fit it, dimensionless.
     onset_time : time of the first change from full to partial slip; NaN if there is none.
     rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
@@ -166,7 +166,9 @@ class Motion(RollResult):
         Raises
         ------
         ParameterError
-            Unknown fields or options out of range.
+            Unknown fields or options out of range; ``omega`` as an option.
+        TypeError
+            An option that :func:`viscoroll.contact` does not have, or ``delta``.
 
         Examples
         --------
@@ -266,7 +268,8 @@ class Motion(RollResult):
         Raises
         ------
         ParameterError
-            No times, times that are negative, not finite or not ascending, or lie beyond the end of the motion.
+            No times, times of several axes, in a unit of another dimension, negative, not finite or not ascending, or
+            that lie beyond the end of the motion.
 
         Examples
         --------
@@ -293,7 +296,7 @@ class Motion(RollResult):
 
     def _figure(self) -> Figure:
         """Return the figure of the motion at its output times; where only one was requested, at the ends of its steps
-        and at 201 times evenly spread over the whole motion.
+        and at 201 times evenly spread over the whole motion, for which it is integrated anew.
         """
         if self.t.size > 1:
             return RollResult._figure(self)
@@ -320,9 +323,10 @@ class Motion(RollResult):
 def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
     """Integrate one motion.
 
-    problem: :class:`MotionProblem` of one motion.
-    times: output times, (times,), ascending, in the unit of its roller; a time beyond the end of the motion counts as
-    its end.  The motion is integrated to its end in any case, so that steps and status do not depend on them.
+    problem: :class:`MotionProblem` of one motion, which the result keeps, to be integrated anew at other times.
+    times: output times, (times,), at least one, ascending, in the unit of its roller; a time beyond the end of the
+    motion counts as its end.  The motion is integrated to its end in any case, so that steps and status do not depend
+    on them.
     Returns the :class:`Motion`, in the units of its roller; where it did not reach an output time, quantities are NaN
     and ``regime`` is -1.  It keeps the first 1000 changes of regime and reversals of V, counted together.  The status
     of a motion that stays in the indentation of a standstill is CAUGHT, and it reaches no output time.

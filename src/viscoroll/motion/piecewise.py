@@ -64,7 +64,7 @@ def check_function(
     function: None (0), a number, an array with one for each motion, a :class:`Schedule`, a callable of t, or a
     :class:`Feedback` of one of these, whose gains are ignored; dimensionless, times in T_ref, the unit of time (module
     docstring).
-    end: last time, in T_ref; ignored but for a callable.
+    end: last time, >= 0, in T_ref; ignored but for a callable.
     rtol: relative tolerance of the motion; a fit may differ from a callable by a tenth of it, times the largest
     magnitude so far.  Ignored but for a callable.
     low: smallest value allowed, in the unit of the values of the function.

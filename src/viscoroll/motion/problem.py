@@ -119,6 +119,7 @@ def make_problem(
     Raises ParameterError for what :func:`viscoroll.roll` (``single``) or :func:`viscoroll.ensemble` refuses, apart from
     output times, units and labels, and of an ensemble arrays that do not broadcast, fields, method, ``speed``, threads
     and progress.  The message states units where it has dimensionless numbers (:func:`.checks.with_scales`).
+    Exceptions of a callable pass.
     Returns the :class:`MotionProblem`.  Its callables are fitted, loads that are 0 at all times are left out, the start
     speeds are reduced by the cost of a standstill, and the step limit is raised by the number of corners of the drive;
     nothing is integrated.
@@ -156,13 +157,15 @@ def make_problem(
 
 
 def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
-    """Return the largest spacing of the samples of a callable, in T_ref.
+    """Check ``resolve``, the largest spacing of the samples of a callable, and return it in T_ref.
 
-    resolve: the argument of the caller: the spacing in the unit of time of the roller, s, or T_ref of a scene.
-    drive: :class:`Drive` of the motions.
+    resolve: the argument of the caller, not None: one number, in T_ref of a scene, in s or with a unit of time of a
+    cylinder.
+    drive: :class:`Drive` of the motions, of which only :attr:`Drive.has_callable` is read.
     scale: :class:`Scale` of the roller, which converts s to T_ref.
     Returns a float > 0.
-    Raises ParameterError unless ``resolve`` is one finite number above 0 and the drive has a callable.
+    Raises ParameterError unless ``resolve`` is one finite number above 0 without a unit of another dimension, and the
+    drive has a callable.
     """
     if not drive.has_callable:
         sentence = f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: leave it out"
@@ -174,7 +177,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """Return whether the added mass N acts, a bool.
 
     unsteady: argument of the caller, whether M(V) + N dV/dt stands for M.
-    scene: :class:`Parameters`, dimensionless, of the roller.
+    scene: :class:`Parameters`, dimensionless, of the roller; its cover and whether its bodies are alike are read.
     Raises ParameterError for what is no truth value, and, if it is True, for covers, which have no N, and for
     bodies of different materials, whose motions with N are not computed.
     """
@@ -192,7 +195,8 @@ def _standstill_time(rested: Any, units: HasUnits) -> float:
 
     rested: argument of the caller: False (none), True (a long one), or a finite time >= 0 in the unit of the roller.
     units: units of the roller, an object with a method ``unit`` as :class:`Scale` has it.
-    Raises ParameterError for what is neither a truth value nor one finite number >= 0.
+    Raises ParameterError for what is neither a truth value nor one finite number >= 0, and for one with a unit of
+    another dimension.
     """
     if isinstance(rested, bool | np.bool_):
         return math.inf if rested else 0.0
@@ -210,8 +214,9 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
     rested: time of the standstill, in T_ref; 0: none; infinite: a long one.
     Returns (V0; omega0; whether the cylinder is too slow to leave its indentation), dimensionless.  If ``rested`` is 0,
     the speeds are returned as they are, with False.  Else V0 and omega0 of each motion are multiplied by the same
-    factor in [0, 1], and the third entry is an array in their shape.  It is True where this takes more than 45 % of V
-    (:data:`LARGEST_LOSS`); the factor of such a motion has no meaning.  A motion from rest loses nothing, with False.
+    factor in [0, 1], and the third entry has the common shape of V0 and the scene's arrays.  It is True where this
+    takes more than 45 % of V (:data:`LARGEST_LOSS`); the factor of such a motion has no meaning.  A motion from rest
+    loses nothing, with False.
     Raises ParameterError if ``rested`` is not 0, and a speed is prescribed, any motion starts in full slip, or the
     roller has a cover: the cost is then not known.
     """
@@ -235,11 +240,11 @@ def integrate(
 ) -> tuple[Floats, Floats]:  # fmt: skip
     """Integrate motions in the kernel.
 
-    count: number of motions.
+    count: number of motions, >= 0.
     batch: (law, the kernel's record of one material or of several; whether the two bodies take unequal parts of M;
     kappa, mu, gamma, j, V0, omega0, read-only vectors of one value or ``count`` values), dimensionless.
     drive: drive of the motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
-    times: output times, (times,), ascending, in T_ref.
+    times: output times since the start, (times,), at least one, >= 0, ascending, in T_ref.
     limits: (rtol; threshold of rest, 0 for none; largest number of steps).
     rows: (rows,), int, indices into :data:`.drive.ROWS`: the quantities to compute.
     notes: (switches, (k, 2): time in T_ref and new regime, or -1 where V changes its sign; ends of steps, (l,), in
@@ -261,7 +266,7 @@ def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> 
     """Integrate one motion.
 
     problem: :class:`MotionProblem` of one motion; scene, functions, V0, omega0, immobile, limits and unsteady are read.
-    times: output times, (times,), ascending, in T_ref.
+    times: output times since the start, (times,), at least one, >= 0, ascending, in T_ref.
     notes: the two arrays (k, 2) and (l,) of :func:`integrate`, which receive the switches and the ends of steps; none:
     neither is kept.
     Returns (all quantities in the order of :data:`.drive.ROWS`, (rows, times), dimensionless, NaN at times that the
@@ -294,9 +299,10 @@ def integrate_motions(
     parameters: (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series in its own unit of
     time.
     starts: V0 and omega0, (n,) each, n >= 1, dimensionless.
-    gamma: P T^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, (n,) or (1,).
-    t: output times, (times,), ascending, common to all, in the unit of time of the material.
+    gamma: P T^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, > 0, (n,) or (1,).
+    t: output times since the start, (times,), >= 0, ascending, common to all, in the material's unit of time T.
     threads: number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    Raises ParameterError for a number of threads that is no whole number >= 1, ValueError for n = 0.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times), dimensionless, NaN at times that
     a motion did not reach; status, steps, switches, onset and rest time of each motion, (n, 5), as of
     :func:`integrate`).

@@ -1,7 +1,9 @@
-"""Summaries of motions: of an ensemble in memory, and of blocks of a run, which merge to the same bits in any order.
+"""Summaries of motions: of an ensemble in memory, and of blocks of a run, with the same bits in whatever order these
+were computed.
 
 Counts are whole numbers, and moments are kept for each block and merged in the order of blocks.  A quantile of blocks
-is known to 2^-8 of the values beside it (``tests/runs/test_runs.py``); that of an ensemble in memory is exact.
+lies between two values that are known to 2^-8 each (``tests/runs/test_runs.py``); that of an ensemble in memory is
+exact.
 """
 
 from __future__ import annotations
@@ -46,10 +48,9 @@ class Quantity(NamedTuple):
     over_time: bool = True
 
     def about(self, si: bool) -> dict[str, Any]:
-        """Return the attributes long_name and units of the quantity; units are "1" for a part of the energy at the
-        start.
+        """Return the attributes long_name and units of the quantity, further ones of a field, as a dict.
 
-        si: whether the units are those of a cylinder.
+        si: whether the units are those of a cylinder; a part of the energy at the start has "1" in either case.
         """
         if self.part:
             return {"long_name": f"share of the initial kinetic energy {self.part}", "units": "1"}
@@ -59,17 +60,15 @@ class Quantity(NamedTuple):
 def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
     """Return a field at an output time, made dimensionless, (n,); NaN for motions that did not reach it.
 
-    motions: an :class:`Ensemble`.
-    name: name of a field that it has.
-    k: index of the output time.
+    motions: an :class:`Ensemble`, of which the field and scale are read.
+    name, k: name of a field over (motion, t) that it has, and index of the output time.
     """
     return getattr(motions, name)[:, k] / motions.scale[name]
 
 
 def _start_energy(motions: Any) -> NDArray:
-    """Return twice the kinetic energy at the start, divided by m (R/T_ref)^2, (n,); NaN for motions from rest.
-
-    T_ref is the unit of time of dimensionless motions.
+    """Return V0^2 + j omega0^2, twice the kinetic energy at the start divided by m (R/T_ref)^2, (n,); NaN for motions
+    from rest.  T_ref is the unit of time of dimensionless motions.
 
     motions: an :class:`Ensemble`, of which V0, omega0, scale and scene.j are read; its start speeds are those after the
         cost of a standstill.
@@ -80,31 +79,34 @@ def _start_energy(motions: Any) -> NDArray:
 
 
 def _translation(motions: Any, k: int) -> NDArray:
-    """Return the part of the kinetic energy at the start that is in translation at output time k, (n,), dimensionless.
+    """Return V(t_k)^2/(V0^2 + j omega0^2), dimensionless, (n,): the translational energy at output time t_k divided by
+    the kinetic energy at the start, above 1 perhaps under a drive; NaN for motions from rest, and for those that did
+    not reach t_k.
 
-    motions: an :class:`Ensemble` with the field V.
+    motions: an :class:`Ensemble` with the field V; V0, omega0 (after the cost of a standstill), scale and scene.j are
+        read too.
     k: index of the output time.
-    Returns NaN for motions from rest, and for those that did not reach the time.
     """
     return _dimensionless(motions, "V", k) ** 2 / _start_energy(motions)
 
 
 def _rotation(motions: Any, k: int) -> NDArray:
-    """Return the part of the kinetic energy at the start that is in rotation at output time k, (n,), dimensionless.
+    """Return j omega(t_k)^2/(V0^2 + j omega0^2), dimensionless, (n,): the rotational energy at output time t_k divided
+    by the kinetic energy at the start, above 1 perhaps under a drive; NaN for motions from rest, and for those that did
+    not reach t_k.
 
-    motions: an :class:`Ensemble` with the field omega.
+    motions: an :class:`Ensemble` with the field omega; V0, omega0, scale and scene.j are read too.
     k: index of the output time.
-    Returns NaN for motions from rest, and for those that did not reach the time.
     """
     return motions.scene.j * _dimensionless(motions, "omega", k) ** 2 / _start_energy(motions)
 
 
 def _loss(name: str, motions: Any, k: int) -> NDArray:
-    """Return a loss divided by the kinetic energy at the start, (n,); NaN for motions from rest.
+    """Return a loss up to an output time divided by the kinetic energy at the start, dimensionless, (n,); NaN for
+    motions from rest, and for those that did not reach the time.
 
-    name: name of the field, "slip_loss" or "rolling_loss", whose unit is m (R/T_ref)^2.
-    motions: an :class:`Ensemble` with that field.
-    k: index of the output time, which motions that did not reach it have NaN at too.
+    name, k: name of the field, "slip_loss" or "rolling_loss", in m (R/T_ref)^2 or J/m; index of the output time.
+    motions: an :class:`Ensemble` with that field; V0, omega0, scale and scene.j are read too.
     """
     return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
 
@@ -154,11 +156,11 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     """Return the summary of an ensemble in memory with exact quantiles, see ``Ensemble.summary``.
 
     motions: the :class:`Ensemble`.
-    levels: levels of the quantiles, in [0, 1].
+    levels: levels of the quantiles, in [0, 1], in any order; the caller checks them (ValueError of numpy).
     Raises ParameterError for an ensemble without motions.
     Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the regime, of the distance
-    |x| if it has x, and of onset and rest time, in the units of the roller; its attributes also tell the number of
-    motions.
+    |x| if it has x, and of onset and rest time, in the units of the roller; its attributes also are ``motions``, their
+    number, and those of :func:`.export.provenance`.
     """
     if not len(motions):
         raise ParameterError("motions", 0, "at least 1")
@@ -173,9 +175,10 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
 def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
     """Return the summary by which an ensemble is drawn: of both speeds, the distance and the angle, as it has them.
 
-    ensemble: dataset of ``Ensemble.to_xarray``.
-    Returns the dataset of :func:`summary_dataset`, in the units of ``ensemble``; its attributes also tell the number of
-    motions.
+    ensemble: dataset of ``Ensemble.to_xarray``.  Those of V, omega, x and angle that it has are summarised, at its t;
+        status and flow are read too; an attribute R tells that it is in SI units.
+    Returns the dataset of :func:`summary_dataset`, with the quantiles of :data:`LEVELS`, in the units of ``ensemble``;
+    its attributes also are ``motions``, their number.
     """
     names = [name for name in _DRAWN if name in ensemble]
     summary = summarise(ensemble, names, exact=True)
@@ -186,8 +189,8 @@ def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
 def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summary:
     """Return the summary of the motions of a block, which merges with those of other blocks.
 
-    motions: an :class:`Ensemble`, or its dataset, which has no shares of energy; t, status, flow and the fields of the
-        quantities are read.
+    motions: an :class:`Ensemble`, or its dataset, for which names of parts of the energy are not allowed; t, status,
+        flow and the fields of the quantities are read, for a part of the energy V0, omega0, scale and scene.j too.
     names: names of quantities, keys of :data:`QUANTITIES` (else KeyError), whose fields the ensemble has.
     exact: whether to keep the values for exact quantiles.
     Returns the :class:`Summary`, in the units of the roller: a list of histograms for each name, one for each output
@@ -206,10 +209,11 @@ def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summar
 def merge_summaries(summaries: Iterator[Summary]) -> Summary:
     """Merge the summaries of blocks to one of all their motions.
 
-    summaries: iterator over at least one :class:`Summary`, in the order of blocks, of the same quantities and times.
-    Returns the first one, which is changed and then counts all motions.  Its histograms of more than one block do not
-    keep the values, so that quantiles are known to their bins.
-    Raises StopIteration without a summary.
+    summaries: iterator over at least one :class:`Summary`, in the order of blocks.
+    Returns the first one, which is changed and then counts all motions.  A histogram keeps its values only if no more
+    than one of the blocks has values there; else its quantiles are known to their bins.
+    Raises StopIteration without a summary, KeyError for one that lacks a quantity of the first, ValueError for one of
+    another number of times.  Quantities that the first lacks are left out.
     """
     total = next(summaries)
     for other in summaries:
@@ -223,15 +227,16 @@ def merge_summaries(summaries: Iterator[Summary]) -> Summary:
 
 
 def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bool) -> xr.Dataset:
-    """Return moments, quantiles and histograms over t, and counts of how motions ended, as a dataset.
+    """Return moments, quantiles and histograms, and counts of how motions ended, as a dataset.
 
-    total: the :class:`Summary`.
-    t: output times, (times,), in the unit of the roller.
+    total: the :class:`Summary`, with at least one histogram for each quantity.
+    t: output times, (times,), in the unit of the roller, as many as histograms of a quantity over time.
     levels: levels of the quantiles, in [0, 1].
-    si: whether the units are those of a cylinder.
-    Returns the dataset: of each quantity the variables of :func:`_variables`; ``ended`` over status, the number of
-    motions with each :class:`MotionStatus`, 0 included; attributes ``failed_motions``, the number of those that reached
-    neither the last output time nor rest, and ``motions_from_the_flow_map``.
+    si: whether the attributes name the SI units of a cylinder; values are not converted.
+    Returns the dataset over t, quantile (``levels``) and status (codes of :class:`MotionStatus`), its coordinates: of
+    each quantity the variables of :func:`_variables`; ``ended`` over status, the number of motions with each status, 0
+    included, whose attribute ``meanings`` has the messages as "CODE: MESSAGE; ..."; attributes ``failed_motions``, the
+    number of those that reached neither the last output time nor rest, and ``motions_from_the_flow_map``.
     """
     import xarray as xr
 
@@ -259,11 +264,12 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
     name: name of the quantity, a key of :data:`QUANTITIES`.
     histograms: one :class:`Histogram` for each output time, or one.
     levels: levels of the quantiles, in [0, 1].
-    si: whether the units are those of a cylinder.
-    Returns name of the variable -> (dimensions, values, attributes): NAME_counted, _mean, _std (of all values, divided
-    by their number), _min, _max over t or without dimensions, NAME_quantiles over (quantile, t), NAME_histogram over
-    (NAME_bin, t), NAME_bin_low and NAME_bin_high over NAME_bin.  At a time without values the moments and quantiles are
-    NaN, and counts 0.
+    si: whether the attributes name the SI units of a cylinder; values are not converted.
+    Returns name of the variable -> (dimensions, values, attributes): NAME_counted, _mean, _std (the root of the mean
+    square of the differences from the mean), _min, _max over t, NAME_quantiles over (quantile, t), NAME_histogram over
+    (NAME_bin, t), NAME_bin_low and NAME_bin_high over NAME_bin; all without t of a quantity that is one number per
+    motion.  At a time without values the moments and quantiles are NaN, and counts 0.  Attributes are long_name and
+    units ("1" of counts), of the quantiles also ``comment``, their accuracy.
     """
     about, times = QUANTITIES[name].about(si), ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))

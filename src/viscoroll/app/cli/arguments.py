@@ -70,8 +70,8 @@ def _numbers_of_member(text: str) -> Any:
 
     text: NUMBER, LOW:HIGH:COUNT or LOW:HIGH:COUNT:log.
     Returns a float, or of a range an array (COUNT,) in equal steps or, with log, equal ratios.
-    Raises ArgumentTypeError for any other form, for a range that does not ascend, for a COUNT below 2, and with log for
-    a LOW that is not > 0.
+    Raises ArgumentTypeError for any other form, for a range that does not ascend or whose ends are not finite, for a
+    COUNT outside 2 ... 5e7 or no whole number, and with log for a LOW that is not > 0.
     """
     try:
         low, *rest = text.split(":")
@@ -91,8 +91,8 @@ def roller_of_argument(text: str) -> Any:
 
     text: path of the file, which ends in .toml (in any case), or the name, as "paper-section-5".
     Returns a :class:`viscoroll.Scene`, dimensionless, or a :class:`viscoroll.Cylinder`, in SI units.
-    Raises ParameterError for an unknown preset; FileError for a .toml file that cannot be read, and for an existing
-    file whose name does not end in .toml.
+    Raises ParameterError for an unknown preset; FileError for a .toml file that cannot be read or describes no roller,
+    and for an existing file whose name does not end in .toml.
     """
     from ...io.config import preset, read_roller
 

@@ -43,8 +43,10 @@ def doctor(arguments: Namespace) -> int:
 def _lines() -> Iterator[tuple[str, str]]:
     """Yield (name, text) of each line of the problem report but the last, which :func:`doctor` prints.
 
-    They are: version and folder of the package, Python, system, optional libraries, threads, cache of compiled
-    functions, and a call as a check.
+    They are: "viscoroll", version and folder of the package; "python", version and program; "system"; "[runs]" and
+    "[cluster]", version of the optional library, or how it is installed; "threads", their number and where it is from;
+    "cache", folder of compiled functions, their number and size in MB, and its faults (:func:`_fault_of_cache`);
+    "check", a call (:func:`_check`).
     Raises ParameterError for a wrong $VISCOROLL_THREADS.
     """
     from ...core.blocks import thread_count

@@ -24,10 +24,10 @@ def show(arguments: Namespace) -> None:
     Moduli are in Pa, times in s; creep modes are printed as strengths J_i, divided by the long-time compliance, and
     times T_i.  An elastic material has no table of modes.
 
-    arguments: parsed command line with file, path of a TOML file with [material] or [base], or of the netCDF of a
+    arguments: parsed command line with file, path of a TOML file with [material] or [base], or of the netCDF (.nc) of a
         material.
     Returns None.
-    Raises FileError for a file that cannot be read, or that has no material.
+    Raises FileError for a file that cannot be read, that has no material, or with a value that is not allowed.
     """
     import pandas as pd
 
@@ -177,7 +177,8 @@ def identify(arguments: Namespace) -> None:
         robust, whether outliers count less;
         output, path of the report that is written, .txt (the text printed), .json or .nc, or None;
         plot, path of the figure that is written, .png, .pdf or .svg, or None.
-    Returns None, exit code 0, also where the report warns of the model or the data.
+    Returns None, exit code 0, also where the report warns of the model or the data.  A progress bar is drawn on
+    standard error if that is a terminal.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     from ..identification.measurements_toml import read_measurements

@@ -28,7 +28,9 @@ def plot(arguments: Namespace) -> None:
         what, path of a .nc (result, table, material), a .toml (scene, cylinder, material) or a .zarr (results of a
         run);
         output, path of the figure that is written; its suffix is the format: .png, .pdf or .svg.
-    Raises ParameterError for another suffix, FileError for a file that cannot be read or written.
+    Returns None.
+    Raises ParameterError for another suffix of what, and for content without a figure, as a single state; FileError for
+    a file that cannot be read or written; MissingDependencyError for a .zarr without zarr.
     """
     from ...core.plots.style import save
 
@@ -77,8 +79,9 @@ def _figure_of_toml(path: str) -> Any:
     the unit of speed (R/T_ref, 1 of a scene) to thirty times it.  Of a file without them it is the material, else the
     base.
 
-    path: path of a TOML file with [scene], [cylinder], preset or [material].
-    Raises FileError for a file that cannot be read, ParameterError for an unknown preset.
+    path: path of a TOML file with [scene], [cylinder], preset, [material] or [base].
+    Raises FileError for a file that cannot be read or has none of these, or a value that is not allowed;
+    ParameterError for a layer too thin for its law.
     """
     import numpy as np
 

@@ -31,11 +31,16 @@ def ensemble(arguments: Namespace) -> None:
         run_file, path of a TOML file;
         output, folder of the results (.zarr), which is made or completed, or None: a few motions are rolled as a trial,
         the estimate is printed, and nothing is written;
-        cluster, "local", "tcp://host:port" of a dask scheduler, or None for threads of this process;
-        threads, number of threads or of local processes, or None for that of the cores.
+        cluster, "local" for processes of this machine, "tcp://host:port" of a dask scheduler, or None for threads of
+        this process;
+        threads, number of threads or of local processes, >= 1, not used with a scheduler; None: $VISCOROLL_THREADS, or
+        where that is not set the cores available.
+    With output standard error has a progress bar if it is a terminal, else lines of progress unless $VISCOROLL_QUIET is
+    "1".
     Returns None, exit code 0, also where motions ended early.
     Raises ParameterError for values that are not allowed, as cluster without output; FileError for a file that cannot
-    be read or written.
+    be read or written, a store in use or a lost cluster; MissingDependencyError without zarr, dask for a cluster, or
+    pyarrow for a sample in .parquet; Interrupted at Ctrl-C, finished blocks being kept.
     """
     run = vr.runs.read_run(arguments.run_file)
     if arguments.output is None:
@@ -60,9 +65,9 @@ def verify(arguments: Namespace) -> int:
     """Compare the files of a results store with their SHA-256 and print the verdict.
 
     arguments: parsed command line with store, path of the folder of the results.
-    Returns True, exit code 1, if a file differs or is missing, else False, exit code 0; the verdict is printed in both
-    cases.
-    Raises FileError for a folder that is no store.
+    Returns True, exit code 1, if a file differs or is missing, else False, exit code 0, also for a run that is not
+    finished; the verdict is printed in both cases.
+    Raises FileError for a folder that is no store, or where the record of its start is damaged.
     """
     verdict = vr.runs.verify(arguments.store)
     print(f"{arguments.store}: {verdict}")
@@ -83,13 +88,15 @@ def sensitivity(arguments: Namespace) -> None:
 
     arguments: parsed command line with
         run_file, path of a TOML file;
-        n, number of base points, which is rounded up to a power of two;
+        n, number of base points in [16, 65536], which is rounded up to a power of two;
         output, path of a .txt, .csv or .nc file that is written, or None: standard output; beside a file the table is
         printed as text too;
         format of standard output without a file, "text", "csv" or "json".
     Returns None.  The table has a row for each quantity, time and input that has indices: first-order index S1 and
     total index ST, dimensionless, and the half-widths of their 95 % confidence intervals, S1_conf and ST_conf.
-    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
+    Raises ParameterError for values that are not allowed, as correlated inputs, and where no quantity has indices;
+    FileError for a file that cannot be read or written; MissingDependencyError for a sample in .parquet without
+    pyarrow.
     """
     from ...io.runs.sensitivity import sobol_indices, table
 

@@ -113,8 +113,8 @@ def roll(arguments: Namespace) -> None:
         t, output times, a number or (n,), in s of a cylinder, dimensionless of a scene;
         output, path of a .txt, .csv or .nc file that is written, or None: standard output;
         format of standard output, "text", "csv" or "json".
-    Returns None.  The output has a row for each time with the quantities of a :class:`viscoroll.Motion`; times that the
-    motion did not reach have NaN.
+    Returns None.  The output has a row for each time with t, V, omega, x, angle, delta and the regime in words; times
+    that the motion did not reach have NaN, and the regime "not_reached".
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     with warnings.catch_warnings():

@@ -53,8 +53,9 @@ def law(arguments: Namespace) -> None:
         alpha, (low, high) of alpha, dimensionless, for the law of every alpha between, or None;
         output, path that is written; its suffix is the format: .nc, .cdf, .h or .json.
     Exactly one of file and alpha must be given.
-    Raises ParameterError for both or none of file and alpha, or a range out of bounds; FileError for a file that cannot
-    be read or written.
+    Raises ParameterError for both or none of file and alpha, a range out of bounds, a suffix in capital letters, and a
+    name of a .h file that is no identifier of C; FileError for a file that cannot be read or written, and for .h of a
+    range of alpha.
     """
     from ...io.config import read_law_source
 
@@ -83,8 +84,8 @@ def build(arguments: Namespace) -> None:
         alpha, nodes of a third axis, a number or (k,), dimensionless, of a scene only, or None: two axes;
         method, "table", the law of the scene, or "direct", roots of the equations of the paper;
         output, path that is written; its suffix is the format: .nc, .cdf, .csv, .txt or .mat.
-    Raises ParameterError for nodes or a method that are not allowed, FileError for a file that cannot be read or
-    written.
+    Raises ParameterError for nodes or a method that are not allowed, for .txt of a grid over several alphas, and for a
+    suffix in capital letters; FileError for a file that cannot be read or written.
     """
     axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
     vr.tables.export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
@@ -135,8 +136,9 @@ def export(arguments: Namespace) -> None:
         file, path of a folder with the results of a run, or of a law or a grid;
         output, path that is written; its suffix is the format: .nc of results, .nc, .cdf, .h or .json of a law, .nc,
         .cdf, .csv, .txt or .mat of a grid.
-    Raises ParameterError for a suffix that the content does not have; FileError for a file that cannot be read or
-    written.
+    Raises ParameterError for a suffix that the content does not have, and as :func:`law` and :func:`build` for .h and
+    .txt; FileError for a file that cannot be read or written, is damaged, or for results that are not finished;
+    MissingDependencyError for results without zarr.
     """
     path = arguments.output
     if not Path(arguments.file).is_dir():

@@ -16,9 +16,11 @@ from .arguments import command
 def warm_up(arguments: Namespace) -> None:
     """Compile all kernels into the cache by small calls, with a progress bar on standard error.
 
-    Their number, the folder of the cache and the time are printed.  Kernels that the cache has are loaded only.
+    A line with the number of calls, the folder of the cache and the time in s is printed at the end.  Kernels that the
+    cache has are loaded only.  A cache that cannot be written causes a RuntimeWarning, and the line all the same.
 
     arguments: parsed command line, not used.
+    Returns None, exit code 0.
     """
     from tqdm import tqdm
 
@@ -38,9 +40,11 @@ def warm_up(arguments: Namespace) -> None:
 def _calls() -> dict[str, Callable[[], Any]]:
     """Return small calls that together use all kernels.
 
-    Motions use the kernels of contacts, and all motions have one integrator.
+    Motions use the kernels of contacts, and all motions have one integrator.  Half-spaces, lists of alphas and of
+    series, and layers have kernels of their own.
 
-    Returns a dict, name for the progress bar -> function without arguments, whose result is not used.
+    Returns a dict, name for the progress bar -> function without arguments, whose result is not used; each makes its
+    call when it is called, and nothing is written but the cache.
     """
     from ...motion import flow
 

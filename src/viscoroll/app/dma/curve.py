@@ -156,8 +156,9 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS)
     """Check measured columns and return them as a curve, sorted by frequency or time.
 
     kind : :class:`Curve` or :class:`Relaxation`.
-    columns : the fields of ``kind`` in any order of points, (n,), each without a unit or of the dimension in
-        :data:`UNITS`: omega in rad/s, t in s; moduli without a unit may be in any, as long as it is the same.
+    columns : the fields of ``kind``, three or two (else ValueError), in any order of points, (n,), each without a unit
+        or of the dimension in :data:`UNITS`: omega in rad/s, t in s; moduli without a unit may be in any, as long as it
+        is the same.
     fewest : least number of points.
     Returns the curve, of the class ``kind``, in ascending order; points of one frequency or time stay in the order in
     which they were given.

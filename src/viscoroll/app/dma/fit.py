@@ -106,7 +106,9 @@ def fit_prony(
         neighbouring curves that do not overlap; factors larger at the highest temperature than at the lowest; a
         reference outside of the curves, or of which the factors say nothing; ``modes``, ``misfit``, ``on`` or ``mode``
         that are not allowed; ``reference`` or ``shift`` without ``temperature``; ``omega`` without ``storage`` and
-        ``loss``, or a record with them; another ``mode`` than that of the record.
+        ``loss``, or a record with them; another ``mode`` than that of the record; a unit of another dimension.
+    RuntimeError
+        The non-negative least squares of SciPy do not end.
 
     Warns
     -----
@@ -197,7 +199,9 @@ def fit_relaxation(
     ParameterError
         Fewer than 3 points; values that are not positive or not finite; columns of other shapes; times that span more
         than 30 decades; a modulus whose last value is above 1.1 times the first, or that does not level off at long
-        times; ``modes``, ``misfit``, ``mode`` or ``temperature`` that are not allowed.
+        times; ``modes``, ``misfit``, ``mode`` or ``temperature`` that are not allowed; a unit of another dimension.
+    RuntimeError
+        The non-negative least squares of SciPy do not end.
 
     Warns
     -----
@@ -242,7 +246,7 @@ def _fit_series(curve: _Curve, modes: int | None, misfit: float) -> tuple[_Curve
     relative errors of each modulus, dimensionless, (storage, loss) or (relaxation,)).  A series without modes has T_ref
     = 1.
     Raises ParameterError for ``misfit`` or ``modes`` out of range, frequencies or times whose largest ratio is above
-    :data:`MOST_SPREAD`, 1e30, and data without a long-time modulus.
+    :data:`MOST_SPREAD`, 1e30, and data without a long-time modulus; RuntimeError as :func:`.spectrum.on_times`.
     """
     target = check_number("misfit", misfit, above=0.0)
     modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)

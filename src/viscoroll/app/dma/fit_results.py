@@ -201,8 +201,8 @@ class SeriesFit(Result):
 
         Parameters
         ----------
-        cylinder : one cylinder, or a series of cylinders, whose material or base is ``material()`` of this fit, at any
-            temperature.
+        cylinder : a :class:`viscoroll.Cylinder`, one or, with arrays, several, whose material or base is ``material()``
+            of this fit, at any temperature.
         V : speed of the axis, m/s, any sign, a number or an array of any shape.
 
         Returns
@@ -215,7 +215,8 @@ class SeriesFit(Result):
         Raises
         ------
         ParameterError
-            A cylinder neither of whose bodies has the series of this fit; NaN or infinite V.
+            A cylinder neither of whose bodies has the series of this fit; V that is not numeric, NaN, infinite, of
+            another dimension, or of a shape that does not broadcast with that of the cylinder.
 
         Examples
         --------

@@ -140,9 +140,10 @@ def master_curve(
 def undetermined_shifts(shifts: Shifts) -> list[str]:
     """Return the pairs of neighbouring curves whose shift their overlap leaves open, in words for a report.
 
-    shifts : :class:`Shifts`, shift factors of the curves.
-    Returns a text for each pair whose ``freedom`` is above :data:`LARGEST_FREEDOM`, one decade, with both temperatures
-    and the range of the shift; an empty list where there is none, as of factors that were given.
+    shifts : :class:`Shifts`, shift factors of the curves, of which temperature and freedom are read.
+    Returns a text for each pair whose ``freedom``, the decades over which its shift may be moved, is above
+    :data:`LARGEST_FREEDOM`, one decade (1 itself and NaN are not), with both temperatures and these decades, coldest
+    first; an empty list where there is none, as of factors that were given.
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
     return [
@@ -155,8 +156,8 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
 def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[Floats, Floats, Floats]:
     """Find the shifts of neighbouring curves by their overlap.
 
-    curves : list of :class:`_LogCurve`, one for each temperature, the coldest first.
-    temperatures : temperatures of the curves, degrees Celsius, (curves,), for messages.
+    curves : list of :class:`_LogCurve`, one for each temperature, at least one, the coldest first.
+    temperatures : temperatures of the curves, degrees Celsius, ascending, (curves,), for messages.
     Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; root mean square difference of the
     logarithms of the moduli of each pair of neighbours, (curves - 1,); decades by which the shift of each pair may
     vary, (curves - 1,)); of a single curve the last two are empty.

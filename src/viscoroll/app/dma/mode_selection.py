@@ -51,6 +51,8 @@ def fewest_modes(data: Data, target: float, modes: int | None) -> tuple[Spectrum
     ------
     ParameterError
         If no grid of times leaves a long-time modulus: the data are of a fluid.
+    RuntimeError
+        As of :func:`.spectrum.on_times`, where SciPy's non-negative least squares do not end.
     """
     starts = _fit_wider_grids(data, None if modes else target)
     if not starts:
@@ -91,6 +93,7 @@ def _fit_wider_grids(data: Data, target: float | None) -> list[tuple[Spectrum, t
     Returns a list of at most four pairs (:class:`Spectrum`, refined; (shortest, longest time of its grid, s)), in the
     order of the grids.  If a grid reaches the target it is the last; the list is empty where no grid leaves a long-time
     modulus.
+    Raises RuntimeError as :func:`.spectrum.on_times` does.
     """
     starts: list[tuple[Spectrum, tuple[float, float]]] = []
     low, high = data.band
@@ -109,7 +112,7 @@ def grid_of_times(ends: tuple[float, float], density: float) -> Floats:
     """Return times of modes between two ends, from the longest down, both ends among them.
 
     ends : (shortest, longest) time, s, > 0.
-    density : number of times in a decade, > 0; the number of all is rounded, and at least 2.
+    density : number of times in a decade, > 0; the number of all, 1 + decades ``density``, is rounded, at least 2.
     Returns times in equal ratios, descending, s, shape (times,).
     """
     decades = math.log10(ends[1] / ends[0])
@@ -149,6 +152,7 @@ def _leave_out_mode(
     the three with the least misfits, in this order, that is acceptable after its times are refined; None if none of
     them is.  With ``good`` None it is the one with the least misfit, refined.  Misfits are compared by :func:`_size`.
     Modes without strength are left out too, so that more than one may be missing.
+    Raises RuntimeError as :func:`.spectrum.on_times` does.
     """
     tried = sorted((on_times(data, tau) for tau in _times_without_a_mode(spectrum)), key=lambda fit: _size(data, fit))
     if good is not None and good(tried[0]):
@@ -163,8 +167,8 @@ def _leave_out_mode(
 def _times_without_a_mode(spectrum: Spectrum) -> list[Floats]:
     """Return the candidates for one mode less: times with one left out, or with two neighbours replaced by their mean.
 
-    spectrum : :class:`Spectrum`, the spectrum, of n modes, n >= 1; means are of the logarithms of its times, weighted
-        by strength.
+    spectrum : :class:`Spectrum`, the spectrum, of n modes, n >= 1, with strengths > 0, as those of
+        :func:`.spectrum.on_times`; means are of the logarithms of its times, weighted by strength.
     Returns a list of 2 n - 1 arrays of times, s, descending, shape (n - 1,) each: first those with one left out, then
     those with a mean, both from the longest time on.
     """

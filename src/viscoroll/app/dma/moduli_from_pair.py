@@ -31,7 +31,7 @@ def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Num
     """Return storage and loss from two measured quantities, after a check that all others agree with them.
 
     table : :class:`Table`, the table that has the columns; its lines are named in the error message.
-    pair : the two quantities, a key of :data:`PAIRS`.
+    pair : the two quantities, a key of :data:`PAIRS`; both are in ``columns``.
     columns : quantity ("storage", "loss", "tan delta", "modulus") -> :class:`Numbers`, values and half a unit of their
         last digits, (n,) each, of those that the file has; all in Pa or all in 1/Pa, tan delta dimensionless.
     Returns (storage, loss), (n,) each, in the unit of the columns: compliances of compliances.  Signs are not checked

@@ -66,10 +66,11 @@ def read_dma(
     Raises
     ------
     FileError
-        A file that cannot be read, columns that are missing, ambiguous or contradict each other, units that are
-        missing, unknown or of another dimension, gaps and separators of thousands; a frequency that is not > 0; a
-        modulus from a magnitude and storage or loss that the digits of the file leave uncertain by more than 5 %; all
-        rows at one frequency; several moduli at one frequency, or several tables, without a column of temperatures.
+        A file that cannot be read, is no text or has no table; tables with different headings; columns that are
+        missing, ambiguous or contradict each other, units that are missing, unknown or of another dimension, gaps and
+        separators of thousands; a frequency that is not > 0; a modulus from a magnitude and storage or loss that the
+        digits of the file leave uncertain by more than 5 %; all rows at one frequency; several moduli at one frequency,
+        or several tables, without a column of temperatures.
     ParameterError
         Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file.
 

@@ -134,6 +134,7 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     calls : largest number of evaluations of the residuals, >= 1; when they are used up the best times so far are taken.
     Returns the refined :class:`Spectrum`, from which modes without strength are left out; ``spectrum`` itself if it has
     no modes.
+    Raises RuntimeError as :func:`on_times` does.
     """
     count = spectrum.tau.size
     if not count:

@@ -66,6 +66,8 @@ def fit_on_extended_grid(
         shortest time stays at least half the first time of the data.
     Returns the :class:`ExtendedGridFit`, with the rolling moment of both fits at speeds of which the data tell, at the
     same load and radius: kappa of the wider fit is sqrt(its E / E) times that of the fit.
+    Raises RuntimeError as :func:`.spectrum.on_times` does, ParameterError for modes that make no :class:`Prony`, as
+    more than 64.
     """
     reach = 10.0**decades
     times = grid_of_times((max(grid[0] / reach, data.shortest), grid[1] * reach), _TIMES)

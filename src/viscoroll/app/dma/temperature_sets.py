@@ -105,7 +105,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
 def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
     """Return the reference temperature of a master curve where the user gives none.
 
-    temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
+    temperatures : temperatures of the sets, at least one, ascending, degrees Celsius, (sets,).
     unshifted : temperatures at which the given shift is 1, degrees Celsius; empty, or NaN, where none is known.
     Returns a temperature, degrees Celsius: the first of ``unshifted`` between the lowest and the highest set, both
     included, else the temperature of the middle set, of an even number the warmer one of the two.

@@ -54,7 +54,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     MissingDependencyError
         No fmpy, which brings the headers of the standard, or no C compiler ``cc``.
     FileError
-        If the file cannot be written, or the compiler fails.
+        If the file cannot be written, the compiler fails, or a law that is given is incomplete or that of every alpha.
 
     Examples
     --------

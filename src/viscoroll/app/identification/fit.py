@@ -242,7 +242,8 @@ class Identification(Result):
         ------
         ParameterError
             What is no record; a motion without V0, or with an omega0 or a t0 that is unknown; draws, level or seed out
-            of range; a temperature without a shift; values of the record that make no contact or no motion.
+            of range; a temperature without a shift; values of the record, or of a draw, that make no contact or no
+            motion.
 
         Examples
         --------
@@ -267,21 +268,23 @@ class Identification(Result):
     def _predict(self, record: Record, record_name: str, level: float, draws: int = 0, seed: int = 0) -> Prediction:
         """Predict the quantities of a record, with confidence bands.
 
-        The unknowns are taken to be normal about the best fit, with the covariance of its slopes.
+        The coordinates of the unknowns (logarithms of most, :class:`.unknowns.Unknown`) are taken to be normal about
+        the best fit, with the covariance of its slopes.
 
         record : :class:`.records.Record`, the record.
         record_name : name of the record among the data, which its own unknowns bear, as V0:NAME; "" of a record that
             was not fitted.
         level : confidence level of the bands, in (0, 0.9999].
-        draws : number of random values of the unknowns, of whose predictions the ends of the bands are quantiles.  Of
-            50 candidates for each those within the ranges are taken, at most ``draws``, so that there may be fewer;
-            where there are none the ends are the value itself.  0: the bands are from slopes at the best fit, the value
-            -+ its standard deviation times sqrt(:meth:`_delta_chi2`).
+        draws : number, >= 0, of random values of the unknowns, of whose predictions the ends of the bands are
+            quantiles.  Of 50 candidates for each those within the ranges are taken, at most ``draws``, so that there
+            may be fewer; where there are none the ends are the value itself.  0: the bands are from slopes at the best
+            fit, the value -+ its standard deviation times sqrt(:meth:`_delta_chi2`).
         seed : seed of the draws, >= 0; not used for slopes.
-        Returns the :class:`Prediction`, of all ``QUANTITIES`` of the record in SI units, with its coordinates and
-        labels.  Where the value is NaN, at points that a motion did not reach, the band from slopes is NaN too;
-        quantiles are of the draws that are not NaN.
-        Raises ParameterError for another level, and ViscorollError where the model fails at the values.
+        Returns the :class:`Prediction`: QUANTITY, QUANTITY_low and QUANTITY_high for each of the ``QUANTITIES`` of the
+        record, SI units, in the shape of its points, with its coordinates and labels.  Where the value is NaN, at
+        points that a motion did not reach, the band from slopes is NaN too; a quantile is NaN only where all draws are.
+        Raises ParameterError for another level, and ViscorollError where the best values, those of a draw or of a step
+        of the slopes make no contact or no motion.
         """
         problem, cov, u = self._problem, self._likelihood.cov, self._likelihood.best.u
 

@@ -78,7 +78,8 @@ def identify(
         contain the start value; no unknowns, or more of them than points and priors together (less one, where a
         standard deviation is estimated); no records, a plan without standard deviations, records with and without
         values, two records of one name; an open V0 or omega0 of which the record has no data; a temperature of a record
-        without ``shift``; a prior of what is no unknown; ``starts`` or ``seed`` out of range.
+        without ``shift``; a prior of what is no unknown; ``starts`` or ``seed`` out of range; ``progress`` that is no
+        truth value; a plan at whose start values there is no contact or no motion.
 
     Examples
     --------

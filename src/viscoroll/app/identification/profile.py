@@ -363,8 +363,8 @@ class ProfileWalk:
         rise of chi2 meets that of the bound to about 0.3 %.  All minima on the way are added to ``visited``.
 
         reach : distance of the end of the ranges from the best minimum, signed: the search goes towards it.
-        start : :class:`Minimum`, a minimum at which chi2 is below the bound, so that its root is more than 0.3 % below
-            that of the bound.
+        start : :class:`Minimum`, a minimum at which the root of the rise of chi2 is more than 0.3 % below that of the
+            bound, which is not checked.
         Returns (the signed distance, or None if chi2 is still below the bound at ``reach``; of the minima found the
         :class:`Minimum` nearest to that distance, or that at ``reach``).
         """

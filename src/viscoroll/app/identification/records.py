@@ -220,6 +220,11 @@ class Resistance(Record):
         -------
         dict[str, Floats]
             {"M": moments, N m/m; "F": forces, N/m}, in the shape of the speeds of the record.
+
+        Raises
+        ------
+        ParameterError
+            Values that make no contact, as speeds beyond the range of the law.
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
@@ -268,6 +273,11 @@ class Traction(Record):
         -------
         dict[str, Floats]
             {"Q": tractions, N/m}, in the shape of the points of the record.
+
+        Raises
+        ------
+        ParameterError
+            As of :meth:`Resistance.model`; a layer beside a body that relaxes too, whose Q is not known.
         """
         return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
 
