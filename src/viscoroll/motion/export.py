@@ -208,8 +208,8 @@ def motion_dataset(motion: Any) -> xr.Dataset:
 
     motion: a :class:`Motion`.
     Returns the dataset of :func:`_dataset`, in the units of the roller, of a driven motion with ``reversals`` over
-    reversal.  Its attributes are also the numbers of the scene by name (but j of a cylinder is its moment of inertia),
-    onset_time and rest_time (NaN where there is none), switches ("t = T: REGIME; ..."), status in words, and steps.
+    reversal.  Its attributes are also the numbers of the scene by name, onset_time and rest_time (NaN where there is
+    none), switches ("t = T: REGIME; ..."), status in words, and steps.
     """
     about_reversals = {"long_name": "times at which V changes its sign", "units": motion.scale.unit("t")}
     about = motion.scene.numbers | {

@@ -54,8 +54,9 @@ class Estimate:
         """
         run = self.run
         laws = f", {_duration(self.law_seconds)} of it once for the laws of covers" if self.law_seconds else ""
+        blocks = f"{run.blocks} block" + "s" * (run.blocks != 1)
         return (
-            f"{run.settings.n} motions in {run.blocks} block{"s" * (run.blocks > 1)} of {run.block}, method {run.method}\n"
+            f"{run.settings.n} motions in {blocks} of {run.block}, method {run.method}\n"
             f"time    about {_duration(self.seconds)} on {self.workers} workers{laws}\n"
             f"memory  about {self.memory / 1e6:.0f} MB at a time\n"
             f"disk    about {self.stored / 1e6:.1f} MB\n"

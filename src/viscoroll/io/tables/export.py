@@ -34,8 +34,8 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     Parameters
     ----------
     table : dataset of :func:`law`, :func:`build` or :func:`load`.
-    path : file to write, whose suffix selects the format; a file of that name is replaced.  For a law and a grid: .nc
-        (netCDF-4), or .cdf (netCDF-3, for readers without HDF5).  For a law: .h (C99 and C++: table and evaluator in
+    path : file to write, whose suffix, also in capitals, selects the format; a file of that name is replaced.  For a
+        law and a grid: .nc (netCDF-4), or .cdf (netCDF-3, for readers without HDF5).  For a law: .h (C99 and C++: table and evaluator in
         one header) or .json.  For a grid: .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or .mat (MATLAB,
         Simulink).
 
@@ -62,11 +62,11 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     """
     path = Path(path)
     store.check(table, "export")
-    formats = LAW if store.is_law(table) else GRID
-    if path.suffix not in formats:
+    formats, suffix = LAW if store.is_law(table) else GRID, path.suffix.lower()
+    if suffix not in formats:
         kind = "law" if store.is_law(table) else "grid"
         raise ParameterError("path", path, f"a name that ends in {', '.join(formats)} for a {kind}")
-    formats[path.suffix](table, path)
+    formats[suffix](table, path)
 
 
 def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
