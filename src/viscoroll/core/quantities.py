@@ -91,8 +91,8 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     value: what a caller gave: a number, an array, a list, a quantity of pint, astropy or unyt, a duration, an array of
         xarray, a series or an index of pandas.
     Returns (numbers in the same kind of container, but a list in place of a tuple; their unit as a text, of pint in
-    full, as "meter / second").  Without a unit that is (``value``, None), of whatever type the value is; of nested lists
-    and arrays of objects it is a new one.  Durations are numbers in "s".
+    full, as "meter / second").  Without a unit that is (``value``, None), of whatever type the value is; of nested
+    lists and arrays of objects it is a new one.  Durations are numbers in "s".
 
     Raises
     ------
@@ -129,7 +129,8 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
 
     name: name of the argument, for errors.
     value: number, array, or list of these, perhaps with labels, which stay.
-    unit: their unit, as "km/h"; "", "1", "-" and "dimensionless" of a ratio, which for an angle is radians.
+    unit: their unit, as "km/h"; "", "1", "-" and "dimensionless" of a ratio; "-" is not allowed for an angle, the
+        others are radians there.
     target: wanted unit, as "m s-1"; "1" of a dimensionless number, "rad" of an angle.
     Returns ``value`` itself if the texts of the units are equal or both mean a ratio.  Else numbers in ``target``: a
     float, a float64 array of the same shape with its labels, or a list of these.
