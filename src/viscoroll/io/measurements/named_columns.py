@@ -66,8 +66,8 @@ def find_column(table: Table, name: str) -> int | None:
 
 
 def missing_column(table: Table, name: str, advice: str = "") -> FileError:
-    """Return the FileError, not raised, where no column of a table has a name; it lists the headings of the table and
-    asks for a similar one.
+    """Return the FileError, not raised, where no column of a table has a name; it lists the headings of the table, and
+    names the most similar one if any is similar.
 
     table: :class:`Table`, whose path and headings are read.
     name: the name that the user gives.

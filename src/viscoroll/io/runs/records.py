@@ -115,7 +115,7 @@ def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
     root: path of the folder.
     files: path below root -> content, bytes; {} writes nothing.
     Returns path below root -> SHA-256 in hexadecimal digits, sorted by path.
-    Raises FileError if one cannot be written; the files before it stay.
+    Raises FileError if one, or its folder, cannot be written; the files before it stay.
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
     for name, content in files.items():

@@ -120,7 +120,8 @@ class RunResults(Result):
 
         Returns a table of float64, the quantities in the order of ``names`` and the times ascending.  The levels of its
         index are "quantity", the name with its unit as in "V [m s-1]", and the time, named "t" or "t [s]" and NaN for a
-        quantity that is one number per motion.  The label of the column of a quantile is its level, a float in [0, 1].
+        quantity that is one number per motion.  Columns are "mean", "std", "min", "max", then the quantiles in the
+        order of the run file, each labelled by its level, a float in [0, 1].
         std is that of all values, divided by their number.  At a time at which no motion has a value all entries are
         NaN.
 

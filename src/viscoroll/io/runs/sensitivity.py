@@ -67,8 +67,9 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         standard deviation is at most rtol times its largest magnitude at all t, it has no indices: its entries are NaN
         there, and the attribute ``refused`` states which quantity, at which t and why, a line each.  A quantity without
         indices at any t is left out.  Estimates may lie slightly outside of [0, 1].  Further attributes are those of
-        the run, ``asked_base_points`` (n), ``base_points``, ``resamples``, ``confidence``, and for each way in which
-        motions ended the number of these, as "ended: reached the last output time".
+        the run, with ``motions`` their number here, ``asked_base_points`` (n), ``base_points``, ``resamples``,
+        ``confidence``, and for each way in which motions ended the number of these, as "ended: reached the last output
+        time".
 
     Raises
     ------
@@ -78,6 +79,11 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         is no whole number >= 1, ``progress`` that is no truth value, inputs that a motion does not allow.
     FileError
         Inputs that a material does not allow.
+
+    Warns
+    -----
+    ModelWarning
+        Of motions beyond the model or the measured bands of the materials (:func:`.evaluate.warn_of_materials`).
 
     Notes
     -----
@@ -183,7 +189,7 @@ def _outcomes(
 ) -> tuple[dict[str, Floats], NDArray[np.int8]]:
     """Roll all motions at points of the unit cube, block by block.
 
-    run: :class:`Run`, whose ``settings.summaries`` name the quantities.
+    run: :class:`Run`, whose ``settings.summaries`` name the quantities, each once; inputs, t and block are read too.
     cube: points of the unit cube, (input, motion), of :func:`_points`.
     threads: number of threads, on which the motions of one block run; None: ``$VISCOROLL_THREADS``, else all cores
         available.
