@@ -101,7 +101,7 @@ class Cylinder(Methods):
         material: Material | LawTable | None = None, base: Material | None = None, load: ArrayLike | None = None,
         pressed: ArrayLike | None = None,
     ) -> None:  # fmt: skip
-        """Check and freeze the parameters, which the class describes; each number may be an array (n,).
+        """Check and freeze the parameters, which the class describes; each number may be an array (n,), or have a unit.
 
         They become floats or read-only arrays in SI units.
 
@@ -151,7 +151,8 @@ class Cylinder(Methods):
     def _refuse_thick_layer(self, thickness: Any) -> None:
         """Raise ParameterError where a layer on the cylinder is thicker than R, as one whose thickness is in mm.
 
-        thickness: of the layer, m, a number or (n,); None: the cylinder has none, which is right.
+        thickness: of the layer, m, a number or (n,), which may be equal to R; None: the cylinder has none.
+        Raises ParameterError also where its shape does not broadcast with that of R.
         """
         if thickness is None:
             return

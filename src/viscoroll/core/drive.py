@@ -52,7 +52,8 @@ class Schedule:
         """Check the fields, make them read-only arrays of float64, and keep the units that they were given in.
 
         Both must be (k,) or (n, k), k >= 1, with equal k, and equal n where both have it; in each row times are >= 0,
-        do not decrease, and no time occurs more than twice.  Raises ParameterError where that does not hold.
+        do not decrease, and no time occurs more than twice.  Raises ParameterError where that does not hold, or a field
+        is not numeric or not finite.
         """
         for name, low in (("times", 0.0), ("values", -np.inf)):
             _check_field(self, name, low)
@@ -104,7 +105,7 @@ class Feedback:
         """Check the fields, make each a float or a read-only array, and keep the units that they were given in.
 
         A value that is a schedule or a function stays; it is checked with its motion.  Gains may be numbers or (n,).
-        Raises ParameterError for numbers that are not finite, and for gains of more axes.
+        Raises ParameterError for fields that are not numeric or not finite, and for gains of more axes.
         """
         if not (callable(self.value) or isinstance(self.value, Schedule)):
             _check_field(self, "value", -np.inf)

@@ -47,6 +47,7 @@ class Labels(NamedTuple):
 
         names: names of the variables of the dataset.
         prefix: word that is put before such an axis or coordinate, as "given" for given_V; others keep their names.
+            Whether a new name is free is not checked.
         Returns (names of the axes; dict from the name of a coordinate to (its axes, its values)), as xarray takes
         them.
         """

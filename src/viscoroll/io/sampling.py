@@ -225,7 +225,7 @@ def _mix_bits(x: Words) -> Words:
 
     (G. Steele, D. Lea, C. Flood, OOPSLA 2014.)
 
-    x: words, (k,), uint64; the result has their shape.
+    x: words, (k,), uint64, not changed; the result, a new array of their shape, is computed modulo 2^64.
     """
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)

@@ -79,8 +79,8 @@ def identification(fit: Any) -> Figure:
     a vertical line for each point's prediction band.
 
     fit: a :class:`viscoroll.app.identification.fit.Identification`, whose ``values`` (for their names), ``records``,
-        ``predicted`` bands, ``sigma``, ``planned`` and columns of the problem are read.  Of a planned one, which has no
-        data, neither data nor residuals are drawn.
+        ``predicted`` bands (value, low, high), ``sigma`` (in the unit of the quantity), ``planned`` and columns of the
+        problem are read.  Of a planned one, which has no data, neither data nor residuals are drawn.
     Returns the :class:`matplotlib.figure.Figure`, whose axis of a coordinate that is spaced by factors is logarithmic.
     """
     shown = fit._problem.columns

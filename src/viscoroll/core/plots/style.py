@@ -92,7 +92,8 @@ def spaced_by_factors(x: NDArray[Any]) -> bool:
     """Whether the numbers ``x``, any order, are spaced more evenly on a logarithmic axis than on a linear one.
 
     The spacing of the different numbers is compared by its relative standard deviation, linear and logarithmic.  The
-    result is False for fewer than three different numbers, where one is not > 0, and where both spacings are as even.
+    result is False for fewer than three different numbers, where one is not finite or not > 0, and where both spacings
+    are as even.
     """
     points = np.unique(x)
     if points.size < 3 or points[0] <= 0.0:
@@ -188,7 +189,7 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
     Raises
     ------
     FileError
-        If it cannot be written there, or the suffix names no format.
+        If it cannot be written there, or the suffix names no format of matplotlib or is missing.
     """
     formats = sorted(figure.canvas.get_supported_filetypes())
     suffix = Path(path).suffix

@@ -149,7 +149,7 @@ class _Layout:
     is_heading_line: Callable[[list[str]], bool]
 
     def __post_init__(self) -> None:
-        """Find the width, the most frequent number of cells of rows of numbers, and the words on the separator.
+        """Set ``width``, the most frequent number of cells of rows of numbers, and ``cut``, the words on the separator.
 
         Of several numbers of cells that are as frequent the one that occurs first is taken.
         Raises FileError where no line is a row of numbers.

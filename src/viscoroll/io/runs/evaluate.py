@@ -136,7 +136,8 @@ def _fraction_outside(run: Run) -> float:
     """Return the fraction of motions whose transit frequency at the start is outside a measured band of a material.
 
     The transit frequency is |V0| divided by the contact length in free rolling at that speed, in 1/s; it is compared
-    with angular frequencies in rad/s.  A start at rest is inside, because the rolling moment M is 0 there.
+    with angular frequencies in rad/s.  The ends of a band are inside, as is a start at rest, because the rolling moment
+    M is 0 there.
 
     run: :class:`Run` in SI units that gives V0; its first motions, at most 1000 of the first block, are examined.
     Returns the fraction of these motions that are outside the band of at least one material, a float in [0, 1]; 0.0

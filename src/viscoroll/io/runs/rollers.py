@@ -27,8 +27,9 @@ class Rollers(Cylinder):
     """Cylinders that have a material each, in SI units; validity and warnings do not examine them.
 
     Its ``material`` and ``base`` may be a :class:`Solid`, whose numbers are arrays (n,).  If T_epsilon is an array,
-    each motion has its own unit of time.  Times are counted in s then: gamma only scales time (Eq. (22)), and
-    gamma/T_epsilon in place of gamma makes its unit the second for all motions.
+    each motion has its own unit of time.  Times are counted in s then: gamma only scales time in the equations of
+    motion of V and omega, Eq. (22) of the paper, and gamma/T_epsilon in place of gamma makes its unit the second for
+    all motions.
     """
 
     body_data = None  # type: ignore[assignment]

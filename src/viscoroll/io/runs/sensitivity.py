@@ -197,7 +197,8 @@ def _outcomes(
     Raises ParameterError if the values of all motions would take more than 0.5 GB, for a wrong ``threads``, and for
     inputs that a motion does not allow; FileError for inputs that a material does not allow.
     Returns (name of a quantity -> values, (t, motion), or (1, motion) of one number per motion, in the units of the
-    run, NaN where a motion does not have it; status of each motion, a code of :class:`MotionStatus`, (motion,), int8).
+    run, NaN where a motion does not have it; status of each motion, a code of :class:`MotionStatus` (0 DONE, 1 RESTED,
+    2 to 6 stopped before), (motion,), int8).
     """
     motions = cube.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}

@@ -256,8 +256,9 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
     values: name of each uncertain input -> values, (n,), in the units of the run file; other names have no effect.
     motions: :class:`Ensemble`, n motions with these inputs, which have the fields.
     Returns name -> values in the units of the run: the inputs over (motion,), the fields of ``run.settings.fields``
-    over (motion, t), then onset_time and rest_time (NaN of a motion without), status (codes of :class:`MotionStatus`)
-    and flow (int8, 1 of a motion from a flow map, else 0) over (motion,).  Outputs that a motion did not reach are NaN.
+    over (motion, t), then onset_time and rest_time (NaN of a motion without), status (codes of :class:`MotionStatus`:
+    0 DONE, 1 RESTED, 2 to 6 stopped before) and flow (int8, 1 of a motion from a flow map, else 0) over (motion,).
+    Outputs that a motion did not reach are NaN.
     Raises KeyError for an input that ``values`` does not have.
     """
     columns = {name: values[name] for name in run.inputs.uncertain}

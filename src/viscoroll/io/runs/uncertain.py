@@ -214,8 +214,8 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
         Other files are not converted, and a unit that they state is not read.
     Returns float64, (n,), n >= 1, contiguous.
     Raises FileError for a CSV that cannot be read, has no such column or several, or cells in it that are no numbers;
-    ParameterError for its unit, if that has another dimension; ValueError, OSError or KeyError for other files and
-    suffixes, and for a column that is empty, has several axes or has values that are no finite numbers;
+    ParameterError for its unit, if that is unknown or has another dimension; ValueError, OSError or KeyError for other
+    files and suffixes, and for a column that is empty, has several axes or has values that are no finite numbers;
     MissingDependencyError for .parquet without pyarrow.
     """
     if path.suffix == ".csv":

@@ -61,8 +61,9 @@ def build(
         1: the axis V then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa M.  The law of a
         layer has no such scale, since delta_0 does not vary with mu: it is refused, as is the law of every alpha.  All
         parameters are numbers, no arrays.
-    V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_epsilon or in m/s; for V < 0 see the signs
-        of Eqs. (17), (18).  A number, here and below, is an axis of one node.
+    V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_ref (T_ref is T_epsilon of a scene with
+        alpha) or in m/s; for V < 0 the attribute ``comment`` states which fields change their sign.  A number, here and
+        below, is an axis of one node.
     delta : creepages, (n,), dimensionless, any sign, strictly increasing.
     alpha : values of alpha, (n,), in [1, 1e12], strictly increasing, in place of that of a scene without a material;
         None: no such axis.

@@ -1,7 +1,8 @@
 """Interpolation between the nodes of a grid, by tensor cubic splines.
 
-A grid is a table of fields of the contact over V, delta and perhaps alpha.  An atlas is the table that version 0.1.0
-wrote: over alpha, kappa_V = kappa V and s = |delta|/delta_star, creepage divided by critical creepage, in [0, 1].
+A grid is a table of fields of the contact over speed V, creepage delta and perhaps alpha, T_epsilon/T_sigma.  An atlas
+is the table that version 0.1.0 wrote: over alpha, kappa_V = kappa V, where kappa is the radius divided by the contact
+length at rest, and s = |delta|/delta_star, creepage divided by critical creepage, in [0, 1].
 """
 
 from __future__ import annotations
