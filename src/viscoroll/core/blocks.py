@@ -92,7 +92,8 @@ def thread_count(threads: int | None = None) -> int:
 def _environment_threads() -> int | None:
     """Return ``$VISCOROLL_THREADS`` as an int >= 1; None where it is not set, or empty.
 
-    Raises ParameterError for any other text.
+    :func:`run_blocks` also calls it for work of a single block, to check the variable alone.
+    Raises ParameterError for any other text, as "0".
     """
     if not (given := os.environ.get("VISCOROLL_THREADS")):
         return None

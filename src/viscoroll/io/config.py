@@ -69,7 +69,7 @@ SCENES = ("preset", *SCHEMA)
 
 
 def preset(name: str) -> Scene:
-    """Return the scene of a preset, one of :data:`.presets.PRESETS`.
+    """Return the scene of a preset, one of :data:`.presets.PRESETS`, with an error of the package for other names.
 
     name: name of the preset, as "paper-section-5".
     Raises ParameterError, which lists all names, for any other value.

@@ -88,6 +88,8 @@ def _decode_array(kind: Any, value: Any) -> np.ndarray:
 def damaged(root: Path, record: Record) -> list[str]:
     """Return the files of a record that are missing or differ from their digest; [] if all is well.
 
+    Whether the record itself is that of the run, :func:`.store.problems` examines before.
+
     root: path of the folder of the store.
     record: the :class:`Record`, whose ``files`` are paths below ``root`` with their SHA-256.
     Returns paths below ``root``, in the order of the record; a file that cannot be read counts as missing.

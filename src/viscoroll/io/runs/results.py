@@ -105,8 +105,9 @@ class RunResults(Result):
         NAME_histogram, numbers of motions, over (NAME_bin, t), and the edges NAME_bin_low and NAME_bin_high of the
         bins; of a quantity that is one number for each motion all are without the axis t.  ``ended`` over status is the
         number of motions with each :class:`MotionStatus`.  Values that are not finite do not count; at a time without
-        values the moments and quantiles are NaN, and counts 0.  Attributes state how the run was made: motions, seed,
-        design, method, versions, run_file and others (:func:`.identity.about`).
+        values the moments and quantiles are NaN, and counts 0.  Attributes are failed_motions,
+        motions_from_the_flow_map, and how the run was made (:func:`.identity.about`): motions, motions_a_block, blocks,
+        seed, design, method, quantities, versions, run_file, title, source and Conventions.
 
         Examples
         --------

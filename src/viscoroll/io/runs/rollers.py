@@ -129,7 +129,7 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
 
 
 def _first_material(path: Path, name: str, section: Any) -> Material:
-    """Return the :class:`Material` of the first motion.
+    """Return the :class:`Material` of the first motion, which has what does not differ between motions, as T_ref.
 
     path: path of the run file, for errors, and to which files that the section names are relative.
     name: "material" or "base".

@@ -339,7 +339,7 @@ def _check_inputs(run: Run) -> None:
 
 
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
-    """Raise FileError, with its line, for motions that would be refused; nothing is rolled.
+    """Raise the error that :func:`_fault_of` returns as FileError with its line; nothing is rolled, None is returned.
 
     run: :class:`Run`, of which path, inputs, settings and t are read.
     values: name of an input -> number or (n,), for every input, in the units of the file.

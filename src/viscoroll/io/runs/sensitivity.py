@@ -251,6 +251,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
 def _estimated(values: Floats) -> Floats:
     """Return the Sobol indices, dimensionless, (2, inputs): first-order indices in row 0, total ones in row 1.
 
+    :func:`_indices` calls it for all base points and for each resample.
     With A, B and the mixed outcomes AB_n less the mean of A and B, and the variance v of A and B together, they are
     mean(B (AB_n - A))/v and mean((AB_n - A)^2)/(2 v), the estimators (b) and (f) of Table 2 of Saltelli et al. (2010).
 

@@ -62,7 +62,7 @@ class Store:
         Raises
         ------
         FileError
-            A folder that holds anything else, or cannot be written.
+            A folder that holds anything else, or cannot be written; as :func:`metadata`.
         ParameterError, MissingDependencyError
             As :func:`metadata`, for medians that a motion does not allow and, with keep = "all", without zarr.
         """
@@ -230,6 +230,8 @@ def metadata(run: Run) -> dict[str, bytes]:
 
 def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> dict[str, bytes]:
     """Return files of the group of all motions: the chunks of a block, or the metadata.
+
+    It makes the dataset, with attributes and times, that :func:`.zarr_files.motion_files` encodes.
 
     run: :class:`Run`, which gives output times, units, number of motions and size of blocks.
     columns: name -> values over (motion,) or (motion, t), in the units of the run; for the metadata those of any number

@@ -164,7 +164,7 @@ def _roller_of(what: Any) -> Scene | Cylinder:
 
 
 def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:
-    """Return all fields on the nodes of a grid.
+    """Return all fields on the nodes of a grid; those over V alone are not computed for each delta.
 
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     axes: "V", "delta" and perhaps "alpha" -> nodes, (n,), in the units of the roller.

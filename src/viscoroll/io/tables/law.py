@@ -3,9 +3,8 @@
 kappa is the radius divided by the contact length at rest; zeta is the time in which a point passes through half the
 contact, eta that through half the stick zone, in units of T_ref.  At a speed V: lam = 2 kappa V zeta is the contact
 length divided by that at rest, epsilon the shift of the contact in half contact lengths, H(zeta) = (zeta/lam)^2 and
-F(zeta) = zeta (1 + epsilon).  M is the rolling moment,
-N that of M + N dV/dt at slow speed changes, delta_star the creepage at which full slip begins, and delta_0 that of free
-rolling, which is 0 but for a layer.
+F(zeta) = zeta (1 + epsilon).  M is the rolling moment, N that of M + N dV/dt at slow speed changes, delta_star the
+creepage at which full slip begins, and delta_0 that of free rolling, which is 0 but for a layer.
 """
 
 from __future__ import annotations
