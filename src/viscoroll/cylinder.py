@@ -174,8 +174,8 @@ class Cylinder(Methods):
         half-space has ``base``, or that of the law, or the same material.
         Raises ParameterError where they do not go together: a dimensionless law as ``material``, a ``base`` beside a
         law that contains one, another ``plane`` than that of a law of two different bodies, two rigid bodies or two
-        layers, a layer in plane stress, what is no :class:`Material`; and for arrays among E to T_sigma, of which no
-        Material can be made.
+        layers, a layer in plane stress, a body that is no :class:`Material`; and for arrays among E to T_sigma, of
+        which no Material can be made.
         """
         law = self.material
         if not isinstance(law, LawTable):

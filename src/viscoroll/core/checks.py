@@ -72,7 +72,7 @@ def check_array_extent(
     ------
     ParameterError
         As :func:`check_array`.  For numbers that are not finite or beyond a bound the message states the first wrong
-        element, its index and the number of further ones.
+        element, and of several elements its index and the number of further wrong ones.
     """
     if type(value) is float and above < value < high and low <= value:
         return np.asarray(value), (value, value)

@@ -60,9 +60,9 @@ def to_unit(name: str, value: Any, target: str) -> Any:
 
     Returns
     -------
-    value : ``value`` itself if it has no unit, of whatever type it is, but a new list of a nested list or tuple and a
-        new array of an array of objects; else numbers in ``target``, in a container of the same kind, with the labels
-        of xarray and pandas.
+    value : ``value`` itself if it has no unit, of whatever type it is, but a new list of a list or tuple with elements
+        other than float and int, and a new array of an array of objects; else numbers in ``target``, in a container of
+        the same kind (a list of a tuple), with the labels of xarray and pandas.
 
     Raises
     ------
@@ -91,8 +91,8 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     value: what a caller gave: a number, an array, a list, a quantity of pint, astropy or unyt, a duration, an array of
         xarray, a series or an index of pandas.
     Returns (numbers in the same kind of container, but a list in place of a tuple; their unit as a text, of pint in
-    full, as "meter / second").  Without a unit that is (``value``, None), of whatever type the value is; of nested
-    lists and arrays of objects it is a new one.  Durations are numbers in "s".
+    full, as "meter / second").  Without a unit that is (``value``, None), of whatever type the value is; of lists with
+    elements other than float and int, and of arrays of objects it is a new one.  Durations are numbers in "s".
 
     Raises
     ------

@@ -50,9 +50,9 @@ def field_curves(data: xr.Dataset) -> Figure:
     """Draw each field of a dataset over its first axis of several values, with curves for at most four of the second.
 
     data: fields of the contact over axes such as V and delta, with their coordinates and the attribute title.  At least
-        one axis has several values (else ValueError); the curves are at the first, the last and two evenly spaced
-        indices between on the second.  Third and further axes are at their middle, which the title states.  Over V
-        curves are dashed outside the measured band, if the attribute :data:`..symbols.MEASURED` states it.
+        one axis has several values (else ValueError).  Of the second such axis there are curves at its first, its last
+        and two evenly spaced indices between.  Third and further axes are at their middle, which the title states.
+        Over V curves are dashed outside the measured band, if the attribute :data:`..symbols.MEASURED` states it.
     Returns the :class:`matplotlib.figure.Figure`, with the first :data:`_MAX_PANELS` of those fields that depend on the
     first axis.  Its axis is logarithmic if the values are spaced by factors.
     """

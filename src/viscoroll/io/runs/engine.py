@@ -87,7 +87,7 @@ def run_ensemble(
     Warns
     -----
     ModelWarning
-        Of motions outside the measured bands of the materials (:func:`.evaluate.warn_of_materials`).
+        Of motions beyond the model or the measured bands of the materials (:func:`.evaluate.warn_of_materials`).
 
     Notes
     -----

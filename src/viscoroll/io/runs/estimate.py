@@ -94,7 +94,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     Warns
     -----
     ModelWarning
-        Of motions outside the measured bands of the materials (:func:`.evaluate.warn_of_materials`).
+        Of motions beyond the model or the measured bands of the materials (:func:`.evaluate.warn_of_materials`).
 
     Examples
     --------

@@ -358,7 +358,7 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
     """Find out whether motions would be refused, without rolling them.
 
     run: :class:`Run`, of which path, inputs, the last of t, and of the settings rtol, rest, unsteady and rested are
-        read; the step limit is not.
+        read.
     values: name of an input -> number or (n,), for every input, in the units of the file.
     Returns None if the motions are allowed.  Else the error, which is not raised: a ParameterError for a roller, start,
     drive or setting that a motion refuses, and for ``unsteady`` or ``rested`` where T_epsilon differs between motions;

@@ -35,10 +35,9 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     ----------
     table : dataset of :func:`law`, :func:`build` or :func:`load`.
     path : file to write, whose suffix, in small letters, selects the format; a file of that name is replaced.  For a
-        law and a grid: .nc
-        (netCDF-4), or .cdf (netCDF-3, for readers without HDF5).  For a law: .h (C99 and C++: table and evaluator in
-        one header) or .json.  For a grid: .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or .mat (MATLAB,
-        Simulink).
+        law and a grid: .nc (netCDF-4), or .cdf (netCDF-3, for readers without HDF5).  For a law: .h (C99 and C++: table
+        and evaluator in one header) or .json.  For a grid: .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or .mat
+        (MATLAB, Simulink).
 
     Raises
     ------
