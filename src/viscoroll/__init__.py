@@ -36,8 +36,9 @@ def __getattr__(name: str) -> Any:
     """Import a public name of the package at its first use: Python calls this for a name that it does not find.
 
     name: the name that was looked up in the package.
-    Returns the public object, and keeps it under its name.  An old name gives a warning and the object of the new name.
-    Raises AttributeError for a name that is not public.
+    Returns the public object, and keeps it under its name.  An old name gives a DeprecationWarning and the object of
+    the new name, and is not kept.
+    Raises AttributeError for a name that is not public, ImportError where a package that its module needs is missing.
     """
     if name not in _MODULES:
         from .core.renamed import RENAMED, warn_renamed

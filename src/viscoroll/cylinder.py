@@ -101,7 +101,7 @@ class Cylinder(Methods):
         material: Material | LawTable | None = None, base: Material | None = None, load: ArrayLike | None = None,
         pressed: ArrayLike | None = None,
     ) -> None:  # fmt: skip
-        """Check and freeze the parameters, which the class describes; each number may be an array (n,).
+        """Check and freeze the parameters, which the class describes; each number may be an array (n,), or have a unit.
 
         They become floats or read-only arrays in SI units.
 
@@ -151,7 +151,8 @@ class Cylinder(Methods):
     def _refuse_thick_layer(self, thickness: Any) -> None:
         """Raise ParameterError where a layer on the cylinder is thicker than R, as one whose thickness is in mm.
 
-        thickness: of the layer, m, a number or (n,); None: the cylinder has none, which is right.
+        thickness: of the layer, m, a number or (n,), which may be equal to R; None: the cylinder has none.
+        Raises ParameterError also where its shape does not broadcast with that of R.
         """
         if thickness is None:
             return
@@ -173,7 +174,8 @@ class Cylinder(Methods):
         half-space has ``base``, or that of the law, or the same material.
         Raises ParameterError where they do not go together: a dimensionless law as ``material``, a ``base`` beside a
         law that contains one, another ``plane`` than that of a law of two different bodies, two rigid bodies or two
-        layers, a layer in plane stress; and for arrays among E to T_sigma, which have no :class:`Material`.
+        layers, a layer in plane stress, a body that is no :class:`Material`; and for arrays among E to T_sigma, of
+        which no Material can be made.
         """
         law = self.material
         if not isinstance(law, LawTable):
@@ -250,7 +252,8 @@ class Cylinder(Methods):
         Raises
         ------
         ParameterError
-            A slope out of this range, or of a shape that does not broadcast.
+            A slope out of this range, not numeric or with a unit that is no angle, or of a shape that does not
+            broadcast with the numbers of the cylinder.
 
         Examples
         --------
@@ -319,7 +322,8 @@ class Cylinder(Methods):
         Raises
         ------
         ParameterError
-            The law of a layer that was computed for another load or radius, a layer too thin, a scene out of range.
+            The law of a layer that was computed for another load or radius, a layer too thin, a scene out of range, or
+            materials that have no common law, as one whose times no double holds in units of ``T_ref``.
 
         Examples
         --------
@@ -336,7 +340,7 @@ class Cylinder(Methods):
         Times are divided by ``T_ref``, lengths of the contact by ``l0``.  E, nu, T_epsilon and T_sigma give the number
         alpha = T_epsilon/T_sigma, an array where T_sigma is one; an array T_epsilon gives a series for each cylinder.
         Materials give a series, :class:`Bodies` or a :class:`Cover`; a law that was given stays.
-        Raises ParameterError for the law of a layer that was computed for another load, and for a scene out of range.
+        Raises ParameterError as :meth:`scene` states.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None
         if law is not None and law.cover is not None:
@@ -399,8 +403,8 @@ def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
 
     R: radius, m, > 0.
     load: force per length P that presses the cylinder on the base, N/m, > 0.
-    E_prime: contact modulus E' = pi E/(1 - nu^2), Pa, > 0.
-    Returns l0, m, in the broadcast shape of the arguments, which are numbers or arrays.
+    E_prime: contact modulus E' (:attr:`Cylinder.E_prime`; of one material in plane strain pi E/(1 - nu^2)), Pa, > 0.
+    Returns l0, m, in the broadcast shape of the arguments, which are numbers of numpy or arrays and are not checked.
     """
     return np.sqrt(32.0 * R * load / E_prime)
 
@@ -410,14 +414,15 @@ def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: 
 
     R: radius, m.
     m: mass per length, kg/m.
-    load: force per length that presses the cylinder on the base, N/m.
+    load: force per length P that presses the cylinder on the base, N/m.
     E_prime: contact modulus, Pa.
     T_ref: unit of time, s.
-    law: alpha, a float or an array (n,), or a material of a scene (series, bodies, cover or :class:`LawTable`), with
-        times divided by ``T_ref``.
+    law: alpha, a float or an array (n,), no int, or a material of a scene (series, bodies, cover or
+        :class:`LawTable`), with times divided by ``T_ref``.
     mu, j: coefficient of friction, and moment of inertia divided by m R^2, dimensionless.
     Returns the dimensionless :class:`viscoroll.Scene`, whose kappa is R/l0 and whose gamma is P T_ref^2/(m R).
-    Raises ParameterError, by the names of the scene's parameters, where these are out of range or overflow.
+    Raises ParameterError, by the names of the scene's parameters, where these are out of range or overflow, or their
+    shapes do not broadcast; ValueError of numpy where those of the first five arguments do not.
     """
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
     # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name

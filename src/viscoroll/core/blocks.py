@@ -32,10 +32,10 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
     array: numbers that broadcast to ``shape``.
     shape: shape to which all arrays of the work broadcast.
     Returns a function (start, stop) -> the elements ``start`` to ``stop`` - 1 of the broadcast and flattened array, in
-    C order, a vector (stop - start,).  If ``array`` has a single element the vector is always (1,), that element.
-    Vectors are views if ``array`` is contiguous and of that shape, else copies.  All are contiguous and read-only,
-    because numba compiles a kernel again for each kind of array.
-    Raises ValueError where ``array`` does not broadcast to ``shape``.
+    C order, a vector (stop - start,), for 0 <= start < stop <= its size.  If ``array`` has a single element the vector
+    is always (1,), that element.  Vectors are views if ``array`` is contiguous and of that shape, else copies.  All are
+    contiguous and read-only, because numba compiles a kernel again for each kind of array.
+    Raises ValueError where ``array`` has more than one element and does not broadcast to ``shape``.
     """
     if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
         vector = broadcast_vector(array, array.shape)
@@ -66,7 +66,7 @@ def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
     shape: shape of the result before it is flattened.
     Returns a vector with as many elements as ``shape`` has, in C order, a view where possible, else a copy; if
     ``array`` has a single element it is (1,), for any shape.
-    Raises ValueError where they do not broadcast.
+    Raises ValueError where ``array`` has more than one element and does not broadcast.
     """
     whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
     vector = whole.reshape(-1).view()
@@ -84,7 +84,7 @@ def thread_count(threads: int | None = None) -> int:
     Raises
     ------
     ParameterError
-        If the one that is used is not a whole number >= 1.
+        If the one that is used, ``threads`` or the variable, is not a whole number >= 1.
     """
     return check_integer("threads", threads, 1) if threads is not None else _environment_threads() or available_cores()
 
@@ -92,7 +92,8 @@ def thread_count(threads: int | None = None) -> int:
 def _environment_threads() -> int | None:
     """Return ``$VISCOROLL_THREADS`` as an int >= 1; None where it is not set, or empty.
 
-    Raises ParameterError for any other text.
+    :func:`run_blocks` also calls it for work of a single block, to check the variable alone.
+    Raises ParameterError for any other text, as "0".
     """
     if not (given := os.environ.get("VISCOROLL_THREADS")):
         return None
@@ -138,7 +139,7 @@ def run_blocks(
         them where they belong.  Several threads call it at the same time.  Its exceptions are raised here, of several
         that of the first block; then some of the blocks after it have not been computed.
     count : number of elements, >= 0; ``work`` is not called for 0.
-    block : number of elements of a block, >= 1; the last block may have fewer.
+    block : number of elements of a block, >= 1, not checked; the last block may have fewer.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.  No more are used than
         there are blocks; one worker without a progress bar is the calling thread itself.
     progress : title of a progress bar on standard error, which appears after one second; None: no bar.
@@ -148,7 +149,8 @@ def run_blocks(
     CancelledError
         If the event of :func:`cancel_with` is set and the blocks run one after another on this thread.
     ParameterError
-        If ``threads`` or ``$VISCOROLL_THREADS`` is not a whole number >= 1.
+        If ``threads`` is not a whole number >= 1; without it, and for two elements and more, if
+        ``$VISCOROLL_THREADS`` is not.
     """
     edges: Iterable[tuple[int, int]] = ((start, min(start + block, count)) for start in range(0, count, block))
     workers = blocks = -(-count // block)
@@ -174,13 +176,13 @@ def run_blocks(
 def _submit_all(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int) -> None:
     """Run all blocks on a pool, await them in order, and return when all are done.
 
-    When a block has failed no further blocks are submitted, those that wait are cancelled, and its exception is raised;
-    of several that failed, that of the first in the order of blocks.
+    When a failed block is awaited, no further blocks are submitted, those that have not begun are cancelled, and its
+    exception is raised, of several that failed that of the first in the order of blocks; running ones are not awaited.
 
     pool: :class:`concurrent.futures.Executor`, of threads.
     work: function (start, stop) -> None.
     edges: (start, stop) of each block, an iterable that is consumed as blocks are submitted.
-    most: largest number of blocks that are submitted and not yet awaited.
+    most: largest number of blocks that are submitted and not yet awaited, >= 1; it bounds the memory of the futures.
     """
     waiting: deque[Future[None]] = deque()
     try:

@@ -27,9 +27,10 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     Parameters
     ----------
     name : name of the argument, for errors.
-    value : a number, an array or a list.
-    **bounds : ``unit`` of the argument, to which a value with a unit is converted (default "1"); ``low`` and ``high``,
-        smallest and largest allowed value; ``above``, number that all values must exceed.
+    value : a number, an array or a list, perhaps with a unit.
+    **bounds : as of :func:`check_array_extent`, in ``unit``: ``unit`` of the argument, to which a value with a unit is
+        converted (default "1"); ``low`` and ``high``, smallest and largest allowed value; ``above``, number that all
+        values must exceed.  Without the last three all finite values are allowed.
 
     Returns
     -------
@@ -40,8 +41,8 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     Raises
     ------
     ParameterError
-        If it is not numeric (texts, truth values, complex numbers, masked arrays), not finite, beyond a bound, or its
-        unit is of another dimension.
+        If it is not numeric (None, texts, truth values, complex numbers, masked arrays), not finite, beyond a bound, or
+        its unit is of another dimension or what :func:`.quantities.to_unit` refuses.
     """
     return check_array_extent(name, value, **bounds)[0]
 
@@ -70,8 +71,8 @@ def check_array_extent(
     Raises
     ------
     ParameterError
-        If it is not numeric, not finite, beyond a bound, or its unit is of another dimension.  The message states the
-        first wrong element, its index and the number of further ones.
+        As :func:`check_array`.  For numbers that are not finite or beyond a bound the message states the first wrong
+        element, and of several elements its index and the number of further wrong ones.
     """
     if type(value) is float and above < value < high and low <= value:
         return np.asarray(value), (value, value)
@@ -98,9 +99,11 @@ def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, 
     value: what a caller gave.
     unit: unit of the argument, a text or an object that has units by name; not used for a value without a unit.
     bounds: low, above and high of the range, for the words of the error alone.
-    Returns a float64 array of the shape of ``value``, which is ``value`` itself if that is such an array.
-    Raises ParameterError for a value that is not numeric (texts, truth values, complex numbers, ragged lists), a
-    masked array, and a unit of another dimension.
+    Returns a float64 array of the shape of ``value``, which is ``value`` itself if that is such an array; floats wider
+    than doubles may become infinite.
+    Raises ParameterError for a value that is not numeric (None, texts, truth values, complex numbers, ragged lists,
+    integers that no double holds), a masked array, and what :func:`.quantities.to_unit` refuses, as a unit of another
+    dimension.
     """
     plain = value
     if not has_no_unit(value):
@@ -185,7 +188,7 @@ def check_number(
 def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
     """Return the common shape of arrays, by numpy's rule of broadcasting.
 
-    arrays: arrays by the name that an error states; those without axes fit every shape.
+    arrays: arrays of numpy by the name that an error states; those without axes fit every shape.
     Returns the shape, a tuple of ints; () if no array has axes, or none is given.
 
     Raises
@@ -205,11 +208,11 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
 
 
 def divide_by_unit(name: str, values: NDArray, unit: Any) -> Any:
-    """Return a quantity divided by its unit.
+    """Return a quantity divided by its unit, with an error that names both where numpy's division would not.
 
     name: name of the quantity, for errors.
-    values: the quantity in that unit's system, as m/s, an array.
-    unit: value of one unit, a number, or (n,) of n cylinders.
+    values: the quantity in SI units, an array.
+    unit: SI value of one dimensionless unit, a number, or (n,) of n cylinders; not checked, 0 divides as in numpy.
     Returns the quotient, of the common shape by numpy's rule; a number of numpy if that is ().
     Raises ParameterError if the shapes do not broadcast; the message lists both.
     """
@@ -236,7 +239,7 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     ----------
     name : name of the argument, for errors.
     value : what a caller gave; an int or an integer of numpy is accepted, a truth value or a float is not.
-    low, high : smallest and largest allowed value; ``high`` is infinite by default.
+    low, high : smallest and largest allowed value, whole numbers; ``high`` is infinite by default, no limit.
 
     Returns
     -------

@@ -52,7 +52,8 @@ class Schedule:
         """Check the fields, make them read-only arrays of float64, and keep the units that they were given in.
 
         Both must be (k,) or (n, k), k >= 1, with equal k, and equal n where both have it; in each row times are >= 0,
-        do not decrease, and no time occurs more than twice.  Raises ParameterError where that does not hold.
+        do not decrease, and no time occurs more than twice.  Raises ParameterError where that does not hold, or a field
+        is not numeric or not finite.
         """
         for name, low in (("times", 0.0), ("values", -np.inf)):
             _check_field(self, name, low)
@@ -104,7 +105,7 @@ class Feedback:
         """Check the fields, make each a float or a read-only array, and keep the units that they were given in.
 
         A value that is a schedule or a function stays; it is checked with its motion.  Gains may be numbers or (n,).
-        Raises ParameterError for numbers that are not finite, and for gains of more axes.
+        Raises ParameterError for fields that are not numeric or not finite, and for gains of more axes.
         """
         if not (callable(self.value) or isinstance(self.value, Schedule)):
             _check_field(self, "value", -np.inf)
@@ -126,7 +127,8 @@ def _check_field(load: Schedule | Feedback, name: str, low: float) -> None:
         read-only array, and a unit is entered into its ``units``.  Numbers with a unit stay in that unit.
     name: name of the field.
     low: smallest allowed number, -infinite for none; compared before any conversion.
-    Raises ParameterError for numbers that are not numeric, not finite or below ``low``.
+    Raises ParameterError for numbers that are not numeric, not finite or below ``low``, and for what
+    :func:`.quantities.split_unit` refuses, as a list of numbers with and without units.
     """
     numbers, unit = split_unit(name, getattr(load, name))
     object.__setattr__(load, name, read_only(check_array(name, numbers, low=low)))
@@ -148,7 +150,8 @@ def convert_argument(name: str, value: Any, units: HasUnits) -> Any:
     Raises
     ------
     ParameterError
-        A unit of another dimension; a feedback for an argument that is neither force nor torque.
+        A unit of another dimension, an unknown one, or another that :func:`.quantities.to_unit` refuses; a feedback for
+        an argument that is neither force nor torque.
     """
     if isinstance(value, Schedule):
         return _convert_fields(name, value, {"times": units.unit("t"), "values": units.unit(name)})
@@ -170,7 +173,8 @@ def _convert_fields(name: str, load: Any, wanted: dict[str, str]) -> Any:
     load: :class:`Schedule` or :class:`Feedback`; not changed.
     wanted: name of a field -> unit, as "m s-1"; for each field that may have a unit.
     Returns a new load of the same class without units; ``load`` itself if none of its fields has a unit.
-    Raises ParameterError for a unit of another dimension.
+    Raises ParameterError for a unit of another dimension or an unknown one, and for numbers that the class refuses
+    after the conversion, as infinite ones.
     """
     converted = {
         part: convert(f"{part} of {name}", getattr(load, part), unit, wanted[part]) for part, unit in load.units.items()
@@ -182,7 +186,8 @@ def require_time_argument(name: str, function: Callable[..., Any]) -> None:
     """Raise ParameterError for a function of time that cannot be called with a time alone; it is not called here.
 
     name: name of the argument that the function is, for the error.
-    function: the function of a caller.  One whose signature Python cannot find, as of some compiled code, is accepted.
+    function: the function of a caller, a callable.  One whose signature Python cannot find, as of some compiled code,
+        is accepted; parameters with defaults are allowed.
     """
     try:
         parameters = signature(function)
@@ -203,7 +208,7 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
 
     Parameters
     ----------
-    slope : angle, rad, a number or an array; None: level.
+    slope : angle, rad, a number or an array, perhaps with a unit; None: level.
 
     Returns
     -------
@@ -229,7 +234,8 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     """Return a load divided by its unit: a number, an array, a schedule, a function of time or a feedback.
 
     name: name of the argument, as "force", "torque", "brake", "drag" or "V", by which its unit is found.
-    value: what a caller gave, in SI units for a cylinder; None stays None.
+    value: what a caller gave, in SI units for a cylinder; a number or an array with a unit is converted, the fields of
+        schedules and feedbacks are taken to be in SI units (:func:`convert_argument`).  None stays None.
     scale: :class:`.scale.Scale` of the roller, a unit for each quantity, numbers or, of many cylinders, (n,).  With
         that of a scene ``value`` is returned itself, unchecked.
     Returns a new value of the same kind: a float for a number (an array (n,) of many cylinders), an array, a
@@ -240,8 +246,9 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
     Raises
     ------
     ParameterError
-        A value that is not numeric or not finite, a brake or a drag < 0, a function for an array of cylinders or one
-        that cannot be called with a time alone, and an array whose length is not the number of cylinders.
+        A value that is not numeric or not finite, a unit of another dimension, a brake or a drag < 0, a function for an
+        array of cylinders or one that cannot be called with a time alone, and an array or gains that do not broadcast
+        with the cylinders.
     """
     if value is None or not scale.si:
         return value

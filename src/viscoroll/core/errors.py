@@ -136,7 +136,7 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
 def check_one_given(**values: Any) -> str:
     """Check that exactly one of two parameters is given, and return its name.
 
-    values: exactly two parameters by name, None where one is not given.
+    values: exactly two parameters by name, None where one is not given; other numbers of them are not checked.
     Returns the name of the one that is given.
     Raises ParameterError if none or both are given.
     """
@@ -167,7 +167,7 @@ def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tu
     known: the names that are allowed.
     kind: noun for these names, with its article, as "a field", for the error.
     Returns a tuple of texts, () of an empty iterable.
-    Raises ParameterError for the first value that is not known; of what is neither text nor iterable, for that.
+    Raises ParameterError for the first value that is not known, and for ``values`` that are neither text nor iterable.
     """
     try:
         names = (values,) if isinstance(values, str) else tuple(values)

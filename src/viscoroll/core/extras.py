@@ -20,7 +20,7 @@ def import_extra(package: str, extra: str) -> Any:
     MissingDependencyError
         If the package is not installed.
     ModuleNotFoundError
-        If it is installed, but one of its own dependencies is not.
+        If it is installed, but one of its own dependencies is not.  Other errors of its import pass too.
     """
     try:
         return import_module(package)

@@ -31,11 +31,12 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
     """Raise an OSError of the body of the ``with`` as FileError, which gives the system's reason; a context manager.
 
-    Other exceptions pass unchanged.
+    The message is "PATH: PROBLEM (REASON)REMEDY", and the OSError is its cause.  Other exceptions pass unchanged.
 
     path: path of the file or folder, for the message.
     problem: what fails, in words, as "cannot be read".
-    remedy: further words, which follow the reason; "" without.
+    remedy: further words with their own punctuation, as ": it must be a table", appended directly after the reason in
+        brackets; "" without.
     Yields None.
     """
     try:
@@ -60,7 +61,8 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     ------
     FileError
         If it cannot be written there: no such folder, a full disk, a read-only folder or file, a directory, a device,
-        a loop of links.  An OSError of the body becomes a FileError too.
+        a loop of links; or if the body wrote no file.  An OSError of the body becomes a FileError too.  Where the last
+        sync alone fails, that of the folder, ``path`` is replaced already.
     """
     target = Path(os.path.realpath(path))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
@@ -115,9 +117,9 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
     Parameters
     ----------
     path : path of the file.
-    max_bytes : largest size of the file in bytes, with its seal; a larger one is refused before it is read.
-    kind : noun for the file that is expected, without its article, for errors.
-    remedy : advice for a damaged file, for its error.
+    max_bytes : largest size of a regular file in bytes, with its seal; a larger one is refused before it is read.
+    kind : noun for the file that is expected, without its article "a", for errors.
+    remedy : advice for a damaged file, the last words of its error.
 
     Returns
     -------
@@ -145,13 +147,13 @@ def _seal_of(content: bytes | memoryview) -> bytes:
 
 
 def write_bytes(path: str | PathLike[str], content: bytes) -> None:
-    """Write ``content`` to a file by :func:`replace_file`."""
+    """Write ``content`` to a file by :func:`replace_file`, which raises FileError."""
     with replace_file(path) as temporary:
         temporary.write_bytes(content)
 
 
 def write_text(path: str | PathLike[str], text: str) -> None:
-    """Write ``text`` to a file in UTF-8, by :func:`replace_file`."""
+    """Write ``text`` to a file in UTF-8, by :func:`replace_file`, which raises FileError."""
     write_bytes(path, text.encode())
 
 
@@ -164,14 +166,17 @@ def write_dataset(
     ----------
     dataset : dataset to write; it is composed in memory.
     path : path of the file, which is replaced if it exists.
-    encoding : encoding of variables by name, as xarray takes it.  None or {}: no fill values (CF forbids them for
-        coordinates), arrays of numbers compressed and with Fletcher-32 checksums.
+    encoding : encoding of variables by name, as xarray takes it, in place of the default for all variables.  None or
+        {}: the default, no fill values (CF forbids them for coordinates), arrays of numbers that are not empty
+        compressed by zlib and with Fletcher-32 checksums.
     sealed : whether the file ends with a seal, the SHA-256 of all bytes before it.
 
     Raises
     ------
     FileError
         If it cannot be written there.
+    ValueError, TypeError
+        Of xarray, for values, attributes or an encoding that netCDF cannot hold.
     """
     filters = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
     default = {

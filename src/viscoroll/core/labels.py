@@ -47,6 +47,7 @@ class Labels(NamedTuple):
 
         names: names of the variables of the dataset.
         prefix: word that is put before such an axis or coordinate, as "given" for given_V; others keep their names.
+            Whether a new name is free is not checked.
         Returns (names of the axes; dict from the name of a coordinate to (its axes, its values)), as xarray takes
         them.
         """
@@ -59,7 +60,8 @@ class Labels(NamedTuple):
 
         dim: new name of the axis, and of the coordinate that had the axis' old name; others keep their names.
         Returns a dict from a name to (``dim``, values, {"long_name": old name}), as xarray takes them; {} without
-        coordinates.
+        coordinates.  Where another coordinate is named ``dim`` already, the later of the two is kept.
+        Raises ValueError for arguments without axes.
         """
         (own,) = self.dims[:1]
         return {
@@ -78,7 +80,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
     Parameters
     ----------
     given : name -> what a caller gave: numbers, arrays, values with units or labels, functions of time, schedules and
-        feedbacks.
+        feedbacks, or None.  Labels of the fields of a schedule or a feedback are not examined.
     units : object with a method ``unit``, which gives the unit of each argument by name, as a :class:`.scale.Scale`.
 
     Returns
@@ -90,7 +92,8 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
     Raises
     ------
     ParameterError
-        A unit of another dimension, labelled arrays beside plain ones, arrays of xarray with different coordinates,
+        What :func:`.drive.convert_argument` refuses, as a unit of another dimension; labelled arrays beside plain ones
+        (numbers and schedules may stand beside them), arrays of xarray whose common axes have different coordinates,
         series of pandas with different indices, or both kinds together.
     """
     if UNLABELLED_TYPES.issuperset(map(type, given.values())) or all(map(has_no_unit, given.values())):
@@ -115,7 +118,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
 
 
 def _loaded_type(module: str, name: str) -> Any:
-    """Return a type of a module if the program has imported that, else None."""
+    """Return the type ``name`` of a ``module`` if the program has imported that module, else None."""
     return getattr(sys.modules.get(module), name, None)
 
 
@@ -124,8 +127,8 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
 
     arrays: name of an argument -> array of xarray; at least one.
     Returns (name -> values, all of the broadcast shape, perhaps read-only views; :class:`Labels`, whose ``coords`` are
-    without coordinates that have no axis).
-    Raises ParameterError if coordinates differ.
+    those of the first array that have an axis, and of the others those by which an axis is named).
+    Raises ParameterError if arrays differ in the coordinates or the length of an axis that they share.
     """
     import xarray as xr
 
@@ -150,9 +153,10 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     """Separate the values of series of pandas from their labels.
 
     series: name of an argument -> series of pandas; at least one.
-    Returns (name -> values, (n,); :class:`Labels`, which make series of results, and data frames of results with one
-    more axis).  The axis of these labels has the name of the index, "index" of one without a name, "state" of an index
-    of several levels, each of which is a coordinate.
+    Returns (name -> values, (n,), of the dtype of the series; :class:`Labels`, which make series of results, and data
+    frames of results with one more axis; results with several more axes are returned without labels).  The axis of
+    these labels has the name of the index, "index" of one without a name, "state" of an index of several levels, each
+    of which is a coordinate; levels without a name are called level_0, level_1 and so on.
     Raises ParameterError if the indices differ.
     """
     import pandas as pd

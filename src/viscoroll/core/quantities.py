@@ -40,7 +40,8 @@ def has_no_unit(value: Any) -> bool:
 
     value: what a caller gave, of any type.
     Returns True also of None, texts, truth values, dicts, and arrays of texts or dates; False of anything else, which
-    may have a unit: nested lists, arrays of objects, and instances of classes derived from those of Python and numpy.
+    may have a unit: nested lists, arrays of objects or durations, numbers of numpy but float64, and instances of
+    classes derived from those of Python and numpy.
     """
     kind = type(value)
     if kind is np.ndarray:
@@ -59,14 +60,15 @@ def to_unit(name: str, value: Any, target: str) -> Any:
 
     Returns
     -------
-    value : ``value`` itself if it has no unit, of whatever type it is; else numbers in ``target``, in a container of
-        the same kind, with the labels of xarray and pandas.
+    value : ``value`` itself if it has no unit, of whatever type it is, but a new list of a list or tuple with elements
+        other than float and int, and a new array of an array of objects; else numbers in ``target``, in a container of
+        the same kind (a list of a tuple), with the labels of xarray and pandas.
 
     Raises
     ------
     ParameterError
-        A unit of another dimension, an unknown one, or one of unclear meaning (:func:`convert`); what
-        :func:`split_unit` refuses.
+        A unit of another dimension, an unknown one, or one of unclear meaning (:func:`convert`); with a unit numbers
+        that are not numeric; what :func:`split_unit` refuses.
     """
     if has_no_unit(value):
         return value
@@ -88,15 +90,16 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     name: name of the argument, for errors.
     value: what a caller gave: a number, an array, a list, a quantity of pint, astropy or unyt, a duration, an array of
         xarray, a series or an index of pandas.
-    Returns (numbers in the same kind of container, but a list in place of a tuple; their unit as a text).  Without a
-    unit that is (``value``, None), of whatever type the value is; of lists and arrays of objects it is a new one.
-    Durations are numbers in "s".
+    Returns (numbers in the same kind of container, but a list in place of a tuple; their unit as a text, of pint in
+    full, as "meter / second").  Without a unit that is (``value``, None), of whatever type the value is; of lists with
+    elements other than float and int, and of arrays of objects it is a new one.  Durations are numbers in "s".
 
     Raises
     ------
     ParameterError
-        A list of numbers with and without units, or with truth values; a duration in months or years; units of
-        different dimensions in one list.
+        A list with truth values, or of numbers with and without units; a duration in months, years or without a unit;
+        units of different dimensions in one list, or between the elements and the stated unit of an array of xarray or
+        a series.
     """
     if has_no_unit(value):
         return value, None
@@ -126,7 +129,8 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
 
     name: name of the argument, for errors.
     value: number, array, or list of these, perhaps with labels, which stay.
-    unit: their unit, as "km/h"; "", "1", "-" and "dimensionless" of a ratio.
+    unit: their unit, as "km/h"; "", "1", "-" and "dimensionless" of a ratio; "-" is not allowed for an angle, the
+        others are radians there.
     target: wanted unit, as "m s-1"; "1" of a dimensionless number, "rad" of an angle.
     Returns ``value`` itself if the texts of the units are equal or both mean a ratio.  Else numbers in ``target``: a
     float, a float64 array of the same shape with its labels, or a list of these.
@@ -200,7 +204,7 @@ def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
     """Split the unit from the elements of a list; elements in other units than the first are converted.
 
     name: name of the argument, for errors.
-    values: the list or tuple, whose elements may be lists, quantities or numbers.
+    values: the list or tuple, whose elements may be lists, quantities, numbers or anything else.
     Returns (new list of numbers, all in the unit of the first element; that unit, None if no element has one, and of an
     empty list).
     Raises ParameterError for truth values, for numbers with and without a unit, and for units of different dimensions.
@@ -225,7 +229,8 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     value: the array, series or index; not changed.
     Returns (numbers; unit).  Without a unit that is (``value`` itself, None); else the numbers are a new array or
     series with its labels and without attributes, of an index a plain array.
-    Raises ParameterError where the unit of the elements is of another dimension than the stated one.
+    Raises ParameterError where the unit of the elements is of another dimension than the stated one, and as
+    :func:`split_unit` for the elements.
     """
     is_xarray = hasattr(value, "dims")
     data = value.data if is_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())

@@ -48,7 +48,7 @@ class Result:
         raise NotImplementedError
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the dataset of :meth:`to_xarray` as a table of pandas, a row for each time or state.
+        """Return the dataset of :meth:`to_xarray` as a pandas.DataFrame, a row for each time or state.
 
         A column of a quantity with a unit is named as "V [m s-1]", because pandas writes no attributes into files.
         The index has the axes of the variable that has most axes, the first one of several with as many; a result of a
@@ -116,6 +116,7 @@ def as_text(title: str, rows: list[SummaryRow]) -> str:
 
     title: first line.
     rows: :class:`SummaryRow` each, perhaps none; values begin in one column.
+    Returns the lines, joined by line feeds, without blanks at their ends.
     """
     width = max((len(row.name) for row in rows), default=0)
     return "\n".join([title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)])
@@ -227,7 +228,8 @@ class Values(Result):
         """Return the field of a name, which Python asks for where the object has no attribute of that name.
 
         name: name of a field.
-        Raises AttributeError, with the names of the fields that were computed, for another name.
+        Raises AttributeError for another name; its message lists the fields that were computed, unless the name begins
+        with "_".
         """
         if name.startswith("_"):
             raise AttributeError(name)
@@ -267,8 +269,9 @@ class Values(Result):
         An axis along which one argument alone varies has the name and the values of that argument; another axis is
         named ``state``, or of several axes ``state_0``, ``state_1`` and so on.  Arguments with labels of xarray or
         pandas determine axes and coordinates.  Results and arguments are broadcast to the common shape, numbers are
-        variables without axes, truth values become 0 or 1 (int8).  Attributes of the dataset are its title and those
-        that the call added, as the speeds at which the material was measured.
+        variables without axes, truth values become 0 or 1 (int8).  Attributes of a variable are long_name and units, of
+        some symbol and equation; those of the dataset are its title and those that the call added, as measured_V, the
+        lowest and the highest speed at which the material was measured.
 
         Examples
         --------

@@ -114,7 +114,8 @@ class Scale(dict[str, Any]):
 
         name: name of the quantity, as "V".
         Returns the factor by which a dimensionless value is multiplied to be in SI units, a float, or an array (n,) of
-        many cylinders; 1.0 for a ratio, for a name that the table of dimensions does not have, and for a scene.
+        many cylinders; 1.0 for a ratio, a temperature, a molar energy, a name that the table of dimensions does not
+        have, and for a scene.
         """
         numerator, denominator = 1.0, 1.0
         for factor, power in _POWERS.get(name, {}).items():

@@ -43,7 +43,7 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     """Return the content of a TOML file, as tomllib reads it: name of a key or section -> value or dict.
 
     path: path of the file, in UTF-8; a byte order mark is ignored.
-    Raises FileError if it cannot be read or is not TOML.
+    Raises FileError if it cannot be read, is not UTF-8 or is not TOML.
     """
     try:
         with as_file_error(path, "cannot be read"):
@@ -60,8 +60,8 @@ def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:
     Unknown keys of the section and its subsections are refused first; then msgspec converts the content, and its error
     is put into words.
 
-    path: path of the file, for errors.
-    name: name of the section, for errors.
+    path: path of the file, for errors; it is read again for the line.
+    name: name of the section, as "material", for errors.
     content: content of the section, as tomllib reads it; not changed.
     kind: the class, of msgspec or a dataclass, whose fields are the keys.
     Returns a new instance of ``kind``.
@@ -111,10 +111,11 @@ def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
     """Raise FileError, with the line of the key, for keys that a section or its subsections do not have.
 
     A subsection is a table at a key whose type is, or may be, a struct or dataclass; other tables are not searched.
+    Keys of the section come first, then those of its subsections in order.
 
     path, name: path of the file and name of the section, as "material.prony", for errors.
-    content: keys and values of the section.
-    kind: struct or dataclass whose fields are the allowed keys.
+    content: keys and values of the section; what is no table is refused too.
+    kind: struct or dataclass whose fields are the allowed keys; of several that a type allows the first counts.
     """
     hints = get_type_hints(kind)
     check_keys(path, name, content, hints)
@@ -128,7 +129,7 @@ def _check_all_keys(path: Any, name: str, content: Any, kind: Any) -> None:
 def check_keys(path: Any, name: str, content: Any, allowed: Iterable[str]) -> None:
     """Refuse an unknown key of a section; the error states its line and a similar allowed key if there is one.
 
-    path: path of the file, for the error.
+    path: path of the file, for the error, which reads it again for the line.
     name: name of the section, "" for the top level.
     content: content of the section, as tomllib reads it; subsections are not searched.
     allowed: keys that the section may have.

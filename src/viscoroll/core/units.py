@@ -42,7 +42,8 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
 
     Parameters
     ----------
-    unit, target : units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C"; 1 Hz is 2 pi rad/s.
+    unit, target : units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C"; "" and "1" of a ratio;
+        1 Hz is 2 pi rad/s.
 
     Returns
     -------

@@ -65,7 +65,7 @@ def copy_files(folder: str | PathLike[str]) -> list[Path]:
     ------
     FileError
         A file of the same name with other content, which then stays, as no file is written; a folder that cannot be
-        made or written to.
+        made or written to.  Where a write fails, the copies before it stay.
 
     Examples
     --------

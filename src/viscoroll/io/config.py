@@ -69,7 +69,7 @@ SCENES = ("preset", *SCHEMA)
 
 
 def preset(name: str) -> Scene:
-    """Return the scene of a preset, one of :data:`.presets.PRESETS`.
+    """Return the scene of a preset, one of :data:`.presets.PRESETS`, with an error of the package for other names.
 
     name: name of the preset, as "paper-section-5".
     Raises ParameterError, which lists all names, for any other value.
@@ -99,7 +99,8 @@ def read_roller(path: str | PathLike[str], more: tuple[str, ...] = ()) -> Scene 
     ------
     FileError
         A file that cannot be read, is not TOML, has none of preset, [scene] and [cylinder] or a cylinder beside one of
-        the others, an unknown or missing key, a value of the wrong type or out of its range.
+        the others, an unknown or missing key, an unknown preset, a value of the wrong type or out of its range, a file
+        of a material that is missing or wrong, bodies that do not go together.
     """
     content = read_toml(path)
     check_sections(path, content, dict.fromkeys(more))
@@ -143,11 +144,12 @@ def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, A
     """Return the roller of checked sections, whose numbers may be arrays (n,).
 
     path: path of the file, for messages.
-    content: name of a section -> its keys and values; ``preset`` -> name of a scene.
+    content: name of a section -> its keys and values, of which "cylinder", else "scene" and ``preset``, the name of a
+        scene, are read.
     materials: "material" and "base" -> :class:`Material`, as far as the file has these sections; ignored without
         [cylinder].
-    Raises ParameterError for a value out of range or missing, or an unknown preset; FileError for a wrong series;
-    TypeError for an unknown key.
+    Raises ParameterError for a value out of range or missing, shapes that do not broadcast, or an unknown preset;
+    FileError for a wrong series; TypeError for an unknown key, ValueError for arrays of different n in one list.
     Returns a :class:`Cylinder` if there is a section [cylinder]; else a :class:`Scene`: that of the preset, in which
     the values of [scene] replace its own, or without a preset that of [scene].
     """
@@ -170,8 +172,8 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
 
     path: path of the file, which is read again for the line.
     content: name of a section -> its keys and values.
-    error: the error, which names the parameter.  The first section that gives it is named; if none does, [scene] or
-        [cylinder]; of a key outside of sections, as preset, none.
+    error: the error, whose ``name`` is that of the parameter.  The first section that gives it is named; if none does,
+        the first of [scene] and [cylinder] in the file; of a key outside of sections, as preset, none.
     Returns the error, which is not raised.  Its message has no line if the file cannot be read again.
     """
     sections = (name for name, given in content.items() if isinstance(given, dict) and error.name in given)
@@ -196,8 +198,8 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     Raises
     ------
     FileError
-        As :func:`read_materials` and :func:`read_roller`; a file without a section [material] and without a roller; a
-        [base] that does not fit the material.
+        As :func:`read_materials` and :func:`read_roller`, of which the latter reads a file with a preset, [scene] or
+        [cylinder]; any other file without [material]; a [base] that does not fit the material.
     """
     content = {} if Path(path).suffix.lower() == SUFFIX else read_toml(path)
     if content.keys() & set(SCENES):

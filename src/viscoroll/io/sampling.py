@@ -84,6 +84,8 @@ def sample(n: int, seed: int | None = None, design: Design = "random", *, rng: A
     ParameterError
         Bad n, seed or design, both or neither of seed and rng, a quantity that is neither a number nor a distribution,
         a distribution without a median, a draw that overflows.
+    TypeError, ValueError
+        Of numpy, for an ``rng`` that default_rng does not take; of scipy, for "sobol" of more than 21201 distributions.
 
     Examples
     --------
@@ -122,7 +124,7 @@ def _is_distribution(name: str, value: Any) -> bool:
     """Return whether the value of a quantity is a distribution; else it is a number.
 
     name: name of the quantity, for the message.
-    value: what a caller gave; an object with a method ``ppf`` counts as a distribution.
+    value: what a caller gave; an object with a method ``ppf``, which takes a probability, counts as a distribution.
     Returns True for a distribution, False for one finite number.
     Raises ParameterError for anything else, such as an array, and for a distribution whose median is not one finite
     number.
@@ -143,9 +145,10 @@ def points(design: Design, seed: int, n: int, dimensions: int, start: int, stop:
 
     design: "random", "latin" or "sobol", see the head of this file.
     seed: seed of all points, a whole number in [0, 2^63).
-    n: number of all points, which are the strata of "latin"; the other designs do not depend on it.
+    n: number of all points, >= stop, which are the strata of "latin"; the other designs do not depend on it.
     dimensions: number of coordinates of a point; 0 gives an array (0, stop - start).
-    start, stop: index, among all points, of the first point of the block and of the first one after it; start < stop.
+    start, stop: index, from 0 among all points, of the first point of the block and of the first one after it; start <
+        stop.
         "latin" chooses the strata by them and "sobol" the points; "random" uses their difference alone.
     block: number of the block, >= 0, by which "random" and "latin" choose the random numbers; "sobol" does not depend
         on it.
@@ -185,8 +188,8 @@ def permuted(index: Words, n: int, key: Words) -> Words:
     The Feistel network permutes the numbers below the next power of 4; it is applied again to images that are not below
     n, until they are.
 
-    index: the numbers, < n, (k,), uint64.
-    n: size of the permutation, >= 1.
+    index: the numbers, < n, not checked, (k,), uint64; not changed.
+    n: size of the permutation, 1 to 2^63.
     key: keys of the rounds of the Feistel network, (rounds,), uint64; another key is another permutation.
     Returns the images, (k,), uint64, < n, a new array.
     """
@@ -222,7 +225,7 @@ def _mix_bits(x: Words) -> Words:
 
     (G. Steele, D. Lea, C. Flood, OOPSLA 2014.)
 
-    x: words, (k,), uint64; the result has their shape.
+    x: words, (k,), uint64, not changed; the result, a new array of their shape, is computed modulo 2^64.
     """
     x = (x ^ (x >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
     x = (x ^ (x >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
@@ -238,6 +241,7 @@ def _sequence(seed: int, dimensions: int) -> Any:
     seed: seed of the scrambling, in [0, 2^63).
     dimensions: number of coordinates of a point, >= 1.
     Returns a :class:`scipy.stats.qmc.Sobol` of 52 bits.
+    Raises ValueError of scipy for more than 21201 dimensions.
     """
     from scipy.stats import qmc
 
@@ -247,9 +251,9 @@ def _sequence(seed: int, dimensions: int) -> Any:
 def _sobol(seed: int, dimensions: int, start: int, stop: int) -> Floats:
     """Return points of the scrambled Sobol sequence of a seed, (dimensions, stop - start), in [0, 1).
 
-    seed: seed of the scrambling.
-    dimensions: number of coordinates of a point.
-    start, stop: index of the first point, and of the one after the last, 0 <= start < stop.
+    seed: seed of the scrambling, in [0, 2^63).
+    dimensions: number of coordinates of a point, >= 1.
+    start, stop: index of the first point, and of the one after the last, 0 <= start < stop <= 2^52.
     Returns a new array, whose entries are multiples of 2^-52.
 
     ``fast_forward`` of scipy visits all points before ``start``, which at 10^11 would take minutes a block (and refuses

@@ -18,7 +18,8 @@ def draw(data: xr.Dataset) -> Figure:
     ----------
     data : dataset of the result, as of its ``to_xarray()``: a summary of an ensemble or of a run (axis
         "quantile"), Sobol indices ("input"), a motion ("t" and a variable "regime"), equilibria ("equilibrium"),
-        stresses ("p", "tau" and "x"), else contact states or a table over at least one axis of several values.
+        stresses ("p", "tau" and "x"), else contact states or a table over at least one axis of several values.  A kind
+        is recognised by the axes and names in brackets; the other variables of the kind must be there too.
 
     Returns
     -------
@@ -29,6 +30,8 @@ def draw(data: xr.Dataset) -> Figure:
     ------
     ParameterError
         If the dataset is none of these, or has a single state.
+    KeyError
+        If a variable or attribute that the figure needs is missing.
     """
     from . import ensembles, states
 

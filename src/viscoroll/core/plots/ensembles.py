@@ -49,9 +49,10 @@ def distributions(data: xr.Dataset) -> Figure:
     Of a quantity that is one number per motion, or where there is a single output time, the left panel shows the
     fraction of motions below each quantile.
 
-    data: :class:`xr.Dataset`, the summaries of a run or of an ensemble: NAME_quantiles over (quantile, t) or over
-        quantile, with the attribute units; NAME_histogram, NAME_bin_low and NAME_bin_high; attribute motions, and of a
-        run design and seed, for the title.  If no quantity has a histogram there is no right column.
+    data: :class:`xr.Dataset`, the summaries of a run or of an ensemble: coordinates quantile, the levels, ascending,
+        and t, output times; NAME_quantiles over (quantile, t) or over quantile, with the attribute units and perhaps
+        symbol; NAME_histogram, NAME_bin_low and NAME_bin_high; attribute motions, and of a run design and seed, for the
+        title.  If no quantity has a histogram there is no right column; if any has, all must have one (else KeyError).
     Returns the :class:`matplotlib.figure.Figure`; without quantities it has one empty row.
     """
     about, levels = data.attrs, data["quantile"].values
@@ -83,8 +84,8 @@ def _draw_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
     """Draw the histogram of a quantity at the last time.
 
     The tails, a thousandth of the motions at either end, are left out; the title states how many motions that are, if
-    any.  Where one bar has more than 90 % of the motions the axis of counts is logarithmic.  If no motion has a value
-    the panel is empty and its title is "no values".
+    any.  Where one of several bars has more than 90 % of the motions that are shown, the axis of counts is logarithmic.
+    If no motion has a value the panel is empty and its title is "no values".
 
     axes: axes of matplotlib, drawn into.
     data: summaries of motions, with NAME_histogram (bins,) or (bins, times), NAME_bin_low and NAME_bin_high (bins,).
@@ -110,8 +111,9 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
     low, high: ends of the bins, ascending, (bins,), in the unit of the quantity.
     counts: motions in each bin, (bins,), at least one in all; a bar gets the fraction of a bin that it overlaps.
     Returns (edges of the bars, (bars + 1,); numbers of motions, (bars,), which need not be whole).  There are 80 bars,
-    or two times the root of the number of motions if that is less.  If the bins together are too narrow for matplotlib
-    there is one bar, about the value, as wide as its magnitude but at least 1.
+    or two times the root of the number of motions, rounded down, if that is less.  Ends are clipped to -1e300 and
+    1e300.  If the bins together are narrower than 1e-280, which matplotlib does not draw, there is one bar, about the
+    value, as wide as its magnitude but at least 1, with all motions of these bins.
     """
     reached = np.cumsum(counts) / max(counts.sum(), 1)
     first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
@@ -132,7 +134,8 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 
     indices: dataset of :func:`viscoroll.io.runs.sensitivity.sobol_indices`, or read from its netCDF file: of each
         quantity NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or (input,), dimensionless; at least
-        one quantity; attributes confidence, in (0, 1), and motions, their number, for the title.
+        one quantity (else ValueError); coordinates input, names, and t; attributes confidence, in (0, 1), and motions,
+        their number, for the title.
     Returns the :class:`matplotlib.figure.Figure`.
     """
     names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
@@ -161,7 +164,7 @@ def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArra
     """Return the Sobol indices of a quantity at the last time that has any, or those of a quantity without times.
 
     indices: Sobol indices of a run, a dataset with NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or
-        (input,), finite at one time at least.
+        (input,), finite at one time at least (else IndexError), and t with the attribute units.
     name: name of the quantity, NAME.
     Returns (title of the panel; dict from "S1", "S1_conf", "ST" and "ST_conf" to values over the inputs, (inputs,)).
     """

@@ -23,7 +23,8 @@ def master_curve(material: Any) -> Figure:
 
     The axis reaches two decades beyond the shortest and the longest time of the material.
 
-    material: a :class:`Material`.  If it has a record of its measurement, curves are dashed outside the measured band;
+    material: a :class:`Material`, whose name, series, T_ref and ``measured`` are read.  If it has a record of its
+        measurement, curves are solid in the measured band, for E(t) the inverse of its frequencies, and dashed outside;
         else each curve has a style of its own.
     Returns the :class:`matplotlib.figure.Figure`; of an elastic material it has no E'' and tan delta.
     Raises ParameterError for a rigid body, which has no curves.
@@ -55,8 +56,8 @@ def series_fit(fit: Any) -> Figure:
     """Draw measured moduli as points and the series that was fitted to them as curves, on logarithmic axes.
 
     fit: a :class:`viscoroll.Fit` (E' and E'' over angular frequency, rad/s) or a :class:`viscoroll.RelaxationFit` (the
-        relaxation modulus over time, s), in the unit of its data; its ``data``, ``symbols``, ``prony`` and misfit are
-        read.
+        relaxation modulus over time, s), in the unit of its data; its ``data``, sorted by frequency or time, > 0,
+        ``symbols``, ``prony`` and misfit are read.
     Returns the :class:`matplotlib.figure.Figure`; its title states the number of modes and the misfit.
     """
     x, *columns = fit.data
@@ -78,8 +79,8 @@ def identification(fit: Any) -> Figure:
     a vertical line for each point's prediction band.
 
     fit: a :class:`viscoroll.app.identification.fit.Identification`, whose ``values`` (for their names), ``records``,
-        ``predicted`` bands, ``sigma``, ``planned`` and columns of the problem are read.  Of a planned one, which has no
-        data, neither data nor residuals are drawn.
+        ``predicted`` bands (value, low, high), ``sigma`` (in the unit of the quantity), ``planned`` and columns of the
+        problem are read.  Of a planned one, which has no data, neither data nor residuals are drawn.
     Returns the :class:`matplotlib.figure.Figure`, whose axis of a coordinate that is spaced by factors is logarithmic.
     """
     shown = fit._problem.columns

@@ -49,9 +49,10 @@ def varied_axes(data: xr.Dataset) -> list[str]:
 def field_curves(data: xr.Dataset) -> Figure:
     """Draw each field of a dataset over its first axis of several values, with curves for at most four of the second.
 
-    data: fields of the contact over axes such as V and delta, of which at least one has several values.  Third and
-        further axes are at their middle, which the title states.  Over V curves are dashed outside the measured band,
-        if the attribute :data:`..symbols.MEASURED` states it.
+    data: fields of the contact over axes such as V and delta, with their coordinates and the attribute title.  At least
+        one axis has several values (else ValueError).  Of the second such axis there are curves at its first, its last
+        and two evenly spaced indices between.  Third and further axes are at their middle, which the title states.
+        Over V curves are dashed outside the measured band, if the attribute :data:`..symbols.MEASURED` states it.
     Returns the :class:`matplotlib.figure.Figure`, with the first :data:`_MAX_PANELS` of those fields that depend on the
     first axis.  Its axis is logarithmic if the values are spaced by factors.
     """
@@ -106,8 +107,9 @@ def stresses(data: xr.Dataset) -> Figure:
 def equilibria(data: xr.Dataset) -> Figure:
     """Draw the speeds of all equilibria over the load, stable (filled) or not (open).
 
-    data: dataset of steady rolling, as of ``Steady.to_xarray``.  The load on the axis is the first of slope, force and
-        torque that varies, else the force.  Entries whose V is NaN, where there are fewer equilibria, are left out.
+    data: dataset of steady rolling, as of ``Steady.to_xarray``: V, stable (1 or 0) and the loads.  The load on the axis
+        is the first of slope, force and torque that varies, else the force, which must be there then (KeyError).
+        Entries whose V is NaN, where there are fewer equilibria, are left out.
     Returns the :class:`matplotlib.figure.Figure`.  If the magnitudes of the speeds, rest apart, differ by a factor of
     more than 100, their axis is logarithmic on both sides of a linear part between plus and minus the least magnitude.
     """
@@ -131,10 +133,10 @@ def equilibria(data: xr.Dataset) -> Figure:
 def motion(data: xr.Dataset) -> Figure:
     """Draw V and omega, the distance x, and force and torque of a motion over time; full slip is shaded.
 
-    data: dataset of one motion, with ``t``, ``V``, ``omega``, ``x`` and ``regime``; ``force`` and ``torque`` are left
-        out where they are missing or 0; corners of a schedule of NAME are in ``drive_NAME_time`` and ``drive_NAME``;
-        the attribute ``status`` is in the title.  In SI units each quantity has its own panel, else V and omega share
-        one, as force and torque do.
+    data: dataset of one motion, with ``t``, ``V``, ``omega``, ``x`` and ``regime``, whose code 0 is full slip;
+        ``force`` and ``torque`` are left out where they are missing or 0 at all times; corners of a schedule of NAME
+        are in ``drive_NAME_time`` and ``drive_NAME``; the attribute ``status``, if it is there, is in the title.  In SI
+        units, those of V, each quantity has its own panel, else V and omega share one, as force and torque do.
     Returns the :class:`matplotlib.figure.Figure`.
     """
     loads = [name for name in ("force", "torque") if name in data and data[name].values.any()]

@@ -35,12 +35,12 @@ THIN = {"color": "0.7", "linewidth": 0.6}
 
 
 def new_figure(title: str, rows: int = 1, columns: int = 1, height: float = 4.2, **options: Any) -> tuple[Figure, Any]:
-    """Make a figure without a change of matplotlib's global state.
+    """Make a figure without a change of matplotlib's global state, of 200 dots per inch and with constrained layout.
 
     title: text on top of the figure.
-    rows, columns: numbers of rows and columns of axes.
-    height: height of the figure, inches; its width is ``WIDTH``.
-    options: keyword arguments of ``Figure.subplots``.
+    rows, columns: numbers of rows and columns of axes, >= 1.
+    height: height of the figure, inches; its width is ``WIDTH``, 6.4 inches.
+    options: keyword arguments of ``Figure.subplots``, as ``sharex``, ``squeeze`` and ``height_ratios``.
     Returns (figure; its axes as of ``Figure.subplots``: one for a single row and column, a vector for one row or one
     column, else an array (rows, columns); with ``squeeze=False`` always such an array).
     """
@@ -73,8 +73,8 @@ def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, fl
 
     axes: axes of matplotlib, drawn into.
     x, y: points of the curve, (n,).
-    band: lowest and highest measured |x|; None: the curve has the style ``line`` everywhere.
-    line: keyword arguments of ``Axes.plot``, the style of the line.
+    band: lowest and highest measured |x|, which belong to it; None: the curve has the style ``line`` everywhere.
+    line: keyword arguments of ``Axes.plot``, the style of the line, of which with a band linestyle has no effect.
     Returns the lines of matplotlib: one without a band; else the solid and the dashed one, of which only the first has
     the label, and either may be without points.
     """
@@ -92,7 +92,8 @@ def spaced_by_factors(x: NDArray[Any]) -> bool:
     """Whether the numbers ``x``, any order, are spaced more evenly on a logarithmic axis than on a linear one.
 
     The spacing of the different numbers is compared by its relative standard deviation, linear and logarithmic.  The
-    result is False for fewer than three different numbers, where one is not > 0, and where both spacings are as even.
+    result is False for fewer than three different numbers, where one is not finite or not > 0, and where both spacings
+    are as even.
     """
     points = np.unique(x)
     if points.size < 3 or points[0] <= 0.0:
@@ -135,9 +136,9 @@ def quantile_bands(axes: Any, t: NDArray, levels: NDArray, values: NDArray) -> N
     levels.
 
     axes: axes of matplotlib, drawn into.
-    t: times, (n,).
-    levels: probabilities, 0 to 1, ascending, (k,).
-    values: quantiles, (k, n).
+    t: times, (n,), ascending, in the unit of the axis.
+    levels: probabilities, 0 to 1, ascending, (k,), k >= 0.
+    values: quantiles, (k, n), a row for each level; where they are NaN nothing is drawn.
     """
     for n in range(levels.size // 2):
         text = f"{100 * levels[n]:g} % to {100 * levels[-1 - n]:g} %"
@@ -188,7 +189,7 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
     Raises
     ------
     FileError
-        If it cannot be written there, or the suffix names no format.
+        If it cannot be written there, or the suffix names no format of matplotlib or is missing.
     """
     formats = sorted(figure.canvas.get_supported_filetypes())
     suffix = Path(path).suffix

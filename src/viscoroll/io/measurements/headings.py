@@ -57,7 +57,7 @@ def readings(heading: str, row: str = "") -> list[Reading]:
 
     They are: as a name alone, then with a unit in brackets or at its end.
 
-    heading : text of the heading, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)".
+    heading : text of the heading, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)"; blanks within become one.
     row : the cell of a row of units for this column, "" without; a way of reading without a unit in the heading takes
         this one, without brackets around it.
     Returns a list of :class:`Reading`, of "Frequency/Hz" ("Frequency/Hz", "") and ("Frequency", "Hz").  Each has
@@ -99,6 +99,8 @@ def may_be_unit(text: str) -> bool:
 def conversion(unit: str, wanted: str) -> tuple[float, float]:
     """Return the conversion of a unit as files spell it to another: number in ``wanted`` = factor * number + offset.
 
+    It reads more spellings than :func:`.units.conversion_factor`, and refuses texts that pint would compute.
+
     unit : unit as a file spells it; the texts of :data:`NO_UNIT`, as "" and "-", are that of a ratio.  "mpa", "U/min",
         "C", "Nm" are read as MPa, rpm, degC, N m where pint does not know the text, or reads a unit of another
         dimension than ``wanted``.
@@ -108,7 +110,7 @@ def conversion(unit: str, wanted: str) -> tuple[float, float]:
     Raises
     ------
     ParameterError
-        A unit that is not known, or of another dimension.
+        A unit that is not known, has no form of a unit (:func:`may_be_unit`), or is of another dimension.
     """
     if unit in NO_UNIT:
         unit = "1"

@@ -51,12 +51,12 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     Minus signs of typography become "-"; a first line "sep=;" of Excel becomes empty, so that line numbers stay.
 
     path : path of the file.
-    encoding : name of the encoding, as Python calls it; None: by the first bytes, else the first of UTF-8, cp1252 and
-        Latin-1 that fits.
+    encoding : name of the encoding, as Python calls it; None or "": UTF-16 by the first bytes (a byte order mark, or a
+        null among the first two), else the first of UTF-8, cp1252 and Latin-1 that fits.
     Returns a list of texts, [""] of an empty file; lines may end by CR LF, CR or LF, and the text after the last end is
     a line too.
-    Raises FileError for a file that cannot be read or decoded, workbooks and other binary files; ParameterError for an
-    encoding that Python does not know.
+    Raises FileError for a file that cannot be read or decoded, for workbooks and archives, and for a text with null
+    characters, as of binary files; ParameterError for an encoding that Python does not know.
     """
     with as_file_error(path, "cannot be read"):
         raw = Path(path).read_bytes()
@@ -82,8 +82,8 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
 def cut_lines(text: list[str], separator: str) -> list[Line]:
     """Cut lines into cells, and leave out blank ones; quoted cells may go on over several lines.
 
-    text : lines of a file.
-    separator : a key of :data:`SEPARATORS`.
+    text : lines of a file, without their ends; not changed.
+    separator : a key of :data:`SEPARATORS`; a blank stands for any number of blanks and tabs.
     Returns a list of :class:`Line`, up to the first line that Python's csv cannot cut; nothing is raised.  A line with
     the mark of a comment is cut too, without the mark, and never counts as a row of numbers.  The number of a row whose
     quoted cells go on over several lines is that of its last line.  (pandas would require that all lines of a file, its
@@ -110,7 +110,7 @@ def cut_by_blanks(text: str) -> list[str]:
 def separator_of(text: list[str], decimal: str | None) -> str:
     """Return the separator that cuts most lines into rows of numbers of one width, of two cells and more.
 
-    text : lines of a file, of which the first 2000 are examined.
+    text : lines of a file, without their ends, of which the first 2000 are examined.
     decimal : the decimal mark, "." or ",", which is then not tried as a separator; None: not given.
     Returns a key of :data:`SEPARATORS`, the first of several that give as many rows; a tab where none gives any, as in
     a file with a single column.

@@ -20,9 +20,10 @@ def named_table(
     A cell has a name if it is the name, alone or with a unit.
 
     path : path of the file.
-    names : names of columns; where no line has any, the line above the first row of numbers is taken for headings.
+    names : names of columns; where no line has any, headings are found as of :func:`read_table`, above the numbers.
     decimal : decimal mark, "." or ","; None: the one that the file has.
-    encoding : name of the encoding, as Python calls it; None: by the first bytes of the file.
+    encoding : name of the encoding, as Python calls it; None: UTF-16 by the first bytes, else the first of UTF-8,
+        cp1252 and Latin-1 that fits.
     Returns the :class:`Table`; raises the errors of :func:`read_table`, and none for names that are missing.
     """
     return read_table(
@@ -65,11 +66,12 @@ def find_column(table: Table, name: str) -> int | None:
 
 
 def missing_column(table: Table, name: str, advice: str = "") -> FileError:
-    """Return the error where no column of a table has a name; it lists the headings of the table. It is not raised.
+    """Return the FileError, not raised, where no column of a table has a name; it lists the headings of the table, and
+    names the most similar one if any is similar.
 
-    table: :class:`Table`, table with headings.
+    table: :class:`Table`, whose path and headings are read.
     name: the name that the user gives.
-    advice: words that end the message.
+    advice: words with their punctuation that end the message, as ": name one of these"; "" for none.
     """
     found = f"{', '.join(table.headings)}{suggestion(name, table.headings)}"
     return FileError(table.path, f"has no column {name!r}, but {found}{advice}")
@@ -94,7 +96,8 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     Raises
     ------
     FileError
-        No such column, several columns of that name, several tables in the file, cells that are no numbers.
+        No such column, several columns of that name, several tables in the file, cells that are no numbers, gaps, or
+        marks that may be separators of thousands (:meth:`Table.numbers`).
     ParameterError
         A unit that is unknown or of another dimension.
     """

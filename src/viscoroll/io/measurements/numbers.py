@@ -98,6 +98,8 @@ def numbers_of(cells: list[str]) -> Numbers:
     cells: texts without a fault (:func:`fault_of`), with a decimal point or comma; exponents may be written with e or
         d.
     Returns :class:`Numbers`, two arrays (n,): of "0,25" 0.25 and 0.005, of "3" 3.0 and 0.5, of "1e3" 1000.0 and 500.0.
+    A number beyond the doubles is infinite; half a unit is at most 0.5e300.
+    Raises decimal.InvalidOperation for another text.
     """
     exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
     half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]

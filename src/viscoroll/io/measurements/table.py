@@ -54,8 +54,8 @@ class Table:
     def numbers(self, column: int) -> Numbers:
         """Return the numbers of a column, with half a unit of their last digits.
 
-        column : index of the column, from 0.
-        Returns :class:`Numbers`, two arrays (rows,).
+        column : index of the column, from 0; one beyond the headings raises IndexError.
+        Returns :class:`Numbers`, two arrays (rows,), in the unit of the file; numbers beyond the doubles are infinite.
         Raises FileError, with the number of the line, for a gap, a text, the other decimal mark, and a mark that may be
         a separator of thousands: both marks in one column, or three digits after each mark beside a cell of three
         digits.
@@ -71,8 +71,8 @@ class Table:
     def require(self, holds: Any, problem: str) -> None:
         """Raise FileError, with the number of its line, for the first row for which a condition does not hold.
 
-        holds : whether it holds for each row, shape (n,), an array of truth values.
-        problem : what is wrong where it does not hold, in words that end the message.
+        holds : whether it holds for each row, shape (rows,), an array of truth values.
+        problem : words on the fault where it does not hold, which end the message.
         """
         if not holds.all():
             raise FileError(self.path, f"line {self.rows[int(np.argmin(holds))].number}: {problem}")
@@ -94,7 +94,8 @@ def read_table(
     is_heading_line : a function of the cells of a line, a list of texts, that returns whether they are headings.
     decimal : "." or ","; None: the mark that is there.  Where a mark may be a separator of thousands too, the table is
         returned with ``decimal`` "", and :meth:`Table.numbers` refuses numbers with a mark.
-    encoding : name of the encoding, as Python calls it; None: by the first bytes.
+    encoding : name of the encoding, as Python calls it; None: UTF-16 by the first bytes, else the first of UTF-8,
+        cp1252 and Latin-1 that fits.
 
     Returns
     -------
@@ -104,9 +105,10 @@ def read_table(
     Raises
     ------
     FileError
-        A file that cannot be read, that is no text, or has no table; several tables with different headings; rows or
-        headings of unlike numbers of cells; rows of numbers above the headings; a line among the rows, or between them
-        and the headings, that is neither numbers nor units.
+        A file that cannot be read, that is no text, or has no row of numbers; several tables with different headings or
+        rows of units; rows or headings of unlike numbers of cells; rows of numbers above the headings; a line among the
+        rows, or between them and the headings, that is neither numbers nor units; no headings, but a comment with names
+        of columns whose separators are not those of the numbers.
     ParameterError
         A decimal mark that is neither; an encoding that Python does not know.
     """
@@ -147,7 +149,7 @@ class _Layout:
     is_heading_line: Callable[[list[str]], bool]
 
     def __post_init__(self) -> None:
-        """Find the width, the most frequent number of cells of rows of numbers, and the words on the separator.
+        """Set ``width``, the most frequent number of cells of rows of numbers, and ``cut``, the words on the separator.
 
         Of several numbers of cells that are as frequent the one that occurs first is taken.
         Raises FileError where no line is a row of numbers.
@@ -209,8 +211,8 @@ class _Layout:
         Returns (headings, without empty ones at the end; units as the file spells them, "" where none is given, as many
         as headings; rows, a list of :class:`Line` without comments, of which lines before the next headings that are no
         rows, as a title, are left out).
-        Raises FileError for a line among the rows that is none, for rows of another number of cells than the headings,
-        and for a line above them that is neither units nor numbers.
+        Raises FileError for a line among the rows that is none, for rows with fewer cells than headings or with texts
+        beyond the last heading, and for a line above them that is neither units nor numbers.
         """
         line, *body = self.lines[head:end]
         names, first = self.headings(line), [each.numeric for each in body].index(True)
@@ -245,8 +247,8 @@ class _Layout:
     def units(self, between: list[Line], width: int) -> list[str]:
         """Find the row of units between headings and numbers: a line in which at least half of the texts are units.
 
-        between : lines between headings and numbers, :class:`Line` each, which may be none.
-        width : number of columns.
+        between : lines between headings and numbers, comments too, :class:`Line` each, which may be none.
+        width : number of columns, those of the headings.
         Returns a list of ``width`` texts, the unit of each column as the file spells it, with its brackets; "" for a
         column without one, and for all columns if there is no row of units.
         Raises FileError for another line there that is no comment, a second row of units too.

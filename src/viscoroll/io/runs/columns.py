@@ -22,7 +22,8 @@ _SERIES = {
 def attributes(name: str, si: bool) -> dict[str, Any]:
     """Return the attributes of a column of a store, of types that JSON has.
 
-    name: name of an input (as base_E, tau_2, drive_torque_time_1), of a field of a motion, or "t".
+    name: name of an input (as base_E, tau_2, drive_torque_time_1), of a field or an end of a motion (as V, rest_time,
+        status), or "t".
     si: whether the run is in SI units, else dimensionless.
     Returns a dict with long_name and units ("1" of a dimensionless quantity); of a quantity in the table of symbols
     also symbol and equation, unless it has a dimension and the run is in SI units; of the codes regime, status and flow

@@ -81,8 +81,13 @@ def run_ensemble(
     MissingDependencyError
         If zarr, or dask for a cluster, is not installed.
     Interrupted
-        At Ctrl-C (a KeyboardInterrupt), within a second: finished blocks are kept, and the message states their
-        number.
+        At Ctrl-C (a KeyboardInterrupt) while blocks are evaluated, within a second: finished blocks are kept, and the
+        message states their number.
+
+    Warns
+    -----
+    ModelWarning
+        Of motions beyond the model or the measured bands of the materials (:func:`.evaluate.warn_of_materials`).
 
     Notes
     -----
@@ -166,10 +171,10 @@ def _executor(store: Store, cluster: str | None, threads: int | None) -> Iterato
     store: :class:`Store`, store of the run.
     cluster: None (threads of this process), "local" (dask processes of this machine) or the address of a dask
         scheduler, "tcp://host:port" or "tls://host:port".
-    threads: number of threads or local processes; None: ``$VISCOROLL_THREADS``, else all cores available; ignored with
-        an address.
-    Yields (a :class:`concurrent.futures.Executor`; its number of workers, >= 1; the first argument of its tasks: the
-    store itself for threads, else dask's reference to it).
+    threads: number of threads or local processes, >= 1; None: ``$VISCOROLL_THREADS``, else all cores available; ignored
+        with an address.
+    Yields (a :class:`concurrent.futures.Executor`; its number of workers, on a cluster that of all their threads, >= 1;
+    the first argument of its tasks: the store itself for threads, else dask's reference to it).
     Raises ParameterError for an unknown cluster or a wrong ``threads``, FileError for a scheduler that does not answer,
     has no workers or is lost while blocks run (on a cluster any OSError of the body of the ``with`` counts as that),
     MissingDependencyError without dask.
@@ -217,7 +222,8 @@ def _client(distributed: Any, cluster: str, threads: int | None) -> Any:
     cluster: "local" or the address of a scheduler.
     threads: number of local processes, of one thread each; None: ``$VISCOROLL_THREADS``, else all cores available.
         Ignored for a running scheduler, which has workers of its own.
-    Raises OSError or TimeoutError if no scheduler answers within 10 s, ParameterError for a wrong ``threads``.
+    Raises OSError or TimeoutError if no scheduler answers within 10 s, ParameterError for ``threads`` or
+    ``$VISCOROLL_THREADS`` that is no whole number >= 1.  Local workers end when the client is closed.
     """
     if cluster != "local":
         return distributed.Client(cluster, timeout=10)
@@ -251,7 +257,7 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
         def advance(motions: int, on_disk: bool = False) -> None:
             """Advance the bar.
 
-            motions: number of motions to add, >= 0.
+            motions: number of motions to add to those that the bar counts, >= 0.
             on_disk: whether they were on disk before this call, so that they do not count in the rate.
             """
             if on_disk and progress:  # a disabled bar has no attribute initial

@@ -92,6 +92,11 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     MissingDependencyError
         If the run keeps every motion and zarr is not installed.
 
+    Warns
+    -----
+    ModelWarning
+        Of motions beyond the model or the measured bands of the materials (:func:`.evaluate.warn_of_materials`).
+
     Examples
     --------
     >>> import viscoroll as vr
@@ -124,7 +129,8 @@ def _time_of_laws(run: Run) -> float:
     the largest thickness and the largest nu, is computed here, and its time is multiplied by the number of laws.
 
     run: :class:`Run`, of half-spaces or of covers.
-    Raises ParameterError or FileError for inputs of the first block that no cylinder allows.
+    Raises ParameterError for inputs of the first block that no cylinder allows or a layer too thin for its law,
+    FileError for those that no material allows.
     """
     from ...materials.law.cover_rows import cover_rows
     from ...materials.law.per_element import count_laws

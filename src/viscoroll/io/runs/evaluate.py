@@ -28,8 +28,8 @@ _STARTS = 1000
 def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
     """Draw the inputs of the motions of a block.
 
-    run: :class:`Run`, which states the distributions, seed, design and number of motions.
-    block: number of the block, from 0 to ``run.blocks - 1``.
+    run: :class:`Run`, of which the inputs, the block size, and seed, design and n of the settings are read.
+    block: number of the block, from 0 to ``run.blocks - 1``, which is not checked.
     most: number of motions at most, >= 1; None: all of the block.  The inputs of a smaller number are a sample of the
         same distributions, but only with "sobol" exactly the first ones of the whole block.
     Returns name of each uncertain input -> values, float64, (motions,), in the units of the run file; {} without
@@ -69,6 +69,11 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
     KeyError
         An uncertain input that ``values`` does not have.
 
+    Warns
+    -----
+    ModelWarning
+        As :func:`viscoroll.ensemble`, of motions beyond the model or the measured band of their material.
+
     Examples
     --------
     >>> import viscoroll as vr
@@ -90,9 +95,9 @@ def roll_inputs(run: Run, values: Mapping[str, Any], count: int = 1, threads: in
 
 
 def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
-    """Draw the inputs of a block, and compute its motions, on one thread.
+    """Draw the inputs of a block, and compute its motions, on one thread, as several blocks are rolled at a time.
 
-    run: :class:`Run`, with its inputs and settings.
+    run: :class:`Run`, with its inputs, settings and output times.
     block: number of the block, from 0 to ``run.blocks - 1``.
     Returns (name of an uncertain input -> values, (motions,), in the units of the run file, as of
     :func:`block_inputs`; the motions, an :class:`Ensemble` with ``run.fields``, as of :func:`roll_inputs`).
@@ -112,7 +117,7 @@ def warn_of_materials(run: Run) -> None:
     gives no warning, also without bands, the contact of the median roller at the largest start speed is examined.  In
     any case the motion of the median inputs is integrated, which may warn too.
 
-    run: :class:`Run`, with its inputs and settings.
+    run: :class:`Run`, with its inputs, settings and output times.
     Returns None; each warning is a :class:`ModelWarning`, that of a band once for each material in a process.
     Raises ParameterError for medians that a motion does not allow, also for one of the first 1000 draws; FileError for
     those that a material does not allow.
@@ -131,7 +136,8 @@ def _fraction_outside(run: Run) -> float:
     """Return the fraction of motions whose transit frequency at the start is outside a measured band of a material.
 
     The transit frequency is |V0| divided by the contact length in free rolling at that speed, in 1/s; it is compared
-    with angular frequencies in rad/s.  A start at rest is inside, because the rolling moment M is 0 there.
+    with angular frequencies in rad/s.  The ends of a band are inside, as is a start at rest, because the rolling moment
+    M is 0 there.
 
     run: :class:`Run` in SI units that gives V0; its first motions, at most 1000 of the first block, are examined.
     Returns the fraction of these motions that are outside the band of at least one material, a float in [0, 1]; 0.0

@@ -71,7 +71,8 @@ def _append_motions(store: Path, path: Path) -> None:
 
     store: path of the folder of the results, which has every motion.
     path: path of the netCDF-4 file, which is there already.
-    Raises OSError if the disk is full (the file is then incomplete), MissingDependencyError without zarr.
+    Raises OSError if the disk is full (the file is then incomplete); MissingDependencyError without zarr, which the
+    caller has met before.
     """
     import h5netcdf
 

@@ -24,7 +24,7 @@ ADVICE = "give another folder with -o, or delete this one"
 def about(run: Run) -> dict[str, Any]:
     """Return the attributes of a store, by which a reader finds out how it was made.
 
-    run: :class:`Run`, whose results the store holds.
+    run: :class:`Run`, whose results the store holds; text, method, block, blocks, si and settings are read.
     Returns name -> value: the texts Conventions, title, source, versions (JSON of :func:`_software`), design, method
     ("flow" or "integrate"), quantities ("in SI units" or "dimensionless") and run_file, the text of the file; the
     integers motions, motions_a_block, blocks and seed.
@@ -63,7 +63,7 @@ def identity(run: Run) -> str:
     Two runs that differ in ``n`` alone have one identity, unless their design is a Latin hypercube, whose strata depend
     on the number of motions, or ``n`` changes their method or the size of their blocks.
 
-    run: :class:`Run`, the run.
+    run: :class:`Run`, of which digest, method, block and, of a Latin hypercube, n are read.
     Returns a SHA-256, 64 hexadecimal digits.
     """
     n = run.settings.n if run.settings.design == "latin" else None
@@ -101,8 +101,8 @@ def _no_extension(before: Run, run: Run) -> str:
     The first of these that holds counts: fewer motions than the store has; a Latin hypercube; a Sobol sequence of a
     number that is no power of two; another size of blocks; another method.
 
-    before: :class:`Run` of the store.
-    run: :class:`Run`, the same run with another ``n``.
+    before: :class:`Run` of the store; n, block and method of both are read.
+    run: :class:`Run`, the same run with another ``n``; its design is read.
     """
     n, design = run.settings.n, run.settings.design
     if n < before.settings.n:

@@ -57,9 +57,9 @@ class Distribution:
         If more than half of the whole distribution lies below the interval, it is inverted from above, by the survival
         function, so that the upper tail keeps its digits.
 
-        u: probabilities in (0, 1), of any shape.
+        u: probabilities in (0, 1), not checked, of any shape.
         Returns an array of that shape, within [low, high]; where the interval is the support of the law, the quantiles
-        of the law as scipy computes them, which may overflow to an infinity.
+        of the law as scipy computes them, which may overflow to an infinity.  A NaN of scipy is passed on.
         """
         law = self.law
         if (self.low, self.high) == law.support():
@@ -114,7 +114,8 @@ class Inputs:
         stated correlations.  A distribution takes its quantile at its coordinate u, a file of N rows the row floor(u N)
         for all its columns.
 
-        points: (dimensions, n), in (0, 1), in the order of :attr:`dimensions`; other numbers of rows raise ValueError.
+        points: (dimensions, n), in (0, 1), not checked, a row for each of :attr:`dimensions` in their order; another
+            number of rows raises ValueError.
         Returns name -> values, (n,), float64, in the units of the file: distributions, then columns.  A quantile that
         overflows is infinite.
         """
@@ -138,7 +139,7 @@ class Inputs:
 
         name: name of the input; another name raises StopIteration.
         low, high: probabilities in (0, 1) of the ends of a distribution, by default the smallest and the largest
-            coordinate that a point has; ignored for a column of a file.
+            coordinate that a point has, 2^-54 and 1 - 2^-53; ignored for a column of a file.
         Returns [lower, upper], (2,), in the unit of the file: quantiles of a distribution, which may be infinite; the
         smallest and the largest number of a column.
         """
@@ -167,7 +168,7 @@ class Inputs:
         name: "V0" or "omega0"; KeyError if the section [start] does not give it.
         Returns a float >= 0 in the unit of the file.  A distribution may be unbounded: its quantiles at 1e-6 and
         1 - 1e-6 are taken, which two in a million draws exceed.  Of a column of a data file all rows count; of a fixed
-        number its magnitude is returned.
+        number its magnitude is returned.  A larger start speed is allowed: its motion is integrated.
         """
         start = self.content["start"][name]
         return float(np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max())
@@ -185,7 +186,7 @@ def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
     """Return a part of the content with values in place of its inputs; in a list "same" repeats the number before.
 
     part: an :class:`Input`, or a section, list, number, text or material of the file; it is not changed.
-    values: name of an input -> number or (n,).
+    values: name of an input -> number or (n,); KeyError for an input that it does not have.
     Returns the value of an input; a new dict of a section; a new list of a list, in which a first "same" stays as it
     is; any other part itself.
     """

@@ -88,6 +88,8 @@ def _decode_array(kind: Any, value: Any) -> np.ndarray:
 def damaged(root: Path, record: Record) -> list[str]:
     """Return the files of a record that are missing or differ from their digest; [] if all is well.
 
+    Whether the record itself is that of the run, :func:`.store.problems` examines before.
+
     root: path of the folder of the store.
     record: the :class:`Record`, whose ``files`` are paths below ``root`` with their SHA-256.
     Returns paths below ``root``, in the order of the record; a file that cannot be read counts as missing.
@@ -115,7 +117,7 @@ def write_files(root: Path, files: dict[str, bytes]) -> dict[str, str]:
     root: path of the folder.
     files: path below root -> content, bytes; {} writes nothing.
     Returns path below root -> SHA-256 in hexadecimal digits, sorted by path.
-    Raises FileError if one cannot be written; the files before it stay.
+    Raises FileError if one, or its folder, cannot be written; the files before it stay.
     """
     digests = {name: hashlib.sha256(content).hexdigest() for name, content in sorted(files.items())}
     for name, content in files.items():

@@ -71,9 +71,10 @@ class RunResults(Result):
             Over (motion, t) the quantities that ``fields`` of the section [run] names, by default V (speed of the
             axis), omega (angular velocity) and x (distance travelled); an output that a motion did not reach is NaN.
             Over (motion,) each uncertain input by its name, onset_time of partial slip and rest_time (NaN of a motion
-            without), status (code of :class:`MotionStatus`) and flow (1 if the motion was looked up in a flow map,
-            tables of the motions of one scene, 0 if it was integrated).  t is a coordinate, motion has none: motion k
-            is the k-th of the run, from 0.  All are in the units of the run file.
+            without), status (code of :class:`MotionStatus`: 0 DONE, 1 RESTED, 2 to 6 stopped before the last output)
+            and flow (1 if the motion was looked up in a flow map, tables of the motions of one scene, 0 if it was
+            integrated).  t is a coordinate, motion has none: motion k is the k-th of the run, from 0.  All are in the
+            units of the run file.
 
         Raises
         ------
@@ -104,7 +105,9 @@ class RunResults(Result):
         NAME_histogram, numbers of motions, over (NAME_bin, t), and the edges NAME_bin_low and NAME_bin_high of the
         bins; of a quantity that is one number for each motion all are without the axis t.  ``ended`` over status is the
         number of motions with each :class:`MotionStatus`.  Values that are not finite do not count; at a time without
-        values the moments and quantiles are NaN, and counts 0.
+        values the moments and quantiles are NaN, and counts 0.  Attributes are failed_motions,
+        motions_from_the_flow_map, and how the run was made (:func:`.identity.about`): motions, motions_a_block, blocks,
+        seed, design, method, quantities, versions, run_file, title, source and Conventions.
 
         Examples
         --------
@@ -120,7 +123,8 @@ class RunResults(Result):
 
         Returns a table of float64, the quantities in the order of ``names`` and the times ascending.  The levels of its
         index are "quantity", the name with its unit as in "V [m s-1]", and the time, named "t" or "t [s]" and NaN for a
-        quantity that is one number per motion.  The label of the column of a quantile is its level, a float in [0, 1].
+        quantity that is one number per motion.  Columns are "mean", "std", "min", "max", then the quantiles in the
+        order of the run file, each labelled by its level, a float in [0, 1].
         std is that of all values, divided by their number.  At a time at which no motion has a value all entries are
         NaN.
 

@@ -27,8 +27,9 @@ class Rollers(Cylinder):
     """Cylinders that have a material each, in SI units; validity and warnings do not examine them.
 
     Its ``material`` and ``base`` may be a :class:`Solid`, whose numbers are arrays (n,).  If T_epsilon is an array,
-    each motion has its own unit of time.  Times are counted in s then: gamma only scales time (Eq. (22)), and
-    gamma/T_epsilon in place of gamma makes its unit the second for all motions.
+    each motion has its own unit of time.  Times are counted in s then: gamma only scales time in the equations of
+    motion of V and omega, Eq. (22) of the paper, and gamma/T_epsilon in place of gamma makes its unit the second for
+    all motions.
     """
 
     body_data = None  # type: ignore[assignment]
@@ -50,7 +51,7 @@ class Rollers(Cylinder):
 
         Without ``seconds`` it is that of a :class:`Cylinder`.  With ``seconds`` alpha is T_epsilon/T_sigma, (n,), and
         gamma is P T_epsilon/(m R), 1/s, (n,), so that its motions count time in s; kappa, mu and j are dimensionless.
-        Raises ParameterError where one of them is out of range.
+        Raises ParameterError where one of them is out of range, or the bodies have no common law.
         """
         if not self.seconds:
             return super()._scene
@@ -78,12 +79,13 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
 
     path: path of the run file, for errors and the files that it names.
     content: name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.  With "cylinder"
-        that section and "material" and "base" are read, of which one without uncertain numbers may be a
-        :class:`Material` already; without it "scene" and the key "preset".
+        that section and "material" and "base" are read, each of which may be a :class:`Material` already; without it
+        "scene" and the key "preset".
     Returns a :class:`Scene` without a section [cylinder]; :class:`Rollers` if T_epsilon or the materials differ between
     motions; else a :class:`Cylinder`.  The other numbers of all three may be arrays (n,).
-    Raises ParameterError for a value out of range or a missing one, shapes that do not broadcast, or an unknown preset;
-    FileError for a material or a series that cannot be read or is wrong.
+    Raises ParameterError for a value out of range or a missing one, shapes that do not broadcast, bodies that do not go
+    together, or an unknown preset; FileError for a material or a series that cannot be read or is wrong; ValueError for
+    arrays of different n in one list of a series, TypeError for an unknown or a missing key of [cylinder] or [scene].
     """
     if "cylinder" not in content:
         return make_roller(path, content, {})
@@ -100,19 +102,22 @@ def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
 
     content: name of a section -> keys and values, numbers or arrays (n,); a table within [drive] has the keys times and
         values.
-    Returns name of the load or speed -> number, array (n,) or, of a table, :class:`Schedule`, in the units of the file;
-    {} without [drive].  Numbers and arrays are returned themselves and are not checked.
-    Raises ParameterError, which names the load, for a wrong schedule; ValueError as :func:`_schedule`.
+    Returns name of the load or speed ("force", "torque", "brake", "slope", "drag", "V" or "omega") -> number, array
+    (n,) or, of a table, :class:`Schedule`, in the units of the file; {} without [drive].  Numbers and arrays are
+    returned themselves and are not checked, nor are the names.
+    Raises ParameterError, which names the load, for a wrong schedule; ValueError as :func:`_schedule`; TypeError for a
+    table with other keys.
     """
     drive = content.get("drive", {})
     return {name: _schedule(name, **load) if isinstance(load, dict) else load for name, load in drive.items()}
 
 
 def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
-    """Make a piecewise linear load.
+    """Make a load, or a prescribed speed, that is piecewise linear in time, from lists by corner.
 
-    name: name of the load, for errors.
-    times, values: times and values of its k >= 1 corners, in order, each a number or (n,), in the units of the file.
+    name: name of the load or speed, for errors.
+    times, values: times and values of its k >= 1 corners, as many of each, a number or (n,) each, in the units of the
+        file; times >= 0, not descending, none more than twice.
     Returns the :class:`Schedule`; its times, and likewise its values, are (k,) if all are numbers, else (n, k).
     Raises ParameterError, which names the load, for what a Schedule refuses; ValueError for an empty list, and for
     arrays of different n in one list.
@@ -124,12 +129,12 @@ def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
 
 
 def _first_material(path: Path, name: str, section: Any) -> Material:
-    """Return the :class:`Material` of the first motion.
+    """Return the :class:`Material` of the first motion, which has what does not differ between motions, as T_ref.
 
     path: path of the run file, for errors, and to which files that the section names are relative.
     name: "material" or "base".
-    section: content of that section, with numbers or arrays (n,), of which the first elements are taken; or the
-        Material if all of it is certain.
+    section: dict, the content of that section, SI numbers or arrays (n,), of which the first elements are taken,
+        temperatures in degrees Celsius; or the Material if all of it is certain.
     Returns that Material itself, else a new one.
     Raises FileError for a section with a wrong key, a value out of range or a temperature without a shift, and for a
     file that it names and that cannot be read.
@@ -140,13 +145,19 @@ def _first_material(path: Path, name: str, section: Any) -> Material:
 def _body(path: Path, name: str, section: Any) -> Any:
     """Return the material of all motions: a :class:`Material`, or a :class:`Solid` if it differs between motions.
 
-    path, name, section: as of :func:`_first_material`.
-    Returns the Material of the section, or of the first motion if E, nu, thickness and series are the same for all;
-    else a Solid, in which those that differ are arrays (n,), the others numbers, thickness None of a half-space.  Its
-    T_ref, in s, is that of the first motion; a temperature that differs multiplies the relaxation times, by one factor
-    for each motion.
-    Raises ParameterError for E or thickness <= 0, nu out of (-1, 0.5] or a temperature that the shift does not allow,
-    in an array; FileError as :func:`_first_material`, and for a series out of range.
+    A Solid has arrays, so that one call serves all motions.
+
+    path: path of the run file, for errors, and to which files that the section names are relative.
+    name: "material" or "base".
+    section: dict, the content of that section, SI numbers or arrays (n,), temperatures in degrees Celsius; or a
+        Material, which is returned itself.
+    Returns the Material of the first motion if no key of E, nu, thickness, series and temperature is an array; else a
+    Solid, in which those of E, nu, thickness and series that differ have the shape (n,), the others (), and thickness
+    is None of a half-space.  Its T_ref, in s, is that of the first motion; a temperature that differs multiplies the
+    relaxation times, by one factor for each motion.  Whether E, nu, thickness and series have one n is not compared.
+    Raises ParameterError for E or thickness <= 0, E infinite, nu out of (-1, 0.5] or a temperature that the shift does
+    not allow, in an array, and where temperatures and series have different n; FileError as :func:`_first_material`,
+    and for a series out of range; ValueError for arrays of different n in one list of the series.
     """
     typical = _first_material(path, name, section)
     if typical is section:
@@ -166,7 +177,7 @@ def _body(path: Path, name: str, section: Any) -> Any:
 def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
     """Return the band of angular frequencies that each body was measured in, at the temperature of each motion.
 
-    path : path of the run file.
+    path : path of the run file, for errors, and to which files that a section names are relative.
     content : name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs, of which the
         sections "material" and "base" are read; either may be a :class:`Material`.
     Returns record of a measurement, a :class:`Measured` -> (lowest, highest frequency), rad/s, arrays (n,) where the
@@ -189,9 +200,10 @@ def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats |
 
     path: path of the run file, for errors.
     name: "material" or "base".
-    section: content of that section, whose "temperature", in degrees Celsius, may be an array (n,).
+    section: content of that section, with a key wlf or arrhenius, whose "temperature", in degrees Celsius, may be an
+        array (n,); of other arrays, also in the shift, the first element is taken.
     Returns the factors, dimensionless, > 0, (n,), of which the first is 1: below 1 where a motion is hotter than the
-    first, whose material then relaxes faster; None if the temperature is a number or not given.
+    first, so that its material relaxes faster; None if the temperature is a number or not given.
     Raises KeyError for an array of temperatures without a key wlf or arrhenius, ParameterError for a temperature that
     the shift does not allow, FileError for a section that is wrong.
     """

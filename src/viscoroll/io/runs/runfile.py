@@ -268,7 +268,8 @@ def read_run(path: str | PathLike[str]) -> Run:
     FileError
         A file that cannot be read or is not TOML, a section [run] or [start] that is missing, a misspelt key (with the
         nearest), a value of the wrong type or with a unit, a range that exceeds what the input allows, a sample that
-        cannot be read, method "flow" where no flow map serves: each with its line.
+        cannot be read, an unknown quantity, no quantity in ``summaries``, correlations that contradict each other,
+        method "flow" where no flow map serves: each with its line if that is found.
     MissingDependencyError
         A sample in a .parquet file, if pyarrow is not installed.
 
@@ -338,11 +339,12 @@ def _check_inputs(run: Run) -> None:
 
 
 def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
-    """Raise FileError, with its line, for motions that would be refused; nothing is rolled.
+    """Raise the error that :func:`_fault_of` returns as FileError with its line; nothing is rolled, None is returned.
 
-    run: :class:`Run`, with its inputs and settings.
+    run: :class:`Run`, of which path, inputs, settings and t are read.
     values: name of an input -> number or (n,), for every input, in the units of the file.
-    advice: last words of the message; not added to the error of a material, which is raised as it is.
+    advice: last words of the message, which follow it directly, "" for none; not added to the error of a material,
+        which is raised as it is.
     """
     error = _fault_of(run, values)
     if isinstance(error, ParameterError):
@@ -355,7 +357,8 @@ def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
 def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | None:
     """Find out whether motions would be refused, without rolling them.
 
-    run: :class:`Run`, with its inputs and settings.
+    run: :class:`Run`, of which path, inputs, the last of t, and of the settings rtol, rest, unsteady and rested are
+        read.
     values: name of an input -> number or (n,), for every input, in the units of the file.
     Returns None if the motions are allowed.  Else the error, which is not raised: a ParameterError for a roller, start,
     drive or setting that a motion refuses, and for ``unsteady`` or ``rested`` where T_epsilon differs between motions;
@@ -380,9 +383,9 @@ def _digest(settings: RunSection, times: Floats, content: dict[str, Any], materi
 
     settings: :class:`RunSection`, content of the section [run], of which n, method and block do not count.
     times: output times, (t,), in the unit of the file.
-    content: name of a section -> content, as read; [run] is left out.
+    content: name of a section, or ``preset`` -> content, as read; [run] is left out.
     materials: materials without uncertain inputs, as TOML, so that files that they name count too.
-    inputs: :class:`.inputs.Inputs`, whose columns of data files count.
+    inputs: :class:`.inputs.Inputs`, whose columns of data files, names and numbers, count.
     Returns a SHA-256, 64 hexadecimal digits.
     """
     kept = {name: value for name, value in msgspec.to_builtins(settings).items() if name not in _NOT_IN_DIGEST}

@@ -67,8 +67,9 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         standard deviation is at most rtol times its largest magnitude at all t, it has no indices: its entries are NaN
         there, and the attribute ``refused`` states which quantity, at which t and why, a line each.  A quantity without
         indices at any t is left out.  Estimates may lie slightly outside of [0, 1].  Further attributes are those of
-        the run, ``asked_base_points`` (n), ``base_points``, ``resamples``, ``confidence``, and for each way in which
-        motions ended the number of these, as "ended: reached the last output time".
+        the run, with ``motions`` their number here, ``asked_base_points`` (n), ``base_points``, ``resamples``,
+        ``confidence``, and for each way in which motions ended the number of these, as "ended: reached the last output
+        time".
 
     Raises
     ------
@@ -78,6 +79,11 @@ def sobol_indices(run: Run, n: int = 4096, *, threads: int | None = None, progre
         is no whole number >= 1, ``progress`` that is no truth value, inputs that a motion does not allow.
     FileError
         Inputs that a material does not allow.
+
+    Warns
+    -----
+    ModelWarning
+        Of motions beyond the model or the measured bands of the materials (:func:`.evaluate.warn_of_materials`).
 
     Notes
     -----
@@ -183,7 +189,7 @@ def _outcomes(
 ) -> tuple[dict[str, Floats], NDArray[np.int8]]:
     """Roll all motions at points of the unit cube, block by block.
 
-    run: :class:`Run`, whose ``settings.summaries`` name the quantities.
+    run: :class:`Run`, whose ``settings.summaries`` name the quantities, each once; inputs, t and block are read too.
     cube: points of the unit cube, (input, motion), of :func:`_points`.
     threads: number of threads, on which the motions of one block run; None: ``$VISCOROLL_THREADS``, else all cores
         available.
@@ -191,7 +197,8 @@ def _outcomes(
     Raises ParameterError if the values of all motions would take more than 0.5 GB, for a wrong ``threads``, and for
     inputs that a motion does not allow; FileError for inputs that a material does not allow.
     Returns (name of a quantity -> values, (t, motion), or (1, motion) of one number per motion, in the units of the
-    run, NaN where a motion does not have it; status of each motion, a code of :class:`MotionStatus`, (motion,), int8).
+    run, NaN where a motion does not have it; status of each motion, a code of :class:`MotionStatus` (0 DONE, 1 RESTED,
+    2 to 6 stopped before), (motion,), int8).
     """
     motions = cube.shape[1]
     times = {name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries}
@@ -244,6 +251,7 @@ def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
 def _estimated(values: Floats) -> Floats:
     """Return the Sobol indices, dimensionless, (2, inputs): first-order indices in row 0, total ones in row 1.
 
+    :func:`_indices` calls it for all base points and for each resample.
     With A, B and the mixed outcomes AB_n less the mean of A and B, and the variance v of A and B together, they are
     mean(B (AB_n - A))/v and mean((AB_n - A)^2)/(2 v), the estimators (b) and (f) of Table 2 of Saltelli et al. (2010).
 

@@ -62,9 +62,9 @@ class Store:
         Raises
         ------
         FileError
-            A folder that holds anything else, or cannot be written.
+            A folder that holds anything else, or cannot be written; as :func:`metadata`.
         ParameterError, MissingDependencyError
-            As :func:`metadata`.
+            As :func:`metadata`, for medians that a motion does not allow and, with keep = "all", without zarr.
         """
         self.refuse_other()
         make_folder(self.root / RECORDS)
@@ -75,8 +75,8 @@ class Store:
     def _write_part(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
         """Write the files of a part, then its record, which makes the part complete.
 
-        name: "start", "end" or the number of a block.
-        files: path below the store -> content.
+        name: "start", "end" or the number of a block, from 0.
+        files: path below the store -> content; {} of a part without files.
         more: other fields of the :class:`Record`: ``about`` of the start, ``summary`` of a block.
         Raises FileError if a file cannot be written; the part is then not complete.
         """
@@ -135,7 +135,7 @@ class Store:
         """Yield the numbers of the blocks that are missing or damaged, ascending.
 
         A block is read, its record and all its files, when its turn comes, so that the caller may evaluate blocks while
-        it iterates.
+        it iterates.  Nothing is raised for files that cannot be read: their block counts as missing.
         """
         own = identity(self.run)
         for block in range(self.run.blocks):
@@ -145,7 +145,7 @@ class Store:
     def evaluate(self, block: int) -> int:
         """Roll the motions of a block and store them.
 
-        block: number of the block, from 0.
+        block: number of the block, from 0 to ``run.blocks - 1``, which is not checked.
         Returns the number of its motions.
         Raises what :func:`block_content` raises, and FileError if writing fails; nothing of the block counts as stored
         then.
@@ -159,7 +159,8 @@ class Store:
 
         All blocks must be stored.  Their records are read, not their motions, so that memory does not grow with the
         number of motions.  Temporary files of killed processes are removed.
-        Raises FileError if the record of a block is missing or damaged, or writing fails; what :func:`metadata` raises.
+        Raises FileError if the record of a block is missing or damaged, or writing fails; MissingDependencyError
+        without zarr; what :func:`metadata` raises.
         """
         dataset = summary_dataset(
             merge_summaries(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si
@@ -218,8 +219,8 @@ def metadata(run: Run) -> dict[str, bytes]:
     Names and types of the columns are those of one motion, which is rolled for that, with each input at its median.
 
     run: :class:`Run`, with its inputs and settings.
-    Raises ParameterError for medians that a motion does not allow, FileError for those that a material does not allow,
-    MissingDependencyError if motions are kept and zarr is not installed.
+    Raises, if motions are kept, ParameterError for medians that a motion does not allow, FileError for those that a
+    material does not allow, MissingDependencyError if zarr is not installed.
     """
     if run.settings.keep == "summaries":
         return {}
@@ -229,6 +230,8 @@ def metadata(run: Run) -> dict[str, bytes]:
 
 def _motion_files(run: Run, columns: dict[str, NDArray], block: int | None = None) -> dict[str, bytes]:
     """Return files of the group of all motions: the chunks of a block, or the metadata.
+
+    It makes the dataset, with attributes and times, that :func:`.zarr_files.motion_files` encodes.
 
     run: :class:`Run`, which gives output times, units, number of motions and size of blocks.
     columns: name -> values over (motion,) or (motion, t), in the units of the run; for the metadata those of any number
@@ -252,11 +255,13 @@ def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str,
     """Return the columns that are kept of motions: inputs, fields and how they ended.
 
     run: :class:`Run`, whose settings name the fields.
-    values: name of each uncertain input -> values, (n,).
-    motions: :class:`Ensemble`, motions with these inputs.
+    values: name of each uncertain input -> values, (n,), in the units of the run file; other names have no effect.
+    motions: :class:`Ensemble`, n motions with these inputs, which have the fields.
     Returns name -> values in the units of the run: the inputs over (motion,), the fields of ``run.settings.fields``
-    over (motion, t), then onset_time and rest_time (NaN of a motion without), status (codes) and flow (int8, 1 of a
-    motion from a flow map, else 0) over (motion,).  Outputs that a motion did not reach are NaN.
+    over (motion, t), then onset_time and rest_time (NaN of a motion without), status (codes of :class:`MotionStatus`:
+    0 DONE, 1 RESTED, 2 to 6 stopped before) and flow (int8, 1 of a motion from a flow map, else 0) over (motion,).
+    Outputs that a motion did not reach are NaN.
+    Raises KeyError for an input that ``values`` does not have.
     """
     columns = {name: values[name] for name in run.inputs.uncertain}
     columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}
@@ -267,8 +272,9 @@ def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
     """Return the paths, below the store, of a part that are missing or damaged: its record, or files that it names.
 
     root: path of the folder of the store.
-    name: "start", "end" or the number of a block.
-    run, motions: identity of the run (:func:`.identity.identity`) and number of motions that the record must state.
+    name: "start", "end" or the number of a block, from 0.
+    run, motions: identity of the run (:func:`.identity.identity`) and number of motions of the part that the record
+        must state.
     Returns [] if the part is complete; the path of the record alone if that is missing, damaged, of another run or of
     another number of motions; else the paths of files that are missing or damaged.
     """

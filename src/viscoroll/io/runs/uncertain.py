@@ -35,7 +35,7 @@ def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
     """Collect the uncertain numbers of a run file; files of samples are read.
 
     path: path of the run file, to which the paths of samples are relative.
-    content: name of a section -> content, as tomllib reads it.
+    content: name of a section, or key outside of sections -> content, as tomllib reads it; not changed.
     Returns the :class:`Inputs`, without correlations: all of ``content``, with an :class:`Input` in place of each
     uncertain number of the sections of the roller, [start] and [drive].
     Raises FileError, with its line, for an uncertain number that is wrong; MissingDependencyError for a .parquet file
@@ -66,9 +66,9 @@ class _Reader:
 
         name: name of the section.
         section: content of the section.  What is no table is returned as it is; checks of the file refuse it later.
-        Returns a new dict.  Of a material only the numbers of :data:`_UNCERTAIN_IN_MATERIAL` may be uncertain; the
-        values of its other keys stay as they are.
-        Raises FileError for an uncertain number that is wrong.
+        Returns a new dict.  Of a material only the numbers of :data:`_UNCERTAIN_IN_MATERIAL` may be uncertain (E, nu,
+        prony, creep, temperature, thickness); the values of its other keys stay as they are.
+        Raises FileError for an uncertain number that is wrong; MissingDependencyError as :meth:`add_column`.
         """
         if not isinstance(section, dict):
             return section
@@ -87,7 +87,7 @@ class _Reader:
             the input, as "tau_2".
         Returns an Input of an uncertain number, a new list or dict of a list or another table, else ``value``.
         Raises FileError for an uncertain number that is wrong, or a table whose key is like one of an uncertain number,
-        as a misspelt one is.
+        as a misspelt one is; MissingDependencyError as :meth:`add_column`.
         """
         if isinstance(value, list):
             return [self.part(member, section, key, (*words, str(n))) for n, member in enumerate(value, 1)]
@@ -124,8 +124,8 @@ class _Reader:
             either of which may be infinite.
         Returns the :class:`Distribution`, whose interval is the part of ``truncate`` within the support of the law;
         without ``truncate`` it is the support.
-        Raises FileError for an unknown distribution, parameters that it does not allow, a ``truncate`` that is not two
-        numbers, or an interval of zero probability.
+        Raises FileError as :meth:`frozen_law`, for a ``truncate`` that is not two numbers or has a NaN, and for an
+        interval that is empty, a point, or of zero probability.
         """
         law = self.frozen_law(number, table)
         low, high = (float(end) for end in law.support())
@@ -145,8 +145,8 @@ class _Reader:
         number: the uncertain number, for errors.
         table: its table of TOML: distribution, the name of a continuous distribution of scipy.stats; all of its shape
             parameters by name; loc and scale, which may be left out (0 and 1); truncate is ignored.
-        Raises FileError for a name that is no continuous distribution, unknown, missing or non-numeric parameters, or
-        some that it does not allow.
+        Raises FileError for a name that is no continuous distribution, for unknown, missing, non-numeric or infinite
+        parameters, and for some that it does not allow, as those without a finite median.
         """
         from scipy import stats
 
@@ -214,8 +214,8 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
         Other files are not converted, and a unit that they state is not read.
     Returns float64, (n,), n >= 1, contiguous.
     Raises FileError for a CSV that cannot be read, has no such column or several, or cells in it that are no numbers;
-    ParameterError for its unit, if that has another dimension; ValueError, OSError or KeyError for other files and
-    suffixes, and for a column that is empty, has several axes or has values that are no finite numbers;
+    ParameterError for its unit, if that is unknown or has another dimension; ValueError, OSError or KeyError for other
+    files and suffixes, and for a column that is empty, has several axes or has values that are no finite numbers;
     MissingDependencyError for .parquet without pyarrow.
     """
     if path.suffix == ".csv":

@@ -64,7 +64,7 @@ def verify(path: str | PathLike[str]) -> Verdict:
     Raises
     ------
     FileError
-        If the folder is no results store, or the record of its start is damaged.
+        If the folder is no results store or may not be read, or the record of its start is damaged.
 
     Notes
     -----

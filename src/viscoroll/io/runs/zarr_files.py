@@ -26,7 +26,7 @@ def motion_files(motions: xr.Dataset, count: int, block: int, number: int | None
     motions: dataset over (motion, t) with the motions of one block, whose last one may be short; for the metadata the
         number of its motions has no effect.
     count: number of motions of the run, the length of all arrays over motion.
-    block: number of motions of a full block, which is one chunk.
+    block: number of motions of a full block, >= 1, which is one chunk.
     number: number of the block whose chunks are returned, from 0; None: return the metadata (.zgroup, .zarray, .zattrs)
         and the arrays without the axis motion, as t.
     Returns path below the group -> content; of block 3 "V/3.0" for an array over (motion, t), "mu/3" for one over

@@ -61,8 +61,9 @@ def build(
         1: the axis V then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa M.  The law of a
         layer has no such scale, since delta_0 does not vary with mu: it is refused, as is the law of every alpha.  All
         parameters are numbers, no arrays.
-    V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_epsilon or in m/s; for V < 0 see the signs
-        of Eqs. (17), (18).  A number, here and below, is an axis of one node.
+    V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_ref (T_ref is T_epsilon of a scene with
+        alpha) or in m/s; for V < 0 the attribute ``comment`` states which fields change their sign.  A number, here and
+        below, is an axis of one node.
     delta : creepages, (n,), dimensionless, any sign, strictly increasing.
     alpha : values of alpha, (n,), in [1, 1e12], strictly increasing, in place of that of a scene without a material;
         None: no such axis.
@@ -89,9 +90,16 @@ def build(
     ParameterError
         Where ``what`` is none of these or has arrays; an axis is out of range or does not increase strictly; there are
         more than 5e7 nodes; ``alpha`` is given for a cylinder or for a scene with a material; an unknown method, or
-        "direct" of a material.
+        "direct" of a material; what :func:`viscoroll.contact` refuses, as kappa V above 1e300.
     FileError
         The dataset of a law that is incomplete or does not state its material.
+    ConvergenceError
+        Method "direct": an iteration reached its limit.
+
+    Warns
+    -----
+    ModelWarning
+        As :func:`viscoroll.contact`, of a Cylinder.
 
     Examples
     --------
@@ -141,8 +149,8 @@ def _roller_of(what: Any) -> Scene | Cylinder:
     """Return the roller of a grid: a scene or a cylinder itself, of a law the scene with kappa = mu = 1.
 
     what: a :class:`Scene`, a :class:`Cylinder`, a :class:`LawTable` of half-spaces, or the dataset of one.
-    Raises ParameterError for anything else (the law of a layer or of every alpha too), and for a roller whose
-    parameters are arrays; FileError for a dataset of a law that is incomplete.
+    Raises ParameterError for anything else (the law of a layer or of every alpha too), for a roller whose parameters
+    are arrays, and for a cylinder whose scene is out of range; FileError for a dataset of a law that is incomplete.
     """
     if str(getattr(what, "attrs", {}).get(schema.KIND)) == "law":
         what = parse_law(dataset_content(what), "law")
@@ -156,15 +164,16 @@ def _roller_of(what: Any) -> Scene | Cylinder:
 
 
 def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:
-    """Return all fields on the nodes of a grid.
+    """Return all fields on the nodes of a grid; those over V alone are not computed for each delta.
 
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
     axes: "V", "delta" and perhaps "alpha" -> nodes, (n,), in the units of the roller.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
 
-    Returns field -> values in the units of the roller: "beta" and "Q" of shape (V, delta) or (V, delta, alpha); the
-    other fields, which do not depend on the creepage, (V,) or (V, alpha).
-    Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out of range.
+    Returns field -> values in the units of the roller: "beta" and "Q" of shape (V, delta) or (V, delta, alpha); lam,
+    epsilon, M, M_half_space, M_cylinder, delta_star, zeta and, of a layer, delta_0, which do not depend on the
+    creepage, (V,) or (V, alpha).
+    Raises as :func:`_evaluate`.
     """
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
@@ -185,7 +194,8 @@ def _evaluate(
         array (1,), which broadcasts too; without "alpha" the roller has its own.
     names: names of the fields, as of :func:`viscoroll.contact`.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
-    Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out of range.
+    Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out of range;
+    ConvergenceError where an iteration of "direct" reaches its limit.  A Cylinder may warn with ModelWarning.
     """
     own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
     creep = points.get("delta", np.zeros(1))
@@ -219,7 +229,7 @@ def errors_at(
     table: :class:`xr.Dataset`, the grid.
     roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, for the values from the rows of the law with which
         the interpolated ones are compared.
-    points: each axis of the grid -> coordinates, (n,), within the axis, in the units of the grid.
+    points: each axis of the grid -> coordinates, (n,), finite, within the axis, in the units of the grid.
     linear: whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V, delta and ln alpha.
     Raises OutOfTableError for a point outside of an axis.
     """
@@ -233,8 +243,8 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
 
     A cell is drawn with equal probability for each axis, then the place in it evenly in the coordinate itself.
 
-    table: the grid, dataset of :func:`build`.
-    count: number of points.
+    table: the grid, dataset of :func:`build`; also an atlas.
+    count: number of points, >= 0.
     seed: seed of the generator, >= 0.
     Returns axis -> coordinates, (count,), in the units of the grid.
     """
@@ -253,8 +263,8 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
 def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
     """Return the largest difference of each field between the nodes of a grid and the rows of the law.
 
-    table: :class:`xr.Dataset`, the grid, by whatever method it was computed.
-    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
+    table: :class:`xr.Dataset`, the grid, by whatever method it was computed, which is not changed.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, with all of its fields (else KeyError).
     Returns field -> largest difference over all nodes, a float >= 0: for :data:`RELATIVE_FIELDS` divided by the
     magnitude in the rows at the same node, for other fields by the largest magnitude in the rows.  Both are
     dimensionless.  Where that magnitude is 0, as of M of elastic bodies, the difference itself is taken, in the unit of

@@ -120,9 +120,11 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     Raises
     ------
     ParameterError
-        A count or seed out of range.
+        A count or seed out of range or no whole number; the law of a layer whose solve finds no contact length.
     FileError
         A grid of a material or a cylinder, a dataset that is no table, or a law that is incomplete.
+    KeyError
+        A law without a title or a stated error, or a field of a grid without the attribute ``spline_error``.
     """
     count, seed = check_integer("n", count, 1), check_integer("seed", seed, 0)
     source = table.encoding.get("source", "table")
@@ -142,9 +144,9 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
 def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
     """Compare a grid with the rows of the law: two checks for each field, of its nodes and of the splines between them.
 
-    table: dataset of a grid.
-    count: number of random points.
-    seed: seed of these points.
+    table: dataset of a grid; attributes kappa and mu, and alpha unless it is an axis.
+    count: number of random points, >= 1.
+    seed: seed of these points, >= 0.
     source: path of the grid, for messages.
     Returns a flat list of 2 times as many :class:`Check` as the grid has fields: nodes and splines of the first field
     ("beta"), nodes and splines of the second, and so on.
@@ -156,7 +158,7 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
       are 2 times the ``spline_error`` that the grid states, plus 2e-15.
 
     Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a cylinder, a
-    material, or a version before 1.0).
+    material, or a version before 1.0); KeyError for a field without ``spline_error``.
     """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:

@@ -102,9 +102,10 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
     The file is text: "#1", comments, then "double Q(n+1,m+1)", whose first column is V and first row delta with 0 in
     the corner, and "double M(n,2)" with the columns V and M, in the units of the grid.  Other fields are left out.
 
-    table: dataset of a grid over V and delta; an axis alpha must have one node.
+    table: dataset of a grid over V and delta with Q and M (else KeyError); an axis alpha must have one node.
     path: file to write; it is replaced if it exists.
-    Raises ParameterError for a grid over several alphas, and for an atlas; FileError if the file cannot be written.
+    Raises ParameterError for a grid over several alphas, and for an atlas; FileError if the file cannot be written;
+    KeyError as :func:`_modelica_header`.
     """
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
     if schema.axes_of(plane) != ("V", "delta"):
@@ -129,6 +130,7 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
     Returns texts of one line, in this order: version and title; the paper; a line for each parameter of the roller that
     the grid states, and the material as TOML; axes and units; use of Q and of M; signs for V < 0; the absolute errors
     of linear interpolation in Q and M, with the point where each occurs if the grid states it (NaN if it states none).
+    Raises KeyError for a grid without the attributes title and grid, or without units of V, Q and M.
     """
     units = {name: table[name].attrs["units"] for name in ("V", "Q", "M")}
     stated = ", ".join(f"{name}: {'dimensionless' if unit == '1' else unit}" for name, unit in units.items())
@@ -171,7 +173,7 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
     states.  All is in one struct because alpha and beta are functions of MATLAB, which variables of these names would
     hide.
 
-    table: dataset of the grid.
+    table: dataset of the grid, with the attributes title and comment (else KeyError).
     path: file to write; it is replaced if it exists.
     Raises FileError if it cannot be written.
     """
@@ -202,7 +204,7 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
     dataset : dataset of a law, of half-spaces or of a cover.
     path : file to write, replaced if it exists; its stem becomes the name of the variable.
     Raises ParameterError for a stem that is no identifier of C; FileError for the law of every alpha, which has no such
-    evaluator, and if the file cannot be written.
+    evaluator, for a law that is incomplete, and if the file cannot be written.
     """
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):

@@ -1,7 +1,8 @@
 """Interpolation between the nodes of a grid, by tensor cubic splines.
 
-A grid is a table of fields of the contact over V, delta and perhaps alpha.  An atlas is the table that version 0.1.0
-wrote: over alpha, kappa_V = kappa V and s = |delta|/delta_star, creepage divided by critical creepage, in [0, 1].
+A grid is a table of fields of the contact over speed V, creepage delta and perhaps alpha, T_epsilon/T_sigma.  An atlas
+is the table that version 0.1.0 wrote: over alpha, kappa_V = kappa V, where kappa is the radius divided by the contact
+length at rest, and s = |delta|/delta_star, creepage divided by critical creepage, in [0, 1].
 """
 
 from __future__ import annotations
@@ -57,7 +58,7 @@ class Interpolant:
         table : the grid, dataset of a file or of ``build``.
         linear : whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V, delta and ln
             alpha; grids of the kinds "literal" and "material" (before 1.0) are always interpolated linearly.
-        Raises FileError if it is not a grid.
+        Raises FileError if it is not a grid, or is incomplete.
         """
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)
@@ -71,7 +72,8 @@ class Interpolant:
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
         """Interpolate fields at points.
 
-        fields: a name or names of fields of the table; None: all, which needs a coordinate on every axis.
+        fields: a name or names of fields of the table; None: all, which needs a coordinate on every axis; of an empty
+            iterable the Values are empty.
         points: axis -> coordinates, numbers or arrays that broadcast, in the units of the table.  A coordinate is
             needed on each axis of the fields, also on one of a single node; others may be given too.
         Returns the fields as :class:`Values`, each a new array of the broadcast shape of all points, a float where all
@@ -143,7 +145,8 @@ class Interpolant:
         points: axis -> coordinates that the caller gave, numbers or arrays that broadcast, perhaps with units.
         names: names of the fields to interpolate, which need the axes that they depend on.
         Raises ParameterError for axes that are missing or unknown, for values that are no finite numbers, for shapes
-        that do not broadcast and for a unit of another dimension; OutOfTableError for a point outside of an axis.
+        that do not broadcast and for a unit of another dimension; OutOfTableError for a point outside of an axis, whose
+        ends belong to it.
         Returns (each axis of ``points`` -> coordinates of :meth:`_map_axis`, read-only, in the broadcast shape; that
         shape, () of numbers).
         """
@@ -183,10 +186,13 @@ class Interpolant:
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
         """Return the spline of a field, computed at its first use and kept in ``_splines``.
 
-        name: name of the field.
+        name: name of a field, which the caller has checked (else KeyError).
         Returns (names of those of its axes that have more than one node, in their order; the spline over these, a
-        function that takes coordinates of :meth:`_map_axis`, (..., axes), and returns values, (...)).  Without such
-        axes the names are () and the second entry is the value of the field, an array without axes.
+        function that takes coordinates of :meth:`_map_axis`, (..., axes), and returns values, (...)).  The spline is
+        cubic, with ``_linear`` of degree 1, of lower degree along axes of few nodes (:func:`.splines.fit_spline`); it
+        extrapolates, and values are not clipped.  Without such axes the names are () and the second entry is the value
+        of the field, an array without axes.
+        Raises ValueError of scipy where values that were changed after the check are not finite.
         """
         if name not in self._splines:
             field = self._table[name].squeeze()
@@ -218,8 +224,8 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     OutOfTableError
         A coordinate outside the axis of the table, naming the range.
     ParameterError
-        An unknown field, a coordinate that is missing, unknown, NaN or infinite, shapes that
-        do not broadcast.
+        An unknown field, a coordinate that is missing, unknown, NaN, infinite or of a unit of another dimension, shapes
+        that do not broadcast.
     FileError
         If ``table`` is not a grid, or is incomplete.
 

@@ -1,10 +1,10 @@
 """The law of one material or pair, or of every alpha, as a dataset with its measured errors.
 
-zeta is the time in which a point passes through half the contact, eta that through half the stick zone, in units of
-T_ref.  At a speed V: lam = 2 kappa V zeta is the contact length divided by that at rest, epsilon the shift of the
-contact in half contact lengths, H(zeta) = (zeta/lam)^2 and F(zeta) = zeta (1 + epsilon).  M is the rolling moment,
-N that of M + N dV/dt at slow speed changes, delta_star the creepage at which full slip begins, and delta_0 that of free
-rolling, which is 0 but for a layer.
+kappa is the radius divided by the contact length at rest; zeta is the time in which a point passes through half the
+contact, eta that through half the stick zone, in units of T_ref.  At a speed V: lam = 2 kappa V zeta is the contact
+length divided by that at rest, epsilon the shift of the contact in half contact lengths, H(zeta) = (zeta/lam)^2 and
+F(zeta) = zeta (1 + epsilon).  M is the rolling moment, N that of M + N dV/dt at slow speed changes, delta_star the
+creepage at which full slip begins, and delta_0 that of free rolling, which is 0 but for a layer.
 """
 
 from __future__ import annotations
@@ -80,7 +80,8 @@ def law(material: Any = None, base: Any = None, *, alpha: tuple[float, float] | 
     ParameterError
         An argument that is no material, or materials in an array; alphas out of range, or not two in ascending order;
         both or neither of ``material`` and ``alpha``; a ``base`` beside anything but a Material; a Material with a
-        thickness, as its law depends on load and radius: give the Cylinder; a layer beside a body that relaxes too.
+        thickness, as its law depends on load and radius: give the Cylinder; a layer beside a body that relaxes too, or
+        one too thin for its law.
 
     Examples
     --------
@@ -123,7 +124,7 @@ def measured_errors(
     ----------
     table : :class:`LawTable` of half-spaces or of a cover; or :class:`.alpha_axis.LawAxis`, the law of every alpha.
     count : number of points.  Of every alpha the laws of the random alphas share it, with at least one point each.
-        None: eight for each octave of zeta (of each alpha), or 40 speeds for a cover.
+        None or 0: eight for each octave of zeta (of each alpha), or 40 speeds for a cover.
     seed : seed of the points and alphas, >= 0.
 
     Returns
@@ -176,7 +177,7 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
     Each speed takes a solve by the secant method (:func:`.cover_rows.solve_at_speed`).
 
     table: :class:`LawTable` of a cover.
-    count: number of speeds u = kappa |V|, spaced evenly in ln u at random, from a tenth of the slowest rate of the
+    count: number of speeds u = kappa |V|, >= 1, drawn evenly in ln u at random, from a tenth of the slowest rate of the
         bodies (at most 0.1) to ten times the fastest (at least 10), rates multiplied by T_ref.
     random: numpy Generator, which draws the speeds and is advanced.
     Returns function -> error, >= 0, dimensionless.  Largest relative errors: "lam", "epsilon", "limit" (of L =

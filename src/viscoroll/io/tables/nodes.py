@@ -37,7 +37,8 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
     Returns
     -------
     array of shape (count,)
-        The numbers, ascending; the first is ``low`` and the last is ``high``.
+        The numbers, ascending; the first is ``low`` and the last is ``high``.  Neighbours may be equal where the steps
+        are below rounding.
 
     Raises
     ------
@@ -68,12 +69,13 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
 
     Parameters
     ----------
-    what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, as of :func:`build`.
+    what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, as of :func:`build`; not checked.
     V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_ref, where T_ref is T_epsilon of a
         scene with alpha, else the unit of time of its material; of a Cylinder in m/s.
     count : number of nodes, odd, 5 to 5e7.
-    alpha : values of alpha of the grid, (m,), >= 1, strictly increasing, in place of that of a scene without a
-        material; None: the grid has no such axis, and ``what`` its own alpha or material.
+    alpha : values of alpha of the grid, (m,), in [1, 1e12], strictly increasing, in place of that of a Scene, or of its
+        material (whose grid :func:`build` refuses); None: the grid has no such axis, and ``what`` its own alpha or
+        material.
 
     Returns
     -------
@@ -85,7 +87,10 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     Raises
     ------
     ParameterError
-        An even or small count; speeds or alphas out of range or not increasing; ``alpha`` beside a material.
+        A count that is even, no whole number, or outside of 5 to 5e7; speeds or alphas that are empty, out of range or
+        not increasing; what :func:`viscoroll.contact` refuses, as kappa V above 1e300.
+    TypeError
+        ``alpha`` of a Cylinder.
 
     Examples
     --------
@@ -113,10 +118,10 @@ def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
 
     name: name of the axis, for messages.
     nodes: a number, which is an axis of one node, or numbers (n,), as a caller gave them, perhaps with a unit.
-    bounds: keywords of :func:`.check_array`: ``unit``, and ``low``, ``above`` and ``high``, between which the values
-        must lie.
-    Raises ParameterError for nodes that are not finite, out of range or not strictly increasing, for none, for more
-    than one axis, and for a unit of another dimension.
+    bounds: keywords of :func:`.check_array`: ``unit``, "1" by default, and the bounds ``low`` (>=), ``above`` (>) and
+        ``high`` (<=) of the values, by default none.
+    Raises ParameterError for nodes that are not numeric, not finite, out of range or not strictly increasing, for none,
+    for more than one axis, and for a unit of another dimension.
     Returns the nodes, (n,), n >= 1, strictly increasing, float64, in the unit of ``bounds``; always a copy.
     """
     axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()

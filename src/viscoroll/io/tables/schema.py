@@ -53,7 +53,8 @@ def axes_of(table: xr.Dataset) -> tuple[str, ...]:
     table: dataset of a grid, or of an atlas, the table of version 0.1.0.
     Returns ("V", "delta") or, if the dataset has that dimension, ("V", "delta", "alpha") of a grid; ("alpha",
     "kappa_V", "s") of an atlas, where s = |delta|/delta_star.
-    Raises KeyError for a dataset without the attribute :data:`KIND`.
+    Every kind but "atlas" counts as a grid, and whether the dataset has the axes is not checked.
+    Raises KeyError for a dataset without the attribute :data:`KIND`, "viscoroll_table".
     """
     if table.attrs[KIND] == "atlas":
         return ("alpha", "kappa_V", "s")
@@ -73,7 +74,7 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
     values: array of its values, over ``dims``.
     si: whether the values are in SI units, else dimensionless; the range of Q is then that of "mu P" in place of "mu".
     Returns the variable, float64.
-    Raises KeyError for another name.
+    Raises KeyError for another name, ValueError of xarray where ``values`` have another number of axes than ``dims``.
     """
     import xarray as xr
 
@@ -111,8 +112,9 @@ def global_attributes(title: str, grid: str, command: str | None) -> dict[str, s
 def check(table: Any, path: Any) -> None:
     """Check kind, version, variables, dimensions, axes and values of a grid; nothing is returned or changed.
 
-    Each variable must have float64 values, all finite; each axis at least one, strictly increasing; dimensions must be
-    axes of the grid, in their order.  Of the fields over V (:data:`PLANE`) those that are missing are not required.
+    Each axis and field must have float64 values, all finite; each axis at least one, strictly increasing; dimensions
+    must be axes of the grid, in their order.  beta and Q are required, of the fields over V (:data:`PLANE`) none, of an
+    atlas all fields; other variables are not examined.
 
     Parameters
     ----------

@@ -130,6 +130,8 @@ def info(path: str | PathLike[str]) -> str:
     ------
     FileError
         As :func:`load`.
+    KeyError
+        A table of another program without the attribute title, or a law without its errors.
 
     Examples
     --------
