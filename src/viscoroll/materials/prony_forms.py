@@ -136,9 +136,9 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
 def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
     """Return the poles relative to the origin of each zero, that pole from which the zero is measured.
 
-    origin: index of the origin of each zero, (..., zeros).
-    spread: pole_j - pole_l, (..., poles, poles), [..., j, l].
-    Returns pole_j - pole of the origin of zero i, (..., zeros, poles), [..., i, j].
+    origin: index of the origin of each zero, int, (..., zeros).
+    spread: pole_j - pole_l, (..., poles, poles), [..., j, l], in the unit of the rates.
+    Returns pole_j - pole of the origin of zero i, (..., zeros, poles), [..., i, j], in that unit, 0 at the origin.
     """
     return np.take_along_axis(np.swapaxes(spread, -1, -2), origin[..., None], axis=-2)
 
@@ -146,9 +146,10 @@ def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
 def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
     """Return constant + sum weight_j/(pole_j - s) at one s for each zero, s = pole[origin] + step.
 
-    step: signed distance of s from the pole of its origin, not 0, (..., zeros); s is at no other pole either.
-    seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
-    weight: weights of the poles, (..., poles).
+    step: signed distance of s from the pole of its origin, in the unit of the poles, not 0, (..., zeros); s is at no
+        other pole either.
+    seen: poles relative to the origin of each zero, in that unit, (..., zeros, poles), [..., i, j].
+    weight: weights of the poles, in the unit of the constant times that of the poles, (..., poles).
     constant: the constant, (..., 1).
     Returns the value of the sum at the point of each zero, (..., zeros), in the unit of the constant.
     """
@@ -163,13 +164,14 @@ def _improve_distance(
     The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.  A step
     to at most half or at least twice the distance, or to NaN, is left out, and that distance stays as it is.
 
-    distance: distance of each zero from its origin, the pole that it is measured from, > 0, (..., zeros).
-    origin: index of that pole, (..., zeros).
-    side: 1 for a zero right of its origin, -1 left of it, (..., zeros).
-    seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
-    weight: weights of the poles, (..., poles).
-    constant: the constant of the sum, (..., 1).
-    Returns the distances, > 0, (..., zeros), in the unit of the poles.
+    distance: distance of each zero from its origin, the pole that it is measured from, > 0, in the unit of the poles,
+        (..., zeros); not changed.
+    origin: index of that pole, int, (..., zeros).
+    side: 1.0 for a zero right of its origin, -1.0 left of it, (..., zeros).
+    seen: poles relative to the origin of each zero, in that unit, (..., zeros, poles), [..., i, j].
+    weight: weights of the poles, in the unit of the constant times that of the poles, (..., poles).
+    constant: the constant of the sum, >= 0, (..., 1).
+    Returns a new array of the distances, > 0, (..., zeros), in the unit of the poles.
     """
     inverse, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)

@@ -187,7 +187,7 @@ def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
         changed.
     unit: unit of all these fields, as "rad s-1", or an object that has units by name, as SI (default).
     lows: lower bound of each field by name, in that unit; the number must be larger.
-    Raises ParameterError for the first field that is no such number, or is infinite.
+    Raises ParameterError for the first field that is no such number (also None, NaN, an array), or is infinite.
     """
     for name, low in lows.items():
         object.__setattr__(instance, name, check_number(name, getattr(instance, name), unit=unit, above=low))

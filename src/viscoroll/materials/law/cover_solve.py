@@ -126,6 +126,7 @@ class CoverModes:
         cover: :class:`..cover.Cover` of one thickness and one Poisson's ratio.  Its fields ``total`` (series of both
             bodies together), ``layer`` (series of the layer), ``part`` (part of the layer in the long-time compliance,
             here ``share``), ``nu``, and if ``part`` is below 1 ``other_nu``, are read.
+        All attributes of the class are set.
         """
         modes, layer = cover.total.modes, cover.layer
         self.series, self.J, self.alpha = modes_record(modes), modes.J, float(cover.total.alpha)

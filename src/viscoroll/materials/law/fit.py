@@ -65,7 +65,7 @@ class _FunctionsOfW:
 
         Two steps are made from an interpolated start; the error that is left is subtracted to first order from the
         values.
-        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), within the octaves of w.
+        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), such that w lies within ``rows``.
         which: index into ``powers`` of the function in the equation: 0 for g/z, 1 for h/z, of which twice is taken.
         factor: function of the sum in brackets, an array of any shape, that returns an array of that shape.
         Returns (values of g/z, h/z, and M/V of half-space and cylinder; their derivatives with respect to ln x), (4, n)
