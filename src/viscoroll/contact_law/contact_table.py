@@ -62,7 +62,8 @@ def evaluate_contact(
     ------
     ParameterError
         kappa |V| above :data:`FASTEST` (for Q by method "direct" above :data:`_FASTEST_DIRECT`), shapes that do not
-        broadcast, a material with method "direct", N of an array of materials, times of a material beyond the doubles.
+        broadcast, a material with method "direct", N of an array of materials, times of a material beyond 1e-100 to
+        1e100 T_ref, a layer too thin for its law; ``$VISCOROLL_THREADS`` that is no whole number >= 1.
     ConvergenceError
         If an iteration of method "direct" reaches its limit.
     """
@@ -121,6 +122,8 @@ def evaluate_law(
 
     Raises
     ------
+    ParameterError
+        Of an array of materials as :func:`.record_of_materials`; ``$VISCOROLL_THREADS`` that is no whole number >= 1.
     ConvergenceError
         If an iteration of the printed equations reaches its limit.
     """
@@ -206,6 +209,7 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
     itself.  The order is an array of the indices of the states in the order of evaluation, (n,), or empty for the order
     given.  States are ordered by material, or of alphas by octaves of alpha and speed, so that neighbours read the same
     numbers; if ``direct``, of one state, and of one material for all, the order is empty.
+    Raises ParameterError for a material with times beyond 1e-100 to 1e100 T_ref, and for a layer that is too thin.
     """
     if material is not None:
         order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
@@ -221,7 +225,7 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     These are functions of u = kappa |V| alone, so that they serve every kappa: ``lam`` and ``epsilon`` as they are,
     ``M`` as kappa M, ``dM_dV`` and ``N`` as they are.  (Of a cover the traction is not 0 at delta = 0.)
     law: table of the material.
-    u: kappa |V|, >= 0, at most 1e300, (n,).
+    u: kappa |V|, >= 0, at most 1e300, not checked, (n,).
     names: fields that kernels compute, as "lam", "epsilon", "M", "dM_dV", "N"
         (:func:`.contact_fields.computed_fields`); all are those of kappa = mu = 1.
     Returns a new array (names, n), dimensionless, rows in the order of ``names``; N of a cover is NaN.

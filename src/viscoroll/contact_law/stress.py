@@ -67,7 +67,13 @@ def stress(
     ------
     ParameterError
         NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega, shapes that do not broadcast,
-        a unit of another dimension; what is no scene and no cylinder; a layer too thin for its law.
+        labelled arrays beside plain ones or with other coordinates, a unit of another dimension; what is no scene and
+        no cylinder; a layer too thin for its law, times of a material beyond 1e-100 to 1e100 T_ref.
+
+    Warns
+    -----
+    ModelWarning
+        Of a Cylinder, as :func:`contact`: a contact longer than the radius, or outside of the measured band.
 
     Examples
     --------

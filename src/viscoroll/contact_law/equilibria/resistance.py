@@ -135,14 +135,14 @@ class Branches:
 def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     """Find every local maximum and minimum of the rolling resistance moment M of a cylinder over its speed.
 
-    They bound the loads under which it can roll steadily: M, Eq. (16) of Zobova and Goryacheva (2020) for one
-    relaxation time, rises with the speed from 0 and falls to 0 again.  A rubber
-    with widely separated relaxation times has several maxima; one relaxation time has a single one.
+    They bound the loads under which it can roll steadily: M rises from 0 and falls to 0 again.  For one relaxation time
+    it is Eq. (16) of Zobova and Goryacheva (2020), with one maximum; widely separated times give several.
 
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material and kappa are used, or a :class:`Cylinder`; alpha, material
-        and kappa must be single, mu and the others may be arrays.
+        and kappa must be single, and so must all of a Cylinder that enters them: R, E, nu, T_epsilon, T_sigma, and the
+        load or, without one, m and g.  mu and the others may be arrays.
 
     Returns
     -------
@@ -155,7 +155,8 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     Raises
     ------
     ParameterError
-        Arrays in alpha or kappa, an array of materials; what is no scene and no cylinder; a layer too thin for its law.
+        Arrays in alpha or kappa, an array of materials; what is no scene and no cylinder; what has no law (a layer too
+        thin, times of a material beyond 1e-100 to 1e100 T_ref).
 
     Notes
     -----
@@ -185,13 +186,15 @@ def branches(law: LawTable, gain: float) -> Branches:
 
     law : table of the material.
     gain : G, slope of the load in V, dimensionless, any sign; 0 for a load that does not depend on V.
-    Returns the :class:`Branches` for u > 0, which are kept for the next call (the last 16).  Where the curve has no
-    extremum, as for elastic bodies, there is one branch over all nodes.
+    Returns the :class:`Branches` for u > 0, which are kept for the next call (the last 16).  The nodes are those of
+    :func:`speed_nodes` and the extrema, without other nodes within 1e-6, relative, of an extremum.  Where the curve has
+    no extremum, as for elastic bodies, there is one branch over all nodes.
 
     Raises
     ------
     ParameterError
-        A gain other than 0 whose size, divided by the longest retardation time, is outside :data:`_GAIN_RANGE`.
+        A gain other than 0 whose size, divided by the longest retardation time (of elastic bodies by 1), is outside
+        :data:`_GAIN_RANGE`.
     """
     longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
     if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:

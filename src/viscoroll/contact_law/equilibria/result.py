@@ -225,11 +225,11 @@ class Steady(Values):
 
         Returns a dataset over the axes of the loads (of one load there are none; named as in labelled arguments, else
         ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  A coordinate of the labels that
-        has the name of a field is called ``given_`` and that name.  Beside the fields of this result (``eigenvalues``,
-        ``reason``, ``success`` and ``status`` are left out) it has ``rate_fast`` and
+        has the name of a field is called ``given_`` and that name.  Its variables are V, delta, Q, M_half_space,
+        M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, 0 or 1; ``rate_fast`` and
         ``rate_slow``, the real parts of the eigenvalues; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
-        ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; ``stable`` is 0 or 1; ``count`` has the axes
-        of the loads alone.
+        ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; and ``count``, over the axes of the loads
+        alone.  Units are those of the result; ``reason`` is left out.
 
         Examples
         --------
@@ -269,9 +269,10 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
         load.
     scale : units of the roller, which the result has.
     labels : labels of the arguments of the call, or None; the fields get them if their shape is that of the loads.
-    Returns the :class:`Steady`, whose fields have the shape (loads..., equilibria), of one load (equilibria,), padded
-    with NaN where loads have fewer equilibria than others; ``eigenvalues`` have a further axis of two, ``count`` has
-    the axes of the loads alone, an int for one load.  With V given, force or torque is what the balance needs.
+    Returns the :class:`Steady`, whose fields V, delta, Q, M_half_space, M_cylinder, beta, omega, M, grip, force, torque
+    and ``stable`` have the shape (loads..., equilibria), of one load (equilibria,), padded with NaN (``stable``: False)
+    where loads have fewer equilibria than others; ``eigenvalues`` have a further axis of two, ``count`` has the axes of
+    the loads alone, an int for one load.  With V given, force or torque is what the balance needs.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows

@@ -231,15 +231,18 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
 
 
 def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
-    """Refine approximate states by Newton steps in V and slip, and drop those that are no states or occur twice.
+    """Refine approximate states, and drop those that are no states or occur twice.
 
+    It makes four Newton steps in V and slip on M = force + torque and R = 0, since the scans find V to the rounding of
+    its logarithm alone.
     problem : :class:`_ScanProblem`, the load and the table of its material.
     V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where V > 0; n may be 0.
     Returns rows of :class:`Field` with the slopes of the law from row 6 on at the refined states, (10, states), sorted
-    by V and creepage.  A step that does not reduce the sum of the residuals, or changes V by a thousandth or more, is
-    rejected.  A state whose residual stays above :data:`_RESIDUAL` of its terms is dropped, and of states whose V and
-    delta agree to :data:`_SAME_STATE`, relative, all but the first.  Where the contact passes from full slip to full
-    slip within the rounding of V, two zeros are one state, or none.
+    by V and creepage.  A step that does not reduce the sum of the moduli of both residuals, or changes V by a
+    thousandth or more, is rejected.  A state of which a residual stays above :data:`_RESIDUAL` times (mu +
+    |M_half_space| + |M_cylinder|) is dropped, and of neighbours in this order whose V and delta agree to
+    :data:`_SAME_STATE`, relative, all but the first.  A jump from full slip to full slip of the other sign, within the
+    rounding of V, may be found as two zeros of R: these are refined to one state, or dropped.
     """
     rows, residuals = problem.rows(V, slip)
     gains = problem.load_rows[:, 1:]

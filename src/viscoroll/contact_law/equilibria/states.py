@@ -207,7 +207,8 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
 
     law : table of the material.
     gain : slope of the load in V, dimensionless; 0 for a load that does not depend on V.
-    total : kappa (force + torque), dimensionless, any sign, (n,).
+    total : kappa (force + torque), dimensionless, any sign, (n,); not checked: where it is not within the values of the
+        curve at the nodes, no crossing is found.
     Returns (index of the load; sign of V, 1.0 or -1.0; kappa |V|, > 0), one entry for each crossing, (crossings,) each;
     first those with V > 0, then those with V < 0, of every branch.  A load has none to many; V = 0 is not among them.
     Raises ParameterError for a gain out of range.
@@ -230,8 +231,9 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     """Return the steady states at given V > 0, whether or not the friction suffices.
 
     law : table of the material.
-    loads : the loads, dimensionless, without a gain on omega.  Where V was given, that of force and torque which was
-        given too determines Q, and M is that of the law; else V must be such that force + torque equal M.
+    loads : the loads, dimensionless, without a gain on omega; all but ``shape`` and ``V`` is read.  Where V was given,
+        that of force and torque which was given too determines Q, and M is that of the law; else V must be such that
+        force + torque, with the gains on V, equal M.
     load : index of the load of each state, (n,).
     sign : sign of the motion, in whose frame V > 0, 1.0 or -1.0, (n,).
     V : speeds, > 0, dimensionless, (n,).
