@@ -141,22 +141,20 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material and kappa are used, or a :class:`Cylinder`; alpha, material
-        and kappa must be single, and so must all of a Cylinder that enters them: R, E, nu, T_epsilon, T_sigma, and the
-        load or, without one, m and g.  mu and the others may be arrays.
+        and kappa must be single: of a Cylinder R, E, nu, T_epsilon, T_sigma and load, or without a load m and g; mu and
+        the others may be arrays.
 
     Returns
     -------
     ResistanceExtrema
         Named tuple of ``V``, the speeds > 0, ascending, ``M``, the moments there, and ``is_maximum``, true for a
         maximum and false for a minimum, arrays of one length; of a Cylinder V is in m/s and M in N m/m, of a Scene they
-        are divided by R/T_ref (T_ref is its unit of time) and P R.  M is odd in V, so that negative speeds need no
-        search.  Empty arrays for elastic bodies.
+        are divided by R/T_ref (T_ref is its unit of time) and P R.  M is odd in V.  Empty arrays for elastic bodies.
 
     Raises
     ------
     ParameterError
-        Arrays in alpha or kappa, an array of materials; what is no scene and no cylinder; what has no law (a layer too
-        thin, times of a material beyond 1e-100 to 1e100 T_ref).
+        Arrays in alpha, kappa or material; no scene or cylinder; a layer too thin, times beyond 1e-100 to 1e100 T_ref.
 
     Notes
     -----
@@ -187,14 +185,13 @@ def branches(law: LawTable, gain: float) -> Branches:
     law : table of the material.
     gain : G, slope of the load in V, dimensionless, any sign; 0 for a load that does not depend on V.
     Returns the :class:`Branches` for u > 0, which are kept for the next call (the last 16).  The nodes are those of
-    :func:`speed_nodes` and the extrema, without other nodes within 1e-6, relative, of an extremum.  Where the curve has
-    no extremum, as for elastic bodies, there is one branch over all nodes.
+    :func:`speed_nodes`, of which those within 1e-6, relative, of an extremum give way to it.  Without an extremum, as
+    of elastic bodies, there is one branch over all nodes.
 
     Raises
     ------
     ParameterError
-        A gain other than 0 whose size, divided by the longest retardation time (of elastic bodies by 1), is outside
-        :data:`_GAIN_RANGE`.
+        A gain other than 0 whose size, over the longest retardation time (elastic: 1), is not in :data:`_GAIN_RANGE`.
     """
     longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
     if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:
