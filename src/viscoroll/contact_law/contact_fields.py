@@ -1,5 +1,11 @@
 """The fields of a contact state: which exist, which a call returns, which of them the kernels compute.
 
+With lengths over l0 (the contact length at rest of half-spaces), forces over the load P and moments over P R: ``lam``
+contact length, ``zeta`` half the transit time, ``epsilon`` shift of the contact over half its length, ``delta``
+creepage, ``delta_0`` that at which Q = 0, ``full_slip`` whether |delta - delta_0| >= ``delta_star``, ``beta`` stick
+zone over contact length, ``Q`` friction force, ``grip`` 1 - |Q|/mu, ``M`` rolling moment, ``M_half_space`` and
+``M_cylinder`` its parts, ``N`` its factor of dV/dt, ``dA_dB`` slopes.
+
 This module alone interprets names of fields.  A call resolves its names (:func:`field_names`), asks the kernels for
 :func:`computed_fields`, tells them the row of each (:func:`kernel_rows`), and completes the result (:func:`complete`).
 """

@@ -1,4 +1,11 @@
-"""The law at many states, in blocks on threads: one law for all states, or an alpha or a material for each."""
+"""The law at many states, in blocks on threads: one law for all states, or an alpha or a material for each.
+
+All is dimensionless, with load P, radius R, unit of time T_ref, and l0, the contact length at rest of half-spaces:
+alpha is the instantaneous divided by the long-time modulus, kappa = R/l0, mu the coefficient of friction, V the speed
+over R/T_ref, omega the angular velocity times T_ref, delta = (omega - V)/V the creepage.  Of the fields lam is the
+contact length over l0, epsilon its shift ahead of the axis over half the length, zeta half the transit time, Q the
+friction force over P, M the rolling moment over P R, and N its factor of dV/dt, M = M(V) + N dV/dt.
+"""
 
 from __future__ import annotations
 

@@ -56,7 +56,8 @@ class Law:
         roller: a scene or a cylinder whose alpha or material, kappa and mu are single; gamma and j are not used.
         Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape (1,)), for an array
         of materials, for times of a material beyond 1e-100 to 1e100 T_ref, and for a layer beside a body that relaxes
-        too or too thin for its law.
+        too or too thin for its law.  Sets ``roller``, ``scene``, ``_kappa`` (kappa over the unit of V), ``_warns`` and
+        the attributes of :meth:`_use`.
         """
         from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted

@@ -129,8 +129,8 @@ class Parameters(Roller):
         """Check the parameters, and replace them by floats or read-only arrays; set ``shape``, their broadcast shape.
 
         A gamma of None stays None.  With a material ``alpha`` becomes that of the material, a float or an array (n,).
-        A :class:`LawTable` is replaced by its material (or by its alpha, with None for the material), and kept for
-        :attr:`table`.
+        A :class:`LawTable` is replaced by its material (or by its alpha, with None for the material), and kept as
+        ``_law`` for :attr:`table`.
         Raises ParameterError: both or neither of alpha and material, a material of another type, kappa, mu or j that is
         None, values out of range, NaN or infinite, shapes that do not broadcast, mu/kappa outside :data:`RATIO_RANGE`.
         """
@@ -259,7 +259,8 @@ class Parameters(Roller):
         Returns a new scene whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied
         by cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array
         of slopes gives as many covers.
-        Raises ParameterError for a slope out of range, and for shapes that do not broadcast.
+        Raises ParameterError for a slope out of range, for shapes that do not broadcast, and for parameters that the
+        class refuses, as mu/kappa out of its range.
         """
         cosine = slope_tan_cos(slope)[1]
         sizes = self.numbers | ({} if self.cover is None else {"thickness": self.cover.thickness})

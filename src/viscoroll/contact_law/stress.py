@@ -1,7 +1,10 @@
 """Pressure and shear stress along the contact: :func:`stress`.
 
 Numbers of equations are those of A. A. Zobova and I. G. Goryacheva, Acta Mechanica (2020),
-doi:10.1007/s00707-020-02643-5.
+doi:10.1007/s00707-020-02643-5.  l0 is the contact length at rest of half-spaces, kappa = R/l0, mu the coefficient of
+friction; lam is the contact length over l0, epsilon its shift ahead of the axis over half the length, beta the part of
+it that sticks, zeta half the transit time in the unit of time of the material, alpha the instantaneous over the
+long-time modulus.
 """
 
 from __future__ import annotations

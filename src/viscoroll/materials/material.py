@@ -279,7 +279,7 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A frequency that is negative, NaN or infinite.
+            A frequency that is negative, NaN, infinite or no number, or has a unit of another dimension.
 
         Examples
         --------
@@ -295,7 +295,7 @@ class Material(FromPrograms):
 
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, Pa, >= 0; 0 of an elastic and of a rigid body.
-        Raises ParameterError for a frequency that is negative, NaN or infinite.
+        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
 
         Examples
         --------
@@ -311,7 +311,7 @@ class Material(FromPrograms):
 
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, dimensionless, >= 0; 0 of an elastic and of a rigid body.
-        Raises ParameterError for a frequency that is negative, NaN or infinite.
+        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
 
         Examples
         --------
@@ -337,7 +337,7 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A time that is negative, NaN or infinite.
+            A time that is negative, NaN, infinite or no number, or has a unit of another dimension.
 
         Examples
         --------
@@ -356,7 +356,7 @@ class Material(FromPrograms):
         It rises from E/E(0) at t = 0 to 1.
         t: times, s, >= 0, of any shape.
         Returns a number or an array of that shape, dimensionless; 1 at all times for an elastic and a rigid body.
-        Raises ParameterError for a time that is negative, NaN or infinite.
+        Raises ParameterError for a time that is negative, NaN, infinite or no number, or of another dimension.
 
         Examples
         --------
@@ -480,7 +480,7 @@ class Material(FromPrograms):
             is taken as infinite.
         Returns (E'/E, E''/E), dimensionless, each a number or an array of that shape; (1, 0) of an elastic and of a
         rigid body.
-        Raises ParameterError for a frequency that is negative, NaN or infinite.
+        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
         """
         with np.errstate(over="ignore"):
             product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
@@ -497,7 +497,7 @@ class Material(FromPrograms):
         times: relaxation or retardation times in units of T_ref, > 0, (times,); may be empty.
         Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite where the quotient
         overflows.
-        Raises ParameterError for a time t that is negative, NaN or infinite.
+        Raises ParameterError for a time t that is negative, NaN, infinite or no number, or of another dimension.
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)

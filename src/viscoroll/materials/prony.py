@@ -138,7 +138,7 @@ class Prony(OneOrMany):
             is (n, modes), or one number for all modes.
         alpha : instantaneous divided by long-time modulus, 1/(1 - sum J), in [1, 1e12]; a number or, for arrays (n,
             modes), (n,). That difference loses digits where the sum is near 1: a value given here replaces it, and must
-            agree with it to rounding of J: 1/alpha to 1e-14 for each mode and one more.  None: it is computed.
+            agree with it to rounding of J: |1/alpha - (1 - sum J)| <= 1e-14 (1 + modes).  None: it is computed.
 
         Returns
         -------
@@ -205,6 +205,7 @@ class Prony(OneOrMany):
         strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength last; dimensionless,
             times in units of T_ref.  Contiguous arrays are kept and locked themselves, of others a copy.
         alpha: instantaneous divided by long-time modulus, a number or (n,).
+        These are ``by_creep``, ``shape``, ``alpha``, ``_strengths`` and ``_times``.
         """
         self.by_creep, self.shape = by_creep, strengths.shape[:-1]
         self._strengths, self._times = map(lock_array, (strengths, times))

@@ -1,4 +1,8 @@
-"""Loads of steady rolling, checked and flattened: :class:`Loads`."""
+"""Loads of steady rolling, checked and flattened: :class:`Loads`.
+
+P is the load that presses the cylinder on its base, R its radius, kappa = R/l0 with the contact length at rest l0, mu
+the coefficient of friction, and j the moment of inertia divided by m R^2.
+"""
 
 from __future__ import annotations
 

@@ -1,8 +1,8 @@
 """Rolling resistance over speed: extrema of M(V), and the branches between them on which M(V) is inverted.
 
-kappa M is a function of u = kappa V alone for a material.  A gain G on the speed turns M(V) = load into M(V) - G V =
-load, the same problem with another curve.  All is dimensionless unless units are named; a law is a :class:`LawTable`,
-the rows of one material.
+With M over P R and kappa = R/l0, kappa M is a function of u = kappa V alone for a material.  A gain G on the speed
+turns M(V) = load into M(V) - G V = load, the same problem with another curve.  All is dimensionless unless units are
+named; a law is a :class:`LawTable`, the rows of one material.
 """
 
 from __future__ import annotations

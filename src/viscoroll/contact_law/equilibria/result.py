@@ -1,4 +1,8 @@
-"""Results of steady rolling: :class:`Steady`, with the reason where a load has no equilibrium."""
+"""Results of steady rolling: :class:`Steady`, with the reason where a load has no equilibrium.
+
+P is the load that presses the cylinder on its base, R its radius, T_ref the unit of time, kappa = R/l0 with the contact
+length at rest l0, and mu the coefficient of friction.
+"""
 
 from __future__ import annotations
 
@@ -204,8 +208,9 @@ class Steady(Values):
         """Return the title and the rows of the printed report.
 
         Returns (title; list of :class:`SummaryRow`).  Of one load the rows are its equilibria one after another, each
-        with "stable" or "not stable" and nine quantities to six digits, or the reason why there is none; of an array
-        of loads the number of all equilibria and of the stable ones, and their speeds.
+        with "stable" or "not stable" and V, omega, delta, force, torque, Q, M, beta and grip to six digits, or the
+        reason why there is none; of an array of loads the number of all equilibria and of the stable ones, and their
+        speeds.
         """
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"

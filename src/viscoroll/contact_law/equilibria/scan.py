@@ -8,8 +8,9 @@ With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two
 R is smooth between the speeds at which omega - V is that of free rolling (0 of half-spaces, V delta_0 of covers) or at
 a limit of stick, which are found first.  If fw + qw = 0, the sum determines V, and R = 0 is an equation for omega.
 
-In this file all is dimensionless, and states are in a frame where V > 0; ``slip`` is omega - V, x is log2(kappa V), and
-a law is a :class:`LawTable`, the rows of one material.
+In this file all is dimensionless, and states are in a frame where V > 0; ``slip`` is omega - V, x is log2(kappa V)
+with kappa = R/l0, mu is the coefficient of friction, delta_0 the creepage (omega - V)/V at which Q = 0, delta_star the
+distance from it at which full slip begins, and a law is a :class:`LawTable`, the rows of one material.
 """
 
 from __future__ import annotations

@@ -4,7 +4,11 @@ For given V and Q the creepage follows without a root: by Eq. (15) H(eta) = (1 -
 the speed V/root with root^2 = 1 - |Q|/mu.  So delta = delta_star(V) - root delta_star(V/root) and beta = root
 lam(V/root)/lam(V).
 
-In this file all is dimensionless, and a law is a :class:`LawTable`, the rows of one material.
+In this file all is dimensionless, and a law is a :class:`LawTable`, the rows of one material.  Here zeta and eta are
+half the transit times of the contact and of its stick zone, H a function of the material, Q the friction force over the
+load P, M the rolling moment over P R, mu the coefficient of friction, kappa = R/l0 with the contact length at rest l0,
+delta = (omega - V)/V the creepage, delta_star the size of it from which on the contact slips fully (of a cover: of its
+difference from delta_0, at which Q = 0), lam the contact length over l0, and beta the part of it that sticks.
 """
 
 from __future__ import annotations

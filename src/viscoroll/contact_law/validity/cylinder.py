@@ -221,8 +221,8 @@ def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
 
     extent: (smallest, largest) of the speeds, signed.  A range that contains 0 or both signs leaves a band at its upper
         end alone, because its small speeds are not known.
-    band: (lowest, highest) |V|, in the same unit; a range without 0 leaves every band whose lowest is above its
-        highest.
+    band: (lowest, highest) |V|, in the same unit, both inside; a range without 0 leaves every band whose lowest is
+        above its highest.
     """
     slowest, fastest = max(extent[0], -extent[1], 0.0), max(extent[1], -extent[0])
     return fastest > band[1] or 0.0 < slowest < band[0]

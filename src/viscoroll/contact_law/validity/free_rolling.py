@@ -5,7 +5,9 @@ relative error of V in a motion where it was no larger before (docs/validity.md)
 Free rolling depends on u = kappa V, on g and on the material:
 u' = -g kappa M(u); the distance is the integral of u du/(g kappa M), in units of l0.
 
-The own time of a material is a unit of time in which its slow time is near 1; u and g are in that unit.
+M is the rolling moment over P R, kappa = R/l0 with the contact length at rest l0, gamma = P T_ref^2/(m R), j the moment
+of inertia over m R^2.  The own time of a material is a unit of time in which its slow time is near 1; u and g are in
+that unit.
 """
 
 from __future__ import annotations

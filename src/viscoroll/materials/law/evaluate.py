@@ -1,7 +1,9 @@
 """Values of the law by its modes, without a table: from these all rows are made.
 
 T_ref is the unit of time of a material, in which its rates and times are given; for a material that is given by alpha
-alone it is T_epsilon.  z is half the transit time of the contact in units of T_ref (zeta of the paper).
+alone it is T_epsilon.  z is half the transit time of the contact in units of T_ref (zeta of the paper).  The functions
+g(z) and h(z) of the material (:mod:`...kernels.rows.series`) give the shift of the contact over half its length, g/z,
+and the contact length over that at rest, (1 + 2 h/z)^(-1/2).
 """
 
 from __future__ import annotations

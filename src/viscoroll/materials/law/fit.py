@@ -3,7 +3,9 @@
 The formulas are evaluated once, at 24 nodes an octave of w = 1/z, with z half the transit time of the contact in units
 of T_ref, the unit of time of the material.  The polynomials of w are then inverted: for the functions of u = kappa |V|,
 w = 2 u (1 + 2 h/z)^(1/2), for those of v = 1/F(eta), w = v (1 + g/z), with the functions g and h of the material
-(:mod:`...kernels.rows.series`).  All quantities are dimensionless; M/V is in units of P T_ref.
+(:mod:`...kernels.rows.series`).  They give F(z) = z + g and H(z) = z^2 + 2 z h, the contact length over that at rest
+lam = (1 + 2 h/z)^(-1/2), and its shift over half the length epsilon = g/z; eta is z of the stick zone.  All quantities
+are dimensionless; M/V is in units of P T_ref.
 """
 
 from __future__ import annotations

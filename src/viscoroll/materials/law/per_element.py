@@ -88,8 +88,9 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
     """Return an order of states in which those of one octave of alpha and one of kappa |V| follow each other.
 
     They then read rows that are close in memory: states in random order take half as long again.
-    alpha, kappa, V: parameters and speed of the states, dimensionless, (n,), or (1,) for all; contiguous doubles.
-        Octaves of kappa |V| below 2^-5 count as one, as do those from 2^99 on.
+    alpha, kappa, V: instantaneous over long-time modulus, slenderness R/l0, and speed of the states, of any sign,
+        dimensionless, finite, (n,), or (1,) for all; contiguous doubles.  Octaves of kappa |V| below 2^-5 count as one,
+        as do those from 2^99 on.
     Returns indices (n,), int64, by ascending octave of alpha, then of kappa |V|, the states of one octave in the order
     given; an empty array, which stands for the order given, for a single state.
     """

@@ -1,4 +1,8 @@
-"""The law of one material or pair as a table: :class:`LawTable`, made once a process by :func:`law_table`."""
+"""The law of one material or pair as a table: :class:`LawTable`, made once a process by :func:`law_table`.
+
+Its functions, in the order of the coefficients (:data:`.pack.FUNCTIONS`), are lam, epsilon, M/V of half-space and of
+cylinder, N, eta/F and H/F^2.
+"""
 
 from __future__ import annotations
 
