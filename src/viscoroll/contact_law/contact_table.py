@@ -146,7 +146,8 @@ def evaluate_law(
         The row of N is written by a kernel of its own, without a LawTable by the formulas of the modes.
         alpha: alphas, or indices of materials, of these states, (stop - start,) or (1,); not used with a LawTable.
         parts: kappa, mu, V and creep of these states, (stop - start,) or (1,) each, dimensionless, read-only.
-        Raises ConvergenceError if an iteration of the printed equations reaches its limit.
+        Raises ConvergenceError if an iteration of the printed equations reaches its limit, and ParameterError as
+        :func:`_laws_of_block`.
         """
         laws, order = ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)

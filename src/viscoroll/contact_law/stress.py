@@ -119,8 +119,8 @@ def stress(
     p, tau = np.empty((2, int(np.prod(shape))))
 
     def work(start: int, stop: int) -> None:
-        """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1, and write them into ``p`` and
-        ``tau``; of a cover p alone.
+        """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1 of the flattened broadcast shape, and
+        write them into these elements of ``p`` and ``tau``; of a cover p alone.
         """
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)

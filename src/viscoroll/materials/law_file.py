@@ -200,7 +200,7 @@ def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], *
     kind: kind of the file, a key of :data:`KINDS`, which lists the variables.
     title: bodies whose law it is, in words.
     errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each function of the kind,
-        else KeyError.
+        else KeyError, as of another kind.
     attributes: further global attributes of the dataset by name.
     Returns the dataset, with one variable of coefficients for each function, whose error is its attribute
     ``largest_relative_error``; the other variables of the kind, integers as int32; and as global attributes
@@ -256,7 +256,7 @@ def read_law(path: str | PathLike[str]) -> Content:
     """Return the content of a law file, verified by its seal, schema and checksum.
 
     path: path of the file; a file without a seal is verified by its schema and checksum alone.
-    Returns :class:`Content`, which has all variables of the kind, a key of :data:`KINDS`.
+    Returns :class:`Content`: ``numbers``, with all variables of the kind, a key of :data:`KINDS`, and ``attributes``.
     Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no law, is of another
     schema, or lacks a variable; ValueError for a variable that is not numeric.
     """

@@ -157,7 +157,8 @@ class Pair:
         ------
         ParameterError
             A body with a thickness: its law depends on the load and the radius too (:meth:`cover`); a time of the other
-            body that no double holds in units of ``T_ref``; n pairs of more than 64 modes.
+            body that no double holds in units of ``T_ref``; n pairs of more than 64 modes; many series and many parts
+            of the compliance whose numbers differ.
         """
         if self.covered is not None:
             allowed = "left out, or in a Cylinder: the law of a layer depends on its load and radius"

@@ -59,8 +59,8 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     E: strengths divided by the long-time modulus, > 0, (..., modes); of any number of modes, also 0.
     tau: relaxation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1 + sum E, a number or (...).
-    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``tau``; E and alpha are the arguments
-    themselves.
+    Returns both forms as :class:`Modes` (alpha, rates a and b, strengths E and J, gaps a_i - b_j), whose rates are in
+    the inverse unit of ``tau``; E and alpha are the arguments themselves.
     """
     a, modes = 1.0 / tau, tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
@@ -77,8 +77,8 @@ def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     J: strengths divided by the long-time compliance, > 0, (..., modes); of any number of modes, also 0.
     T: retardation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1/(1 - sum J), a number or (...).
-    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``T``; J and alpha are the arguments
-    themselves.
+    Returns both forms as :class:`Modes` (alpha, rates a and b, strengths E and J, gaps a_i - b_j), whose rates are in
+    the inverse unit of ``T``; J and alpha are the arguments themselves.
     """
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))

@@ -197,7 +197,7 @@ def _shift(temperature: float, exponent: float) -> float:
     """Return a_T = exp(exponent), dimensionless, > 0.
 
     temperature: degrees Celsius, as the caller gave it, for the error.
-    exponent: ln a_T; NaN is refused too.
+    exponent: ln a_T, dimensionless; NaN is refused too.
     Raises ParameterError for an exponent of 700 or more in size, near which a_T leaves the range of doubles.
     """
     if not abs(exponent) < 700.0:

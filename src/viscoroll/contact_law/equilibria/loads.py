@@ -83,7 +83,8 @@ def loads_of(
     slope : angle, rad, a number or an array; tan(slope) is added to the force, which is divided by the load on the
         slope, P cos(slope).  None: level.
     V : given speeds, dimensionless, any sign, a number or an array; None where the speed is to be found.
-    Returns the :class:`Loads`: the broadcast loads, flattened to vectors (n,), (1,) where all are numbers.
+    Returns the :class:`Loads`: the broadcast ``shape``; ``gains``; ``given``, the name of the load beside V or None;
+    and force, torque, kappa, mu, j and V (None where it is to be found), flattened to (n,), (1,) where all are numbers.
     Raises ParameterError: several alphas or materials; NaN or infinite input; a slope outside (-pi/2, pi/2); shapes
     that do not broadcast; kappa |V| above :data:`FASTEST`; a feedback that changes with time or has arrays of gains;
     with V both or neither of force and torque (a slope alone counts as the force), or a feedback.

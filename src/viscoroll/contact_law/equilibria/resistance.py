@@ -212,7 +212,7 @@ def branches(law: LawTable, gain: float) -> Branches:
 def speed_nodes(law: LawTable) -> Floats:
     """Return nodes of log2(u), u = kappa V, closely spaced where the material relaxes.
 
-    law : table of the material.
+    law : table of the material, of which alpha and both forms of the times, in T_ref, are read.
     Returns the nodes, ascending, (n,): 16 in an octave from 15 octaves below to 15 octaves above the rates of the
     modes, of an elastic material around u = 1; 2 in an octave for 446 octaves beyond on either side.
     """

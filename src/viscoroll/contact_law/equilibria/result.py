@@ -163,10 +163,10 @@ class Steady(Values):
     def loss(self) -> Loss:
         """Return the powers of each equilibrium, its coefficient of rolling resistance and its efficiency.
 
-        Returns a :class:`Loss` whose fields have the shape of ``V``, (loads..., equilibria), with the labels of the
-        arguments where these had some that fit the loads; powers divided by P R/T_ref, of a Cylinder in W per m of its
-        length.  Padding is NaN; at V = 0 the coefficient is a limit, and without input the efficiency is NaN, as the
-        class states.
+        Returns a :class:`Loss` (powers slip, half_space and cylinder; coefficient; efficiency), whose fields have the
+        shape of ``V``, (loads..., equilibria), with the labels of the arguments where they fit the loads; powers
+        divided by P R/T_ref, of a Cylinder in W per m of its length.  Padding is NaN; at V = 0 the coefficient is the
+        limit V -> 0, infinite for a cylinder that spins; without input the efficiency is NaN.
         """
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS

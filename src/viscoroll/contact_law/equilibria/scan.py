@@ -11,6 +11,9 @@ a limit of stick, which are found first.  If fw + qw = 0, the sum determines V, 
 In this file all is dimensionless, and states are in a frame where V > 0; ``slip`` is omega - V, x is log2(kappa V)
 with kappa = R/l0, mu is the coefficient of friction, delta_0 the creepage (omega - V)/V at which Q = 0, delta_star the
 distance from it at which full slip begins, and a law is a :class:`LawTable`, the rows of one material.
+Rows of :class:`.states.Field` are V, delta, Q, M_half_space, M_cylinder, beta and four slopes of the law, dQ_dV at
+fixed omega, dQ_domega, dM_half_space_dV and dM_cylinder_dV; :class:`.states.States` have omega and the eigenvalues in
+place of the slopes.
 """
 
 from __future__ import annotations
@@ -72,7 +75,8 @@ class _ScanProblem(NamedTuple):
     mu: float
 
     def free_rolling(self, x: NDArray) -> _FreeRolling:
-        """Return the contact at given speeds as :class:`_FreeRolling`: moments, slip of free rolling, limit of stick.
+        """Return the contact at given speeds as :class:`_FreeRolling`: V, M, M_half_space, limit V delta_star of stick,
+        and slip V delta_0 of free rolling, (n,) each, dimensionless.
 
         x: log2(kappa V), (n,).
         """

@@ -9,6 +9,8 @@ half the transit times of the contact and of its stick zone, H a function of the
 load P, M the rolling moment over P R, mu the coefficient of friction, kappa = R/l0 with the contact length at rest l0,
 delta = (omega - V)/V the creepage, delta_star the size of it from which on the contact slips fully (of a cover: of its
 difference from delta_0, at which Q = 0), lam the contact length over l0, and beta the part of it that sticks.
+Rows of :class:`Field` are V, delta, Q, M_half_space, M_cylinder, beta, and then either four slopes of the law, dQ_dV at
+fixed omega, dQ_domega, dM_half_space_dV and dM_cylinder_dV, or omega and the eigenvalues.
 """
 
 from __future__ import annotations
@@ -235,9 +237,9 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     """Return the steady states at given V > 0, whether or not the friction suffices.
 
     law : table of the material.
-    loads : the loads, dimensionless, without a gain on omega; all but ``shape`` and ``V`` is read.  Where V was given,
-        that of force and torque which was given too determines Q, and M is that of the law; else V must be such that
-        force + torque, with the gains on V, equal M.
+    loads : the loads, dimensionless, without a gain on omega, of which gains, given, force, torque, kappa, mu and j are
+        read.  Where V was given, that of force and torque which was given too determines Q, and M is that of the law;
+        else V must be such that force + torque, with the gains on V, equal M.
     load : index of the load of each state, (n,).
     sign : sign of the motion, in whose frame V > 0, 1.0 or -1.0, (n,).
     V : speeds, > 0, dimensionless, (n,).

@@ -99,7 +99,7 @@ class BodyData:
 
         |V|/l0 is used because it does not depend on load and radius for half-spaces.  For a cover the ends have an
         error below 1 %.  None where nothing was measured, and for an array of materials.  Bands that do not overlap
-        give a lowest rate above the highest.
+        give a lowest rate above the highest.  Raises ParameterError for a layer too thin for its law.
         """
         records, series = self.records.values(), self.scene.series
         if not records or series is None:
@@ -152,7 +152,7 @@ class BodyData:
         """Return the contact length divided by l0, for bodies of one material or pair, or one cover.
 
         rate: |V|/l0, 1/s, >= 0, a number or (n,).
-        Returns lam, dimensionless, (n,); (1,) for a number.
+        Returns lam, the length at zero creepage, on which it does not depend, dimensionless, (n,); (1,) for a number.
         """
         material, unit = self.scene.in_own_time()
         (lam,) = pure_rolling_fields(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")

@@ -193,7 +193,8 @@ class FreeRolling:
         """Return the lengths of the contacts of the states at zero creepage, on which they do not depend.
 
         kappa: slenderness R/l0 of the scene, broadcasts with u.
-        Returns :class:`ContactLengths`, dimensionless, in the shape of u; numbers if u has no axes.
+        Returns :class:`ContactLengths` (reach over R, epsilon, lam), dimensionless, in the shape of u; numbers if u has
+        no axes.
         """
         out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
         for material, part in self._groups():
@@ -241,9 +242,9 @@ class FreeRolling:
         level: of the unsteadiness, which is about the relative error of V by the law of steady rolling; dimensionless,
             > 0.
         Gamma must be known.
-        Returns a :class:`Reach` in the shape of u and the units of the caller.  At rest N(0) decides which of its
-        cases holds, though :attr:`unsteadiness` is 0 there.  Of elastic bodies speed and left are 0, time and distance
-        infinite.
+        Returns a :class:`Reach` (speed at its end, time and distance to there, distance left to rest) in the shape of u
+        and the units of the caller.  At rest N(0) decides which of its cases holds, though :attr:`unsteadiness` is 0
+        there.  Of elastic bodies speed and left are 0, time and distance infinite.
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
@@ -281,8 +282,9 @@ class FreeRolling:
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
             """Return [lost u, lost distance] for states of one material, (n,) each, in its own time and in l0.
 
+            They follow from the work W to leave the indentation, :meth:`Curve.work`.
             curve: free rolling of the material.
-            u, g, rested: kappa |V| at the start, gamma/(1 + j), time of the standstill, (n,) each.
+            u, g, rested: kappa |V| at the start, >= 0, gamma/(1 + j), > 0, time of the standstill, >= 0, (n,) each.
             """
             distance = curve.distance(u)
             W = curve.work(u, distance / g, rested)

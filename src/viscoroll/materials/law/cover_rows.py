@@ -78,8 +78,8 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     cover: one :class:`..cover.Cover`, of a single thickness and Poisson's ratio.
     thickest: thickness divided by l0 that determines the number of rows in place of that of the cover, for several
         covers to have as many; None: that of the cover.  It has no effect for elastic bodies.
-    Returns the polynomials and their limits of fast rolling, as :class:`.pack.CoverRows`; of elastic bodies a single
-    row of constants, with epsilon = M = 0.
+    Returns the polynomials and their limits of fast rolling, as :class:`.pack.CoverRows` (e0, coefficients, creep,
+    limits); of elastic bodies a single row of constants, with epsilon = M = 0.
     Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses, and where at
     some speed no contact length that carries the load is found.
     """
@@ -129,7 +129,8 @@ def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floa
     orders: number of terms of the pressure; None: as many as rows are made with (:func:`.cover_solve.solve`).
     Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, dimensionless,
     (5,).  For a cover on the cylinder delta_0 has the other sign.
-    Raises ParameterError where no contact length that carries the load is found.
+    Raises ParameterError where no contact length that carries the load is found; a contact that is longer than rows
+    allow, half of it beyond six thicknesses, is not refused.
     """
     return _solve_node(CoverModes(cover), u, orders=orders)[0]
 
