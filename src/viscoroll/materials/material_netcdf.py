@@ -89,7 +89,7 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
     path: path of the file.
     make: constructor of the material, called with the parameters of :class:`viscoroll.Material` by name: E, prony,
         name, nu and T_ref, and those of density, thickness, temperature and measured that the file has.
-    Returns what ``make`` returns.
+    Returns what ``make`` returns, which may warn of a temperature that looks like kelvin.
     Raises FileError for a file that is missing, damaged, larger than 128 MiB, without a seal, no material, lacks a
     variable, or has values out of range; so it does for each ParameterError, KeyError, ValueError and OSError of
     ``make``, whose other exceptions pass.

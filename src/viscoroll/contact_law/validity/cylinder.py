@@ -118,8 +118,9 @@ class BodyData:
     def measured_speeds(self) -> tuple[float, float] | None:
         """Return (lowest, highest) |V|, m/s, at which the transit frequency of every cylinder is in the measured band.
 
-        None without data.  No speed is between them (the lowest is above the highest) where the bands have no speed in
-        common; :data:`NO_SPEEDS` for a fit that misses its data by more than 5 %.
+        None without data.  A transit frequency at an end of a band is inside.  No speed is between them (the lowest is
+        above the highest) where the bands have no speed in common; :data:`NO_SPEEDS` for a fit that misses its data by
+        more than 5 %.
         """
         if self.measured_rates is None:
             return None

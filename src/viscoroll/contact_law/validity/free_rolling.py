@@ -240,7 +240,7 @@ class FreeRolling:
         """Return the part of free rolling in which the unsteadiness is below a level.
 
         level: of the unsteadiness, which is about the relative error of V by the law of steady rolling; dimensionless,
-            > 0.
+            > 0, not checked; an unsteadiness equal to it is not below it.
         Gamma must be known.
         Returns a :class:`Reach` (speed at its end, time and distance to there, distance left to rest) in the shape of u
         and the units of the caller.  At rest N(0) decides which of its cases holds, though :attr:`unsteadiness` is 0

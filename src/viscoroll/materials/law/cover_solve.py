@@ -183,8 +183,8 @@ def layer_nodes(nu: float) -> LayerNodes:
 
     Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
     nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
-    Returns :class:`LayerNodes` of some 245 nodes ``u``: with the weights of the rule ``L`` = (L - 1)/u, ``shear`` =
-    (T - L)/u, and ``C`` less its limit ``local`` for short waves.
+    Returns :class:`LayerNodes` of some 245 nodes ``u``: its field ``L`` is (L - 1)/u, ``shear`` is (T - L)/u, ``C`` is
+    C less its limit for short waves, each times the weights of the rule, (n,); ``local`` is that limit, a float.
     """
     u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
     kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)

@@ -94,9 +94,9 @@ def evaluate_by_modes(material: Any, z: Floats) -> ModesValues:
         number, or one for each z, (n,).
     z: half contact length divided by V T_ref, zeta of the paper, > 0, (n,); infinite for the limit at rest.
     Returns :class:`ModesValues`: ``values``, g/z, h/z, and M/V of half-space and cylinder, (4, n); ``slopes``, their
-    derivatives with respect to ln(1/z), (4, n); ``N`` of M = M(V) + N dV/dt, (n,); units as of the class.  Where z is
-    infinite, values and N are the limits at rest and slopes are NaN.  Of elastic bodies all are 0 (alpha = 1 has slopes
-    NaN at infinite z too).
+    derivatives with respect to ln(1/z), (4, n); ``N`` of M = M(V) + N dV/dt, (n,); dimensionless, M/V in units of P
+    T_ref, N of P T_ref^2.  Where z is infinite, values and N are the limits at rest and slopes are NaN.  Of elastic
+    bodies all are 0 (alpha = 1 has slopes NaN at infinite z too).
     """
     from ...kernels.rows.modes import modes_loop
     from ...kernels.rows.series import FUNCTIONS, new_workspace
