@@ -125,6 +125,8 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     ParameterError
         An alpha beside the file of one material or a grid without an axis alpha; for the file of every alpha, or a grid
         over alpha, none, or one that is no number or beyond the range of the file.
+    ValueError
+        A variable of a law that is not numeric.
 
     Examples
     --------
