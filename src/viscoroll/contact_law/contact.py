@@ -112,9 +112,11 @@ def contact(
     ------
     ParameterError
         NaN or infinite input, kappa |V| above 1e300 (for Q by method "direct" above 1e12), both or neither of delta
-        and omega, an unknown field or method, a field or method that these bodies do not have, shapes that do not
-        broadcast, a unit of another dimension; a layer too thin for its law (half the contact at rest longer than six
-        thicknesses), times of a material beyond 1e-100 to 1e100 T_ref.
+        and omega, an unknown field or method, a field or method that these bodies do not have, a ``slopes`` that is no
+        truth value, shapes that do not broadcast, labelled arrays beside plain ones or with other coordinates, a unit
+        of another dimension; what is no scene and no cylinder; a layer too thin for its law (half the contact at rest
+        longer than six thicknesses), times of a material beyond 1e-100 to 1e100 T_ref; ``$VISCOROLL_THREADS`` that is
+        no whole number >= 1.
     ConvergenceError
         Method "direct": an iteration reached its limit.
 

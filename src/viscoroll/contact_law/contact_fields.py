@@ -1,5 +1,11 @@
 """The fields of a contact state: which exist, which a call returns, which of them the kernels compute.
 
+With lengths over l0 (the contact length at rest of half-spaces), forces over the load P and moments over P R: ``lam``
+contact length, ``zeta`` half the transit time, ``epsilon`` shift of the contact over half its length, ``delta``
+creepage, ``delta_0`` that at which Q = 0, ``full_slip`` whether |delta - delta_0| >= ``delta_star``, ``beta`` stick
+zone over contact length, ``Q`` friction force, ``grip`` 1 - |Q|/mu, ``M`` rolling moment, ``M_half_space`` and
+``M_cylinder`` its parts, ``N`` its factor of dV/dt, ``dA_dB`` slopes.
+
 This module alone interprets names of fields.  A call resolves its names (:func:`field_names`), asks the kernels for
 :func:`computed_fields`, tells them the row of each (:func:`kernel_rows`), and completes the result (:func:`complete`).
 """
@@ -121,7 +127,7 @@ def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
 def kernel_rows(names: tuple[str, ...]) -> Any:
     """Return the index of the output row of each field as the record that kernels take.
 
-    names: fields that kernels compute, as of :func:`computed_fields`; field k of them has row k of the output.
+    names: fields that kernels compute, as of :func:`computed_fields`, each once; field k has row k of the output.
     Returns :class:`...kernels.rows.contact_states.Fields`: an int for each field, -1 for those that are not in
     ``names``.  N is not among them, since a kernel of its own computes it; its row is left free.
     """
@@ -141,7 +147,8 @@ def complete(
     shape: shape of the call, whose product is the number of states; () for one state.
     Returns a dict from each of ``names``, in their order, to an array of ``shape``, for shape () a float; ``full_slip``
     is a boolean array, for shape () a bool.  Arrays that are a row of ``rows`` are views of it.  ``length`` and
-    ``C_rr`` have the values of lam and M, which the caller of a Cylinder multiplies by their units.
+    ``C_rr`` have the values of lam and M, which the caller of a Cylinder multiplies by their units; parts of M that
+    were not computed are half of M, their slopes half of dM_dV.
     """
     found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))
     if computed != names:

@@ -1,4 +1,11 @@
-"""The law at many states, in blocks on threads: one law for all states, or an alpha or a material for each."""
+"""The law at many states, in blocks on threads: one law for all states, or an alpha or a material for each.
+
+All is dimensionless, with load P, radius R, unit of time T_ref, and l0, the contact length at rest of half-spaces:
+alpha is the instantaneous divided by the long-time modulus, kappa = R/l0, mu the coefficient of friction, V the speed
+over R/T_ref, omega the angular velocity times T_ref, delta = (omega - V)/V the creepage.  Of the fields lam is the
+contact length over l0, epsilon its shift ahead of the axis over half the length, zeta half the transit time, Q the
+friction force over P, M the rolling moment over P R, and N its factor of dV/dt, M = M(V) + N dV/dt.
+"""
 
 from __future__ import annotations
 
@@ -62,7 +69,8 @@ def evaluate_contact(
     ------
     ParameterError
         kappa |V| above :data:`FASTEST` (for Q by method "direct" above :data:`_FASTEST_DIRECT`), shapes that do not
-        broadcast, a material with method "direct", N of an array of materials, times of a material beyond the doubles.
+        broadcast, a material with method "direct", N of an array of materials, times of a material beyond 1e-100 to
+        1e100 T_ref, a layer too thin for its law; ``$VISCOROLL_THREADS`` that is no whole number >= 1.
     ConvergenceError
         If an iteration of method "direct" reaches its limit.
     """
@@ -121,6 +129,8 @@ def evaluate_law(
 
     Raises
     ------
+    ParameterError
+        Of an array of materials as :func:`.record_of_materials`; ``$VISCOROLL_THREADS`` that is no whole number >= 1.
     ConvergenceError
         If an iteration of the printed equations reaches its limit.
     """
@@ -136,7 +146,8 @@ def evaluate_law(
         The row of N is written by a kernel of its own, without a LawTable by the formulas of the modes.
         alpha: alphas, or indices of materials, of these states, (stop - start,) or (1,); not used with a LawTable.
         parts: kappa, mu, V and creep of these states, (stop - start,) or (1,) each, dimensionless, read-only.
-        Raises ConvergenceError if an iteration of the printed equations reaches its limit.
+        Raises ConvergenceError if an iteration of the printed equations reaches its limit, and ParameterError as
+        :func:`_laws_of_block`.
         """
         laws, order = ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
@@ -206,6 +217,7 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
     itself.  The order is an array of the indices of the states in the order of evaluation, (n,), or empty for the order
     given.  States are ordered by material, or of alphas by octaves of alpha and speed, so that neighbours read the same
     numbers; if ``direct``, of one state, and of one material for all, the order is empty.
+    Raises ParameterError for a material with times beyond 1e-100 to 1e100 T_ref, and for a layer that is too thin.
     """
     if material is not None:
         order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
@@ -221,7 +233,7 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     These are functions of u = kappa |V| alone, so that they serve every kappa: ``lam`` and ``epsilon`` as they are,
     ``M`` as kappa M, ``dM_dV`` and ``N`` as they are.  (Of a cover the traction is not 0 at delta = 0.)
     law: table of the material.
-    u: kappa |V|, >= 0, at most 1e300, (n,).
+    u: kappa |V|, >= 0, at most 1e300, not checked, (n,).
     names: fields that kernels compute, as "lam", "epsilon", "M", "dM_dV", "N"
         (:func:`.contact_fields.computed_fields`); all are those of kappa = mu = 1.
     Returns a new array (names, n), dimensionless, rows in the order of ``names``; N of a cover is NaN.

@@ -55,7 +55,9 @@ class Law:
 
         roller: a scene or a cylinder whose alpha or material, kappa and mu are single; gamma and j are not used.
         Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape (1,)), for an array
-        of materials, and for a layer beside a body that relaxes too or too thin for its law.
+        of materials, for times of a material beyond 1e-100 to 1e100 T_ref, and for a layer beside a body that relaxes
+        too or too thin for its law.  Sets ``roller``, ``scene``, ``_kappa`` (kappa over the unit of V), ``_warns`` and
+        the attributes of :meth:`_use`.
         """
         from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted
@@ -74,10 +76,12 @@ class Law:
         self._use(Jitted(scenes, table))
 
     def _use(self, jitted: Any) -> None:
-        """Keep the compiled law for calls, as attributes of this object.
+        """Keep the compiled law for calls, as attributes of this object; for the constructors of a scene and of a grid.
 
-        jitted: a :class:`.Jitted` law, or that of a grid, which has the C function, and the addresses of its user data
-            for results without slopes (``plain``) and with slopes (``address``).
+        jitted: the :class:`.Jitted` law, of a scene or a grid, which has the C function (``function``) and the
+            addresses of its user data for results without slopes (``plain``) and with slopes (``address``).
+        Sets ``_jitted`` (the law), ``_function``, ``_plain`` and ``_sloped`` (these three), and ``_output``, the type
+        of the buffer of eight doubles for the results.  Returns None.
         """
         from ..kernels.rows.jitted_law import ResultBuffer
 
@@ -122,7 +126,7 @@ class Law:
         ------
         ParameterError
             NaN or infinite input, kappa |V| above 1e300, an omega T_ref beyond the doubles, shapes that do not
-            broadcast.
+            broadcast, a unit of another dimension, a ``slopes`` that is no truth value.
         OutOfTableError
             The law of a grid: a state outside of its axes.
 
@@ -208,7 +212,10 @@ class _LawOfGrid(Law):
     """
 
     def __init__(self, grid: LawGrid) -> None:
-        """Compile the splines of a ``grid`` of loads over V and delta; V and omega then have the units of the grid."""
+        """Compile the splines of a ``grid`` of loads over V and delta; V and omega then have the units of the grid.
+
+        Of the :class:`LawGrid`, which becomes ``roller``, ``splines``, ``slips``, ``V``, ``delta`` and ``R`` are read.
+        """
         from ..kernels.splines.law import jitted_grid
 
         self.roller: Any = grid
@@ -220,7 +227,8 @@ class _LawOfGrid(Law):
         """Return the law at arrays ``V`` and ``omega``, which broadcast, one state after another.
 
         The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape, which is
-        () for numbers.  Raises OutOfTableError for the first state outside of the axes.
+        () for numbers.  Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or
+        infinite input, and ValueError of numpy for shapes that do not broadcast.
         """
         evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
         return kind(*evaluate(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])
@@ -252,8 +260,9 @@ def law(roller: Roller | LawGrid) -> Law:
     Raises
     ------
     ParameterError
-        What is no scene, cylinder or grid; arrays for alpha, kappa or mu; an array of materials; a layer beside a body
-        that relaxes too, since its slip is not known, or too thin for its law.
+        What is no scene, cylinder or grid; arrays for alpha, kappa or mu; an array of materials; times of a material
+        beyond 1e-100 to 1e100 T_ref; a layer beside a body that relaxes too, since its slip is not known, or too thin
+        for its law.
 
     Notes
     -----

@@ -129,8 +129,8 @@ class Parameters(Roller):
         """Check the parameters, and replace them by floats or read-only arrays; set ``shape``, their broadcast shape.
 
         A gamma of None stays None.  With a material ``alpha`` becomes that of the material, a float or an array (n,).
-        A :class:`LawTable` is replaced by its material (or by its alpha, with None for the material), and kept for
-        :attr:`table`.
+        A :class:`LawTable` is replaced by its material (or by its alpha, with None for the material), and kept as
+        ``_law`` for :attr:`table`.
         Raises ParameterError: both or neither of alpha and material, a material of another type, kappa, mu or j that is
         None, values out of range, NaN or infinite, shapes that do not broadcast, mu/kappa outside :data:`RATIO_RANGE`.
         """
@@ -201,6 +201,8 @@ class Parameters(Roller):
         ------
         ParameterError
             As the class does: for values out of range, and for alpha and material together.
+        TypeError
+            For an unknown name.
         """
         material: dict[str, Any] = {}
         if changes.keys() & {"alpha", "material"}:
@@ -257,7 +259,8 @@ class Parameters(Roller):
         Returns a new scene whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied
         by cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array
         of slopes gives as many covers.
-        Raises ParameterError for a slope out of range, and for shapes that do not broadcast.
+        Raises ParameterError for a slope out of range, for shapes that do not broadcast, and for parameters that the
+        class refuses, as mu/kappa out of its range.
         """
         cosine = slope_tan_cos(slope)[1]
         sizes = self.numbers | ({} if self.cover is None else {"thickness": self.cover.thickness})
@@ -305,14 +308,14 @@ def resolve_model(
     roller: the first argument of the call, of any type.
     call: name of the function that is called, for errors.  It also decides about a layer beside a body that relaxes
         too: only the functions of :data:`_BEFORE_THE_SPLIT` take it.
-    moves: whether the function needs gamma, which only a roller that moves has.
-    slope: angle, rad, a number or an array; None: level.
+    moves: whether the function needs gamma, which a scene may lack.
+    slope: angle, rad, in (-pi/2, pi/2), a number or an array that broadcasts with the parameters; None: level.
     Returns (the Scene or Cylinder under the load on the slope, the argument itself if ``slope`` is None; its
     dimensionless parameters; its :class:`Scale`: the factor by which each dimensionless quantity is multiplied to get
     the units of the roller, 1 for a Scene).
-    Raises ParameterError for what is no scene and no cylinder, a slope out of range, a scene without gamma where
-    ``moves``, a layer beside a body that relaxes too in a function that does not take it, and a slope of a shape that
-    does not broadcast.
+    Raises ParameterError for what is no scene and no cylinder (for a LawGrid with a message of its own), a slope out of
+    range, a scene without gamma where ``moves``, a layer beside a body that relaxes too in a function that does not
+    take it, a slope of a shape that does not broadcast, and what the scene of a Cylinder does not allow.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
@@ -334,8 +337,9 @@ def resolve_model(
 
 
 def refuse_cover(scene: Parameters, why: str) -> None:
-    """Raise ParameterError where a body of ``scene`` is a layer of finite thickness; ``why``: end of the message, the
-    reason why the function does not take one.
+    """Raise ParameterError where a body of ``scene`` is a layer of finite thickness; of half-spaces do nothing.
+
+    ``why``: end of the message, the reason why the function does not take one.
     """
     if scene.cover is not None:
         sentence = (
@@ -348,9 +352,10 @@ def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a sin
     """Raise ParameterError for the first of some parameters that is an array, also of shape (1,).
 
     scene: the dimensionless parameters of a roller.
-    names: names of the parameters that must be numbers, as "alpha"; None as a value is accepted.
+    names: names of the parameters that must be numbers, as "alpha"; as values None and arrays without axes are accepted
+        too.
     allowed: words of the message that follow "must be".
-    Returns None if none of them is an array.
+    Returns nothing.
     """
     for name in names:
         if shape := np.shape(getattr(scene, name)):

@@ -1,7 +1,10 @@
 """Pressure and shear stress along the contact: :func:`stress`.
 
 Numbers of equations are those of A. A. Zobova and I. G. Goryacheva, Acta Mechanica (2020),
-doi:10.1007/s00707-020-02643-5.
+doi:10.1007/s00707-020-02643-5.  l0 is the contact length at rest of half-spaces, kappa = R/l0, mu the coefficient of
+friction; lam is the contact length over l0, epsilon its shift ahead of the axis over half the length, beta the part of
+it that sticks, zeta half the transit time in the unit of time of the material, alpha the instantaneous over the
+long-time modulus.
 """
 
 from __future__ import annotations
@@ -67,7 +70,13 @@ def stress(
     ------
     ParameterError
         NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega, shapes that do not broadcast,
-        a unit of another dimension; what is no scene and no cylinder; a layer too thin for its law.
+        labelled arrays beside plain ones or with other coordinates, a unit of another dimension; what is no scene and
+        no cylinder; a layer too thin for its law, times of a material beyond 1e-100 to 1e100 T_ref.
+
+    Warns
+    -----
+    ModelWarning
+        Of a Cylinder, as :func:`contact`: a contact longer than the radius, or outside of the measured band.
 
     Examples
     --------
@@ -110,8 +119,8 @@ def stress(
     p, tau = np.empty((2, int(np.prod(shape))))
 
     def work(start: int, stop: int) -> None:
-        """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1, and write them into ``p`` and
-        ``tau``; of a cover p alone.
+        """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1 of the flattened broadcast shape, and
+        write them into these elements of ``p`` and ``tau``; of a cover p alone.
         """
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)

@@ -137,8 +137,9 @@ class Bodies(OneOrMany):
         """Return the half-space's part of each creep mode of :attr:`total`, divided by the mode's strength, slowest
         mode first.
 
-        Returns a new array (..., modes) of numbers from 0 to 1: 1 - share for two equal series, else 0 for a mode
-        without strength.
+        Returns an array (..., modes), kept for later calls, of numbers from 0 to 1, dimensionless: 1 - share for two
+        equal series, else 0 for a mode without strength.
+        Raises ParameterError as :attr:`total` does.
         """
         J = self.total.J
         if self._same:
@@ -172,8 +173,10 @@ class Bodies(OneOrMany):
 def total_series(material: float | Prony | Bodies) -> Prony:
     """Return the series of a material: that of an alpha, a series itself, or that of both bodies together.
 
-    material: alpha >= 1 as a float, with T_epsilon for the unit of time; a :class:`Prony`; or :class:`Bodies`.
+    material: alpha >= 1 as a float, not checked, with T_epsilon for the unit of time; a :class:`Prony`; or
+        :class:`Bodies`.
     Returns a :class:`Prony`, of the shape of the material, () for an alpha, times in the unit of the material.
+    Raises ParameterError as :attr:`Bodies.total` does.
     """
     if isinstance(material, Bodies):
         return material.total

@@ -96,6 +96,7 @@ class Cover(Bodies):
         part: part of the layer in the long-time compliance of both bodies as half-spaces, in (0, 1].
         other_nu: Poisson's ratio of the other body, in [0, 0.5]; without effect if ``part`` is 1.
         other: series of the other body, times in units of T_ref; None: elastic.
+        Sets the fields of :class:`Bodies` (cylinder, base, share), nu, thickness, on, other_nu, and ``shape``.
         Raises ParameterError for a value out of range, a ``series`` or ``other`` of many materials or of another type,
         and shapes that do not agree.  A cover that is too thin for its law is refused where the law is computed.
         """

@@ -69,9 +69,9 @@ class FromPrograms:
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, a table of another shape or with ``k``, a ``long_term``
-            that is no truth value, an unknown keyword; where k differs from g, more than 64 creep modes of shear and
-            bulk together.
+            A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
+            decades, a table of another shape or with ``k``, a ``long_term`` that is no truth value, an unknown keyword;
+            where k differs from g, more than 64 creep modes of shear and bulk together.
 
         Examples
         --------
@@ -116,8 +116,9 @@ class FromPrograms:
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, an unknown keyword; where k differs from alpha, more than
-            64 creep modes of shear and bulk together.
+            A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
+            decades, an unknown keyword; where k differs from alpha, more than 64 creep modes of shear and bulk
+            together.
         """
         return cls._from_fractions(E0, nu, "alpha", alpha, tau, k, False, more)
 
@@ -149,8 +150,9 @@ class FromPrograms:
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, an unknown keyword; where K is not in proportion to G,
-            more than 64 creep modes of shear and bulk together.
+            A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
+            decades, an unknown keyword; where K is not in proportion to G, more than 64 creep modes of shear and bulk
+            together.
         """
         E, nu = check_number("E", E, unit=SI, above=0.0), check_poisson(nu)
         strengths, times = check_pairs("G", G, "tau", tau)
@@ -199,9 +201,9 @@ class FromPrograms:
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, no long-time modulus or several, both or neither of nu and
-            bulk, an unknown keyword; more than 64 creep modes of shear and bulk together where these do not relax in
-            proportion.
+            A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
+            decades, no long-time modulus or several, both or neither of nu and bulk, an unknown keyword; more than 64
+            creep modes of shear and bulk together where these do not relax in proportion.
         """
         strengths, rates = check_pairs("G", G, "beta", beta, above=-math.inf)
         resting = rates == 0.0
@@ -238,7 +240,8 @@ class FromPrograms:
         more: keywords of the material, as ``name`` and ``density``.
         Returns the material, of the class ``cls``, with its long-time modulus and, where bulk and shear terms differ,
         nu of long times.
-        Raises ParameterError for values out of range, lists of different lengths, and an unknown keyword.
+        Raises ParameterError for values out of range, lists of different lengths, too many terms, and an unknown
+        keyword.
         """
         E, nu = check_number("E0", E, unit=SI, above=0.0), check_poisson(nu)
         values, times = check_pairs(name, fractions, "tau", tau)
@@ -354,7 +357,7 @@ def plane_strain(G_inf: float, G: NDArray, K_inf: float, K: NDArray, tau: NDArra
 
     Parameters
     ----------
-    G_inf, K_inf : long-time moduli, > 0, in one unit.
+    G_inf, K_inf : long-time moduli, > 0 (not checked), in one unit.
     G, K : strengths of their terms in that unit, >= 0, shape (n,) each; 0 where one of them has no term at that time.
     tau : relaxation times of both, s, > 0, shape (n,).
 
@@ -367,7 +370,8 @@ def plane_strain(G_inf: float, G: NDArray, K_inf: float, K: NDArray, tau: NDArra
     Raises
     ------
     ParameterError
-        Values out of range, more than 64 creep modes of both together.
+        Strengths or times out of range, more than 64 creep modes of both together, times that span more than 32
+        decades.
     """
     stiff = 3.0 * K_inf + G_inf
     first, second = Prony(G / G_inf, tau), Prony((3.0 * K + G) / stiff, tau)

@@ -200,11 +200,12 @@ def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], *
     kind: kind of the file, a key of :data:`KINDS`, which lists the variables.
     title: bodies whose law it is, in words.
     errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each function of the kind,
-        else KeyError.
+        else KeyError, as of another kind.
     attributes: further global attributes of the dataset by name.
     Returns the dataset, with one variable of coefficients for each function, whose error is its attribute
-    ``largest_relative_error``; the other variables of the kind, integers as int32; and global attributes with the kind,
-    the schema, the command line and the time (UTC) of the call, and the checksum of the numbers.
+    ``largest_relative_error``; the other variables of the kind, integers as int32; and as global attributes
+    ``viscoroll_table`` (the kind), ``law_schema``, ``sha256_of_numbers`` (the :func:`checksum`), ``history`` (time of
+    the call, UTC, and command line), title, summary, comment, keywords, references, source, license and Conventions.
     """
     import xarray as xr
 
@@ -242,7 +243,7 @@ def is_law(path: str | PathLike[str]) -> bool:
     Returns True where the attribute is "law" (a material or pair) or "cover"; False where it is "axis" (the law of
     every alpha), for another HDF5 file, and for a file that is no HDF5.
     Raises FileError for a file that cannot be read, is larger than 128 MiB, or whose seal, the SHA-256 at its end, is
-    not that of its bytes.  A file without a seal is read as it is.
+    not that of its bytes.  A file without a seal is read as it is; errors of h5py other than OSError pass.
     """
     try:
         content = read_content(path, "material or law of viscoroll", "write it again")
@@ -255,9 +256,9 @@ def read_law(path: str | PathLike[str]) -> Content:
     """Return the content of a law file, verified by its seal, schema and checksum.
 
     path: path of the file; a file without a seal is verified by its schema and checksum alone.
-    Returns :class:`Content`, which has all variables of the kind, a key of :data:`KINDS`.
+    Returns :class:`Content`: ``numbers``, with all variables of the kind, a key of :data:`KINDS`, and ``attributes``.
     Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no law, is of another
-    schema, or lacks a variable.
+    schema, or lacks a variable; ValueError for a variable that is not numeric.
     """
     try:
         content = read_content(path, "law file of viscoroll", REMEDY)
@@ -291,8 +292,8 @@ def _to_scalar(value: Any) -> Any:
     """Return the value of an attribute as text or number: some programs write arrays of one, and texts as bytes.
 
     value: what h5py reads.
-    Returns a text for bytes, in UTF-8 with replacements of wrong bytes; the element of an array of one; an array of
-    more elements as it is.
+    Returns a text for bytes, in UTF-8 with replacements of wrong bytes; of an array of one its element, bytes likewise;
+    an array of no or more elements, and any other value, as it is.
     """
     if np.size(value) == 1:
         value = np.ravel(value)[0]
@@ -307,7 +308,8 @@ def check_law(content: Content, path: Any) -> None:
     is the attribute ``sha256_of_numbers``.
     content: :class:`Content` of the file.
     path: path of the file, for errors.
-    Returns None for a file that is as it was written.
+    Returns None for a file that is as it was written; ValueError of the checksum, for a variable that is not numeric,
+    passes.
     """
     numbers, attributes = content
     kind = str(attributes.get(KIND))  # another writer may have stored an array

@@ -73,11 +73,12 @@ class Material(FromPrograms):
     temperature: float | None = None
 
     def __post_init__(self) -> None:
-        """Convert the fields to numbers in SI units and check them.
+        """Check the fields, and replace numbers by floats in SI units (``temperature`` in degrees Celsius).
 
-        A rigid body must neither relax nor have a thickness.
-        Raises ParameterError for the first field that is not allowed.  A temperature that looks like kelvin warns with
-        ModelWarning (:func:`.shift.check_celsius`).
+        A value with a unit is converted.  E (unless infinite), T_ref, density and thickness must be finite and > 0, nu
+        in (-1, 0.5]; ``prony`` must be one series; a rigid body must neither relax nor have a thickness.
+        Raises ParameterError for the first field that is not allowed.  A temperature outside -150 to 200 warns with
+        ModelWarning, as it looks like kelvin (:func:`.shift.check_celsius`).
         """
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
@@ -121,6 +122,8 @@ class Material(FromPrograms):
         ------
         ParameterError
             A value out of range, T_epsilon below T_sigma, T_epsilon/T_sigma above 1e12.
+        TypeError
+            A name in ``more`` that :class:`Material` does not have, or E, nu, ``prony`` or ``T_ref``.
 
         Examples
         --------
@@ -143,7 +146,8 @@ class Material(FromPrograms):
         ----------
         E : Young's modulus, Pa.
         nu : Poisson's ratio.
-        more : further parameters of :class:`Material` by name, as ``name``, ``density`` and ``thickness``.
+        more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
+            ``temperature``, ``T_ref``; a ``prony`` is passed on too, and the material then relaxes.
 
         Returns
         -------
@@ -154,6 +158,8 @@ class Material(FromPrograms):
         ------
         ParameterError
             A value out of range.
+        TypeError
+            A name in ``more`` that :class:`Material` does not have.
 
         Examples
         --------
@@ -180,6 +186,8 @@ class Material(FromPrograms):
         ------
         ParameterError
             A value out of range, a thickness, a series that relaxes.
+        TypeError
+            A name in ``more`` that :class:`Material` does not have, or E or nu.
 
         Examples
         --------
@@ -227,8 +235,8 @@ class Material(FromPrograms):
         ------
         ParameterError
             A temperature that the shift does not allow, an array of temperatures, one at or below absolute zero; a
-            shift that is no function or does not return a finite positive number; a ratio of shifts or a time that no
-            double holds.
+            shift that is no function or does not return a finite positive number; a ratio of shifts, a time or a
+            frequency of the measured band that no double holds.  Other exceptions of the shift pass.
 
         Warns
         -----
@@ -271,7 +279,7 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A frequency that is negative, NaN or infinite.
+            A frequency that is negative, NaN, infinite or no number, or has a unit of another dimension.
 
         Examples
         --------
@@ -287,7 +295,7 @@ class Material(FromPrograms):
 
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, Pa, >= 0; 0 of an elastic and of a rigid body.
-        Raises ParameterError for a frequency that is negative, NaN or infinite.
+        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
 
         Examples
         --------
@@ -303,7 +311,7 @@ class Material(FromPrograms):
 
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, dimensionless, >= 0; 0 of an elastic and of a rigid body.
-        Raises ParameterError for a frequency that is negative, NaN or infinite.
+        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
 
         Examples
         --------
@@ -329,7 +337,7 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A time that is negative, NaN or infinite.
+            A time that is negative, NaN, infinite or no number, or has a unit of another dimension.
 
         Examples
         --------
@@ -348,7 +356,7 @@ class Material(FromPrograms):
         It rises from E/E(0) at t = 0 to 1.
         t: times, s, >= 0, of any shape.
         Returns a number or an array of that shape, dimensionless; 1 at all times for an elastic and a rigid body.
-        Raises ParameterError for a time that is negative, NaN or infinite.
+        Raises ParameterError for a time that is negative, NaN, infinite or no number, or of another dimension.
 
         Examples
         --------
@@ -367,8 +375,9 @@ class Material(FromPrograms):
         -------
         xarray.Dataset
             E, tau, J, T over "mode" (of length 0 if elastic), slowest first, strengths dimensionless and times in units
-            of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of density, thickness, temperature and the measured band
-            those that are given.
+            of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of density (kg/m^3), thickness (m), temperature (degrees
+            Celsius) and the measured band (measured_low and measured_high in rad/s, measured_misfit) those that are
+            given.  Its attributes are those of :func:`.material_netcdf.material_as_dataset`.
 
         Examples
         --------
@@ -449,7 +458,8 @@ class Material(FromPrograms):
         Raises
         ------
         FileError
-            A file that is missing, damaged in any byte, or no material, or has values out of range.
+            A file that is missing, larger than 128 MiB, damaged in any byte, without the SHA-256 at its end, or no
+            material, or has values out of range.
 
         Examples
         --------
@@ -470,7 +480,7 @@ class Material(FromPrograms):
             is taken as infinite.
         Returns (E'/E, E''/E), dimensionless, each a number or an array of that shape; (1, 0) of an elastic and of a
         rigid body.
-        Raises ParameterError for a frequency that is negative, NaN or infinite.
+        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
         """
         with np.errstate(over="ignore"):
             product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
@@ -484,10 +494,10 @@ class Material(FromPrograms):
         """Return t divided by each of several times of the material.
 
         t: s, >= 0, of any shape.
-        times: relaxation or retardation times in units of T_ref, (times,).
+        times: relaxation or retardation times in units of T_ref, > 0, (times,); may be empty.
         Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite where the quotient
         overflows.
-        Raises ParameterError for a time t that is negative, NaN or infinite.
+        Raises ParameterError for a time t that is negative, NaN, infinite or no number, or of another dimension.
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)

@@ -56,9 +56,10 @@ def material_as_dataset(material: Any) -> xr.Dataset:
     Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, of length 0 if elastic:
     strengths over the long-time modulus or compliance, times in units of T_ref; and the constants in SI units: E_long,
     nu, T_ref, alpha, and those of density, thickness, temperature (degrees Celsius) and the measured band
-    (measured_low, measured_high, measured_misfit) that are given.  The attribute ``given`` names the form from which
-    the material is read, "relaxation" or "creep"; ``name`` and ``measured`` are the name and the source of the data, ""
-    without.
+    (measured_low, measured_high, measured_misfit) that are given.  Each variable has the attributes ``long_name`` and
+    ``units``.  The attribute ``given`` of the dataset names the form from which the material is read, "relaxation" or
+    "creep"; ``name`` and ``measured`` are the name and the source of the data, "" without; the others are
+    ``Conventions``, ``schema``, ``title``, ``law`` (the formulas of E(t) and J(t)) and ``source`` (this version).
     """
     import xarray as xr
 
@@ -88,9 +89,10 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
     path: path of the file.
     make: constructor of the material, called with the parameters of :class:`viscoroll.Material` by name: E, prony,
         name, nu and T_ref, and those of density, thickness, temperature and measured that the file has.
-    Returns what ``make`` returns.
-    Raises FileError for a file that is missing, damaged, larger than 128 MiB, without a seal, no material, or has
-    values out of range.
+    Returns what ``make`` returns, which may warn of a temperature that looks like kelvin.
+    Raises FileError for a file that is missing, damaged, larger than 128 MiB, without a seal, no material, lacks a
+    variable, or has values out of range; so it does for each ParameterError, KeyError, ValueError and OSError of
+    ``make``, whose other exceptions pass.
     """
     try:
         numbers, about = read_content(path, "material of this package", "write it again")

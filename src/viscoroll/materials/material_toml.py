@@ -103,7 +103,12 @@ def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
     FileError
         A file that cannot be read, is not TOML, has neither section, or a misspelt or missing key, a value of
         the wrong type or out of its range, a temperature without a shift.
-        A netCDF file that is missing, damaged, or no material.
+        A netCDF file that is missing, damaged, or no material (also the law of one).
+
+    Warns
+    -----
+    ModelWarning
+        A temperature outside -150 to 200: it looks like one in kelvin.
     """
     if Path(path).suffix.lower() == SUFFIX:
         return {"material": Material.from_netcdf(path)}
@@ -119,7 +124,7 @@ def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material
     path: path of the file, for errors; paths in its sections are relative to its folder.
     content: sections of the file by name, as tomllib reads them.
     Returns a dict from "material" and "base", those that exist, to :class:`Material`; empty without either.
-    Raises FileError as :func:`read_materials` does, but not for missing sections.
+    Raises FileError and warns as :func:`read_materials` does, but not for missing sections.
     """
     return {name: _parse_material(path, name, content[name]) for name in SECTIONS if name in content}
 
@@ -132,7 +137,7 @@ def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[f
     Returns a dict from "material" and "base", those with a key wlf or arrhenius, to a function of a temperature in
     degrees Celsius.  It returns the factor of all times, dimensionless, > 0, from the key ``temperature`` of the
     section, at which it is 1, to that temperature; without the key it is the shift itself.  The function raises
-    ParameterError for a temperature that the shift does not allow.
+    ParameterError for a temperature that the shift does not allow and for a factor that no double holds.
     Raises FileError for a section that is wrong, also one with both wlf and arrhenius.
     """
     sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}
@@ -195,7 +200,7 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
 def _parse_material(path: Any, name: str, content: Any) -> Material:
     """Return the material of a section at its temperature.
 
-    path, name: path of the file, against which a path in the section is taken, and name of the section.
+    path, name: path of the file, relative to whose folder a path in the section is, and name of the section.
     content: keys and values of the section, as tomllib reads them.
     Returns the :class:`Material`: of the section itself, or of the file that it names, with the thickness and the
     density of the section where these are given; shifted if the section has a ``temperature``, else as at its
@@ -247,7 +252,8 @@ def _material_of_law(path: Path) -> Material:
     """Return the :class:`Material` of the law in the file ``path``.
 
     The attribute ``material`` of the file states it as TOML.
-    Raises FileError for a pair, for a law without units, and for a file that is damaged or no law.
+    Raises FileError for a pair, for a law without units, and for a file that is damaged or no law; KeyError for one
+    without that attribute (the law of every alpha), ValueError where it is not TOML.
     """
     content = tomllib.loads(read_law(path).attributes["material"])
     if not content.keys() & set(SECTIONS):

@@ -63,6 +63,7 @@ class Pair:
     def __post_init__(self) -> None:
         """Check the bodies, and what a layer of finite thickness allows.
 
+        Of many pairs two rigid bodies are refused only where all of them are; ``plane`` is not checked without a layer.
         Raises ParameterError as the class states.
         """
         for name in ("cylinder", "base"):
@@ -121,8 +122,8 @@ class Pair:
     def E_prime(self) -> Any:
         """Return the contact modulus E' of the pair at long times, 2/E' = 1/E'_1 + 1/E'_2 (Sect. 3.1), Pa.
 
-        A float, or an array (n,) of many pairs; that of one body if both are alike; on a rigid base twice that of the
-        other body.
+        A float, or an array (n,) of many pairs, NaN where both bodies are rigid; that of one body if both are alike; if
+        one body is rigid twice that of the other.
         """
         one, other = self._moduli
         if self.like:
@@ -156,7 +157,8 @@ class Pair:
         ------
         ParameterError
             A body with a thickness: its law depends on the load and the radius too (:meth:`cover`); a time of the other
-            body that no double holds in units of ``T_ref``; n pairs of more than 64 modes.
+            body that no double holds in units of ``T_ref``; n pairs of more than 64 modes; many series and many parts
+            of the compliance whose numbers differ.
         """
         if self.covered is not None:
             allowed = "left out, or in a Cylinder: the law of a layer depends on its load and radius"
@@ -184,8 +186,11 @@ class Pair:
         Raises
         ------
         ParameterError
-            Many series, or many parts of the compliance beside an elastic body; a thickness or Poisson's ratio out of
-            the range of :class:`Cover`.
+            Many series; beside a body that is not rigid many parts of the compliance, or an array of its nu; a
+            thickness or Poisson's ratio out of the range of :class:`Cover`; a time that no double holds in units of
+            ``T_ref``.
+        AssertionError
+            If no body has a thickness.
         """
         on = self.covered
         assert on is not None
@@ -208,11 +213,13 @@ class Pair:
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:
-        """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous moduli), dimensionless,
-        any sign.
+        """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous moduli), floats,
+        dimensionless, any sign.
 
-        Body 1 of the formula of :func:`dundurs` is the cylinder.  (0.0, 0.0) for like bodies, up to rounding.  Both
-        bodies must be a :class:`Material`: a :class:`Solid`, which has no shear modulus, gives an AttributeError.
+        The moduli relax from one end to the other; the two numbers serve the check that shear and pressure do not
+        couple.  Body 1 of the formula of :func:`dundurs` is the cylinder; one body may be rigid.  It is exactly
+        (0.0, 0.0) for like bodies.  Both must be a :class:`Material`: a :class:`Solid` has no shear modulus, which is
+        an AttributeError.
         """
         one, other = self.cylinder, self.half_space
         instant = one.G * one.prony.alpha, other.G * other.prony.alpha
@@ -223,7 +230,7 @@ def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
     """Return the contact modulus E' = pi E/(1 - nu^2) of Sect. 3.1 of the paper; in plane stress pi E.
 
     E: Young's modulus, a number or an array; infinite for a rigid body.
-    nu: Poisson's ratio, likewise; they broadcast.  Ignored in plane stress.
+    nu: Poisson's ratio, in (-1, 0.5], not checked, likewise; they broadcast.  Ignored in plane stress.
     plane: "strain"; any other text is taken as "stress".
     Returns E' in the unit of E, a number or an array.
     """
@@ -237,7 +244,7 @@ def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "stra
     (3 - nu)/(1 + nu) in plane stress.
 
     G_1, G_2: shear moduli in one unit, > 0; one of them may be infinite, and its nu then has no effect on the result.
-    nu_1, nu_2: Poisson's ratios.
+    nu_1, nu_2: Poisson's ratios, in (-1, 0.5], not checked.
     plane: "strain"; any other text is taken as "stress".
     Returns a float, dimensionless; its sign changes where the bodies are exchanged, and it is 0.0 for like bodies.
     """

@@ -118,7 +118,7 @@ class Prony(OneOrMany):
         E: strengths, >= 0, dimensionless, (modes,) or (n, modes); empty (default): elastic.
         tau: relaxation times in units of T_ref, > 0, in the shape of E; one of the two may be (modes,) where the other
             is (n, modes), or one number for all modes.
-        Raises ParameterError as the class states, and for shapes that do not fit.
+        Raises ParameterError as the class states, and for shapes that do not fit, also for two single numbers.
         """
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
@@ -138,7 +138,7 @@ class Prony(OneOrMany):
             is (n, modes), or one number for all modes.
         alpha : instantaneous divided by long-time modulus, 1/(1 - sum J), in [1, 1e12]; a number or, for arrays (n,
             modes), (n,). That difference loses digits where the sum is near 1: a value given here replaces it, and must
-            agree with it to rounding of J: 1/alpha to 1e-14 for each mode and one more.  None: it is computed.
+            agree with it to rounding of J: |1/alpha - (1 - sum J)| <= 1e-14 (1 + modes).  None: it is computed.
 
         Returns
         -------
@@ -205,6 +205,7 @@ class Prony(OneOrMany):
         strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength last; dimensionless,
             times in units of T_ref.  Contiguous arrays are kept and locked themselves, of others a copy.
         alpha: instantaneous divided by long-time modulus, a number or (n,).
+        These are ``by_creep``, ``shape``, ``alpha``, ``_strengths`` and ``_times``.
         """
         self.by_creep, self.shape = by_creep, strengths.shape[:-1]
         self._strengths, self._times = map(lock_array, (strengths, times))
@@ -319,8 +320,8 @@ class Prony(OneOrMany):
 
         factor: dimensionless, > 0, a number, or (n,), one for each of n materials; of a single material (n,) makes n.
         Returns a new :class:`Prony` in the same form, with the same strengths.
-        Raises ParameterError for a factor that is not positive or not finite, and for one that makes a time 0 or
-        infinite, and for another number of factors than of materials.
+        Raises ParameterError for a factor that is not positive or not finite, for one that makes a time 0 or infinite,
+        for another number of factors than of materials, and for factors of more than one axis.
 
         Examples
         --------
@@ -370,7 +371,7 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
 
     names: names of strengths and times, for errors.
     strengths, times: strengths, >= 0, and times, > 0, of the modes, (modes,) or (n, modes), or one of them a number;
-        dimensionless, times in units of T_ref.  No modes, and no materials, are allowed.
+        dimensionless, times in units of T_ref.  No modes, and no materials, are allowed; not changed.
     Returns (strengths, times) by descending time, (modes,) or (n, modes) with as many modes as the material with most
     has; modes without strength are dropped or, of many materials, put after the others, where the times have no
     meaning.  Modes of equal times are one, with the sum of their strengths.

@@ -59,8 +59,8 @@ def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     E: strengths divided by the long-time modulus, > 0, (..., modes); of any number of modes, also 0.
     tau: relaxation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1 + sum E, a number or (...).
-    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``tau``; E and alpha are the arguments
-    themselves.
+    Returns both forms as :class:`Modes` (alpha, rates a and b, strengths E and J, gaps a_i - b_j), whose rates are in
+    the inverse unit of ``tau``; E and alpha are the arguments themselves.
     """
     a, modes = 1.0 / tau, tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
@@ -77,8 +77,8 @@ def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     J: strengths divided by the long-time compliance, > 0, (..., modes); of any number of modes, also 0.
     T: retardation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1/(1 - sum J), a number or (...).
-    Returns both forms as :class:`Modes`, whose rates are in the inverse unit of ``T``; J and alpha are the arguments
-    themselves.
+    Returns both forms as :class:`Modes` (alpha, rates a and b, strengths E and J, gaps a_i - b_j), whose rates are in
+    the inverse unit of ``T``; J and alpha are the arguments themselves.
     """
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))
@@ -136,9 +136,9 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
 def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
     """Return the poles relative to the origin of each zero, that pole from which the zero is measured.
 
-    origin: index of the origin of each zero, (..., zeros).
-    spread: pole_j - pole_l, (..., poles, poles), [..., j, l].
-    Returns pole_j - pole of the origin of zero i, (..., zeros, poles), [..., i, j].
+    origin: index of the origin of each zero, int, (..., zeros).
+    spread: pole_j - pole_l, (..., poles, poles), [..., j, l], in the unit of the rates.
+    Returns pole_j - pole of the origin of zero i, (..., zeros, poles), [..., i, j], in that unit, 0 at the origin.
     """
     return np.take_along_axis(np.swapaxes(spread, -1, -2), origin[..., None], axis=-2)
 
@@ -146,9 +146,10 @@ def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
 def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
     """Return constant + sum weight_j/(pole_j - s) at one s for each zero, s = pole[origin] + step.
 
-    step: signed distance of s from the pole of its origin, not 0, (..., zeros); s is at no other pole either.
-    seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
-    weight: weights of the poles, (..., poles).
+    step: signed distance of s from the pole of its origin, in the unit of the poles, not 0, (..., zeros); s is at no
+        other pole either.
+    seen: poles relative to the origin of each zero, in that unit, (..., zeros, poles), [..., i, j].
+    weight: weights of the poles, in the unit of the constant times that of the poles, (..., poles).
     constant: the constant, (..., 1).
     Returns the value of the sum at the point of each zero, (..., zeros), in the unit of the constant.
     """
@@ -163,13 +164,14 @@ def _improve_distance(
     The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.  A step
     to at most half or at least twice the distance, or to NaN, is left out, and that distance stays as it is.
 
-    distance: distance of each zero from its origin, the pole that it is measured from, > 0, (..., zeros).
-    origin: index of that pole, (..., zeros).
-    side: 1 for a zero right of its origin, -1 left of it, (..., zeros).
-    seen: poles relative to the origin of each zero, (..., zeros, poles), [..., i, j].
-    weight: weights of the poles, (..., poles).
-    constant: the constant of the sum, (..., 1).
-    Returns the distances, > 0, (..., zeros), in the unit of the poles.
+    distance: distance of each zero from its origin, the pole that it is measured from, > 0, in the unit of the poles,
+        (..., zeros); not changed.
+    origin: index of that pole, int, (..., zeros).
+    side: 1.0 for a zero right of its origin, -1.0 left of it, (..., zeros).
+    seen: poles relative to the origin of each zero, in that unit, (..., zeros, poles), [..., i, j].
+    weight: weights of the poles, in the unit of the constant times that of the poles, (..., poles).
+    constant: the constant of the sum, >= 0, (..., 1).
+    Returns a new array of the distances, > 0, (..., zeros), in the unit of the poles.
     """
     inverse, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)

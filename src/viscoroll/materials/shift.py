@@ -187,7 +187,7 @@ def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
         changed.
     unit: unit of all these fields, as "rad s-1", or an object that has units by name, as SI (default).
     lows: lower bound of each field by name, in that unit; the number must be larger.
-    Raises ParameterError for the first field that is no such number, or is infinite.
+    Raises ParameterError for the first field that is no such number (also None, NaN, an array), or is infinite.
     """
     for name, low in lows.items():
         object.__setattr__(instance, name, check_number(name, getattr(instance, name), unit=unit, above=low))
@@ -197,7 +197,7 @@ def _shift(temperature: float, exponent: float) -> float:
     """Return a_T = exp(exponent), dimensionless, > 0.
 
     temperature: degrees Celsius, as the caller gave it, for the error.
-    exponent: ln a_T; NaN is refused too.
+    exponent: ln a_T, dimensionless; NaN is refused too.
     Raises ParameterError for an exponent of 700 or more in size, near which a_T leaves the range of doubles.
     """
     if not abs(exponent) < 700.0:

@@ -1,4 +1,8 @@
-"""Loads of steady rolling, checked and flattened: :class:`Loads`."""
+"""Loads of steady rolling, checked and flattened: :class:`Loads`.
+
+P is the load that presses the cylinder on its base, R its radius, kappa = R/l0 with the contact length at rest l0, mu
+the coefficient of friction, and j the moment of inertia divided by m R^2.
+"""
 
 from __future__ import annotations
 
@@ -73,16 +77,17 @@ def loads_of(
 ) -> Loads:
     """Check the loads of a call of :func:`.steady.steady`, and broadcast them with the parameters of the scene.
 
-    scene : dimensionless parameters of the roller, on the slope; one alpha or one material, the others numbers or
-        arrays.
+    scene : dimensionless parameters of the roller, on the slope, of which alpha, kappa, mu and j are read; one alpha or
+        one material, the others numbers or arrays.
     force, torque : numbers, arrays or :class:`Feedback`, divided by P and P R; None: 0.
     slope : angle, rad, a number or an array; tan(slope) is added to the force, which is divided by the load on the
         slope, P cos(slope).  None: level.
     V : given speeds, dimensionless, any sign, a number or an array; None where the speed is to be found.
-    Returns the :class:`Loads`: the broadcast loads, flattened to vectors (n,), (1,) where all are numbers.
-    Raises ParameterError: several alphas; NaN or infinite input; shapes that do not broadcast; kappa |V| above
-    :data:`FASTEST`; a feedback that changes with time or has arrays of gains; with V both or neither of force and
-    torque (a slope alone counts as the force), or a feedback.
+    Returns the :class:`Loads`: the broadcast ``shape``; ``gains``; ``given``, the name of the load beside V or None;
+    and force, torque, kappa, mu, j and V (None where it is to be found), flattened to (n,), (1,) where all are numbers.
+    Raises ParameterError: several alphas or materials; NaN or infinite input; a slope outside (-pi/2, pi/2); shapes
+    that do not broadcast; kappa |V| above :data:`FASTEST`; a feedback that changes with time or has arrays of gains;
+    with V both or neither of force and torque (a slope alone counts as the force), or a feedback.
     """
     if type(scene.alpha) is not float:
         refuse_arrays(scene, ("alpha",))

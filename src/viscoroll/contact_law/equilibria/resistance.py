@@ -1,8 +1,8 @@
 """Rolling resistance over speed: extrema of M(V), and the branches between them on which M(V) is inverted.
 
-kappa M is a function of u = kappa V alone for a material.  A gain G on the speed turns M(V) = load into M(V) - G V =
-load, the same problem with another curve.  All is dimensionless unless units are named; a law is a :class:`LawTable`,
-the rows of one material.
+With M over P R and kappa = R/l0, kappa M is a function of u = kappa V alone for a material.  A gain G on the speed
+turns M(V) = load into M(V) - G V = load, the same problem with another curve.  All is dimensionless unless units are
+named; a law is a :class:`LawTable`, the rows of one material.
 """
 
 from __future__ import annotations
@@ -135,27 +135,26 @@ class Branches:
 def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     """Find every local maximum and minimum of the rolling resistance moment M of a cylinder over its speed.
 
-    They bound the loads under which it can roll steadily: M, Eq. (16) of Zobova and Goryacheva (2020) for one
-    relaxation time, rises with the speed from 0 and falls to 0 again.  A rubber
-    with widely separated relaxation times has several maxima; one relaxation time has a single one.
+    They bound the loads under which it can roll steadily: M rises from 0 and falls to 0 again.  For one relaxation time
+    it is Eq. (16) of Zobova and Goryacheva (2020), with one maximum; widely separated times give several.
 
     Parameters
     ----------
     roller : a :class:`Scene`, of which alpha or material and kappa are used, or a :class:`Cylinder`; alpha, material
-        and kappa must be single, mu and the others may be arrays.
+        and kappa must be single: of a Cylinder R, E, nu, T_epsilon, T_sigma and load, or without a load m and g; mu and
+        the others may be arrays.
 
     Returns
     -------
     ResistanceExtrema
         Named tuple of ``V``, the speeds > 0, ascending, ``M``, the moments there, and ``is_maximum``, true for a
         maximum and false for a minimum, arrays of one length; of a Cylinder V is in m/s and M in N m/m, of a Scene they
-        are divided by R/T_ref (T_ref is its unit of time) and P R.  M is odd in V, so that negative speeds need no
-        search.  Empty arrays for elastic bodies.
+        are divided by R/T_ref (T_ref is its unit of time) and P R.  M is odd in V.  Empty arrays for elastic bodies.
 
     Raises
     ------
     ParameterError
-        Arrays in alpha or kappa, an array of materials; what is no scene and no cylinder; a layer too thin for its law.
+        Arrays in alpha, kappa or material; no scene or cylinder; a layer too thin, times beyond 1e-100 to 1e100 T_ref.
 
     Notes
     -----
@@ -185,13 +184,14 @@ def branches(law: LawTable, gain: float) -> Branches:
 
     law : table of the material.
     gain : G, slope of the load in V, dimensionless, any sign; 0 for a load that does not depend on V.
-    Returns the :class:`Branches` for u > 0, which are kept for the next call (the last 16).  Where the curve has no
-    extremum, as for elastic bodies, there is one branch over all nodes.
+    Returns the :class:`Branches` for u > 0, which are kept for the next call (the last 16).  The nodes are those of
+    :func:`speed_nodes`, of which those within 1e-6, relative, of an extremum give way to it.  Without an extremum, as
+    of elastic bodies, there is one branch over all nodes.
 
     Raises
     ------
     ParameterError
-        A gain other than 0 whose size, divided by the longest retardation time, is outside :data:`_GAIN_RANGE`.
+        A gain other than 0 whose size, over the longest retardation time (elastic: 1), is not in :data:`_GAIN_RANGE`.
     """
     longest = float(law.retardation_time.max(initial=1.0 if law.alpha == 1.0 else 0.0))
     if gain and not _GAIN_RANGE[0] <= abs(gain) / longest <= _GAIN_RANGE[1]:
@@ -212,7 +212,7 @@ def branches(law: LawTable, gain: float) -> Branches:
 def speed_nodes(law: LawTable) -> Floats:
     """Return nodes of log2(u), u = kappa V, closely spaced where the material relaxes.
 
-    law : table of the material.
+    law : table of the material, of which alpha and both forms of the times, in T_ref, are read.
     Returns the nodes, ascending, (n,): 16 in an octave from 15 octaves below to 15 octaves above the rates of the
     modes, of an elastic material around u = 1; 2 in an octave for 446 octaves beyond on either side.
     """

@@ -1,4 +1,8 @@
-"""Results of steady rolling: :class:`Steady`, with the reason where a load has no equilibrium."""
+"""Results of steady rolling: :class:`Steady`, with the reason where a load has no equilibrium.
+
+P is the load that presses the cylinder on its base, R its radius, T_ref the unit of time, kappa = R/l0 with the contact
+length at rest l0, and mu the coefficient of friction.
+"""
 
 from __future__ import annotations
 
@@ -159,10 +163,10 @@ class Steady(Values):
     def loss(self) -> Loss:
         """Return the powers of each equilibrium, its coefficient of rolling resistance and its efficiency.
 
-        Returns a :class:`Loss` whose fields have the shape of ``V``, (loads..., equilibria), with the labels of the
-        arguments where these had some that fit the loads; powers divided by P R/T_ref, of a Cylinder in W per m of its
-        length.  Padding is NaN; at V = 0 the coefficient is a limit, and without input the efficiency is NaN, as the
-        class states.
+        Returns a :class:`Loss` (powers slip, half_space and cylinder; coefficient; efficiency), whose fields have the
+        shape of ``V``, (loads..., equilibria), with the labels of the arguments where they fit the loads; powers
+        divided by P R/T_ref, of a Cylinder in W per m of its length.  Padding is NaN; at V = 0 the coefficient is the
+        limit V -> 0, infinite for a cylinder that spins; without input the efficiency is NaN.
         """
         V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
             np.asarray(self[name]) for name in _FIELDS
@@ -204,8 +208,9 @@ class Steady(Values):
         """Return the title and the rows of the printed report.
 
         Returns (title; list of :class:`SummaryRow`).  Of one load the rows are its equilibria one after another, each
-        with "stable" or "unstable" and nine quantities to six digits, or the reason why there is none; of an array
-        of loads the number of all equilibria and of the stable ones, and their speeds.
+        with "stable" or "unstable" and V, omega, delta, force, torque, Q, M, beta and grip to six digits, or the
+        reason why there is none; of an array of loads the number of all equilibria and of the stable ones, and their
+        speeds.
         """
         if np.ndim(self.count):
             found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
@@ -225,11 +230,11 @@ class Steady(Values):
 
         Returns a dataset over the axes of the loads (of one load there are none; named as in labelled arguments, else
         ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  A coordinate of the labels that
-        has the name of a field is called ``given_`` and that name.  Beside the fields of this result (``eigenvalues``,
-        ``reason``, ``success`` and ``status`` are left out) it has ``rate_fast`` and
+        has the name of a field is called ``given_`` and that name.  Its variables are V, delta, Q, M_half_space,
+        M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, 0 or 1; ``rate_fast`` and
         ``rate_slow``, the real parts of the eigenvalues; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
-        ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; ``stable`` is 0 or 1; ``count`` has the axes
-        of the loads alone.
+        ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; and ``count``, over the axes of the loads
+        alone.  Units are those of the result; ``reason`` is left out.
 
         Examples
         --------
@@ -269,9 +274,10 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
         load.
     scale : units of the roller, which the result has.
     labels : labels of the arguments of the call, or None; the fields get them if their shape is that of the loads.
-    Returns the :class:`Steady`, whose fields have the shape (loads..., equilibria), of one load (equilibria,), padded
-    with NaN where loads have fewer equilibria than others; ``eigenvalues`` have a further axis of two, ``count`` has
-    the axes of the loads alone, an int for one load.  With V given, force or torque is what the balance needs.
+    Returns the :class:`Steady`, whose fields V, delta, Q, M_half_space, M_cylinder, beta, omega, M, grip, force, torque
+    and ``stable`` have the shape (loads..., equilibria), of one load (equilibria,), padded with NaN (``stable``: False)
+    where loads have fewer equilibria than others; ``eigenvalues`` have a further axis of two, ``count`` has the axes of
+    the loads alone, an int for one load.  With V given, force or torque is what the balance needs.
     """
     number, count, gains = states.load, reasons.number, loads.gains
     V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows

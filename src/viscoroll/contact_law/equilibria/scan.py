@@ -8,8 +8,12 @@ With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two
 R is smooth between the speeds at which omega - V is that of free rolling (0 of half-spaces, V delta_0 of covers) or at
 a limit of stick, which are found first.  If fw + qw = 0, the sum determines V, and R = 0 is an equation for omega.
 
-In this file all is dimensionless, and states are in a frame where V > 0; ``slip`` is omega - V, x is log2(kappa V), and
-a law is a :class:`LawTable`, the rows of one material.
+In this file all is dimensionless, and states are in a frame where V > 0; ``slip`` is omega - V, x is log2(kappa V)
+with kappa = R/l0, mu is the coefficient of friction, delta_0 the creepage (omega - V)/V at which Q = 0, delta_star the
+distance from it at which full slip begins, and a law is a :class:`LawTable`, the rows of one material.
+Rows of :class:`.states.Field` are V, delta, Q, M_half_space, M_cylinder, beta and four slopes of the law, dQ_dV at
+fixed omega, dQ_domega, dM_half_space_dV and dM_cylinder_dV; :class:`.states.States` have omega and the eigenvalues in
+place of the slopes.
 """
 
 from __future__ import annotations
@@ -71,7 +75,8 @@ class _ScanProblem(NamedTuple):
     mu: float
 
     def free_rolling(self, x: NDArray) -> _FreeRolling:
-        """Return the contact at given speeds as :class:`_FreeRolling`: moments, slip of free rolling, limit of stick.
+        """Return the contact at given speeds as :class:`_FreeRolling`: V, M, M_half_space, limit V delta_star of stick,
+        and slip V delta_0 of free rolling, (n,) each, dimensionless.
 
         x: log2(kappa V), (n,).
         """
@@ -231,15 +236,18 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
 
 
 def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
-    """Refine approximate states by Newton steps in V and slip, and drop those that are no states or occur twice.
+    """Refine approximate states, and drop those that are no states or occur twice.
 
+    It makes four Newton steps in V and slip on M = force + torque and R = 0, since the scans find V to the rounding of
+    its logarithm alone.
     problem : :class:`_ScanProblem`, the load and the table of its material.
     V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where V > 0; n may be 0.
     Returns rows of :class:`Field` with the slopes of the law from row 6 on at the refined states, (10, states), sorted
-    by V and creepage.  A step that does not reduce the sum of the residuals, or changes V by a thousandth or more, is
-    rejected.  A state whose residual stays above :data:`_RESIDUAL` of its terms is dropped, and of states whose V and
-    delta agree to :data:`_SAME_STATE`, relative, all but the first.  Where the contact passes from full slip to full
-    slip within the rounding of V, two zeros are one state, or none.
+    by V and creepage.  A step that does not reduce the sum of the moduli of both residuals, or changes V by a
+    thousandth or more, is rejected.  A state of which a residual stays above :data:`_RESIDUAL` times (mu +
+    |M_half_space| + |M_cylinder|) is dropped, and of neighbours in this order whose V and delta agree to
+    :data:`_SAME_STATE`, relative, all but the first.  A jump from full slip to full slip of the other sign, within the
+    rounding of V, may be found as two zeros of R: these are refined to one state, or dropped.
     """
     rows, residuals = problem.rows(V, slip)
     gains = problem.load_rows[:, 1:]

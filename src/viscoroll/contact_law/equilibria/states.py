@@ -4,7 +4,13 @@ For given V and Q the creepage follows without a root: by Eq. (15) H(eta) = (1 -
 the speed V/root with root^2 = 1 - |Q|/mu.  So delta = delta_star(V) - root delta_star(V/root) and beta = root
 lam(V/root)/lam(V).
 
-In this file all is dimensionless, and a law is a :class:`LawTable`, the rows of one material.
+In this file all is dimensionless, and a law is a :class:`LawTable`, the rows of one material.  Here zeta and eta are
+half the transit times of the contact and of its stick zone, H a function of the material, Q the friction force over the
+load P, M the rolling moment over P R, mu the coefficient of friction, kappa = R/l0 with the contact length at rest l0,
+delta = (omega - V)/V the creepage, delta_star the size of it from which on the contact slips fully (of a cover: of its
+difference from delta_0, at which Q = 0), lam the contact length over l0, and beta the part of it that sticks.
+Rows of :class:`Field` are V, delta, Q, M_half_space, M_cylinder, beta, and then either four slopes of the law, dQ_dV at
+fixed omega, dQ_domega, dM_half_space_dV and dM_cylinder_dV, or omega and the eigenvalues.
 """
 
 from __future__ import annotations
@@ -207,7 +213,8 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
 
     law : table of the material.
     gain : slope of the load in V, dimensionless; 0 for a load that does not depend on V.
-    total : kappa (force + torque), dimensionless, any sign, (n,).
+    total : kappa (force + torque), dimensionless, any sign, (n,); not checked: where it is not within the values of the
+        curve at the nodes, no crossing is found.
     Returns (index of the load; sign of V, 1.0 or -1.0; kappa |V|, > 0), one entry for each crossing, (crossings,) each;
     first those with V > 0, then those with V < 0, of every branch.  A load has none to many; V = 0 is not among them.
     Raises ParameterError for a gain out of range.
@@ -230,8 +237,9 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     """Return the steady states at given V > 0, whether or not the friction suffices.
 
     law : table of the material.
-    loads : the loads, dimensionless, without a gain on omega.  Where V was given, that of force and torque which was
-        given too determines Q, and M is that of the law; else V must be such that force + torque equal M.
+    loads : the loads, dimensionless, without a gain on omega, of which gains, given, force, torque, kappa, mu and j are
+        read.  Where V was given, that of force and torque which was given too determines Q, and M is that of the law;
+        else V must be such that force + torque, with the gains on V, equal M.
     load : index of the load of each state, (n,).
     sign : sign of the motion, in whose frame V > 0, 1.0 or -1.0, (n,).
     V : speeds, > 0, dimensionless, (n,).

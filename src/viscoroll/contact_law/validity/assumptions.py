@@ -1,4 +1,8 @@
-"""The assumptions of the model and their limits: :class:`Assumption`, and :class:`Validity`, which lists them all."""
+"""The assumptions of the model and their limits: :class:`Assumption`, and :class:`Validity`, which lists them all.
+
+An assumption has ``value``, the number that decides, ``holds``, a bool or booleans in the shape of the value, and
+``sentence``, which says it in words; the first two are None where no number decides.
+"""
 
 from __future__ import annotations
 
@@ -173,7 +177,7 @@ def transit_frequency(V: Any, length: Any) -> Any:
     contact has higher rates: modes faster than the transit frequency act there.
 
     V: speed of the axis, any sign, any unit, any shape.
-    length: contact length, > 0, in the unit of length of V; broadcasts with V.
+    length: contact length, > 0, not checked, in the unit of length of V; broadcasts with V.
     Returns the rate, >= 0, in the broadcast shape, in the inverse of the unit of time of V: 1/s for SI units.
     """
     return np.abs(V) / length
@@ -184,7 +188,7 @@ def transit_speeds(series: Prony, low: float, high: float) -> tuple[float, float
 
     It follows from the transit time 2 zeta by Eq. (6) of the paper, without a root.
     series: :class:`Prony` series of the material, of both bodies together; it may be elastic.
-    low, high: the two transit frequencies, multiplied by T_ref of the series, dimensionless, > 0.
+    low, high: the two transit frequencies, in any order, multiplied by T_ref of the series, dimensionless, > 0.
     Returns (kappa V at ``low``, kappa V at ``high``), dimensionless.
     """
     rates = np.array([low, high])
@@ -201,7 +205,8 @@ def _largest(values: Any) -> float:
 def assess_small_contact(reach: Any) -> Assumption:
     """Compare the far end of the contact with :data:`REACH_LIMIT`.
 
-    reach: distance from the axis to the far end of the contact divided by R, any shape.
+    reach: distance from the axis to the far end of the contact divided by R, > 0, a number or an array of any shape,
+        which may be empty.
     Returns the assumption ``small_contact``, whose value is ``reach``; it holds where that is at most 0.2.
     """
     far = _largest(reach)
@@ -216,7 +221,8 @@ def assess_small_contact(reach: Any) -> Assumption:
 def assess_position(epsilon: Any) -> Assumption:
     """State whether the axis is above the contact, which the theory does not require.
 
-    epsilon: shift of the contact towards the leading edge in half contact lengths, any shape.
+    epsilon: shift of the contact towards the leading edge in half contact lengths, a number or an array of any shape,
+        which may be empty.
     Returns the assumption ``under_axis``, whose value is ``epsilon``; it holds where that is at most 1.
     """
     ahead = _largest(epsilon)

@@ -1,4 +1,7 @@
-"""The assumptions of the law of a layer of finite thickness, and its stated errors: :func:`assess_cover`."""
+"""The assumptions of the law of a layer of finite thickness, and its stated errors: :func:`assess_cover`.
+
+l0 is the contact length at rest that the same bodies would have as half-spaces.
+"""
 
 from __future__ import annotations
 
@@ -41,12 +44,14 @@ def stated_error(thickness: float) -> float:
 def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]:
     """Return the lengths of the contact on a cover, and the assumption ``thick``.
 
-    scene: dimensionless parameters of a roller with a cover, or with an array of covers.
-    V: speeds, dimensionless, any sign and shape; broadcasts with the scene.
-    Returns (:class:`ContactLengths`; the assumption, whose value is half the contact length divided by the thickness;
-    it holds where that is at most the limit for Poisson's ratio of the layer, from 3 at nu = 0 to 1.25 at nu = 1/2, up
-    to which one stick zone in front with slip behind is right at every creepage).  Both have the broadcast shape.  The
-    sentence states the errors of the thinnest cover, and the limit for the cover whose limit is lowest.
+    scene: dimensionless parameters of a roller with a cover, or with an array of covers; material and kappa are used.
+    V: speeds, dimensionless, any sign, an array of any shape; broadcasts with the scene.
+    Returns (:class:`ContactLengths`: reach over R, epsilon, lam; the assumption, whose value is half the contact length
+    divided by the thickness; it holds where that is at most the limit for Poisson's ratio of the layer, from 3 at nu =
+    0 to 1.25 at nu = 1/2, up to which one stick zone in front with slip behind is right at every creepage).  Both have
+    the broadcast shape.  The sentence states the errors of the thinnest cover, and the limit for the cover whose limit
+    is lowest.
+    Raises ParameterError for kappa |V| above 1e300, shapes that do not broadcast, and a layer too thin for its law.
     """
     cover = scene.cover
     assert cover is not None

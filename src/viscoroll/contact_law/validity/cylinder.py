@@ -99,7 +99,7 @@ class BodyData:
 
         |V|/l0 is used because it does not depend on load and radius for half-spaces.  For a cover the ends have an
         error below 1 %.  None where nothing was measured, and for an array of materials.  Bands that do not overlap
-        give a lowest rate above the highest.
+        give a lowest rate above the highest.  Raises ParameterError for a layer too thin for its law.
         """
         records, series = self.records.values(), self.scene.series
         if not records or series is None:
@@ -118,8 +118,9 @@ class BodyData:
     def measured_speeds(self) -> tuple[float, float] | None:
         """Return (lowest, highest) |V|, m/s, at which the transit frequency of every cylinder is in the measured band.
 
-        None without data.  No speed is between them (the lowest is above the highest) where the bands have no speed in
-        common; :data:`NO_SPEEDS` for a fit that misses its data by more than 5 %.
+        None without data.  A transit frequency at an end of a band is inside.  No speed is between them (the lowest is
+        above the highest) where the bands have no speed in common; :data:`NO_SPEEDS` for a fit that misses its data by
+        more than 5 %.
         """
         if self.measured_rates is None:
             return None
@@ -152,7 +153,7 @@ class BodyData:
         """Return the contact length divided by l0, for bodies of one material or pair, or one cover.
 
         rate: |V|/l0, 1/s, >= 0, a number or (n,).
-        Returns lam, dimensionless, (n,); (1,) for a number.
+        Returns lam, the length at zero creepage, on which it does not depend, dimensionless, (n,); (1,) for a number.
         """
         material, unit = self.scene.in_own_time()
         (lam,) = pure_rolling_fields(law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam")
@@ -221,8 +222,8 @@ def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
 
     extent: (smallest, largest) of the speeds, signed.  A range that contains 0 or both signs leaves a band at its upper
         end alone, because its small speeds are not known.
-    band: (lowest, highest) |V|, in the same unit; a range without 0 leaves every band whose lowest is above its
-        highest.
+    band: (lowest, highest) |V|, in the same unit, both inside; a range without 0 leaves every band whose lowest is
+        above its highest.
     """
     slowest, fastest = max(extent[0], -extent[1], 0.0), max(extent[1], -extent[0])
     return fastest > band[1] or 0.0 < slowest < band[0]

@@ -5,7 +5,9 @@ relative error of V in a motion where it was no larger before (docs/validity.md)
 Free rolling depends on u = kappa V, on g and on the material:
 u' = -g kappa M(u); the distance is the integral of u du/(g kappa M), in units of l0.
 
-The own time of a material is a unit of time in which its slow time is near 1; u and g are in that unit.
+M is the rolling moment over P R, kappa = R/l0 with the contact length at rest l0, gamma = P T_ref^2/(m R), j the moment
+of inertia over m R^2.  The own time of a material is a unit of time in which its slow time is near 1; u and g are in
+that unit.
 """
 
 from __future__ import annotations
@@ -191,7 +193,8 @@ class FreeRolling:
         """Return the lengths of the contacts of the states at zero creepage, on which they do not depend.
 
         kappa: slenderness R/l0 of the scene, broadcasts with u.
-        Returns :class:`ContactLengths`, dimensionless, in the shape of u; numbers if u has no axes.
+        Returns :class:`ContactLengths` (reach over R, epsilon, lam), dimensionless, in the shape of u; numbers if u has
+        no axes.
         """
         out, u = np.empty((2, self.u.size)), np.minimum(self.u.ravel(), _FASTEST)
         for material, part in self._groups():
@@ -237,11 +240,11 @@ class FreeRolling:
         """Return the part of free rolling in which the unsteadiness is below a level.
 
         level: of the unsteadiness, which is about the relative error of V by the law of steady rolling; dimensionless,
-            > 0.
+            > 0, not checked; an unsteadiness equal to it is not below it.
         Gamma must be known.
-        Returns a :class:`Reach` in the shape of u and the units of the caller.  At rest N(0) decides which of its
-        cases holds, though :attr:`unsteadiness` is 0 there.  Of elastic bodies speed and left are 0, time and distance
-        infinite.
+        Returns a :class:`Reach` (speed at its end, time and distance to there, distance left to rest) in the shape of u
+        and the units of the caller.  At rest N(0) decides which of its cases holds, though :attr:`unsteadiness` is 0
+        there.  Of elastic bodies speed and left are 0, time and distance infinite.
         """
 
         def evaluate(curve: Curve, u: Floats, g: Floats) -> list[Floats]:
@@ -279,8 +282,9 @@ class FreeRolling:
         def evaluate(curve: Curve, u: Floats, g: Floats, rested: Floats) -> list[Floats]:
             """Return [lost u, lost distance] for states of one material, (n,) each, in its own time and in l0.
 
+            They follow from the work W to leave the indentation, :meth:`Curve.work`.
             curve: free rolling of the material.
-            u, g, rested: kappa |V| at the start, gamma/(1 + j), time of the standstill, (n,) each.
+            u, g, rested: kappa |V| at the start, >= 0, gamma/(1 + j), > 0, time of the standstill, >= 0, (n,) each.
             """
             distance = curve.distance(u)
             W = curve.work(u, distance / g, rested)

@@ -1,4 +1,8 @@
-"""Free rolling of one material as splines over speed: :class:`Curve`."""
+"""Free rolling of one material as splines over speed: :class:`Curve`.
+
+kappa = R/l0 with the contact length at rest l0, M is the rolling moment over load and radius, and N its factor of dV/dt
+in slow changes of speed, M = M(V) + N dV/dt.
+"""
 
 from __future__ import annotations
 
@@ -44,6 +48,8 @@ class Curve:
 
         material: alpha > 1, of which the unit of time is T_epsilon; or a :class:`Prony` series in its own time, with
             one mode at least.
+        The attributes of the class are set, and the splines over ln u: N, u^2/M, and the integrals for time and
+        distance.
         """
         from scipy.interpolate import CubicSpline
 

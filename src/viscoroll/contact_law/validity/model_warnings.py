@@ -1,7 +1,8 @@
 """Warnings of states and motions that the model does not describe: all :class:`ModelWarning` are given here.
 
 Worker processes never warn.  The texts of faults contain no numbers, so that Python shows the same one once for each
-line of a program.
+line of a program.  In a scene, which is dimensionless, kappa = R/l0 with the contact length at rest l0, mu is the
+coefficient of friction, gamma = P T_ref^2/(m R), j the moment of inertia over m R^2, M the rolling moment over P R.
 """
 
 from __future__ import annotations
@@ -258,8 +259,9 @@ def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -
     """Return the faults of the model in those motions of an ensemble, three at most, that are worst by simple bounds:
     of the smallest kappa, of the largest loss in full slip, and of the largest unsteadiness.
 
-    scene: dimensionless parameters of the roller, with gamma, numbers or arrays (n,).
-    V0, omega0: start speeds, dimensionless, numbers or arrays (n,); n may be 0.
+    scene: dimensionless parameters of the roller, of which material (or alpha), kappa, mu, gamma (not None) and j are
+        read, numbers or arrays (n,).
+    V0, omega0: start speeds, dimensionless, any sign, numbers or arrays (n,); n may be 0.
     driven: whether something drives the motions, or they are rolled with the added mass N; slowness is not a fault
         then.
     Returns the sentences of :func:`_start_faults`, each once; an empty list where these motions have no fault, or there

@@ -69,8 +69,8 @@ class Steadiness(Assumption):
 
         Parameters
         ----------
-        free : states at the output times, (times,) or (times, motions); each gives the distance and the speeds of free
-            rolling from there.
+        free : states at the output times, (times,) or (times, motions), with gamma; each gives the distance and the
+            speeds of free rolling from there.  A state at rest after a motion has begun counts as the limit V -> 0.
         rolls : mask of the times at which motions are not in full slip, in the shape of u.  In full slip friction rules
             the motion, and the unsteadiness counts as 0.
         x : distances travelled in the unit of the caller, in the shape of u; NaN where they are not known.

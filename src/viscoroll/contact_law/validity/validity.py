@@ -54,7 +54,8 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
     ------
     ParameterError
         NaN or infinite speeds, a density that is not one positive number, a density for a Scene, shapes that do not
-        broadcast, what is no scene and no cylinder, a layer too thin for its law.
+        broadcast, what is no scene and no cylinder, a layer too thin for its law, of a layer also kappa |V| above
+        1e300; times of a material beyond 1e-100 to 1e100 T_ref.
 
     Examples
     --------

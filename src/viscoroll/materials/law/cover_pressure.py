@@ -21,7 +21,8 @@ _DECAYED = 700.0
 
 
 def pressure(modes: CoverModes, z: float, theta: float, x: Floats) -> Floats:
-    """Return the pressure along the contact, divided by 2 P/(pi a), the largest pressure of Hertz on half length a.
+    """Return the pressure along the contact over 2 P/(pi a), the largest pressure of Hertz for the load P on the half
+    length a.
 
     modes: :class:`CoverModes` of the cover and the other body.
     z: a divided by V T_ref, dimensionless, > 0; infinite for V = 0, where the bodies are taken as elastic with their

@@ -78,8 +78,8 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     cover: one :class:`..cover.Cover`, of a single thickness and Poisson's ratio.
     thickest: thickness divided by l0 that determines the number of rows in place of that of the cover, for several
         covers to have as many; None: that of the cover.  It has no effect for elastic bodies.
-    Returns the polynomials and their limits of fast rolling, as :class:`.pack.CoverRows`; of elastic bodies a single
-    row of constants, with epsilon = M = 0.
+    Returns the polynomials and their limits of fast rolling, as :class:`.pack.CoverRows` (e0, coefficients, creep,
+    limits); of elastic bodies a single row of constants, with epsilon = M = 0.
     Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses, and where at
     some speed no contact length that carries the load is found.
     """
@@ -129,7 +129,8 @@ def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floa
     orders: number of terms of the pressure; None: as many as rows are made with (:func:`.cover_solve.solve`).
     Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, dimensionless,
     (5,).  For a cover on the cylinder delta_0 has the other sign.
-    Raises ParameterError where no contact length that carries the load is found.
+    Raises ParameterError where no contact length that carries the load is found; a contact that is longer than rows
+    allow, half of it beyond six thicknesses, is not refused.
     """
     return _solve_node(CoverModes(cover), u, orders=orders)[0]
 
@@ -156,7 +157,7 @@ def _solve_node(
         1: the modes have their own stiffness.
     Returns (lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,),
     dimensionless; ln z after the last secant step; d ln H/d ln z of that step, limited to [0.5, 8]).
-    Raises ParameterError where the secant method reaches its limit of 40 steps.
+    Raises ParameterError where the secant method has not ended after 40 solves.
     """
     goal, previous, thickness = -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
     if start is None:
@@ -226,15 +227,16 @@ def _fit_fast_rows(
 ) -> tuple[Floats, Floats]:
     """Fit the rows beyond the last octave, where lam, L, 2 kappa delta_0, epsilon and M u/V are polynomials of 1/u.
 
-    u: last nodes of the solve, ascending, (n,), dimensionless.
+    Beside a half-space that relaxes too, a second polynomial of 1/u, of ``log_terms`` terms, times ln u is added.
+    u: last nodes of the solve, ascending, from ``begin`` to at most 20 ``begin``, (n,), dimensionless.
     values: lam, L, 2 kappa delta_0, epsilon and M/V there, (5, n); not changed.
     limits: of these for u -> infinity, (5,); NaN (delta_0): not known, then the value of a fitted polynomial at 1/u = 0
         is taken.  Those of epsilon and M/V are 0.
-    x: nodes of these rows in u, (rows, nodes).
+    x: nodes of these rows in u, ascending, >= ``begin``, (rows, nodes).
     begin: u where these rows begin, the end of the last octave.
     log_terms: number of terms in ln u, as of :func:`_fit_end`.
     Returns (values and slopes over ln u at x, of the five quantities, (2, 5, rows, nodes);
-    :attr:`.pack.CoverRows.limits`, (8,)).
+    :attr:`.pack.CoverRows.limits`, (8,), of which the last five, factors of 1/u, are those at the last node of x).
     """
     y, x_inverse = begin / u, (begin / x).ravel()
     values = values.copy()
@@ -257,10 +259,10 @@ def _fit_end(
     y: nodes, proportional to u at the slow end and to 1/u at the fast end, in [0.05, 1], (n,).
     values: lam, L, 2 kappa delta_0, epsilon and M/V at the nodes (at the fast end M/(V y)), (5, n).
     limits: values for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
-    wanted: points in (0, 1], (m,).
+    wanted: points in (0, 1], (m,), m >= 1.
     log_terms: number of terms of R; 0: none.
-    Returns (limits, (5,), without NaN; P + R ln y at the last of the points, (5,); values and derivatives with respect
-    to ln y at the points, (2, 5, m)).
+    Returns (limits, (5,), with the values at 0 in place of NaN; P + R ln y at the last of the points, (5,); values and
+    derivatives with respect to ln y at the points, (2, 5, m)).
     """
     from numpy.polynomial.chebyshev import chebvander
 

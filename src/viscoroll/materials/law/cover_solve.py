@@ -126,6 +126,7 @@ class CoverModes:
         cover: :class:`..cover.Cover` of one thickness and one Poisson's ratio.  Its fields ``total`` (series of both
             bodies together), ``layer`` (series of the layer), ``part`` (part of the layer in the long-time compliance,
             here ``share``), ``nu``, and if ``part`` is below 1 ``other_nu``, are read.
+        All attributes of the class are set.
         """
         modes, layer = cover.total.modes, cover.layer
         self.series, self.J, self.alpha = modes_record(modes), modes.J, float(cover.total.alpha)
@@ -181,8 +182,9 @@ def layer_nodes(nu: float) -> LayerNodes:
     """Return the kernels of a layer at the nodes of the integrals over the wave number; kept for the next call.
 
     Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
-    nu: Poisson's ratio of the layer, in [0, 0.5].
-    Returns :class:`LayerNodes`, of about 245 nodes.
+    nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
+    Returns :class:`LayerNodes` of some 245 nodes ``u``: its field ``L`` is (L - 1)/u, ``shear`` is (T - L)/u, ``C`` is
+    C less its limit for short waves, each times the weights of the rule, (n,); ``local`` is that limit, a float.
     """
     u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
     kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
@@ -270,7 +272,8 @@ def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
     modes: :class:`CoverModes` of the cover and the other body; without modes all arrays are empty along that axis.
     z: half contact length divided by V T_ref, dimensionless, > 0.
     N: highest order of the Bessel functions, the number of terms of the pressure, >= 1.
-    Returns ratios of Bessel functions, (N + 1, modes), and the matching at the front edge, as :class:`_Exponentials`.
+    Returns ratios of Bessel functions, (N + 1, modes), and the matching at the front edge, as :class:`_Exponentials`
+    (ratio, root, k, x, sigma).
     For a_i z above 1e8 the ratios are those at 1e8, corrected to first order, as scipy has no values there.
     """
     from scipy.special import ive, k0e, k1e
@@ -320,8 +323,9 @@ def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) 
     z: half contact length divided by V T_ref, dimensionless, > 0 and finite.
     theta: half contact length divided by the thickness, dimensionless, in (0, 6]; not checked.
     orders: number of terms of the pressure, at most 100; None (or 0): 14 + 6 theta, rounded up.
-    Returns a :class:`CoverState`: load, shift, moment, creep limit, strain without its local part, terms of the
-    pressure, amplitudes of the relaxation modes.
+    Returns a :class:`CoverState` of floats ``load`` = z q_1, ``shift`` = epsilon z, ``moment`` = M/V, ``creep_limit``
+    = delta_star/mu and ``strain`` without its local part, and arrays ``q``, terms of the pressure, (N,), and ``X``,
+    amplitudes of the relaxation modes, (modes,); slopes and creep are over V T_ref/R.
     """
     nodes, N = modes.nodes, orders or _term_count(theta)
     v = nodes.u * theta

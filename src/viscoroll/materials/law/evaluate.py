@@ -1,7 +1,9 @@
 """Values of the law by its modes, without a table: from these all rows are made.
 
 T_ref is the unit of time of a material, in which its rates and times are given; for a material that is given by alpha
-alone it is T_epsilon.  z is half the transit time of the contact in units of T_ref (zeta of the paper).
+alone it is T_epsilon.  z is half the transit time of the contact in units of T_ref (zeta of the paper).  The functions
+g(z) and h(z) of the material (:mod:`...kernels.rows.series`) give the shift of the contact over half its length, g/z,
+and the contact length over that at rest, (1 + 2 h/z)^(-1/2).
 """
 
 from __future__ import annotations
@@ -91,8 +93,10 @@ def evaluate_by_modes(material: Any, z: Floats) -> ModesValues:
     material: a :class:`..prony.Prony` of one material, a :class:`..bodies.Bodies` of one pair, or alphas >= 1: a
         number, or one for each z, (n,).
     z: half contact length divided by V T_ref, zeta of the paper, > 0, (n,); infinite for the limit at rest.
-    Returns :class:`ModesValues`.  Where z is infinite, values and N are the limits at rest and slopes are NaN.  Of
-    elastic bodies all are 0 (alpha = 1 has slopes NaN at infinite z too).
+    Returns :class:`ModesValues`: ``values``, g/z, h/z, and M/V of half-space and cylinder, (4, n); ``slopes``, their
+    derivatives with respect to ln(1/z), (4, n); ``N`` of M = M(V) + N dV/dt, (n,); dimensionless, M/V in units of P
+    T_ref, N of P T_ref^2.  Where z is infinite, values and N are the limits at rest and slopes are NaN.  Of elastic
+    bodies all are 0 (alpha = 1 has slopes NaN at infinite z too).
     """
     from ...kernels.rows.modes import modes_loop
     from ...kernels.rows.series import FUNCTIONS, new_workspace

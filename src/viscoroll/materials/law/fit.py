@@ -3,7 +3,9 @@
 The formulas are evaluated once, at 24 nodes an octave of w = 1/z, with z half the transit time of the contact in units
 of T_ref, the unit of time of the material.  The polynomials of w are then inverted: for the functions of u = kappa |V|,
 w = 2 u (1 + 2 h/z)^(1/2), for those of v = 1/F(eta), w = v (1 + g/z), with the functions g and h of the material
-(:mod:`...kernels.rows.series`).  All quantities are dimensionless; M/V is in units of P T_ref.
+(:mod:`...kernels.rows.series`).  They give F(z) = z + g and H(z) = z^2 + 2 z h, the contact length over that at rest
+lam = (1 + 2 h/z)^(-1/2), and its shift over half the length epsilon = g/z; eta is z of the stick zone.  All quantities
+are dimensionless; M/V is in units of P T_ref.
 """
 
 from __future__ import annotations
@@ -65,7 +67,7 @@ class _FunctionsOfW:
 
         Two steps are made from an interpolated start; the error that is left is subtracted to first order from the
         values.
-        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), within the octaves of w.
+        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), such that w lies within ``rows``.
         which: index into ``powers`` of the function in the equation: 0 for g/z, 1 for h/z, of which twice is taken.
         factor: function of the sum in brackets, an array of any shape, that returns an array of that shape.
         Returns (values of g/z, h/z, and M/V of half-space and cylinder; their derivatives with respect to ln x), (4, n)

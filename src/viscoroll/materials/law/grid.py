@@ -80,8 +80,8 @@ def friction_limit(attributes: Any) -> float:
 
     attributes: mapping of the attributes of a grid, of which "mu" (dimensionless) and "load" (N/m; without it 1) are
         used.
-    Returns a float in the unit of Q: dimensionless, or N/m; infinite without a mu.
-    Raises ValueError for a text that is no number.
+    Returns a float in the unit of Q: dimensionless, or N/m; infinite without a mu.  Sign and NaN are not checked.
+    Raises ValueError for a text that is no number, TypeError for an array of several.
     """
     return float(attributes.get("mu", np.inf)) * float(attributes.get("load", 1.0))
 
@@ -95,8 +95,8 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         for none); all over alpha too where there is an axis of that name.  In place of M there may be M_half_space and
         M_cylinder; one that is missing is half of M.  Its global attributes are mu (without it Q has no bound), and
         where V has a unit R in m and the load in N/m.
-    alpha : required where the grid has an axis alpha; between its nodes a spline in ln alpha is used.  It must be
-        left out, or None, for a grid without that axis.
+    alpha : required where the grid has an axis alpha, whose nodes must be > 0 and ascend; between them a spline in
+        ln alpha is used.  It must be left out, or None, for a grid without that axis.
 
     Returns
     -------
@@ -130,12 +130,14 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
     """Return a grid at one alpha.
 
-    table: dataset of a grid, with or without an axis alpha; without it the grid is returned as it is.
+    table: dataset of a grid, with or without an axis alpha, > 0 and ascending; without it the grid is returned as it
+        is.
     path: path of the file, for errors.
-    alpha: wanted value; None: not given.
+    alpha: wanted value, from the first to the last node, both included; None: not given.
     Returns the dataset without that axis: of a single node as it is, else interpolated in ln alpha, linear between two
     nodes, quadratic between three, cubic from four on.
-    Raises ParameterError for an alpha outside the axis, none for a grid that has one, and one for a grid without.
+    Raises ParameterError for an alpha outside the axis or no single number, none for a grid that has one, and one for a
+    grid without.  Errors of xarray pass.
     """
     if "alpha" not in table.dims:
         if alpha is not None:
@@ -153,7 +155,8 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
 def _in_si(table: xr.Dataset) -> xr.Dataset:
     """Return a grid in SI units if its V has a unit, else without dimension.
 
-    table: dataset of a grid whose variables V, delta, Q and M have an attribute ``units``; "1" is no unit.
+    table: dataset of a grid; V, delta, Q, M, M_half_space and M_cylinder, where present, must have an attribute
+        ``units``; "1" is no unit.
     Returns a dataset with doubles in the units of :data:`UNITS`; if the unit of V is "1" all must be dimensionless, and
     the attribute R is 1.
     Raises ParameterError for a unit that is missing or of another dimension.

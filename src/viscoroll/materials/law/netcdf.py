@@ -71,7 +71,8 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
         file (:data:`..law_file.KINDS`), else KeyError.
     Returns the dataset of :func:`..law_file.make_dataset`, with the coefficients of each function, and with what
     :func:`load_law` needs to make the law again, of a table the text of its material as attribute ``material``
-    (:func:`bodies_as_toml`).  Of half-spaces N is computed if it was not yet.
+    (:func:`bodies_as_toml`); of half-spaces also ``bodies``, "unlike" or "alike".  Of these N is computed if it was not
+    yet.
     Raises ParameterError for a layer beside a body that relaxes too.
     """
     if isinstance(law, LawAxis):
@@ -123,7 +124,9 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
         A file that is missing, cut or damaged in any byte, no law, or of another schema; a grid that is incomplete.
     ParameterError
         An alpha beside the file of one material or a grid without an axis alpha; for the file of every alpha, or a grid
-        over alpha, none, or one beyond the range of the file.
+        over alpha, none, or one that is no number or beyond the range of the file.
+    ValueError
+        A variable of a law that is not numeric.
 
     Examples
     --------
@@ -198,7 +201,7 @@ def _coefficients(content: Content) -> Floats:
     """Return the coefficients of all functions of a file as one read-only array of doubles, (..., functions).
 
     content: :class:`..law_file.Content` of the file, whose kind states the names and the order of the functions.
-    Raises KeyError for a function that is missing.
+    Raises KeyError for a function that is missing, ValueError for functions of different shapes.
     """
     names = KINDS[content.attributes[KIND]].functions
     return lock_array(np.stack([content.numbers[name] for name in names], axis=-1).astype(np.float64))
@@ -245,10 +248,11 @@ def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
 
     text: TOML.
     path: path of the file, for errors.
-    Returns (Cover, Bodies, Prony or alpha, dimensionless: that of the section of it, else the law of the pair; the
-    :class:`Pair` in SI units, None if the text has none).
-    Raises FileError for a section that is wrong, KeyError for one that is missing, and ValueError for text that is not
-    TOML.
+    Returns (Cover, Bodies, Prony or alpha, dimensionless: of the section [cover]; without it ``Pair.law`` of the
+    materials in SI units; without these of [bodies], or [scene]; then the :class:`Pair` of the sections [material] and
+    [base], None without).
+    Raises FileError for a section that is wrong, KeyError for a section or key that is missing, and ValueError, of
+    which ParameterError is one, for text that is not TOML and for bodies that do not go together.
     """
     content = tomllib.loads(text)
     pair = None

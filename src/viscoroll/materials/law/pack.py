@@ -328,7 +328,8 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
     records: records of the laws of standard linear solids (:func:`pack_record`) at the 16 Chebyshev nodes of s, in the
         order of :func:`...kernels.numerics.interpolation.chebyshev`, with equal numbers of rows.
     c: (alpha - 1)/alpha of each, > 0, (16,), by which M/V and epsilon are divided.
-    Returns :class:`AxisRows`: terms of these polynomials, in groups of four.
+    Returns :class:`AxisRows`: ``numbers``, the terms of these polynomials, in groups of four; ``starts``, the index of
+    the first group of each function or pair of each row; ``rows``, their number.
     Groups of high degrees are left out where all blocks of the function need no more than
     :data:`...kernels.rows.alpha_axis.SHORT` states; else all four groups of all its blocks are kept.  M/V of half-space
     and cylinder are not packed: each is half of M/V.

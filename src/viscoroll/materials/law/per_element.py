@@ -88,8 +88,9 @@ def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
     """Return an order of states in which those of one octave of alpha and one of kappa |V| follow each other.
 
     They then read rows that are close in memory: states in random order take half as long again.
-    alpha, kappa, V: parameters and speed of the states, dimensionless, (n,), or (1,) for all; contiguous doubles.
-        Octaves of kappa |V| below 2^-5 count as one, as do those from 2^99 on.
+    alpha, kappa, V: instantaneous over long-time modulus, slenderness R/l0, and speed of the states, of any sign,
+        dimensionless, finite, (n,), or (1,) for all; contiguous doubles.  Octaves of kappa |V| below 2^-5 count as one,
+        as do those from 2^99 on.
     Returns indices (n,), int64, by ascending octave of alpha, then of kappa |V|, the states of one octave in the order
     given; an empty array, which stands for the order given, for a single state.
     """
@@ -189,8 +190,8 @@ def count_laws(covers: Cover) -> int:
 
     Many covers have 14 laws for each octave of thickness in which one lies; 12 times as many if ``nu`` is an array.
     covers: :class:`..cover.Cover`, one cover, or many, whose laws are interpolated between nodes of thickness, and of
-        Poisson's ratio where that differs too.
-    Returns an int; laws that the process has made before are counted too.
+        Poisson's ratio where ``nu`` is an array.
+    Returns an int, 0 for an array of no covers; laws that the process has made before are counted too.
     """
     if not covers.shape:
         return 1
@@ -243,9 +244,9 @@ def _node_weights(x: Floats, count: int) -> Floats:
     """Return the weights of values at Chebyshev nodes in the polynomial through them, whose value is then a weighted
     sum.
 
-    x: points, in [0, 1], (points,).
+    x: points, in [0, 1], (points,): the place of a cover in its octave of thickness, or in the range of nu.
     count: number of nodes, the Chebyshev points of [0, 1].
-    Returns (points, nodes); the sum over the nodes is 1.
+    Returns the weights, of either sign, (points, nodes); their sum over the nodes is 1.
     """
     from ...kernels.numerics.interpolation import to_chebyshev
 

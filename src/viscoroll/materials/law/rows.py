@@ -98,7 +98,7 @@ class Rows:
         """Fit polynomials to values at the nodes: of each row the one of degree ``terms`` - 1.
 
         values: values of the functions at the nodes ``x``, (..., rows, 24 nodes); not changed.
-        terms: number of Chebyshev coefficients to keep, at most 24, with which the polynomial goes through all values.
+        terms: number of Chebyshev coefficients to keep, 1 to 24; with 24 the polynomial goes through all values.
         rounding: fraction of the largest coefficient of a function in the first row; there the first coefficient that
             is smaller, and all after it, are set to 0.  Other rows keep all ``terms``.
         Returns coefficients of powers of t, (..., rows, 24 powers); from power ``terms`` on they are 0.

@@ -44,8 +44,9 @@ def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
 def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
     """Return an axis of a spline in the form that ``kernels.splines.spline`` reads.
 
-    knots: knots of a not-a-knot spline, ascending, with ``degree`` + 1 equal ones at either end.
-    degree: 1 to 3.
+    knots: knots of a not-a-knot spline, ascending, with ``degree`` + 1 equal ones at either end, in the unit of the
+        coordinate, or its logarithm.
+    degree: 1 to 3, the degree of the spline.
     log: whether the spline runs in the logarithm of the coordinate; the knots are logarithms then.
     stride: number of coefficients that one step along the axis is.
     Returns one vector of 5 + 17 n numbers for n intervals between the different knots: n, degree + 1, log (0 or 1) and

@@ -1,4 +1,8 @@
-"""The law of one material or pair as a table: :class:`LawTable`, made once a process by :func:`law_table`."""
+"""The law of one material or pair as a table: :class:`LawTable`, made once a process by :func:`law_table`.
+
+Its functions, in the order of the coefficients (:data:`.pack.FUNCTIONS`), are lam, epsilon, M/V of half-space and of
+cylinder, N, eta/F and H/F^2.
+"""
 
 from __future__ import annotations
 
@@ -120,7 +124,8 @@ def law_table(material: float | Prony | Bodies | LawTable, coefficients: Floats 
     ------
     ParameterError
         Many materials; times beyond 1e-100 to 1e100 of their unit (of half-spaces), which is also the message for an
-        alpha in (0, 1) or NaN; a cover that is too thin.  :func:`.netcdf.law_table_of` refuses an alpha by its range.
+        alpha in (0, 1) or NaN; a pair of more than 64 modes; a cover that is too thin.  :func:`.netcdf.law_table_of`
+        refuses an alpha by its range.
     """
     if isinstance(material, LawTable):
         return material
@@ -157,8 +162,8 @@ def make_table(
         Ignored for other materials.
     Returns the :class:`LawTable`, whose arrays are read-only, with T_ref = 1; N is computed at first use, but of
     elastic bodies it is 0.
-    Raises ParameterError for times of half-spaces beyond 1e-100 to 1e100 of their unit, and for a cover that is too
-    thin.
+    Raises ParameterError for times of half-spaces beyond 1e-100 to 1e100 of their unit, for a pair of more than 64
+    modes, and for a cover that is too thin.
     """
     total, unlike = total_series(material), isinstance(material, Bodies)
     modes, alpha = total.modes, total.alpha
