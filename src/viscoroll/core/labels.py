@@ -127,7 +127,7 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
 
     arrays: name of an argument -> array of xarray; at least one.
     Returns (name -> values, all of the broadcast shape, perhaps read-only views; :class:`Labels`, whose ``coords`` are
-    those of the first array that have an axis, and of the others those by which an axis is named).
+    those of all arrays that have an axis; of two of one name that of the first array).
     Raises ParameterError if arrays differ in the coordinates or the length of an axis that they share.
     """
     import xarray as xr
@@ -139,6 +139,8 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
         sentence = f"{names} have unlike coordinates: align them first ({str(error).splitlines()[0]:.120})"
         raise ParameterError(names, "unlike coordinates", "aligned", sentence) from error
     like = next(iter(whole.values())).drop_attrs()
+    others = {name: each for array in reversed(whole.values()) for name, each in array.coords.items()}
+    like = like.assign_coords({name: each for name, each in others.items() if name not in like.coords})
 
     def wrap(name: str, values: Any, further: tuple[str, ...]) -> Any:
         """Return values as an array of xarray with the axes and coordinates of the arguments, then ``further`` axes."""

@@ -258,15 +258,15 @@ def read_law(path: str | PathLike[str]) -> Content:
     path: path of the file; a file without a seal is verified by its schema and checksum alone.
     Returns :class:`Content`: ``numbers``, with all variables of the kind, a key of :data:`KINDS`, and ``attributes``.
     Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no law, is of another
-    schema, or lacks a variable; ValueError for a variable that is not numeric.
+    schema, lacks a variable, or has one that is not numeric.
     """
     try:
         content = read_content(path, "law file of viscoroll", REMEDY)
+        check_law(content, path)
     except FileError:
         raise
     except Exception as error:  # libraries raise many kinds
         raise FileError(path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}") from error
-    check_law(content, path)
     return content
 
 

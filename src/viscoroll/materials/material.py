@@ -147,7 +147,7 @@ class Material(FromPrograms):
         E : Young's modulus, Pa.
         nu : Poisson's ratio.
         more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
-            ``temperature``, ``T_ref``; a ``prony`` is passed on too, and the material then relaxes.
+            ``temperature``, ``T_ref``.
 
         Returns
         -------
@@ -159,7 +159,7 @@ class Material(FromPrograms):
         ParameterError
             A value out of range.
         TypeError
-            A name in ``more`` that :class:`Material` does not have.
+            A name in ``more`` that :class:`Material` does not have, and ``prony``.
 
         Examples
         --------
@@ -167,7 +167,7 @@ class Material(FromPrograms):
         >>> vr.Material.elastic(2.1e11, 0.3, name="steel").prony.alpha
         1.0
         """
-        return cls(E, nu, **more)
+        return cls(E, nu, Prony.elastic(), **more)
 
     @classmethod
     def rigid(cls, **more: Any) -> Material:

@@ -49,12 +49,13 @@ def distributions(data: xr.Dataset) -> Figure:
     Of a quantity that is one number per motion, or where there is a single output time, the left panel shows the
     fraction of motions below each quantile.
 
-    data: :class:`xr.Dataset`, the summaries of a run or of an ensemble: coordinates quantile, the levels, ascending,
-        and t, output times; NAME_quantiles over (quantile, t) or over quantile, with the attribute units and perhaps
+    data: :class:`xr.Dataset`, the summaries of a run or of an ensemble: coordinates quantile, the levels, and t,
+        output times; NAME_quantiles over (quantile, t) or over quantile, with the attribute units and perhaps
         symbol; NAME_histogram, NAME_bin_low and NAME_bin_high; attribute motions, and of a run design and seed, for the
         title.  If no quantity has a histogram there is no right column; if any has, all must have one (else KeyError).
     Returns the :class:`matplotlib.figure.Figure`; without quantities it has one empty row.
     """
+    data = data.sortby("quantile")
     about, levels = data.attrs, data["quantile"].values
     names = [str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")]
     design = f", {about['design']}, seed {about['seed']}" if "design" in about else ""

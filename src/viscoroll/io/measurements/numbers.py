@@ -78,12 +78,12 @@ def fault_of(cell: str, decimal: str) -> str:
     cell : text of the cell; an empty one and marks as "nan", "---" and "inf" are missing values.
     decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
     Returns "" for a number without a mark, or with that decimal mark alone; else the reason: a missing value, a
-    possible separator of thousands, or no number with that mark.
+    possible separator of thousands, no number with that mark, or a number beyond 1.8e308.
     """
     if _GAP.fullmatch(cell):
         return "is a missing value: remove its row"
     if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
-        return ""
+        return "is larger than a double can be" if np.isinf(float(cell.translate(_PYTHON))) else ""
     if _THOUSANDS.fullmatch(cell) or (not decimal and _NUMBER.fullmatch(cell)):
         return (
             "may contain a separator of thousands, since both marks occur or all groups have three digits: "

@@ -73,9 +73,8 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_ref, where T_ref is T_epsilon of a
         scene with alpha, else the unit of time of its material; of a Cylinder in m/s.
     count : number of nodes, odd, 5 to 5e7.
-    alpha : values of alpha of the grid, (m,), in [1, 1e12], strictly increasing, in place of that of a Scene, or of its
-        material (whose grid :func:`build` refuses); None: the grid has no such axis, and ``what`` its own alpha or
-        material.
+    alpha : values of alpha of the grid, (m,), in [1, 1e12], strictly increasing, in place of that of a Scene without a
+        material; None: the grid has no such axis, and ``what`` its own alpha or material.
 
     Returns
     -------
@@ -88,9 +87,8 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     ------
     ParameterError
         A count that is even, no whole number, or outside of 5 to 5e7; speeds or alphas that are empty, out of range or
-        not increasing; what :func:`viscoroll.contact` refuses, as kappa V above 1e300.
-    TypeError
-        ``alpha`` of a Cylinder.
+        not increasing; ``alpha`` of a Cylinder or beside a material; what :func:`viscoroll.contact` refuses, as kappa V
+        above 1e300.
 
     Examples
     --------
@@ -101,6 +99,8 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     """
     if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
         raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
+    if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
+        raise described_error("alpha", "is given", "left out: the material determines alpha")
     roller: Any = what if alpha is None else what.replace(alpha=increasing("alpha", alpha, low=1.0))
     speeds = increasing("V", V, above=0.0)
     speeds = speeds if alpha is None else speeds[:, np.newaxis]

@@ -123,7 +123,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     table = _at_alpha(table, path, alpha)
     try:
         return _law_of(_in_si(table))
-    except (KeyError, ValueError) as error:  # of a variable that is missing, and of scipy
+    except (KeyError, ValueError, TypeError) as error:  # of a variable that is missing, of scipy, of an attribute
         raise FileError(path, f"is not a grid of a law: {' '.join(str(error).split()):.120}") from error
 
 
@@ -137,13 +137,16 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
     Returns the dataset without that axis: of a single node as it is, else interpolated in ln alpha, linear between two
     nodes, quadratic between three, cubic from four on.
     Raises ParameterError for an alpha outside the axis or no single number, none for a grid that has one, and one for a
-    grid without.  Errors of xarray pass.
+    grid without; FileError for an axis that is not > 0 or does not increase.  Errors of xarray pass.
     """
     if "alpha" not in table.dims:
         if alpha is not None:
             raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} has no axis alpha")
         return table
-    low, high = table["alpha"].values[[0, -1]]
+    nodes = table["alpha"].values
+    if not (nodes[0] > 0.0 and (np.diff(nodes) > 0.0).all()):
+        raise FileError(path, "coordinate 'alpha' must be > 0 and increase strictly")
+    low, high = nodes[[0, -1]]
     if alpha is None or not low <= check_number("alpha", alpha) <= high:
         raise ParameterError("alpha", alpha, f"in [{low:g}, {high:g}], the range of {path}")
     if low == high:
