@@ -214,6 +214,8 @@ def fit_integral(row, target, nodes):
 def evaluate_dense_output(v, nodes, row):
     """Return the interpolant of a row at a position, less its value at the left end; a float in the unit of the row.
 
+    The caller adds that value where it needs it; without it the result is accurate relative to itself as v -> 0.
+
     v: float, position on the step, 0 at its left end, where the result is 0, and 2 at its right end; outside the
     polynomial is extrapolated.
     nodes: Workspace.nodes.

@@ -209,8 +209,8 @@ def holding_margin(load, mu):
 
     A traction within +-mu must leave V constant, and omega too, which a brake may help with:
 
-    - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force + torque|; a sum of
-      1e-75 or less counts as 0.  Without a brake the margin is at most 0, and 0 only where the sum is 0;
+    - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force + torque|, which
+      counts as 0 up to 1e-75.  Without a brake the margin is at most 0, and 0 only where this modulus counts as 0;
     - V prescribed to stay 0: mu plus the torque of the brake, less the modulus of the torque of the motor;
     - omega prescribed to stay 0: mu - |force|.
 

@@ -329,12 +329,13 @@ def is_unloaded(segment, drive):
 
 @kernel
 def is_undriven(segment, drive):
-    """Return whether from a segment on nothing drives, feedback included, a bool.
+    """Return whether from a segment on there is no force, torque, brake, prescribed speed or feedback, a bool.
 
-    It is :func:`is_unloaded` with all gains of the feedback 0.
+    It is :func:`is_unloaded` with all gains of the feedback 0; "nothing drives" means this.
 
     segment: int, index of the segment; all later ones are considered too.
     drive: Drive, of which ``segments``, ``prescribed`` and ``gains`` are read.
+    Returns False with a prescribed speed, even if it is 0.
     """
     gains = drive.gains
     size = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)

@@ -209,9 +209,11 @@ def _advance_segment(moving, state, regime, step_state, work):
     moving: bool, whether the cylinder moves.
     state, regime: State and Regime, the present ones.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; a change of direction is recorded.
-    Returns (moves, State, Regime, StepState), unchanged where no segment ends.  Where one does, StepState has the next
-    segment and keeps the length of the next step only where the drive continues smoothly, else 0.  Of a cylinder that
+    work: Workspace, of the motion; Scene, Drive and output times are read; a change of ``direction`` is recorded in
+    ``switches`` as DIRECTION_REVERSED (:func:`record_switch`).
+    Returns (moves, State, Regime, StepState), unchanged where no segment ends or the last one does.  Else StepState has
+    the next segment and keeps the length of the next step only where the drive continues smoothly; elsewhere it is 0,
+    not chosen yet.  Of a cylinder that
     moves, State and Regime are those of :func:`enter_segment`, and it still moves unless V is 0 in partial slip or both
     speeds are 0; of one at rest they are unchanged.  The time stays; one call enters one segment at most.
     """

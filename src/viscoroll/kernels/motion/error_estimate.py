@@ -182,17 +182,18 @@ def _variation_of_p_rate(half, nodes):
 
 @kernel
 def _relative_speed_at_first_output(step, work):
-    """Return V at about the first output time of a step that starts at V = omega = 0, divided by the largest |V| of the
-    step.
+    """Return |V| at about the first output time of a step that starts at V = omega = 0, divided by the largest |V| at
+    nodes 1 ... N.
 
     The error of the step is divided by this number, so that V is accurate relative to itself at its first output.  V is
     taken at the last node that is not after the first output time after the left end; at node 1 if all are after it,
-    or at the next node where V is 0 there.  With all nodes before the output time, V at the end of the step is taken.
+    or at the next node where V is 0 there.  With no node after the output time, V at the end of the step is taken.
 
     step: Step, from V = omega = 0 on; tau and ``h`` are read.
     work: Workspace, with V at nodes 1 ... N and the output times.
     Returns a float in [0, 1], dimensionless; 1 where V is 0 at all nodes.  It is 0 only if V has come back to exactly 0
-    at the last node, and the step is then rejected, as its error is inf or NaN.
+    at the last node, and the step is then rejected, as its error is inf or NaN.  A NaN of V at the node that is taken
+    makes it NaN, unless no |V| is above 0; at another node it is passed over.
     """
     nodes, output_time = work.nodes, last_output_tau(work)
     for i in range(work.output_tau.size):

@@ -303,13 +303,16 @@ def find_missed_event(step, regime, work):
 def _event_function(event, v, regime, work):
     """Return an event function at a position of a step, by the dense output of the unknowns; a float, dimensionless.
 
-    At the nodes it has the values of :func:`evaluate_event_functions`, to rounding; between them it is more accurate
-    than their interpolant, as the function is no polynomial.
+    :func:`refine_event` iterates on it, for functions that are no polynomial of the unknowns: between the nodes it is
+    more accurate than the interpolant of its values there.  At the nodes it has the values of
+    :func:`evaluate_event_functions`, to rounding, but for OMEGA_ZERO where V is not above 0: there these are spin_sign.
 
     event: int, STICK_EDGE; BELOW_REST_SPEED, in full slip only; or OMEGA_ZERO, in partial slip only.
     v: float, position on the step, in [0, 2] or a little outside.
     regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
     work: Workspace, with the dense output, the unknowns at node 0, Scene and the rest threshold.
+    Returns :func:`stick_edge_function`, max(|V|, |omega|) less the rest threshold, or spin_sign (1 + delta): positive
+    within the regime.
     """
     V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:

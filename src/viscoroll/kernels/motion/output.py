@@ -131,7 +131,8 @@ def record_switch(code, step_state, work):
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
     """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, quadratures keep their totals.
 
-    Force and torque are those of the drive at the output times, not those that hold a prescribed speed.
+    Force and torque are those of the drive at the output times, not those that hold a prescribed speed; they are
+    written whether they are requested or not.
 
     end: float, that time in tau, not before the present one.
     inclusive: bool, whether an output at ``end`` itself is written too.
@@ -139,7 +140,7 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
     step_state: StepState, at the present time; its segment is that of all these outputs.
     work: Workspace, of the motion; all rows of its outputs are written, at the columns from ``next_output`` on.
     Returns the StepState at ``end``, with ``next_output`` after these outputs, one trial step more and the length of
-    the next step not chosen (0).
+    the next step not chosen (0); the segment and the number of accepted steps stay.
     """
     column, tau = step_state.next_output, work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
@@ -240,11 +241,12 @@ def _evaluate_integrands(regime, work):
 def _integral_over_step(row, step, nodes):
     """Return the integral over tau of a row along a whole step, by Radau quadrature; a float, dimensionless.
 
-    Its N nodes are 1 ... N: the value at node 0 is not read.
+    Its N nodes are 1 ... N: the value at node 0 is not read.  For a whole step it replaces the interpolant of
+    :func:`_quadrature_at`, which need not be fitted then.
 
-    row: int, index in ``nodes`` of the values.
+    row: int, index in ``nodes`` of the value at node 0 of a row, such as that of an integrand.
     step: Step, the accepted one, whose length is read.
-    nodes: Workspace.nodes.
+    nodes: Workspace.nodes, of which the numbers row + 1 ... row + N are read.
     """
     total = 0.0
     for i in range(N):

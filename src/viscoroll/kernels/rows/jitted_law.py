@@ -163,10 +163,13 @@ def _lower_constant(context, builder, kind, law):
 
 @lower_builtin(LawType, LawType, types.float64, types.float64)
 def _lower_call(context, builder, signature, arguments):
-    """Return instructions that call the C function of a law, whose address begins the user data.
+    """Return instructions that call the C function of a law; numba calls this function to compile law(V, omega).
+
+    The address of the C function is the first word of the law's user data, ``function`` of a SCENE.
 
     context, builder, signature : numba's context of code generation, builder of LLVM, signature of the call.
-    arguments : values of LLVM: the law, which is the address of its user data, and the doubles V and omega.
+    arguments : values of LLVM: the law, which is the address of its user data, and the doubles V and omega, in the
+        units of the user data.
     Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`, in the units of the user data.  The status
     of the C function is not read: a state at which the law is not defined has NaN in all eight.
     """

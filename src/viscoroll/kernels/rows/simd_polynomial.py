@@ -171,10 +171,10 @@ def evaluate_secants(table, start, t, s):
 
     table : contiguous vector of doubles, or pointer to them, with the 24 coefficients of p, the constant first.
     start : int, index in ``table`` at which they begin; it is not checked.
-    t, s : floats, arguments, dimensionless.
+    t, s : floats, arguments, dimensionless, in any order; in [-1, 1] on the row, outside p is extrapolated.
 
     Returns (p(t), secant of p, p'(t), secant of p'), floats in the unit of the coefficients; at s = t the secants are
-    p'(t) and p''(t).
+    p'(t) and p''(t).  A NaN of s makes the two secants NaN, but not p(t) and p'(t).
     """
     square = t * t
     s_square = s * s
