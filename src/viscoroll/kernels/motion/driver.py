@@ -213,9 +213,9 @@ def _advance_segment(moving, state, regime, step_state, work):
     ``switches`` as DIRECTION_REVERSED (:func:`record_switch`).
     Returns (moves, State, Regime, StepState), unchanged where no segment ends or the last one does.  Else StepState has
     the next segment and keeps the length of the next step only where the drive continues smoothly; elsewhere it is 0,
-    not chosen yet.  Of a cylinder that
-    moves, State and Regime are those of :func:`enter_segment`, and it still moves unless V is 0 in partial slip or both
-    speeds are 0; of one at rest they are unchanged.  The time stays; one call enters one segment at most.
+    not chosen yet.  Of a cylinder that moves, State and Regime are those of :func:`enter_segment`, and it still moves
+    unless V is 0 in partial slip or both speeds are 0; of one at rest they are unchanged.  The time stays; one call
+    enters one segment at most.
     """
     drive = work.drive
     if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == drive.segments.shape[0]:

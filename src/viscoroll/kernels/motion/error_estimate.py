@@ -150,9 +150,9 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
     It is the slope there by the right-hand side, less the slope of the interpolant extrapolated from nodes 1 ... N,
     times 2, the length of the step in t.
 
-    row: int, index in ``nodes`` of the values at all nodes.
-    slope_row: int, index of the row in which the slopes of the interpolant in t on [-1, 1] are written; its entry of
-    node 0 is set to 0.
+    row: int, index in ``nodes`` of the value at node 0 of the row; the values at all nodes are read.
+    slope_row: int, index in ``nodes`` of node 0 of the row in which the slopes of the interpolant in t on [-1, 1] are
+    written; its entry of node 0 is set to 0.
     initial_slope: float, slope in t at the left end by the right-hand side, in the unit of the row.
     nodes: Workspace.nodes.
     Returns the modulus of the defect, a float >= 0 in the unit of the row; NaN if a value of the row is NaN.

@@ -311,8 +311,8 @@ def _event_function(event, v, regime, work):
     v: float, position on the step, in [0, 2] or a little outside.
     regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
     work: Workspace, with the dense output, the unknowns at node 0, Scene and the rest threshold.
-    Returns :func:`stick_edge_function`, max(|V|, |omega|) less the rest threshold, or spin_sign (1 + delta): positive
-    within the regime.
+    It is :func:`stick_edge_function` for STICK_EDGE, max(|V|, |omega|) less the rest threshold for BELOW_REST_SPEED and
+    spin_sign (1 + delta) for OMEGA_ZERO; positive within the regime.
     """
     V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:

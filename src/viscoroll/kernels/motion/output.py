@@ -131,7 +131,7 @@ def record_switch(code, step_state, work):
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
     """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, quadratures keep their totals.
 
-    Force and torque, requested or not, are those of the drive at the output times, not those that hold a given speed.
+    Force and torque, requested or not, are those of the drive at the outputs, not those that hold a prescribed speed.
 
     end: float, that time in tau, not before the present one.
     inclusive: bool, whether an output at ``end`` itself is written too.
@@ -240,7 +240,7 @@ def _evaluate_integrands(regime, work):
 def _integral_over_step(row, step, nodes):
     """Return the integral over tau of a row along a whole step, by Radau quadrature; a float, dimensionless.
 
-    Its N nodes are 1 ... N: the value at node 0 is not read.  No interpolant need be fitted, as for _quadrature_at.
+    Its N nodes are 1 ... N: the value at node 0 is not read.  Unlike :func:`_quadrature_at` it needs no interpolant.
 
     row: int, index in ``nodes`` of the value at node 0 of a row, such as an integrand's (ROW_INTEGRANDS ...).
     step: Step, the accepted one, whose length is read.

@@ -337,7 +337,7 @@ def _position(place, c, scratch):
 def _write_other_fields(n, c, law, scratch, request):
     """Write the requested quantities of a state, except Q and M, into ``request.out``.
 
-    n : int, index of the state.
+    n : int, index of the state, >= 0; not checked.
     c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
     law : :class:`Law` with the material of the state selected; without rows of the moments of the bodies
         (:mod:`.alpha_axis`) none of these four may be requested.

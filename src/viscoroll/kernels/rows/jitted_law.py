@@ -1,6 +1,7 @@
 """The law of one scene for jitted code: a value that is called, the address of the user data of a C function.
 
 All such laws have one numba type, so that a user's function that is given a law is compiled once for all of them.
+The functions with a decorator of numba's are called by numba when it compiles such a function.
 """
 
 import ctypes
