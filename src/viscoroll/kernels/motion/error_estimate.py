@@ -116,8 +116,8 @@ def error_scales(step, regime, work):
     (:func:`_d_weight` at the last node), or by the relative change of the speed that a unit of d causes if that is
     larger.
 
-    step: Step, the trial step.
-    regime: Regime, that of the step.
+    step: Step, the trial step; ``h`` and ``undriven`` are read.
+    regime: Regime, that of the step; ``full_slip`` is read.
     work: Workspace, with V and the larger speeds at its nodes; in partial slip also with d at the last one and with the
     derivatives of p.
     Returns (scale of V, scale of the second unknown), floats, dimensionless.  A scale of a speed is 0 where that speed
@@ -240,7 +240,7 @@ def estimate_error(step, regime, work):
     else, under a drive, multiplied by the square root of the growth of the larger speed.
 
     step: Step, the solved trial step; h, segment, undriven and initial_slope_known are read.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``locked`` are read.
     work: Workspace, with the solution at its nodes and the dense output; ROW_P_SLOPE and, where its defect is
     evaluated, ROW_D_SLOPE are written.
     Returns a float >= 0, dimensionless; inf or NaN, which the caller rejects too, where the scale of V is 0 or p is not

@@ -112,7 +112,7 @@ def evaluate_event_functions(step, regime, work):
     A row whose event is not active (:func:`is_event_active`) may keep the values of an earlier step.
 
     step: Step, the solved one; ``undriven`` is read.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with the unknowns and the drive at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written as
     above.  The values are dimensionless: speeds for V_ZERO and BELOW_REST_SPEED, in full slip also for STICK_EDGE and
     OMEGA_ZERO; a squared torque for BRAKE_RELEASE; ratios for all others.  Returns nothing.

@@ -159,7 +159,7 @@ def _write_state(column, state, segment, regime, work):
     column: int, index of the output time.
     state: State, at that time, in the direction of the regime; it is written in fixed directions.
     segment: int, index of the segment of the drive at that time.
-    regime: Regime, at that time.
+    regime: Regime, at that time; all fields are read.
     work: Workspace, of the motion; rows 0, 1, 4, 5, 6 and 7 of its outputs are written at ``column``.  Returns nothing.
     """
     direction, force, torque = regime.direction, 0.0, 0.0
@@ -180,7 +180,7 @@ def write_due_outputs(state, regime, step_state, work):
     their totals.
 
     state: State, at the time reached.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with that time, its segment and the next output.
     work: Workspace, of the motion; all rows of its outputs are written at these times, if there are any.
     Returns the StepState with ``next_output`` after these outputs and h = 0, also where none was due; all else stays.
@@ -215,7 +215,7 @@ def _evaluate_integrands(regime, work):
     M_cylinder; force V; torque omega; -(torque of the brake) omega.  All are integrated over tau: distance and angle
     thus become integrals over t.
 
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with unknowns and drive at nodes 0 ... N; there N_QUADRATURES rows from ROW_INTEGRANDS on are
     written, also those that are 0 as nothing drives.  Returns nothing.
     """
@@ -264,8 +264,8 @@ def accept_step(end, v, step, regime, step_state, work):
 
     end: float, tau at that position.
     v: float, the position in [0, 2]; 2: the whole step.
-    step: Step, the solved one.
-    regime: Regime, that of the step.
+    step: Step, the solved one; ``tau``, ``h``, ``segment`` and ``undriven`` are read.
+    regime: Regime, that of the step; all fields are read.
     step_state: StepState, at its left end.
     work: Workspace, with the solution and its dense output; outputs, totals, integrands, the coefficients of their
     integrals and the next entry of ``step_ends``, t = ``end``/gamma, if it has one, are written.
