@@ -72,7 +72,7 @@ _COASTING_D = 1e-2
 def equilibrium_tolerance(rtol):
     """Return the relative distance of V from its equilibrium at which V has reached it: max(0.001 rtol, 1e-14).
 
-    rtol: float, relative tolerance of the motion, dimensionless.
+    rtol: float, relative tolerance of the motion, dimensionless, > 0.
     """
     return max(_NEAR_EQUILIBRIUM * rtol, _NEAR_ROUNDING)
 

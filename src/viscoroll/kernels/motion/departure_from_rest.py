@@ -217,7 +217,7 @@ def holding_margin(load, mu):
     load: Load, at V = omega = 0, where feedback vanishes; force, torque, brake, the prescribed slopes and the inverse
     mass and inertia are read.  The brake must not hold omega (``locked``), as inverse_inertia = 0 is taken for a
     prescribed omega.
-    mu: float, coefficient of friction, dimensionless.
+    mu: float, coefficient of friction, dimensionless, > 0.
     Returns the margin as a force or torque, a float, dimensionless, at most mu + brake; 0 holds.  It is -1.0 where a
     prescribed speed has a slope other than 0.
     """

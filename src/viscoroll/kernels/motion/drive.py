@@ -11,7 +11,8 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 - Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
 - StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
   the next step.
-- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
+- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.  An index
+  of a segment counts from 0 and is not checked.
 - Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed V or omega, largest
   torque of the brake, inverse_mass (1, or 0 where V is prescribed), inverse_inertia (1/j, or 0 where omega is
   prescribed or held by the brake) and the gains of the feedback.

@@ -373,7 +373,7 @@ def _event_scale(event, nodes):
 def _event_tolerance(rtol):
     """Return the value of an event function divided by its scale up to which it counts as 0: max(0.01 rtol, 4e-15).
 
-    rtol: float, relative tolerance of the motion, dimensionless.
+    rtol: float, relative tolerance of the motion, dimensionless, > 0.
     """
     return max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING)
 
@@ -388,7 +388,7 @@ def ends_at_event(event, nodes, rtol):
 
     event: int, code of the event and index in ``nodes`` of the row of its function.
     nodes: Workspace.nodes, with the event functions, ROW_SPEED and the drive.
-    rtol: float, relative tolerance of the motion, dimensionless.
+    rtol: float, relative tolerance of the motion, dimensionless, > 0.
     """
     scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)
     return last < largest and largest > _EDGE_ROUNDING * scale and abs(last) <= _event_tolerance(rtol) * scale

@@ -136,7 +136,7 @@ def required_forces(V, omega, rates, load, regime, j):
     load: Load, the drive at the time; inverse_mass = 0 tells that V is prescribed, inverse_inertia = 0 that omega is,
     unless the brake holds it.
     regime: Regime, at that state; ``locked`` and ``spin_sign`` are read.
-    j: float, moment of inertia J/(m R^2), dimensionless.
+    j: float, moment of inertia J/(m R^2), dimensionless, > 0.
     Returns (force, torque of the motor, torque of the brake), floats, signed, in the direction of the regime,
     dimensionless; the torque of the brake is 0 without one.
     """
