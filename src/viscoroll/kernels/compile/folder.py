@@ -90,7 +90,7 @@ def write_private(path: Path, content: bytes) -> None:
 def make_private_folder(folder: Path) -> None:
     """Make a folder of the cache and the folders above it, as far as they do not exist, writable by this user alone.
 
-    folder : path of the folder; one that exists keeps its rights.
+    folder : path of the folder; one that exists keeps its rights, and a file at this path is not noticed.
     Returns None.  Raises PermissionError if others may write to an existing one of these folders or one belongs to
     another user (:func:`refuse_writable_by_others`), else OSError if one cannot be made.
     """

@@ -51,7 +51,8 @@ def make_intrinsic(lower: Callable, returned, *kinds):
 def call_llvm(builder, name: str, arguments):
     """Return the call of an intrinsic of LLVM whose arguments and value have one type.
 
-    builder : builder of LLVM.
+    builder : builder of LLVM, at whose position the call is emitted; the intrinsic is declared in ``builder.module`` if
+        it is not yet.
     name : name of the intrinsic with its type, such as "llvm.fma.v4f64".
     arguments : values of LLVM, at least one, all of the type of the first.
     Returns the value of LLVM of the call, of that type.

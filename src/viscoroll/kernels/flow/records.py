@@ -11,7 +11,7 @@ class Flow(NamedTuple):
 
     table : all tables of :mod:`layout` in one vector of layout.SIZE doubles.
     first : int; onsets are tabulated for kappa V from 2**first to 2**(first + layout.OCTAVES).
-    kappa, mu, j : parameters of the scene.
+    kappa, mu, j : slenderness R/l0, coefficient of friction and moment of inertia J/(m R^2) of the scene.
     slow_rate : rate at which the slow logarithm falls along the slow manifold in unit time tau = gamma t, > 0.
     """
 
@@ -26,7 +26,7 @@ class Flow(NamedTuple):
 class Motions(NamedTuple):
     """Motions to be looked up, dimensionless.
 
-    gamma : P T^2/(m R), the ratio of load to inertia: tau = gamma t.
+    gamma : P T^2/(m R), the ratio of load to inertia, with the unit of time T of the law: tau = gamma t.
     rest : rest threshold of max(|V|, |omega|), 0 for none.
     V0, omega0 : initial speeds, vectors of one or n numbers.
     t : output times, (times,), ascending.

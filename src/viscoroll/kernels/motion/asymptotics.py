@@ -72,7 +72,7 @@ _COASTING_D = 1e-2
 def equilibrium_tolerance(rtol):
     """Return the relative distance of V from its equilibrium at which V has reached it: max(0.001 rtol, 1e-14).
 
-    rtol: float, relative tolerance of the motion, dimensionless.
+    rtol: float, relative tolerance of the motion, dimensionless, > 0.
     """
     return max(_NEAR_EQUILIBRIUM * rtol, _NEAR_ROUNDING)
 
@@ -126,7 +126,7 @@ def find_equilibrium(state, regime, noise, step_state, work):
     (:func:`_equilibrium_full_slip`).  The Jacobian of the present state decides whether the equilibrium is stable.
 
     state: State, the present one, with V > 0 in partial slip.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     noise: float, rounding error of p' at the equilibrium, dimensionless.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene, Drive and rtol are read.
@@ -166,7 +166,7 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     end: float, tau at the end of the segment.
     noise: float, rounding error of p', dimensionless.
     state: State, the present one, with V > 0 in partial slip.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of the motion; where the equilibrium is reached, nodes, dense output, drive at the nodes, outputs
     and quadratures are written.

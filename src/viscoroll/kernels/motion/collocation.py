@@ -183,7 +183,7 @@ def fit_dense_output(row, target, nodes):
 
     The value nodes[row] at the left end is not among the coefficients.
 
-    row: int, index in ``nodes`` of the values at all nodes.
+    row: int, index in ``nodes`` of the value at node 0 of the row; the values at all nodes are read.
     target: int, index in ``nodes`` from which ROW_LENGTH numbers are written: c_0 ... c_(N-1) in the unit of the row,
     and a 0.
     nodes: Workspace.nodes.  Returns nothing.
@@ -202,7 +202,7 @@ def fit_integral(row, target, nodes):
     It is over t, so that half the length of the step is still to be multiplied.  The value nodes[row] at the left end
     is not among the coefficients: :func:`evaluate_integral` takes it as an argument.
 
-    row: int, index in ``nodes`` of the values at all nodes.
+    row: int, index in ``nodes`` of the value at node 0 of the row; the values at all nodes are read.
     target: int, index in ``nodes`` from which ROW_LENGTH numbers are written: c_0 ... c_(N-1) in the unit of the row,
     and a 0.
     nodes: Workspace.nodes.  Returns nothing.
@@ -214,10 +214,12 @@ def fit_integral(row, target, nodes):
 def evaluate_dense_output(v, nodes, row):
     """Return the interpolant of a row at a position, less its value at the left end; a float in the unit of the row.
 
+    The caller adds that value where it needs it; without it the result is accurate relative to itself as v -> 0.
+
     v: float, position on the step, 0 at its left end, where the result is 0, and 2 at its right end; outside the
     polynomial is extrapolated.
     nodes: Workspace.nodes.
-    row: int, index in ``nodes`` of the coefficients of :func:`fit_dense_output`.
+    row: int, index in ``nodes`` of the first of the ROW_LENGTH coefficients of :func:`fit_dense_output`.
     """
     t, value = v - 1.0, 0.0
     for k in range(ROW_LENGTH - 1, -1, -1):
@@ -235,7 +237,7 @@ def evaluate_integral(v, first, nodes, row):
     v: float, position in [0, 2] on the step.
     first: float, value of the row at the left end, which is not among the coefficients.
     nodes: Workspace.nodes.
-    row: int, index in ``nodes`` of the coefficients of :func:`fit_integral`.
+    row: int, index in ``nodes`` of the first of the ROW_LENGTH coefficients of :func:`fit_integral`.
     """
     return v * (first + evaluate_dense_output(v, nodes, row))
 

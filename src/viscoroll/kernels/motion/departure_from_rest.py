@@ -209,15 +209,15 @@ def holding_margin(load, mu):
 
     A traction within +-mu must leave V constant, and omega too, which a brake may help with:
 
-    - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force + torque|; a sum of
-      1e-75 or less counts as 0.  Without a brake the margin is at most 0, and 0 only where the sum is 0;
+    - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force + torque|, which
+      counts as 0 up to 1e-75.  Without a brake the margin is at most 0, and 0 only where this modulus counts as 0;
     - V prescribed to stay 0: mu plus the torque of the brake, less the modulus of the torque of the motor;
     - omega prescribed to stay 0: mu - |force|.
 
     load: Load, at V = omega = 0, where feedback vanishes; force, torque, brake, the prescribed slopes and the inverse
     mass and inertia are read.  The brake must not hold omega (``locked``), as inverse_inertia = 0 is taken for a
     prescribed omega.
-    mu: float, coefficient of friction, dimensionless.
+    mu: float, coefficient of friction, dimensionless, > 0.
     Returns the margin as a force or torque, a float, dimensionless, at most mu + brake; 0 holds.  It is -1.0 where a
     prescribed speed has a slope other than 0.
     """

@@ -11,7 +11,8 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 - Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
 - StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
   the next step.
-- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
+- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.  An index
+  of a segment counts from 0 and is not checked.
 - Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed V or omega, largest
   torque of the brake, inverse_mass (1, or 0 where V is prescribed), inverse_inertia (1/j, or 0 where omega is
   prescribed or held by the brake) and the gains of the feedback.
@@ -329,12 +330,13 @@ def is_unloaded(segment, drive):
 
 @kernel
 def is_undriven(segment, drive):
-    """Return whether from a segment on nothing drives, feedback included, a bool.
+    """Return whether from a segment on there is no force, torque, brake, prescribed speed or feedback, a bool.
 
-    It is :func:`is_unloaded` with all gains of the feedback 0.
+    It is :func:`is_unloaded` with all gains of the feedback 0; "nothing drives" means this.
 
     segment: int, index of the segment; all later ones are considered too.
     drive: Drive, of which ``segments``, ``prescribed`` and ``gains`` are read.
+    Returns False with a prescribed speed, even if it is 0.
     """
     gains = drive.gains
     size = abs(gains.force_V) + abs(gains.force_omega) + abs(gains.torque_V) + abs(gains.torque_omega)

@@ -136,7 +136,7 @@ def _relaxes_within_rounding(state, regime, step_state, work):
     The relaxation time is V divided by the modulus of the derivative of V d' in d, the time of a change by 1 is V/|V
     d'|.  The result is False in full slip, at tau = 0, and where both moduli are 0.
 
-    state, regime: State and Regime, the present ones.
+    state, regime: State and Regime, the present ones; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
     """
@@ -153,7 +153,7 @@ def _vanishes_within_rounding(state, regime, step_state, work):
     V is negligible at 1e-75 and below, if something drives or will.  It falls to 0 within the time V/|V'| if V' is
     below 0; at tau = 0 or with V' at least 0 it does not.
 
-    state, regime: State and Regime, the present ones.
+    state, regime: State and Regime, the present ones; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
     """
@@ -169,7 +169,7 @@ def relax_creep(state, regime, step_state, work):
     The equilibrium is the zero of V d', which is positive for smaller d; the added mass n in p stays that of ``state``.
 
     state: State, the present one, in partial slip.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
     Returns (moves, State, Regime, StepState):
@@ -207,13 +207,15 @@ def _advance_segment(moving, state, regime, step_state, work):
     """Enter the next segment of the drive if one ends at the time reached and there is a next one.
 
     moving: bool, whether the cylinder moves.
-    state, regime: State and Regime, the present ones.
+    state, regime: State and Regime, the present ones; all fields are read.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; a change of direction is recorded.
-    Returns (moves, State, Regime, StepState), unchanged where no segment ends.  Where one does, StepState has the next
-    segment and keeps the length of the next step only where the drive continues smoothly, else 0.  Of a cylinder that
-    moves, State and Regime are those of :func:`enter_segment`, and it still moves unless V is 0 in partial slip or both
-    speeds are 0; of one at rest they are unchanged.  The time stays; one call enters one segment at most.
+    work: Workspace, of the motion; Scene, Drive and output times are read; a change of ``direction`` is recorded in
+    ``switches`` as DIRECTION_REVERSED (:func:`record_switch`).
+    Returns (moves, State, Regime, StepState), unchanged where no segment ends or the last one does.  Else StepState has
+    the next segment and keeps the length of the next step only where the drive continues smoothly; elsewhere it is 0,
+    not chosen yet.  Of a cylinder that moves, State and Regime are those of :func:`enter_segment`, and it still moves
+    unless V is 0 in partial slip or both speeds are 0; of one at rest they are unchanged.  The time stays; one call
+    enters one segment at most.
     """
     drive = work.drive
     if step_state.tau < segment_end(step_state.segment, work) or step_state.segment + 1 == drive.segments.shape[0]:
@@ -282,7 +284,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
     moving: bool, whether the cylinder moves; False: it is at rest, and ``state`` and ``regime`` are ignored.
     stick_formed: bool, whether the stick zone has just formed.
     state: State, at the start.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, at the start.
     work: Workspace, of the motion; outputs, switches and times of events are written.
     Returns (status, StepState): the StepState at the end of the integration, and why it ended:

@@ -116,8 +116,8 @@ def error_scales(step, regime, work):
     (:func:`_d_weight` at the last node), or by the relative change of the speed that a unit of d causes if that is
     larger.
 
-    step: Step, the trial step.
-    regime: Regime, that of the step.
+    step: Step, the trial step; ``h`` and ``undriven`` are read.
+    regime: Regime, that of the step; ``full_slip`` is read.
     work: Workspace, with V and the larger speeds at its nodes; in partial slip also with d at the last one and with the
     derivatives of p.
     Returns (scale of V, scale of the second unknown), floats, dimensionless.  A scale of a speed is 0 where that speed
@@ -150,9 +150,9 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
     It is the slope there by the right-hand side, less the slope of the interpolant extrapolated from nodes 1 ... N,
     times 2, the length of the step in t.
 
-    row: int, index in ``nodes`` of the values at all nodes.
-    slope_row: int, index of the row in which the slopes of the interpolant in t on [-1, 1] are written; its entry of
-    node 0 is set to 0.
+    row: int, index in ``nodes`` of the value at node 0 of the row; the values at all nodes are read.
+    slope_row: int, index in ``nodes`` of node 0 of the row in which the slopes of the interpolant in t on [-1, 1] are
+    written; its entry of node 0 is set to 0.
     initial_slope: float, slope in t at the left end by the right-hand side, in the unit of the row.
     nodes: Workspace.nodes.
     Returns the modulus of the defect, a float >= 0 in the unit of the row; NaN if a value of the row is NaN.
@@ -182,17 +182,18 @@ def _variation_of_p_rate(half, nodes):
 
 @kernel
 def _relative_speed_at_first_output(step, work):
-    """Return V at about the first output time of a step that starts at V = omega = 0, divided by the largest |V| of the
-    step.
+    """Return |V| at about the first output time of a step that starts at V = omega = 0, divided by the largest |V| at
+    nodes 1 ... N.
 
     The error of the step is divided by this number, so that V is accurate relative to itself at its first output.  V is
     taken at the last node that is not after the first output time after the left end; at node 1 if all are after it,
-    or at the next node where V is 0 there.  With all nodes before the output time, V at the end of the step is taken.
+    or at the next node where V is 0 there.  With no node after the output time, V at the end of the step is taken.
 
     step: Step, from V = omega = 0 on; tau and ``h`` are read.
     work: Workspace, with V at nodes 1 ... N and the output times.
     Returns a float in [0, 1], dimensionless; 1 where V is 0 at all nodes.  It is 0 only if V has come back to exactly 0
-    at the last node, and the step is then rejected, as its error is inf or NaN.
+    at the last node, and the step is then rejected, as its error is inf or NaN.  A NaN of V at the node that is taken
+    makes it NaN, unless no |V| is above 0; at another node it is passed over.
     """
     nodes, output_time = work.nodes, last_output_tau(work)
     for i in range(work.output_tau.size):
@@ -239,7 +240,7 @@ def estimate_error(step, regime, work):
     else, under a drive, multiplied by the square root of the growth of the larger speed.
 
     step: Step, the solved trial step; h, segment, undriven and initial_slope_known are read.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``locked`` are read.
     work: Workspace, with the solution at its nodes and the dense output; ROW_P_SLOPE and, where its defect is
     evaluated, ROW_D_SLOPE are written.
     Returns a float >= 0, dimensionless; inf or NaN, which the caller rejects too, where the scale of V is 0 or p is not

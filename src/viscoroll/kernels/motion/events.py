@@ -112,7 +112,7 @@ def evaluate_event_functions(step, regime, work):
     A row whose event is not active (:func:`is_event_active`) may keep the values of an earlier step.
 
     step: Step, the solved one; ``undriven`` is read.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with the unknowns and the drive at the nodes; rows STICK_EDGE ... BRAKE_RELEASE are written as
     above.  The values are dimensionless: speeds for V_ZERO and BELOW_REST_SPEED, in full slip also for STICK_EDGE and
     OMEGA_ZERO; a squared torque for BRAKE_RELEASE; ratios for all others.  Returns nothing.
@@ -303,13 +303,16 @@ def find_missed_event(step, regime, work):
 def _event_function(event, v, regime, work):
     """Return an event function at a position of a step, by the dense output of the unknowns; a float, dimensionless.
 
-    At the nodes it has the values of :func:`evaluate_event_functions`, to rounding; between them it is more accurate
-    than their interpolant, as the function is no polynomial.
+    :func:`refine_event` iterates on it, for functions that are no polynomial of the unknowns: between the nodes it is
+    more accurate than the interpolant of its values there.  At the nodes it has the values of
+    :func:`evaluate_event_functions`, to rounding, but for OMEGA_ZERO where V is not above 0: there these are spin_sign.
 
     event: int, STICK_EDGE; BELOW_REST_SPEED, in full slip only; or OMEGA_ZERO, in partial slip only.
     v: float, position on the step, in [0, 2] or a little outside.
     regime: Regime, that of the step; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
     work: Workspace, with the dense output, the unknowns at node 0, Scene and the rest threshold.
+    It is :func:`stick_edge_function` for STICK_EDGE, max(|V|, |omega|) less the rest threshold for BELOW_REST_SPEED and
+    spin_sign (1 + delta) for OMEGA_ZERO; positive within the regime.
     """
     V, omega_or_d = dense_state(v, work.nodes)
     if event == BELOW_REST_SPEED:
@@ -370,7 +373,7 @@ def _event_scale(event, nodes):
 def _event_tolerance(rtol):
     """Return the value of an event function divided by its scale up to which it counts as 0: max(0.01 rtol, 4e-15).
 
-    rtol: float, relative tolerance of the motion, dimensionless.
+    rtol: float, relative tolerance of the motion, dimensionless, > 0.
     """
     return max(_EVENT_TOLERANCE * rtol, _EVENT_ROUNDING)
 
@@ -385,7 +388,7 @@ def ends_at_event(event, nodes, rtol):
 
     event: int, code of the event and index in ``nodes`` of the row of its function.
     nodes: Workspace.nodes, with the event functions, ROW_SPEED and the drive.
-    rtol: float, relative tolerance of the motion, dimensionless.
+    rtol: float, relative tolerance of the motion, dimensionless, > 0.
     """
     scale, last, (_, largest) = _event_scale(event, nodes), nodes[event + N], row_range(event, nodes)
     return last < largest and largest > _EDGE_ROUNDING * scale and abs(last) <= _event_tolerance(rtol) * scale

@@ -131,7 +131,7 @@ def record_switch(code, step_state, work):
 def write_outputs_at_rest(end, inclusive, code, step_state, work):
     """Write the outputs of a cylinder at rest up to a time: V, omega and delta are 0, quadratures keep their totals.
 
-    Force and torque are those of the drive at the output times, not those that hold a prescribed speed.
+    Force and torque, requested or not, are those of the drive at the outputs, not those that hold a prescribed speed.
 
     end: float, that time in tau, not before the present one.
     inclusive: bool, whether an output at ``end`` itself is written too.
@@ -139,7 +139,7 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
     step_state: StepState, at the present time; its segment is that of all these outputs.
     work: Workspace, of the motion; all rows of its outputs are written, at the columns from ``next_output`` on.
     Returns the StepState at ``end``, with ``next_output`` after these outputs, one trial step more and the length of
-    the next step not chosen (0).
+    the next step not chosen (0); the segment and the number of accepted steps stay.
     """
     column, tau = step_state.next_output, work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
@@ -159,7 +159,7 @@ def _write_state(column, state, segment, regime, work):
     column: int, index of the output time.
     state: State, at that time, in the direction of the regime; it is written in fixed directions.
     segment: int, index of the segment of the drive at that time.
-    regime: Regime, at that time.
+    regime: Regime, at that time; all fields are read.
     work: Workspace, of the motion; rows 0, 1, 4, 5, 6 and 7 of its outputs are written at ``column``.  Returns nothing.
     """
     direction, force, torque = regime.direction, 0.0, 0.0
@@ -180,7 +180,7 @@ def write_due_outputs(state, regime, step_state, work):
     their totals.
 
     state: State, at the time reached.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with that time, its segment and the next output.
     work: Workspace, of the motion; all rows of its outputs are written at these times, if there are any.
     Returns the StepState with ``next_output`` after these outputs and h = 0, also where none was due; all else stays.
@@ -215,7 +215,7 @@ def _evaluate_integrands(regime, work):
     M_cylinder; force V; torque omega; -(torque of the brake) omega.  All are integrated over tau: distance and angle
     thus become integrals over t.
 
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with unknowns and drive at nodes 0 ... N; there N_QUADRATURES rows from ROW_INTEGRANDS on are
     written, also those that are 0 as nothing drives.  Returns nothing.
     """
@@ -240,9 +240,9 @@ def _evaluate_integrands(regime, work):
 def _integral_over_step(row, step, nodes):
     """Return the integral over tau of a row along a whole step, by Radau quadrature; a float, dimensionless.
 
-    Its N nodes are 1 ... N: the value at node 0 is not read.
+    Its N nodes are 1 ... N: the value at node 0 is not read.  Unlike :func:`_quadrature_at` it needs no interpolant.
 
-    row: int, index in ``nodes`` of the values.
+    row: int, index in ``nodes`` of the value at node 0 of a row, such as an integrand's (ROW_INTEGRANDS ...).
     step: Step, the accepted one, whose length is read.
     nodes: Workspace.nodes.
     """
@@ -264,8 +264,8 @@ def accept_step(end, v, step, regime, step_state, work):
 
     end: float, tau at that position.
     v: float, the position in [0, 2]; 2: the whole step.
-    step: Step, the solved one.
-    regime: Regime, that of the step.
+    step: Step, the solved one; ``tau``, ``h``, ``segment`` and ``undriven`` are read.
+    regime: Regime, that of the step; all fields are read.
     step_state: StepState, at its left end.
     work: Workspace, with the solution and its dense output; outputs, totals, integrands, the coefficients of their
     integrals and the next entry of ``step_ends``, t = ``end``/gamma, if it has one, are written.

@@ -57,11 +57,11 @@ def predict(step, relaxation, dense_step, regime, work):
       V > 1e-200 on (``initial_slope_known``), in full slip if V or omega is not 0;
     - the departure from rest (:func:`_predict_from_rest`).
 
-    step: Step, the trial step.
+    step: Step, the trial step; ``tau``, ``h``, ``segment`` and ``initial_slope_known`` are read.
     relaxation: float, derivative of the slope of the second unknown in itself at the left end, per unit of tau.
     dense_step: Step, whose dense output is stored: the last accepted one, or a longer one that was rejected; h = 0:
     none.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with node 0 of the step (V, the second unknown, V', the weighted rate and ROW_SPEED); V and the
     second unknown are written at nodes 1 ... N, in partial slip with V >= 0 and |d| <= 1.  Returns nothing.
     """
@@ -142,8 +142,8 @@ def _predict_from_rest(step, regime, work):
     linearly to its value at a departure under the drive at the right end, or stays if no departure in partial slip is
     possible there; V' at the right end is that of p' at this d, but taken as at least 0.
 
-    step: Step, the one to predict.
-    regime: Regime, that of the step.
+    step: Step, the one to predict; ``tau``, ``h`` and ``segment`` are read.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with V', the weighted rate and d at node 0; Scene and Drive are read.  V and the second unknown are
     written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
     """

@@ -90,7 +90,7 @@ def _start_step(state, regime, step_state, work):
     """Store the state and the right-hand side at node 0 of the next step, and choose the branch of the law at d = 0.
 
     state: State, at the time reached.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with that time and its segment.
     work: Workspace; node 0 of V, the second unknown, p, p', the weighted rate, the larger speed, V', the relaxation
     rate and dp'/dp is written.  At V = 0 in partial slip V' is that of p' at fixed d, and the relaxation rate is not
@@ -117,7 +117,7 @@ def _end_at_V_zero(step, remaining, state, regime, work):
 
     A prescribed V that comes to 0 at the end of the segment, or after it, needs no shorter step.
 
-    step: Step, the trial step.
+    step: Step, the trial step; ``tau``, ``h``, ``segment`` and ``undriven`` are read.
     remaining: float, time in tau to the end of the segment.
     state: State, at the left end; V is read.
     regime: Regime, at that state; full_slip, direction and locked are read.
@@ -157,11 +157,11 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     A step with too large an error, on which the regime ends, contains a kink of the law; the shorter step that ends at
     the kink may be accurate.
 
-    step: Step, the trial step.
+    step: Step, the trial step; all fields are read.
     remaining: float, time in tau to the end of the segment.
     targets_V_zero: bool, whether the length was chosen to reach V = 0.
     dense_step: Step, whose dense output is stored; h = 0: none.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with node 0; nodes, event functions and dense output are written.
     Returns (event, v, Step, error, dense_step):
 

@@ -57,7 +57,7 @@ def _torque_at_locked_wheel(state, regime, step_state, work):
     """Return the torque that would accelerate a wheel with omega = 0, and the largest torque of the brake against it.
 
     state: State, with omega = 0.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
     Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q and M_cylinder,
@@ -88,7 +88,7 @@ def brake_holds_omega(state, regime, step_state, work):
     without a brake, only if it is exactly 0.
 
     state: State, with omega = 0.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
     """
@@ -101,7 +101,7 @@ def release_brake(state, regime, step_state, work):
     """Return the Regime after a brake has released the cylinder, or after omega has changed its sign under it.
 
     state: State, with omega = 0.
-    regime: Regime, the one before.
+    regime: Regime, the one before; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
     Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the torque of
@@ -165,7 +165,7 @@ def impose_prescribed_speed(state, regime, step_state, work):
     - V in partial slip: V becomes max(s, 0) at fixed d.
 
     state: State, as integrated, with V >= 0.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment, whose prescribed speed is taken.
     work: Workspace, of which Scene and Drive are read.
     Returns (State, Regime), with V >= 0; ``locked`` and, but for a reversal, all of the Regime stay.
@@ -204,7 +204,7 @@ def apply_event(event, state, regime, step_state, work):
 
     event: int, its code, STICK_EDGE ... BRAKE_RELEASE of :mod:`workspace`.
     state: State, at the event.
-    regime: Regime, the one that ends.
+    regime: Regime, the one that ends; all fields are read.
     step_state: StepState, at the event.
     work: Workspace, with V at the nodes of the step that ends there; Scene, Drive and rtol are read too.
     Returns (whether the cylinder moves, State, Regime): it does not move where it comes to rest, or where V is 0 in the
@@ -250,7 +250,7 @@ def enter_segment(state, regime, step_state, work):
     segment without a brake ``spin_sign`` is 0 and ``locked`` False.
 
     state: State, at the end of the segment before, or the start of the motion.
-    regime: Regime, at that state.
+    regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and the index of the new segment.
     work: Workspace, of which Scene and Drive are read.
     Returns (State, Regime): V is at least 0; where the brake takes hold, ``locked`` is True and ``spin_sign`` stays.

@@ -136,7 +136,7 @@ def required_forces(V, omega, rates, load, regime, j):
     load: Load, the drive at the time; inverse_mass = 0 tells that V is prescribed, inverse_inertia = 0 that omega is,
     unless the brake holds it.
     regime: Regime, at that state; ``locked`` and ``spin_sign`` are read.
-    j: float, moment of inertia J/(m R^2), dimensionless.
+    j: float, moment of inertia J/(m R^2), dimensionless, > 0.
     Returns (force, torque of the motor, torque of the brake), floats, signed, in the direction of the regime,
     dimensionless; the torque of the brake is 0 without one.
     """
@@ -180,7 +180,7 @@ def partial_slip_rates(V, d, load, regime, scene):
 
     V: float, speed of the axis in the direction of the regime, dimensionless.
     d: float, delta/delta_star, of a cover that of the excess over free rolling; dimensionless.
-    load: Load, the drive at the time.
+    load: Load, the drive at the time; all fields are read.
     regime: Regime, of partial slip; sigma is the sign of the branch, spin_sign that of omega under a brake.
     scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`; law, moments_differ, kappa, mu > 0 and
     gamma are read.
@@ -252,7 +252,7 @@ def full_slip_rates(V, omega, load, regime, scene):
     slip.
 
     V, omega: float, the speeds in the direction of the regime, dimensionless.
-    load: Load, the drive at the time.
+    load: Load, the drive at the time; all fields are read.
     regime: Regime, of full slip; sigma is the sign of Q, spin_sign that of omega under a brake.
     scene: Scene, of which kappa, mu, moments_differ and ``law`` are read, the law of the pair of materials of this
     motion (:class:`..rows.record.Law`).  It is a tuple of numbers and arrays, not a reference (:func:`by_value`): the
@@ -281,7 +281,7 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
 
     V: float, speed of the axis in the direction of the regime, dimensionless.
     omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
-    load: Load, the drive at the time.
+    load: Load, the drive at the time; all fields are read.
     regime: Regime; ``full_slip`` selects the function, which also reads sigma and spin_sign.
     scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`.
     Returns Rates, dimensionless, as the function selected returns them.
@@ -298,8 +298,8 @@ def evaluate_rhs(state, load, regime, scene):
     The values are those of :func:`evaluate_rhs_inline`, which Newton's iteration takes instead.
 
     state: State, the unknowns, in the direction of the regime.
-    load: Load, the drive at the time.
-    regime: Regime, full or partial slip.
+    load: Load, the drive at the time; all fields are read.
+    regime: Regime; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
     scene: Scene, of which ``law``, moments_differ, kappa, mu and, in partial slip, gamma are read: a reference
     (:mod:`..compile.by_reference`), one address to pass, or a tuple.
     Returns Rates, dimensionless, as :func:`full_slip_rates` or :func:`partial_slip_rates` returns them.
@@ -326,7 +326,7 @@ def rhs_and_forces_at_node(i, regime, work):
     """Evaluate the right-hand side and the forces that act at a node of a step.
 
     i: int, the node, 0 ... N.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with V, the second unknown and the four functions of the drive (:func:`.drive.store_drive`) at the
     node; Scene and Drive are read too.
     Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless, in the direction of the regime,

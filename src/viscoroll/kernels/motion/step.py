@@ -109,7 +109,7 @@ def _evaluate_residuals(refactor, step, regime, work):
 
     refactor: bool, whether the derivatives that the Newton matrices consist of are stored too.
     step: Step, the trial step; ``h`` is read.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with V, the second unknown and the drive at the nodes, and p at node 0.  Entries 1 ... N of
     ROW_P_RESIDUAL, ROW_D_RESIDUAL, ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED are written; with ``refactor``
     also those of ROW_DV_DP, ROW_DP_DD, ROW_COUPLING, ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK, ROW_P_DIAGONAL and
@@ -158,8 +158,8 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     refactor: bool, whether to evaluate and invert the Newton matrices again; False: the stored inverses are used, with
     the rows ROW_DV_DP, ROW_DP_DD, ROW_COUPLING and ROW_FEEDBACK of the iteration that made them.
     coupled: bool, whether p' depends on the second unknown, so that the system of p contains feedback.
-    step: Step, the trial step.
-    regime: Regime, that of the step.
+    step: Step, the trial step; ``h`` and ``undriven`` are read.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with V, the second unknown and the drive at all nodes, and p and the larger speed at node 0.
     Written at nodes 1 ... N are the unknowns ROW_V, ROW_OMEGA_OR_D and ROW_P after the update; ROW_P_RESIDUAL and
     ROW_D_RESIDUAL, the residuals with terms of the other equation; and, of the unknowns before the update, ROW_P_RATE,
@@ -213,11 +213,11 @@ def solve_step(step, relaxation, dense_step, regime, work):
     is left, is at most 0.016 times the tolerance of the step, max(0.25 rtol, 1e-14), or at most 1e-14.  At the first
     iteration the ratio is taken to be at most 0.1, less for a small update.
 
-    step: Step, the trial step.
+    step: Step, the trial step; all fields are read.
     relaxation: float, derivative of the slope of the second unknown in itself at node 0, per unit of tau; only the
     predictor reads it.
     dense_step: Step, whose dense output is stored on entry, for the predictor; one with h = 0 if none is.
-    regime: Regime, that of the step.
+    regime: Regime, that of the step; all fields are read.
     work: Workspace, with V, the second unknown, p, V', the weighted rate and the larger speed at node 0; the drive at
     all nodes, nodes 1 ... N of all rows of :func:`_newton_iteration` and the Newton matrices are written.  The rates,
     slopes, residuals and ROW_SPEED there are those before the last update, the derivatives those of the last matrices.

@@ -2,6 +2,9 @@
 
 ``+ - * /`` work on two vectors, and on a vector and a number.  Each of the four results is rounded as it would be
 alone; :func:`fma4` rounds product and sum together.
+
+A function that takes a ``builder``, of LLVM, runs while numba compiles a kernel: it emits its instructions at the
+position of the builder and returns values of LLVM.
 """
 
 import operator

@@ -5,8 +5,9 @@ law is timed against and checked against.  The one liberty taken is that Eqs. (6
 only r = I1/I0 and k = K0/K1 occur and nothing overflows.
 
 The printed forms lose digits in corners where the explicit ones do not.  Differences from :mod:`..rows`, measured over
-alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star
-4e-16 relative, beta 3e-15, Q 1.1e-13 mu, M 2e-13/kappa; the docstrings say where relative digits go.
+alpha = T_epsilon/T_sigma in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star in [1e-6, 1 - 1e-6]: lam 7e-16
+relative, delta_star 4e-16 relative, beta 3e-15, Q 1.1e-13 mu, M 2e-13/kappa; the docstrings say where relative digits
+go.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -158,9 +159,10 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
     """Solve Eq. (10) for beta, the length of the stick zone divided by that of the contact, in partial slip, V not 0.
 
     delta_abs : float, |delta|, dimensionless, 0 <= delta_abs < delta_star.
-    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless.
-    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
-        is finite (V = 0, where it is not, has beta = 1 - |delta|/delta_star).
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
+    lam, epsilon, zeta : floats of the contact, Eqs. (6)-(8): length divided by l0, in [alpha^(-1/2), 1]; shift in half
+        contact lengths, >= 0; half the transit time divided by T_epsilon, > 0 and finite
+        (V = 0, where it is not, has beta = 1 - |delta|/delta_star).
     alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
     Returns (beta, status): a float in [0, 1], found to 1e-16 + 4e-16 beta, and an int, OK (0) or NOT_CONVERGED (1)
     (:func:`brent`).
@@ -179,9 +181,9 @@ def direct_traction(beta, delta_abs, kappa, mu, lam, epsilon, zeta):
 
     beta : float, length of the stick zone divided by that of the contact, in [0, 1], of :func:`direct_stick`.
     delta_abs : float, |delta|, dimensionless, below delta_star.
-    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless.
-    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
-        is finite.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
+    lam, epsilon, zeta : floats of the contact, Eqs. (6)-(8): length divided by l0, in [alpha^(-1/2), 1]; shift in half
+        contact lengths, >= 0; half the transit time divided by T_epsilon, > 0 and finite.
     Returns a float, dimensionless, in [0, mu] but for rounding, which may leave less than 0 at delta = 0; exactly mu
     where beta zeta is 0, in the limit of full slip.
 
@@ -201,8 +203,8 @@ def direct_moment(kappa, lam, epsilon, zeta, alpha):
     """Return the modulus |M| of the rolling moment by Eq. (16), divided by load times radius, V not 0.
 
     kappa : float, slenderness R/l0, dimensionless, > 0.
-    lam, epsilon, zeta : floats, length, shift and half transit time of the contact, Eqs. (6)-(8), dimensionless; zeta
-        is finite.
+    lam, epsilon, zeta : floats of the contact, Eqs. (6)-(8): length divided by l0, in [alpha^(-1/2), 1]; shift in half
+        contact lengths, >= 0; half the transit time divided by T_epsilon, > 0 and finite.
     alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
     Returns a float, dimensionless, > 0 in exact numbers; for alpha = 1 it is 0, where rounding may leave a small number
     of either sign.

@@ -15,7 +15,7 @@ def direct_state(alpha, n, request):
     """Evaluate by the equations as printed what is requested of one state; V = 0 is the limit V -> 0+ of Sect. 3.4.
 
     alpha : float, T_epsilon/T_sigma of the material, >= 1, dimensionless.
-    n : int, index of the state.
+    n : int, index of the state, >= 0; not checked.
     request : :class:`..rows.contact_states.Request`: states (V finite), and for each quantity its row of ``out``, -1 if
         it is not requested.  Of lam, zeta, epsilon, delta_star, delta, full_slip (1.0 or 0.0), beta, Q and M those that
         are requested are written into column n + ``first``, dimensionless; other quantities never are.

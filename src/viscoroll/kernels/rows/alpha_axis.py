@@ -144,7 +144,7 @@ def select_alpha(n, source):
     """Make the alpha of a state the selected one: write its data into the heads of rows and marks, and outdate all
     parts.
 
-    n : int, index of the state.
+    n : int, index of the state, >= 0, of those for which the law was made; not checked.
     source : pointer to a SOURCE record, with the addresses of alpha (1 to 1e12, of length 1 or one for each state, in
         octaves whose axes are made, which is not checked), octaves, rows and marks.  If that alpha is selected already,
         nothing is written.  Else into the head of rows are written alpha, its lam, W and C in the fast limit (of both

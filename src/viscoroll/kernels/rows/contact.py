@@ -10,15 +10,20 @@ All quantities are dimensionless (docs/symbols.md); an argument of which no shap
 Terms of this file:
 
 - Law: polynomials of the functions of one material, a row for each octave of u or v (:mod:`.record`); of many
-  materials a part of a row is computed, and written into the law, when it is first read (:mod:`.evaluate`).
+  materials a part of a row is computed, and written into the law, when it is first read (:mod:`.evaluate`).  Beyond
+  the last row the head of the rows, with the numbers of the fast limit, is read in place of a polynomial.
 - RowPosition: where u or v lies in them: number of the row, argument t of its polynomials, slope dt/dx.
 - u = kappa |V|: dimensionless speed.  L = 2 kappa delta_star/mu: critical creepage, a function of u.
 - D = 2 kappa |delta - delta_0|/mu: creepage less delta_0, that of free rolling, which is 0 for half-spaces; D < L in
   partial slip, and infinite stands for full slip.
 - v = 2 u/(L - D) = 1/F(eta), with eta half the transit time of the stick zone; H and F are functions of the material
-  (:mod:`.rows`), of which only H/F^2 and eta/F occur, as functions of v.
+  (:mod:`.rows`), of which only H/F^2 and eta/F occur, as functions of v.  A NaN of u or v where L and D are finite has
+  no meaning and is not checked.
 - State: kappa, mu, V, and ``creep``, which is delta, or omega where ``creep_is_omega``.
 - Request: states, and the quantities of them that are written into rows of ``out``.
+- Block: up to TOGETHER = 64 states that are evaluated together.  Column c: place of a state in its block.
+- Scratch: for each number of a state (kappa, mu, V and so on) TOGETHER doubles in a row, of which that at c belongs to
+  the state in column c.
 """
 
 import numpy as np
@@ -332,7 +337,7 @@ def _position(place, c, scratch):
 def _write_other_fields(n, c, law, scratch, request):
     """Write the requested quantities of a state, except Q and M, into ``request.out``.
 
-    n : int, index of the state.
+    n : int, index of the state, >= 0; not checked.
     c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
     law : :class:`Law` with the material of the state selected; without rows of the moments of the bodies
         (:mod:`.alpha_axis`) none of these four may be requested.

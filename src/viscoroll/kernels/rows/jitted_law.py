@@ -1,6 +1,7 @@
 """The law of one scene for jitted code: a value that is called, the address of the user data of a C function.
 
 All such laws have one numba type, so that a user's function that is given a law is compiled once for all of them.
+The functions with a decorator of numba's are called by numba when it compiles such a function.
 """
 
 import ctypes
@@ -163,10 +164,13 @@ def _lower_constant(context, builder, kind, law):
 
 @lower_builtin(LawType, LawType, types.float64, types.float64)
 def _lower_call(context, builder, signature, arguments):
-    """Return instructions that call the C function of a law, whose address begins the user data.
+    """Return instructions that call the C function of a law; numba calls this function to compile law(V, omega).
+
+    The address of the C function is the first word of the law's user data, ``function`` of a SCENE.
 
     context, builder, signature : numba's context of code generation, builder of LLVM, signature of the call.
-    arguments : values of LLVM: the law, which is the address of its user data, and the doubles V and omega.
+    arguments : values of LLVM: the law, which is the address of its user data, and the doubles V and omega, in the
+        units of the user data.
     Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`, in the units of the user data.  The status
     of the C function is not read: a state at which the law is not defined has NaN in all eight.
     """

@@ -1,7 +1,8 @@
-"""The speeds at which M(V) - gain V equals a load, over arrays.
+"""The speeds at which kappa (M(V) - gain V) equals a load, over arrays.
 
-Here M is the rolling moment divided by load times radius, V > 0 the speed, kappa = R/l0 the slenderness, and gain the
-slope of a load that rises or falls with the speed.
+Here M is the rolling moment divided by P R, the normal load times the radius of the cylinder, V > 0 the speed, kappa =
+R/l0 the slenderness, and gain the slope over V of a force plus torque that rises or falls with the speed.  A "load" of
+this file is kappa times a force plus torque that does not depend on the speed.
 
 kappa M is one function of u = kappa V, so that kappa (M - gain V) = load is one equation between two nodes between
 which its left side is monotone.
@@ -30,7 +31,7 @@ class LoadCurve(NamedTuple):
     u : kappa V, > 0, (n,).
     value : kappa (M - gain V), (n,), monotone between two nodes.
     is_extremum : bool, whether a node is an extremum of the curve, (n,).
-    gain : slope of the load over the speed, of either sign.
+    gain : slope of force plus torque over V, of either sign.
     """
 
     u: Any
@@ -43,12 +44,13 @@ class LoadCurve(NamedTuple):
 def _find_crossing(load, n, curve, law):
     """Return u between the nodes ``n`` and n + 1 where the curve equals ``load``: Newton's iteration in a bracket.
 
-    load : float, value of kappa (M - gain V), between those of the two nodes, dimensionless.
+    load : float, value of kappa (M - gain V), between those of the two nodes, dimensionless; not checked.
     n : int, index of the lower node, from 0 to the number of nodes - 2.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
-    law : :class:`Law` of the material, of which the polynomials of M/V are read.
+    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the head are read.
     Returns u = kappa V, a float, > 0, dimensionless, from u of node n to that of node n + 1.  Where the load equals an
-    extremum at the node n + 1 to rounding (EXTREMUM_RTOL), it is that node.
+    extremum at the node n + 1 to rounding (EXTREMUM_RTOL), it is that node; where it equals one at the node n to
+    rounding, it is that node to about the square root of rounding, 5e-8 relative.
 
     The iteration, in ln u, starts from interpolation between the nodes, and takes the middle of the bracket where a
     step would leave it.  It ends when a step is so small that the next one would be rounding, at the latest after 40
@@ -93,10 +95,10 @@ def _find_crossing(load, n, curve, law):
 def crossing_loop(law, curve, load, node, out, start, stop):
     """Find u = kappa V where kappa (M(V) - gain V) equals each load.
 
-    law : :class:`Law` of the material, of which the polynomials of M/V are read.
+    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the head are read.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
-    load : values of kappa (M - gain V), (n,), dimensionless, each between the values at its two nodes.
-    node : for each load the index of the node below the crossing, int, (n,).
+    load : values of kappa (M - gain V), (n,), dimensionless, each between the values at its two nodes; not checked.
+    node : for each load the index of the node below the crossing, from 0 to the number of nodes - 2, int, (n,).
     out : (n,) floats, of which the numbers ``start`` to ``stop`` - 1 are written: u > 0, dimensionless, between the two
         nodes of the load.
     start, stop : int, index of the first load and of the one after the last.  Returns nothing.

@@ -152,9 +152,9 @@ def set_alpha_of_state(n, alpha, series):
 
     Loops over states whose alphas differ call it before each state, and so reuse one series and one workspace.
 
-    n : int, index of the state, >= 0.
-    alpha : alphas >= 1, of length 1 for all states or with one for each; empty: the series is complete and nothing is
-        written.
+    n : int, index of the state, from 0 to the number of states - 1; not checked.
+    alpha : instantaneous divided by long-time stiffness, >= 1, (1,) for all states or (states,); empty: the series is
+        complete and nothing is written.
     series : :class:`Series` of one mode with b = 1 and Q = 1, of which a[0] = alpha and e[0] = t[0] = sqrt((alpha -
         1)/alpha) are written; any series if ``alpha`` is empty.  Returns nothing.
     """
@@ -170,7 +170,8 @@ def modes_loop(series, alpha, work, z, out):
 
     series : :class:`Series` of at least one mode: rates and strengths; of one mode, and overwritten, if ``alpha`` is
         not empty.
-    alpha : alphas >= 1 of a series of one mode, of length 1 or with one for each z; empty: the series is complete.
+    alpha : instantaneous divided by long-time stiffness, >= 1, of a series of one mode, (1,) for all z or (n,); empty:
+        the series is complete.
     work : the :class:`Workspace` of the series, scratch.
     z : values of zeta > 0, (n,), in the unit of time of the series.  Where z is infinite, values and N are the limits
         at rest, and slopes are NaN.

@@ -119,7 +119,7 @@ def ensure_part(part, row, law):
 def select_index(n, addresses, state_count, marks):
     """Mark the material of state ``n`` as selected, with the next version number if it was another one.
 
-    n : int, index of the state.
+    n : int, index of the state, >= 0, of those for which the law was made; not checked.
     addresses : int, address of an array of 64-bit integers: the index of the material of each state.
     state_count : int, length of that array; 1 if all states have one material.
     marks : ``marks`` of the :class:`Law`, whose entries SELECTED (the index) and VERSION (one more) are written, if

@@ -4,8 +4,8 @@ One function is stored as its coefficients in their order: six vectors, each a p
 and b is stored as a0 a1 b0 b1, a2 a3 b2 b3, ...: twelve vectors, polynomials in t^2 of the even and odd coefficients.
 So a polynomial over an octave costs no more than one over an eighth of the octave with half as many coefficients.
 
-All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the argument ``t``.  A NaN of t
-gives NaNs.
+All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the argument ``t``, in [-1, 1]
+on the row of the table; outside the polynomial is extrapolated.  A NaN of t gives NaNs.
 """
 
 from llvmlite import ir
@@ -171,10 +171,10 @@ def evaluate_secants(table, start, t, s):
 
     table : contiguous vector of doubles, or pointer to them, with the 24 coefficients of p, the constant first.
     start : int, index in ``table`` at which they begin; it is not checked.
-    t, s : floats, arguments, dimensionless.
+    t, s : floats, arguments, dimensionless, in any order; in [-1, 1] on the row, outside p is extrapolated.
 
     Returns (p(t), secant of p, p'(t), secant of p'), floats in the unit of the coefficients; at s = t the secants are
-    p'(t) and p''(t).
+    p'(t) and p''(t).  A NaN of s makes the two secants NaN, but not p(t) and p'(t).
     """
     square = t * t
     s_square = s * s

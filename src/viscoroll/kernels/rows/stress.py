@@ -158,7 +158,8 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
     """Compute pressure and shear stress at n points of the contact.
 
     series : :class:`Series`: rates and strengths of the modes; of one mode, and overwritten, if ``alpha`` is not empty.
-    alpha : alphas >= 1 of a series of one mode, of length 1 or n; empty: the series is complete.
+    alpha : instantaneous divided by long-time stiffness, >= 1, of a series of one mode, (1,) or (n,); empty: the series
+        is complete.
     whole, stick : :class:`MemoryWeights` of the series for the contact and for the stick zone, scratch; they belong to
         no z at the begin (:func:`new_memory_weights`).
     points : :class:`Points`: position x/l0, kappa, mu and the contact state of each point, arrays of length 1 or n.

@@ -61,7 +61,7 @@ def _interpolate(source, marks, first, to, out, count):
 def select_cover(n, source):
     """Make the cover of a state the selected one: interpolate the head of its rows, and its cover rows.
 
-    n : int, index of the state.
+    n : int, index of the state, >= 0, of those for which the law was made; not checked.
     source : pointer to a SOURCE record.  If that cover is selected already, nothing is written.  Else the first eight
         numbers of the head of rows (:data:`.record.ALPHA` to those of :data:`.record.FAST_CYLINDER`) and all cover rows
         are written, and in the head of marks the index of the cover, a new version, the number of rows and the address

@@ -209,7 +209,7 @@ def work_size(nodes: int) -> int:
 def select_series(n, source):
     """Make the material of a state the selected one: write its data into the heads of rows and marks.
 
-    n : int, index of the state.
+    n : int, index of the state, >= 0, of those for which the law was made; not checked.
     source : pointer to a SOURCE record, of which the addresses of the materials, their indices, rows and marks are
         read, with state_count and material_size.  If that material is selected already, nothing is written.  Else the
         first ten numbers of the material (alpha, lam_fast, W and C three times, sums J_j T_j of both bodies) are
