@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 class Material(FromPrograms):
     """An isotropic linear viscoelastic material, in SI units.
 
-    E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.
+    E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.  A material that was imported
+    with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of E/(1 - nu^2) in plane strain in place
+    of that of E: the moduli and the compliance of its methods are then E times this series.
 
     Parameters
     ----------
@@ -268,6 +270,9 @@ class Material(FromPrograms):
     def storage(self, omega: ArrayLike) -> Any:
         """Return the storage modulus E' in tension, which rises from E at omega = 0 to the instantaneous modulus.
 
+        It is E (1 + sum E_i x_i^2/(1 + x_i^2)) with x_i = omega tau_i T_ref; of a material imported with bulk terms
+        unlike those of shear it is of E times the series of E/(1 - nu^2).
+
         Parameters
         ----------
         omega : angular frequencies, rad/s, >= 0, of any shape.
@@ -293,6 +298,7 @@ class Material(FromPrograms):
     def loss(self, omega: ArrayLike) -> Any:
         """Return the loss modulus E'' in tension, E sum E_i x_i/(1 + x_i^2) with x_i = omega tau_i T_ref.
 
+        Of a material imported with bulk terms unlike those of shear it is of E times the series of E/(1 - nu^2).
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, Pa, >= 0; 0 of an elastic and of a rigid body.
         Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
@@ -309,6 +315,7 @@ class Material(FromPrograms):
     def tan_delta(self, omega: ArrayLike) -> Any:
         """Return the loss factor E''/E' in tension, of :meth:`loss` and :meth:`storage`.
 
+        Of a material imported with bulk terms unlike those of shear it is that of E/(1 - nu^2).
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, dimensionless, >= 0; 0 of an elastic and of a rigid body.
         Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
@@ -325,6 +332,8 @@ class Material(FromPrograms):
 
     def relaxation(self, t: ArrayLike) -> Any:
         """Return the tensile relaxation modulus E(t), which falls from the instantaneous modulus at t = 0 to E.
+
+        Of a material imported with bulk terms unlike those of shear it is E times the series of E/(1 - nu^2).
 
         Parameters
         ----------
@@ -353,7 +362,8 @@ class Material(FromPrograms):
         """Return the creep compliance in tension times E, 1 - sum J_j exp(-t/(T_j T_ref)), with the creep form of
         ``prony``.
 
-        It rises from E/E(0) at t = 0 to 1.
+        It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of shear it is that of
+        (1 - nu^2)/E, divided by its long-time value.
         t: times, s, >= 0, of any shape.
         Returns a number or an array of that shape, dimensionless; 1 at all times for an elastic and a rigid body.
         Raises ParameterError for a time that is negative, NaN, infinite or no number, or of another dimension.

@@ -155,7 +155,8 @@ class Record:
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Return all :attr:`QUANTITIES` of the record as the model predicts them; each kind of record does this itself.
 
-        cylinder : :class:`Cylinder` with the present values of the unknowns.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load, the mass and the
+            temperature of this record, which are not read here.
         values : name -> value of the unknowns of bearing and record, without the name of the record: "brake" in N m/m,
             "drag" in N m s/m, "V0" in m/s, "omega0" in rad/s, "t0" in s; those that are missing are 0 or as the record
             has them.
@@ -212,7 +213,8 @@ class Resistance(Record):
 
         Parameters
         ----------
-        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load and the temperature
+            of this record, which are not read here; nor are M and F, so that a plan is predicted too.
         values : name -> value of "brake", N m/m, and "drag", N m s/m, each 0 where it is missing; other names are not
             used.
 
@@ -266,7 +268,8 @@ class Traction(Record):
 
         Parameters
         ----------
-        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load and the temperature
+            of this record, which are not read here; nor is Q, so that a plan is predicted too.
         values : not used: bearing and record have no unknowns that change the traction.
 
         Returns
@@ -393,7 +396,9 @@ class Coastdown(Record):
 
         Parameters
         ----------
-        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load, the mass and the
+            temperature of this record, which are not read here; nor are V, omega and x, so that a plan is predicted
+            too.
         values : name -> value of "brake", N m/m, and "drag", N m s/m, which are 0 where they are missing, and of "V0",
             "omega0" and "t0" in place of those of the record; where these are missing the record must have numbers, or
             "rolling" as omega0, which is V0/R.  Other names are not used.

@@ -186,8 +186,9 @@ def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
     """Return delta_0 at V > 0, the creepage of free rolling, at which Q = 0.
 
     law : table of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V : speeds, > 0, (n,).
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,); mu is only passed on, delta_0 does not
+        depend on it.
+    V : speeds, dimensionless, > 0, which is not checked, (n,).
     Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float 0.0 of half-spaces.
     """
     return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
