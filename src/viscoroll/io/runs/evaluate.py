@@ -34,8 +34,8 @@ def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Flo
     most: number of motions at most, >= 1; None: all of the block.  The inputs of a smaller number are a sample of the
         same distributions, but only with "sobol" are they surely the first ones of the whole block.
     Returns name of each uncertain input -> values, float64, (motions,), in the units of the run file, where motions is
-    their number in the block, or ``most`` if that is smaller; {} without uncertain inputs.  A draw may be infinite where
-    its distribution overflows, which a motion refuses.
+    their number in the block, or ``most`` if that is smaller; {} without uncertain inputs.  A draw may be infinite
+    where its distribution overflows, which a motion refuses.
     """
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)

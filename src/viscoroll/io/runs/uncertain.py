@@ -182,9 +182,9 @@ class _Reader:
         number: the uncertain number, whose name the column gets in ``joint``.
         table: its table of TOML: file, a .csv, .nc or .parquet, relative to the run file, and column.
         Raises FileError for a table without a text at either key or with an unknown key, for a file or column that
-        cannot be read, for a column that is empty, has several axes, numbers that are not finite or a unit that is unknown or of
-        another dimension, and where its length differs from that of the other columns of the file; MissingDependencyError for
-        .parquet without pyarrow.
+        cannot be read, for a column that is empty, has several axes, numbers that are not finite or a unit that is
+        unknown or of another dimension, and where its length differs from that of the other columns of the file;
+        MissingDependencyError for .parquet without pyarrow.
         """
         check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")
