@@ -25,7 +25,10 @@ _MATERIAL_KEYWORDS = ("name", "density", "thickness", "measured", "temperature")
 
 
 class FromPrograms:
-    """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given."""
+    """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given.
+
+    A ``temperature`` outside -150 to 200 degrees Celsius gives a ModelWarning: it looks like one in kelvin.
+    """
 
     @classmethod
     def abaqus(
@@ -140,7 +143,7 @@ class FromPrograms:
         E, nu : Young's modulus, Pa, finite, > 0, and Poisson's ratio, in (-1, 0.5], of the elastic node: the long-time
             values (static stiffness "Long-term").  Without ``K`` nu is taken constant in time.
         G : shear moduli G_m of the branches, Pa, >= 0, (n,).
-        tau : their relaxation times tau_m, s, > 0, (n,).
+        tau : their relaxation times tau_m, s, finite, > 0, (n,).
         K : bulk moduli of the branches, Pa, >= 0, at the same times, (n,); zeros where only deviatoric strains are
             viscoelastic.  For nu = 0.5 they are checked, but have no effect.
         more : as of :meth:`abaqus`.

@@ -46,6 +46,7 @@ class Material(FromPrograms):
         other body is then rigid or elastic.  Default: a half-space.
     measured : :class:`Measured` range of frequencies of the data; outside of it functions warn.
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
+        Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
 
     Raises
     ------
@@ -108,8 +109,8 @@ class Material(FromPrograms):
 
         Parameters
         ----------
-        E : long-time Young's modulus, Pa.
-        nu : Poisson's ratio.
+        E : long-time Young's modulus, Pa, > 0.
+        nu : Poisson's ratio, in (-1, 0.5].
         T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is T_epsilon.  Where
             they are equal, or their ratio rounds to 1, the material is elastic.
         more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
@@ -146,8 +147,8 @@ class Material(FromPrograms):
 
         Parameters
         ----------
-        E : Young's modulus, Pa.
-        nu : Poisson's ratio.
+        E : Young's modulus, Pa, > 0; infinite for a rigid body.
+        nu : Poisson's ratio, in (-1, 0.5].
         more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
             ``temperature``, ``T_ref``.
 
