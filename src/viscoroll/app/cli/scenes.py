@@ -157,7 +157,8 @@ def steady(arguments: Namespace) -> None:
     force, torque or slope of 0, and a speed that is not prescribed.
     Returns None.  The table has a row for each equilibrium of each load, with the quantities of
     :func:`viscoroll.steady`, and none for a load without an equilibrium; a .nc file has the dataset of
-    :meth:`viscoroll.Steady.to_xarray`, with NaN in its place.
+    :meth:`viscoroll.Steady.to_xarray`, with NaN in its place.  A contact that the model does not describe gives a
+    ModelWarning.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     import numpy as np

@@ -227,6 +227,11 @@ class Resistance(Record):
         ------
         ParameterError
             Values that make no contact, as speeds beyond the range of the law.
+
+        Warns
+        -----
+        ModelWarning
+            As :func:`viscoroll.contact`; a fit suppresses it.
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
@@ -281,6 +286,11 @@ class Traction(Record):
         ------
         ParameterError
             As of :meth:`Resistance.model`; a layer beside a body that relaxes too, whose Q is not known.
+
+        Warns
+        -----
+        ModelWarning
+            As :func:`viscoroll.contact`; a fit suppresses it.
         """
         return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
 
@@ -413,6 +423,11 @@ class Coastdown(Record):
         ------
         ParameterError
             Values that make no motion, as infinite ones.
+
+        Warns
+        -----
+        ModelWarning, RuntimeWarning
+            As :func:`viscoroll.roll`, the latter where the motion is given up; a fit suppresses both.
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0
