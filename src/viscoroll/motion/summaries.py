@@ -179,6 +179,7 @@ def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
         status and flow are read too; an attribute R tells that it is in SI units.
     Returns the dataset of :func:`summary_dataset`, with the quantiles of :data:`LEVELS`, in the units of ``ensemble``;
     its attributes also are ``motions``, their number.
+    Raises AttributeError for a dataset without t, status or flow, of which the first may be a KeyError too.
     """
     names = [name for name in _DRAWN if name in ensemble]
     summary = summarise(ensemble, names, exact=True)
