@@ -32,12 +32,13 @@ class Material(FromPrograms):
 
     E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.  A material that was imported
     with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of E/(1 - nu^2) in plane strain in place
-    of that of E: the moduli and the compliance of its methods are then E times this series.
+    of that of E: its methods then give E times this series as the moduli, and the compliance that belongs to it.
 
     Parameters
     ----------
     E : long-time Young's modulus, Pa, > 0; infinite for a rigid body.
-    nu : Poisson's ratio, in (-1, 0.5], constant in time: shear, bulk and tensile modulus relax alike.
+    nu : Poisson's ratio, in (-1, 0.5], constant in time: shear, bulk and tensile modulus relax alike; of a material
+        imported with other bulk terms that of long times.
     prony : strengths divided by E, and times in units of T_ref; default: elastic.
     T_ref : unit of the times of ``prony``, s.
     name : name in tables and figures.
@@ -271,8 +272,8 @@ class Material(FromPrograms):
     def storage(self, omega: ArrayLike) -> Any:
         """Return the storage modulus E' in tension, which rises from E at omega = 0 to the instantaneous modulus.
 
-        It is E (1 + sum E_i x_i^2/(1 + x_i^2)) with x_i = omega tau_i T_ref; of a material imported with bulk terms
-        unlike those of shear it is of E times the series of E/(1 - nu^2).
+        It is E (1 + sum E_i x_i^2/(1 + x_i^2)) with x_i = omega tau_i T_ref.  Of a material imported with bulk terms
+        unlike those of shear the series is that of E/(1 - nu^2).
 
         Parameters
         ----------
@@ -299,7 +300,7 @@ class Material(FromPrograms):
     def loss(self, omega: ArrayLike) -> Any:
         """Return the loss modulus E'' in tension, E sum E_i x_i/(1 + x_i^2) with x_i = omega tau_i T_ref.
 
-        Of a material imported with bulk terms unlike those of shear it is of E times the series of E/(1 - nu^2).
+        Of a material imported with bulk terms unlike those of shear the series is that of E/(1 - nu^2).
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, Pa, >= 0; 0 of an elastic and of a rigid body.
         Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.

@@ -215,8 +215,8 @@ class Ensemble(RollResult):
 
         It is in the units of the roller, alpha, kappa, mu, gamma and j dimensionless.  Fields that were not requested
         are left out; labels of the starts become coordinates of the axis "motion", unless a variable has their name.
-        Over motion it has V0, omega0, onset_time, rest_time, status and flow; alpha to j and the drive are without axis
-        where all motions have the same.  :func:`.export.ensemble_dataset` states the attributes.
+        Over motion it has V0, omega0, onset_time, rest_time, status and flow; alpha, kappa, mu, gamma, j and the drive
+        are without axis where all motions have the same.  :func:`.export.ensemble_dataset` states the attributes.
 
         Examples
         --------
