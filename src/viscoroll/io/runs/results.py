@@ -128,8 +128,8 @@ class RunResults(Result):
         quantity that is one number per motion.  Columns are "mean", "std", "min", "max", then the quantiles in the
         order of the run file, each labelled by its level, a float in [0, 1].
         std is the root of the mean squared difference from the mean (divided by the number of values, not by one less).
-        Quantiles are known to the width of a bin, at most 2^-8 of the value.  At a time at which no motion has a value all entries
-        are NaN.
+        Quantiles are known to the width of a bin, at most 2^-8 of the value.  At a time at which no motion has a
+        value all entries are NaN.
 
         Examples
         --------
