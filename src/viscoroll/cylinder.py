@@ -316,8 +316,11 @@ class Cylinder(Methods):
         Returns
         -------
         Scene
-            Its kappa is that of Sect. 3.1 and its gamma that of Eq. (4) of the paper, in units of ``T_ref``.  With an
-            array T_epsilon it has a series for each cylinder.
+            Its kappa is R/l0 (Sect. 3.1 of the paper) and its gamma P T_ref^2/(m R) (Eq. (4)), with the load P and l0 =
+            sqrt(32 R P/E'); kappa, gamma, mu and j are numbers or (n,).  E, nu, T_epsilon and T_sigma give alpha =
+            T_epsilon/T_sigma; with an array T_epsilon the scene has a material instead, a series for each cylinder.
+            Other cylinders have a material too: a series, :class:`Bodies`, a :class:`Cover` or that of the law that was
+            given.  The object is the same at each call.
 
         Raises
         ------
@@ -412,17 +415,20 @@ def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
 def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: Any, j: Any) -> Scene:
     """Return the scene of one cylinder or of many; the arguments are numbers or arrays (n,), unchecked.
 
+    :class:`.rollers.Rollers` calls it with an array for ``T_ref``, a unit of time for each cylinder.
+
     R: radius, m.
     m: mass per length, kg/m.
     load: force per length P that presses the cylinder on the base, N/m.
-    E_prime: contact modulus, Pa.
-    T_ref: unit of time, s.
+    E_prime: contact modulus E' (:attr:`Cylinder.E_prime`; of one material in plane strain pi E/(1 - nu^2)), Pa.
+    T_ref: unit of time, s, a number or (n,).
     law: alpha, a float or an array (n,), no int, or a material of a scene (series, bodies, cover or
         :class:`LawTable`), with times divided by ``T_ref``.
     mu, j: coefficient of friction, and moment of inertia divided by m R^2, dimensionless.
-    Returns the dimensionless :class:`viscoroll.Scene`, whose kappa is R/l0 and whose gamma is P T_ref^2/(m R).
+    Returns the dimensionless :class:`viscoroll.Scene`, whose kappa is R/l0 with l0 = sqrt(32 R P/E'), and whose gamma
+    is P T_ref^2/(m R).
     Raises ParameterError, by the names of the scene's parameters, where these are out of range or overflow, or their
-    shapes do not broadcast; ValueError of numpy where those of the first five arguments do not.
+    shapes do not broadcast; ValueError of numpy where those of R, load and E_prime, or of R, m, load and T_ref, do not.
     """
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
     # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name

@@ -151,10 +151,12 @@ class Law:
         return _loads_and_slopes(out) if slopes else _loads(out[:4])
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
-        """Return the law at arrays ``V`` and ``omega``, which broadcast, in the units of the roller.
+        """Return the law at arrays, by :func:`contact`, because the compiled law takes one state.
 
-        The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape.  Raises
-        and warns as :func:`contact` does.
+        V, omega: speeds in the units of the roller, of any shapes that broadcast; they may have labels or units.
+        kind: class of the result, :class:`Loads`, without slopes, or :class:`LoadsAndSlopes`.
+        Returns a ``kind`` of arrays of the broadcast shape; empty ones for empty input.
+        Raises and warns as :func:`contact` does.
         """
         return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
 
@@ -224,11 +226,13 @@ class _LawOfGrid(Law):
         self._use(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
-        """Return the law at arrays ``V`` and ``omega``, which broadcast, one state after another.
+        """Return the law at arrays, one state after another, because the compiled law takes one state.
 
-        The result is a ``kind``, :class:`Loads` or :class:`LoadsAndSlopes`, of arrays of the broadcast shape, which is
-        () for numbers.  Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or
-        infinite input, and ValueError of numpy for shapes that do not broadcast.
+        V, omega: speeds in the units of the grid, of any shapes that broadcast.
+        kind: class of the result, :class:`Loads`, without slopes, or :class:`LoadsAndSlopes`.
+        Returns a ``kind`` of arrays of the broadcast shape, which is () for numbers; empty ones for empty input.
+        Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or infinite input, and
+        ValueError of numpy for shapes that do not broadcast.
         """
         evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
         return kind(*evaluate(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])

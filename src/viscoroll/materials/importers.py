@@ -25,7 +25,10 @@ _MATERIAL_KEYWORDS = ("name", "density", "thickness", "measured", "temperature")
 
 
 class FromPrograms:
-    """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given."""
+    """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given.
+
+    A ``temperature`` outside -150 to 200 degrees Celsius gives a ModelWarning: it looks like one in kelvin.
+    """
 
     @classmethod
     def abaqus(
@@ -46,25 +49,26 @@ class FromPrograms:
 
         Parameters
         ----------
-        E0 : modulus of ``*ELASTIC``, Pa: the instantaneous one, or the long-time one where ``long_term`` (``MODULI=LONG
-            TERM``).
-        nu : Poisson's ratio of ``*ELASTIC``, of the same time as E0.  Without ``k`` it is taken constant in time, as
-            k_i = g_i make it.
+        E0 : modulus of ``*ELASTIC``, Pa, finite, > 0: the instantaneous one, or the long-time one where ``long_term``
+            (``MODULI=LONG TERM``).
+        nu : Poisson's ratio of ``*ELASTIC``, in (-1, 0.5], of the same time as E0.  Without ``k`` it is taken constant
+            in time, as k_i = g_i make it.
         g : g_i, fractions of the instantaneous shear modulus, >= 0, of a sum below 1, (n,); or the table (n, 3) of
             ``*VISCOELASTIC``, a row (g_i, k_i, tau_i) each, without ``tau`` and ``k``.
         tau : relaxation times tau_i, s, > 0, (n,); None where ``g`` is the table.
         k : k_i, fractions of the instantaneous bulk modulus, >= 0, of a sum below 1, at the same times; zeros are a
             constant bulk modulus, which is also what Abaqus takes where they are left out.  Where they differ from g,
-            nu of the material is that of long times, and its series that of E/(1 - nu^2) in plane strain.  Without
-            effect for nu = 0.5.
+            nu of the material is that of long times, and its series that of E/(1 - nu^2) in plane strain.  For nu = 0.5
+            they are checked, but have no effect.
         long_term : whether E0 and nu are those of long times; default: instantaneous.
         more : ``name``, ``density``, ``thickness``, ``measured``, ``temperature`` of the material.
 
         Returns
         -------
         Material
-            With its long-time modulus, and T_ref = 1 s.  Without ``k``, and where k equals g, E is E0 (1 - sum g), or
-            E0 with ``long_term``, and nu is that given; else both are those of the long-time moduli G and K.
+            With its long-time modulus, and T_ref = 1 s.  Without ``k``, where k equals g, and for nu = 0.5, E is E0 (1
+            - sum g), or E0 with ``long_term``, and nu is that given; else both are those of the long-time moduli G and
+            K.
 
         Raises
         ------
@@ -98,20 +102,23 @@ class FromPrograms:
 
         Parameters
         ----------
-        E0 : instantaneous Young's modulus EX, Pa.
-        nu : instantaneous Poisson's ratio PRXY.  Without ``k`` it is taken constant in time, as a bulk table equal to
-            that of shear makes it.
+        E0 : instantaneous Young's modulus EX, Pa, finite, > 0.
+        nu : instantaneous Poisson's ratio PRXY, in (-1, 0.5].  Without ``k`` it is taken constant in time, as a bulk
+            table equal to that of shear makes it.
         alpha, tau : the pairs alpha_i (dimensionless, >= 0, of a sum below 1) and tau_i (s, > 0) of the table
             ``SHEAR``, (n,) each.
-        k : alpha_i of the table ``BULK`` at the same times, (n,).  If that table has other times, give all times of
-            both as ``tau``, and 0 in ``alpha`` or ``k`` where a table has no term.  Its effect is as in :meth:`abaqus`.
+        k : alpha_i of the table ``BULK`` at the same times, >= 0, of a sum below 1, (n,); zeros are a constant bulk
+            modulus.  If that table has other times, give all times of both as ``tau``, and 0 in ``alpha`` or ``k``
+            where a table has no term.  For nu = 0.5 it is checked, but has no effect.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
-            With its long-time modulus, and T_ref = 1 s.  Without ``k``, and where k equals alpha, E is E0 (1 - sum
-            alpha), and nu is that given; else both are those of the long-time moduli G and K.
+            With its long-time modulus, and T_ref = 1 s.  Without ``k``, where k equals alpha, and for nu = 0.5, E is E0
+            (1 - sum alpha), nu is that given, and the series is that of G(t), of strengths E_i = alpha_i/(1 - sum
+            alpha).  Else E and nu are those of the long-time moduli G and K, and the series is that of E/(1 - nu^2) in
+            plane strain.
 
         Raises
         ------
@@ -133,19 +140,19 @@ class FromPrograms:
 
         Parameters
         ----------
-        E, nu : Young's modulus, Pa, and Poisson's ratio of the elastic node: the long-time values (static stiffness
-            "Long-term").  Without ``K`` nu is taken constant in time.
+        E, nu : Young's modulus, Pa, finite, > 0, and Poisson's ratio, in (-1, 0.5], of the elastic node: the long-time
+            values (static stiffness "Long-term").  Without ``K`` nu is taken constant in time.
         G : shear moduli G_m of the branches, Pa, >= 0, (n,).
-        tau : their relaxation times tau_m, s, > 0, (n,).
+        tau : their relaxation times tau_m, s, finite, > 0, (n,).
         K : bulk moduli of the branches, Pa, >= 0, at the same times, (n,); zeros where only deviatoric strains are
-            viscoelastic.  Where they are not in proportion to G, the series is that of E/(1 - nu^2) in plane strain;
-            without effect for nu = 0.5.
+            viscoelastic.  For nu = 0.5 they are checked, but have no effect.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
-            With the given E and nu, and T_ref = 1 s.
+            With the given E and nu, and T_ref = 1 s.  Its series is that of G(t), of strengths G_m/G with G = E/(2 (1 +
+            nu)); where nu < 0.5 and K(t) is not in proportion to G(t), that of E/(1 - nu^2) in plane strain.
 
         Raises
         ------
@@ -182,21 +189,25 @@ class FromPrograms:
         ----------
         G : G_i, Pa, >= 0, (n,).
         beta : beta_i, 1/s, >= 0, (n,).
-        nu : Poisson's ratio, constant in time, with ``K`` that of long times; this, ``bulk`` or a K_i with beta = 0.
-        bulk : constant bulk modulus, Pa, with ``K`` that of long times.  Then nu(t) is not constant; what the contact
-            feels in plane strain is kept exactly (:func:`plane_strain`), and ``nu`` of the material is the long-time
-            one.
-        G0 : instantaneous shear modulus, Pa, from which the G_i take away; this, ``G_inf`` or a pair with beta = 0.
-        G_inf : long-time shear modulus, Pa.
+        nu : Poisson's ratio, in (-1, 0.5], constant in time, with ``K`` that of long times; exactly one of this,
+            ``bulk`` and a K_i with beta = 0 is given.
+        bulk : constant bulk modulus, Pa, > 0, with ``K`` that of long times.  Then nu(t) is not constant; what the
+            contact feels in plane strain is kept exactly (:func:`plane_strain`), and ``nu`` of the material is the
+            long-time one.
+        G0 : instantaneous shear modulus, Pa, above the sum of all G_i, which is subtracted from it; exactly one of
+            this, ``G_inf`` and a pair with beta = 0 is given.
+        G_inf : long-time shear modulus, Pa, > 0.
         K : K_i, Pa, >= 0, at the same beta, (n,); that with beta = 0, if it is not 0, is the long-time one, in place of
             ``nu`` and ``bulk``.  None: the bulk modulus is constant if ``bulk`` is given, else relaxes in proportion to
-            G.
+            G.  For nu = 0.5 it is checked, but has no effect.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
-            With its long-time modulus 2 (1 + nu) G(infinity), nu of long times, and T_ref = 1 s.
+            With its long-time modulus 2 (1 + nu) G(infinity), nu of long times, and T_ref = 1 s.  Its series is that of
+            G(t), of strengths G_i/G(infinity) and times 1/beta_i; where nu < 0.5 and K(t) is not in proportion to G(t),
+            that of E/(1 - nu^2) in plane strain.
 
         Raises
         ------
@@ -232,7 +243,7 @@ class FromPrograms:
 
         E, nu: Young's modulus, Pa, and Poisson's ratio, of long times if ``long_term``, else instantaneous.
         name: name of the parameter ``fractions``, for errors.
-        fractions: terms of G(t) divided by G(0), (terms,), >= 0, of a sum below 1.
+        fractions: terms of G(t) divided by G(0), dimensionless, (terms,), >= 0, of a sum below 1.
         tau: relaxation times, s, > 0, (terms,).
         bulk: terms of K(t) divided by K(0), (terms,), as ``fractions``; None: nu is constant in time.  Without effect
             on an incompressible body, nu = 0.5.
@@ -340,7 +351,7 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
 
     name: name of the parameter, for errors.
     fractions: fractions of the instantaneous modulus that relax, >= 0, (terms,); 1 is returned without terms.
-    Raises ParameterError where the sum is 1 or more.
+    Raises ParameterError where the sum is 1 or more, or NaN.
     """
     rest = 1.0 - math.fsum(fractions)
     if not rest > 0.0:

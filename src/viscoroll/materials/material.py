@@ -30,12 +30,15 @@ if TYPE_CHECKING:
 class Material(FromPrograms):
     """An isotropic linear viscoelastic material, in SI units.
 
-    E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.
+    E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.  A material that was imported
+    with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of E/(1 - nu^2) in plane strain in place
+    of that of E: its methods then give E times this series as the moduli, and the compliance that belongs to it.
 
     Parameters
     ----------
     E : long-time Young's modulus, Pa, > 0; infinite for a rigid body.
-    nu : Poisson's ratio, in (-1, 0.5], constant in time: shear, bulk and tensile modulus relax alike.
+    nu : Poisson's ratio, in (-1, 0.5], constant in time: shear, bulk and tensile modulus relax alike; of a material
+        imported with other bulk terms that of long times.
     prony : strengths divided by E, and times in units of T_ref; default: elastic.
     T_ref : unit of the times of ``prony``, s.
     name : name in tables and figures.
@@ -44,6 +47,7 @@ class Material(FromPrograms):
         other body is then rigid or elastic.  Default: a half-space.
     measured : :class:`Measured` range of frequencies of the data; outside of it functions warn.
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
+        Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
 
     Raises
     ------
@@ -106,8 +110,8 @@ class Material(FromPrograms):
 
         Parameters
         ----------
-        E : long-time Young's modulus, Pa.
-        nu : Poisson's ratio.
+        E : long-time Young's modulus, Pa, > 0.
+        nu : Poisson's ratio, in (-1, 0.5].
         T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is T_epsilon.  Where
             they are equal, or their ratio rounds to 1, the material is elastic.
         more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
@@ -144,8 +148,8 @@ class Material(FromPrograms):
 
         Parameters
         ----------
-        E : Young's modulus, Pa.
-        nu : Poisson's ratio.
+        E : Young's modulus, Pa, > 0; infinite for a rigid body.
+        nu : Poisson's ratio, in (-1, 0.5].
         more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
             ``temperature``, ``T_ref``.
 
@@ -268,6 +272,9 @@ class Material(FromPrograms):
     def storage(self, omega: ArrayLike) -> Any:
         """Return the storage modulus E' in tension, which rises from E at omega = 0 to the instantaneous modulus.
 
+        It is E (1 + sum E_i x_i^2/(1 + x_i^2)) with x_i = omega tau_i T_ref.  Of a material imported with bulk terms
+        unlike those of shear the series is that of E/(1 - nu^2).
+
         Parameters
         ----------
         omega : angular frequencies, rad/s, >= 0, of any shape.
@@ -293,6 +300,7 @@ class Material(FromPrograms):
     def loss(self, omega: ArrayLike) -> Any:
         """Return the loss modulus E'' in tension, E sum E_i x_i/(1 + x_i^2) with x_i = omega tau_i T_ref.
 
+        Of a material imported with bulk terms unlike those of shear the series is that of E/(1 - nu^2).
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, Pa, >= 0; 0 of an elastic and of a rigid body.
         Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
@@ -309,6 +317,7 @@ class Material(FromPrograms):
     def tan_delta(self, omega: ArrayLike) -> Any:
         """Return the loss factor E''/E' in tension, of :meth:`loss` and :meth:`storage`.
 
+        Of a material imported with bulk terms unlike those of shear it is that of E/(1 - nu^2).
         omega: angular frequencies, rad/s, >= 0, of any shape.
         Returns a number or an array of that shape, dimensionless, >= 0; 0 of an elastic and of a rigid body.
         Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
@@ -325,6 +334,8 @@ class Material(FromPrograms):
 
     def relaxation(self, t: ArrayLike) -> Any:
         """Return the tensile relaxation modulus E(t), which falls from the instantaneous modulus at t = 0 to E.
+
+        Of a material imported with bulk terms unlike those of shear it is E times the series of E/(1 - nu^2).
 
         Parameters
         ----------
@@ -353,7 +364,8 @@ class Material(FromPrograms):
         """Return the creep compliance in tension times E, 1 - sum J_j exp(-t/(T_j T_ref)), with the creep form of
         ``prony``.
 
-        It rises from E/E(0) at t = 0 to 1.
+        It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of shear it is that of
+        (1 - nu^2)/E, divided by its long-time value.
         t: times, s, >= 0, of any shape.
         Returns a number or an array of that shape, dimensionless; 1 at all times for an elastic and a rigid body.
         Raises ParameterError for a time that is negative, NaN, infinite or no number, or of another dimension.

@@ -257,7 +257,7 @@ def fit_callable(
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
     """Fit a callable by pieces as long as the tolerance allows: no two neighbours could be one.
 
-    sampled: the callable, a :class:`_Sampled`; more values of it are taken.
+    sampled: the callable, a :class:`_Sampled`; more values of it are taken, which changes ``taken`` and ``largest``.
     end: last time, in T_ref.
     Returns the pieces from 0 to ``end``, at least one, in the order of time.  Each starts where the one before it
     stops, or, at a jump, at the next double; the first starts at 0, or, where the callable jumps there, at the smallest
@@ -296,11 +296,13 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     """Return the pieces without the short ones that contain a corner; their neighbours are extended to the corner.
 
-    A piece is short if both of its neighbours are more than 50 times longer; the first and the last piece stay.
+    A piece that is more than 50 times shorter than both of its neighbours is taken to contain a corner, at the time at
+    which the polynomials of the neighbours are equal, else in its middle (:func:`_intersection`).  The two neighbours
+    are fitted anew and meet in the corner.  The first and the last piece stay.
 
-    pieces: consecutive pieces of the fit, in the order of time.
-    sampled: the callable, a :class:`_Sampled`; more values of it are taken.
-    Returns a new list; a short piece stays where its extended neighbours would not fit.
+    pieces: consecutive :class:`Piece` of the fit, in the order of time.
+    sampled: the callable, a :class:`_Sampled`; more values of it are taken, which changes ``taken`` and ``largest``.
+    Returns a new list; a short piece and its neighbours stay as they are where a fit to the corner is not good.
     Raises as :meth:`_Sampled.values`.
     """
     merged: list[Piece] = []

@@ -141,12 +141,13 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
     materials: :class:`Prony`, :class:`Bodies` or :class:`Cover` of several motions; for one material, or None, the
     result is empty.
     count: number of motions; what is the same for all of them is repeated.
-    Returns name -> (dimensions, values, attributes), dimensionless.  Of series, in the form that was given:
-    relaxation_strengths and relaxation_times (or creep_strengths and creep_times) over (motion, mode).  Of two bodies:
-    the same of each, with the prefix cylinder_ or base_, over (motion, cylinder_mode) and (motion, base_mode), and
-    ``share`` over (motion).  Of covers: ``cover_thickness`` over (motion), whose attributes are also the layer's
-    relaxation_strengths and relaxation_times, divided by its long-time modulus and T_ref, in whichever form it was
-    given.
+    Returns name -> (dimensions, values, attributes), dimensionless; values over modes are (count, modes), others
+    (count,).  Of series, in the form that was given: relaxation_strengths and relaxation_times (or creep_strengths and
+    creep_times) over (motion, mode).  Of two bodies: the same of each, with the prefix cylinder_ or base_, over
+    (motion, cylinder_mode) and (motion, base_mode), and ``share`` over (motion).  Of covers: ``cover_thickness`` over
+    (motion), divided by l0, whose attributes are also the layer's relaxation_strengths and relaxation_times, (modes,)
+    each, divided by its long-time modulus and T_ref, in whichever form it was given.  A cover's nu, its side and the
+    other body are not included (:func:`_dataset` has the side, and nu if it is one number).
     """
     if materials is None or not materials.shape:
         return {}

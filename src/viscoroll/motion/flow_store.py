@@ -113,10 +113,11 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
 
     The time of last change of the file is set to now if it can be: maps that were used last are kept.
 
-    path : path of the file.
+    path : path of the file, as of :func:`path_of`.
     parameters : (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
-    Returns the :class:`FlowMap`; None if there is no file that can be read; None with a RuntimeWarning if its content
-    is damaged or of other parameters.
+    Returns the :class:`FlowMap`; None if there is no file that can be read, also if others may write to it or to a
+    folder above it, or if one belongs to another user; None with a RuntimeWarning if its content is damaged or of other
+    parameters.
     """
     try:
         content = read_private(path)
@@ -156,11 +157,12 @@ def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
 def save(new_map: FlowMap, path: Path) -> None:
     """Write a map, and delete the oldest maps of the folder beyond :data:`KEPT`.
 
-    Nothing is raised if it cannot be written, or an old map not deleted (OSError): the map is then not on disk, or too
-    many are.  The file has the fields of :class:`FlowMap`, with the parameters as of :func:`_numbers`, and a seal.
+    Nothing is raised if it cannot be written, or an old map not deleted (OSError), also if others may write to a folder
+    above it: the map is then not on disk, or too many are.  The file has the fields of :class:`FlowMap`, with the
+    parameters as of :func:`_numbers`, and a seal.
 
     new_map : the :class:`FlowMap`.
-    path : path of the file, which is replaced if it exists.
+    path : path of the file, as of :func:`path_of`; it is replaced if it exists.
     """
     try:
         content, numbers = io.BytesIO(), _numbers(new_map.parameters)

@@ -82,9 +82,11 @@ class Histogram(msgspec.Struct):
         return Histogram(bins, self.counts_in(bins) + other.counts_in(bins), count, mean, spread, *extremes)
 
     def counts_in(self, bins: NDArray[np.int32]) -> Integers:
-        """Return the counts in other bins, (bins,), int64; 0 in those without values.
+        """Return the counts in other bins, so that those of two histograms can be added (:meth:`merge`).
 
-        bins: numbers of bins, ascending, which must contain all bins of this histogram; it is not checked.
+        bins: numbers of bins, (bins,), int32, ascending and different, which must contain all bins of this histogram.
+            It is not checked: one that is missing gives IndexError or counts in a wrong bin.
+        Returns the counts, (bins,), int64; 0 in bins without values.
         """
         counts = np.zeros(bins.size, np.int64)
         counts[np.searchsorted(bins, self.bins)] = self.counts

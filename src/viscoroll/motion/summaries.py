@@ -178,7 +178,7 @@ def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
     ensemble: dataset of ``Ensemble.to_xarray``.  Those of V, omega, x and angle that it has are summarised, at its t;
         status and flow are read too; an attribute R tells that it is in SI units.
     Returns the dataset of :func:`summary_dataset`, with the quantiles of :data:`LEVELS`, in the units of ``ensemble``;
-    its attributes also are ``motions``, their number.
+    its attributes also are ``motions``, their number.  A dataset without status or flow raises AttributeError.
     """
     names = [name for name in _DRAWN if name in ensemble]
     summary = summarise(ensemble, names, exact=True)

@@ -96,14 +96,14 @@ def fit(arguments: Namespace) -> int:
         encoding, name of an encoding, or None: by the first bytes of the file;
         units, "F,M", units of frequency and of moduli, or None;
         column, a list of (quantity, heading), perhaps empty;
-        mode, "tension" or "shear" in place of what the headings say, or None;
+        mode, "tension" or "shear" in place of what the headings say, or None: as they say, else tension;
         temperature of all points, degrees Celsius, in place of those of the file, or None;
         reference, temperature of the master curve, degrees Celsius, or None;
         wlf, "C1,C2,T0", or None: shifts from the overlap of the curves;
-        on, "both" or "storage", the moduli whose overlap gives the shifts;
+        on, "both" (if not given) or "storage", the moduli whose overlap gives the shifts;
         modes, largest number of modes, or None: as few as the misfit needs;
-        misfit, required root mean square of relative errors, dimensionless;
-        nu, Poisson's ratio;
+        misfit, required root mean square of relative errors, dimensionless, 0.01 if not given;
+        nu, Poisson's ratio, in (-1, 0.5], 0.49 if not given;
         name of the material, perhaps "";
         output, path that is written, .toml or .nc, or None: nothing is written;
         force, whether a faulty fit is written too, with a mark in its source.
@@ -172,9 +172,9 @@ def identify(arguments: Namespace) -> None:
 
     arguments: parsed command line with
         file, path of a TOML file of measurements;
-        starts, number of searches, >= 1;
-        seed of their random points, >= 0;
-        robust, whether outliers count less;
+        starts, number of searches, >= 1, 8 if not given;
+        seed of their random points, >= 0, 0 if not given;
+        robust, whether outliers count less, False if not given;
         output, path of the report that is written, .txt (the text printed), .json or .nc, or None;
         plot, path of the figure that is written, .png, .pdf or .svg, or None.
     Returns None, exit code 0, also where the report warns of the model or the data.  A progress bar is drawn on

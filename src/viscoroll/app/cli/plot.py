@@ -30,7 +30,8 @@ def plot(arguments: Namespace) -> None:
         output, path of the figure that is written; its suffix is the format: .png, .pdf or .svg.
     Returns None.
     Raises ParameterError for another suffix of what, and for content without a figure, as a single state; FileError for
-    a file that cannot be read or written; MissingDependencyError for a .zarr without zarr.
+    a file that cannot be read or written; MissingDependencyError for a .zarr without zarr; KeyError, AttributeError or
+    ValueError as :func:`_figure_of_netcdf`.
     """
     from ...core.plots.style import save
 
@@ -48,9 +49,11 @@ def _figure_of_netcdf(path: str) -> Any:
     Of a material, which has an attribute ``schema``, it shows the moduli; of the results of many motions, which have a
     dimension ``motion``, a summary; else the result itself.
 
-    path: path of a netCDF file.
-    Raises FileError for a file that does not exist, cannot be read, or is no netCDF; ParameterError for a dataset that
-    is no result, or has a single state.
+    path: path of a netCDF-4 file; one of netCDF-3 counts as no netCDF file.
+    Raises FileError for a file that does not exist, cannot be read, or is no netCDF-4, also for a material that is
+    damaged, as one whose SHA-256 does not fit; ParameterError for a dataset that is no result, or has a single state.
+    One that looks like a result but lacks a variable or an attribute raises KeyError, with a dimension ``motion`` also
+    AttributeError; one with a dimension ``input`` but without Sobol indices ValueError.
     """
     import xarray as xr
 

@@ -35,6 +35,7 @@ def ensemble(arguments: Namespace) -> None:
         this process;
         threads, number of threads or of local processes, >= 1, not used with a scheduler; None: $VISCOROLL_THREADS, or
         where that is not set the cores available.
+    Motions beyond the model or the measured bands of the materials give a ModelWarning.
     With output standard error has a progress bar if it is a terminal, else lines of progress unless $VISCOROLL_QUIET is
     "1".
     Returns None, exit code 0, also where motions ended early.
@@ -83,17 +84,22 @@ def verify(arguments: Namespace) -> int:
 def sensitivity(arguments: Namespace) -> None:
     """Compute the Sobol indices of a run file, and print or write them.
 
-    The heading of a text has the numbers of base points and motions, of motions that ended early, and the reasons why a
-    result has no indices.
+    A heading, of text alone, has the numbers of base points and motions, the seed, the number of motions for each way
+    in which they ended, and the reasons why a quantity has no indices.
 
     arguments: parsed command line with
         run_file, path of a TOML file;
-        n, number of base points in [16, 65536], which is rounded up to a power of two;
-        output, path of a .txt, .csv or .nc file that is written, or None: standard output; beside a file the table is
-        printed as text too;
+        n, number of base points in [16, 65536], 4096 if not given, which is rounded up to a power of two;
+        output, path of a .txt or .csv file to which the table, or of a .nc file to which the dataset of
+        :func:`.sensitivity.sobol_indices` is written; or None: standard output; beside a file the table is printed as
+        text too;
         format of standard output without a file, "text", "csv" or "json".
-    Returns None.  The table has a row for each quantity, time and input that has indices: first-order index S1 and
-    total index ST, dimensionless, and the half-widths of their 95 % confidence intervals, S1_conf and ST_conf.
+    Standard error has a progress bar if it is a terminal.  Motions beyond the model or the measured bands of the
+    materials give a ModelWarning.
+    Returns None.  The table has a row for each quantity, time and input that has indices, with the columns quantity, t
+    with its unit as "t [s]" (missing if every quantity is one number for each motion), input, S1, S1_conf, ST and
+    ST_conf: first-order and total index, dimensionless, and the half-widths of their 95 % confidence intervals.
+    Quantities are in the order of the run file, times ascending, and at each time the largest ST is first.
     Raises ParameterError for values that are not allowed, as correlated inputs, and where no quantity has indices;
     FileError for a file that cannot be read or written; MissingDependencyError for a sample in .parquet without
     pyarrow.

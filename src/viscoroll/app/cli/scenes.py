@@ -49,7 +49,8 @@ def contact(arguments: Namespace) -> None:
         format of standard output, "text", "csv" or "json".
     Exactly one of delta and omega must be given.  A vector of speeds and one of creepages (or angular velocities) give
     n x m states, those of the first speed first; a vector and a number one state for each element; two numbers one.
-    Returns None; a state has V, delta or omega, and the default fields of :func:`viscoroll.contact`.
+    Returns None; a state has V, delta or omega, and the default fields of :func:`viscoroll.contact`; a .nc file has
+    them as the dataset of the result's ``to_xarray``.  A contact that the model does not describe gives a ModelWarning.
     Raises ParameterError for both or none of delta and omega, and for values that are not allowed; FileError for a file
     that cannot be read or written.
     """
@@ -76,7 +77,8 @@ def stress(arguments: Namespace) -> None:
         format of standard output, "text", "csv" or "json".
     Exactly one of delta and omega must be given.
     Returns None; each position has x, V, delta or omega, the pressure p and the shear stress tau (of a cover p alone),
-    in SI units of a cylinder, as of :func:`viscoroll.stress`.
+    in SI units of a cylinder, as of :func:`viscoroll.stress`; a .nc file has them as the dataset of the result's
+    ``to_xarray``.  A contact that the model does not describe gives a ModelWarning.
     Raises ParameterError for both or none of delta and omega, and for values that are not allowed; FileError for a file
     that cannot be read or written.
     """
@@ -114,7 +116,9 @@ def roll(arguments: Namespace) -> None:
         output, path of a .txt, .csv or .nc file that is written, or None: standard output;
         format of standard output, "text", "csv" or "json".
     Returns None.  The output has a row for each time with t, V, omega, x, angle, delta and the regime in words; times
-    that the motion did not reach have NaN, and the regime "not_reached".
+    that the motion did not reach have NaN, and the regime "not_reached".  A .nc file has the dataset of
+    :meth:`viscoroll.Motion.to_xarray`, with the regime as a code.  A motion that the model does not describe gives a
+    ModelWarning.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     with warnings.catch_warnings():
@@ -152,7 +156,9 @@ def steady(arguments: Namespace) -> None:
     Each of force, torque, slope and V is a number, (n,) with one n for all vectors, or None where it is not given: a
     force, torque or slope of 0, and a speed that is not prescribed.
     Returns None.  The table has a row for each equilibrium of each load, with the quantities of
-    :func:`viscoroll.steady`, and none for a load without an equilibrium; in a .nc file there is NaN in its place.
+    :func:`viscoroll.steady`, and none for a load without an equilibrium; a .nc file has the dataset of
+    :meth:`viscoroll.Steady.to_xarray`, with NaN in its place.  A contact that the model does not describe gives a
+    ModelWarning.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
     import numpy as np

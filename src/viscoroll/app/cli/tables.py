@@ -82,7 +82,7 @@ def build(arguments: Namespace) -> None:
         V, nodes of the axis of speed, > 0, a number or (n,), in m/s of a cylinder, dimensionless of a scene;
         delta, nodes of the axis of creepage, a number or (m,), dimensionless;
         alpha, nodes of a third axis, a number or (k,), dimensionless, of a scene only, or None: two axes;
-        method, "table", the law of the scene, or "direct", roots of the equations of the paper;
+        method, "table" (if not given), the law of the scene, or "direct", roots of the equations of the paper;
         output, path that is written; its suffix is the format: .nc, .cdf, .csv, .txt or .mat.
     Raises ParameterError for nodes or a method that are not allowed, for .txt of a grid over several alphas, and for a
     suffix in capital letters; FileError for a file that cannot be read or written.
@@ -114,7 +114,7 @@ def validate(arguments: Namespace) -> int:
 
     arguments: parsed command line with
         file, path of a law or a grid;
-        n, number of random points, a whole number >= 1.
+        n, number of random points, a whole number >= 1, 10000 if not given.
     Returns True, exit code 1, if an error is larger than its check allows (of a law twice the error that the file
     states, and rounding), else False, exit code 0.
     Raises ParameterError for n, FileError for a file that cannot be read or is no table, and for a grid of a material
@@ -167,8 +167,8 @@ def fmu(arguments: Namespace) -> None:
 
     arguments: parsed command line with
         file, path of a TOML file with a cylinder, a material or a scene, or of the netCDF (.nc) of a law or a material;
-        model, "Roller" or "ContactElement";
-        fmi, version of the standard, 2 or 3;
+        model, "Roller" (if not given) or "ContactElement";
+        fmi, version of the standard, 2 (if not given) or 3;
         output, path of the FMU that is written.
     Raises ParameterError for another model or version, FileError for a file that cannot be read or written, and
     MissingDependencyError without fmpy or a C compiler.

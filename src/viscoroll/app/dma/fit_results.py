@@ -158,7 +158,7 @@ class SeriesFit(Result):
 
         Parameters
         ----------
-        nu : Poisson's ratio, constant in time.
+        nu : Poisson's ratio, in (-1, 0.5], constant in time.
         name : name of the material, free text.
         density : density, kg/m^3, > 0; None: not known.
         thickness : thickness of the layer, m, > 0; None for a half-space.

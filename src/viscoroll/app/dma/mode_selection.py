@@ -145,7 +145,8 @@ def _leave_out_mode(
     """Return a spectrum with one mode less, with a mode left out or two neighbours merged, or None.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    spectrum : :class:`Spectrum`, spectrum of the data from which a mode is left out, of at least one mode.
+    spectrum : :class:`Spectrum`, spectrum of the data from which a mode is left out, of at least one mode, all
+        strengths > 0, as of :func:`.spectrum.on_times`.
     ends : (shortest, longest) time that is allowed, s.
     good : function of a spectrum that returns whether it is acceptable; None: any is.
     Returns the candidate with the least misfit as it is, its times not refined, if it is acceptable; else the first of

@@ -284,7 +284,7 @@ class ProfileWalk:
     """
 
     def __init__(self, likelihood: Likelihood, powers: Floats, delta_chi2: float) -> None:
-        """Begin at the best minimum.
+        """Begin at the best minimum.  Nothing is minimised yet; :meth:`profile` does that.
 
         likelihood : :class:`Likelihood`, chi2 about the best minimum.
         powers : powers of the combination whose profile is computed, (unknowns,), not all 0.
@@ -336,7 +336,8 @@ class ProfileWalk:
         """Find both ends of the interval, by minima of chi2 with the combination fixed.
 
         On each side the search goes on beyond the end where another branch of the fit continues the interval, at most
-        three times; the end is then that of the last branch.
+        three times: after three branches no further one is sought.  The end is then that of the last branch.  All
+        minima that are found are appended to ``visited``.
 
         Returns the :class:`Profile`, which describes the fields.  A side on which chi2 stays below the bound up to the
         end of the ranges has the end None, also where the best fit is at that end; ``within`` has the points in the

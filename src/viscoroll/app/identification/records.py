@@ -155,7 +155,8 @@ class Record:
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Return all :attr:`QUANTITIES` of the record as the model predicts them; each kind of record does this itself.
 
-        cylinder : :class:`Cylinder` with the present values of the unknowns.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load, the mass and the
+            temperature of this record, which are not read here.
         values : name -> value of the unknowns of bearing and record, without the name of the record: "brake" in N m/m,
             "drag" in N m s/m, "V0" in m/s, "omega0" in rad/s, "t0" in s; those that are missing are 0 or as the record
             has them.
@@ -212,7 +213,8 @@ class Resistance(Record):
 
         Parameters
         ----------
-        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load and the temperature
+            of this record, which are not read here; nor are M and F, so that a plan is predicted too.
         values : name -> value of "brake", N m/m, and "drag", N m s/m, each 0 where it is missing; other names are not
             used.
 
@@ -225,6 +227,11 @@ class Resistance(Record):
         ------
         ParameterError
             Values that make no contact, as speeds beyond the range of the law.
+
+        Warns
+        -----
+        ModelWarning
+            As :func:`viscoroll.contact`; a fit suppresses it.
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
@@ -266,7 +273,8 @@ class Traction(Record):
 
         Parameters
         ----------
-        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load and the temperature
+            of this record, which are not read here; nor is Q, so that a plan is predicted too.
         values : not used: bearing and record have no unknowns that change the traction.
 
         Returns
@@ -278,6 +286,11 @@ class Traction(Record):
         ------
         ParameterError
             As of :meth:`Resistance.model`; a layer beside a body that relaxes too, whose Q is not known.
+
+        Warns
+        -----
+        ModelWarning
+            As :func:`viscoroll.contact`; a fit suppresses it.
         """
         return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
 
@@ -393,7 +406,9 @@ class Coastdown(Record):
 
         Parameters
         ----------
-        cylinder : :class:`Cylinder` with the present values of the unknowns, as its load.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load, the mass and the
+            temperature of this record, which are not read here; nor are V, omega and x, so that a plan is predicted
+            too.
         values : name -> value of "brake", N m/m, and "drag", N m s/m, which are 0 where they are missing, and of "V0",
             "omega0" and "t0" in place of those of the record; where these are missing the record must have numbers, or
             "rolling" as omega0, which is V0/R.  Other names are not used.
@@ -408,6 +423,11 @@ class Coastdown(Record):
         ------
         ParameterError
             Values that make no motion, as infinite ones.
+
+        Warns
+        -----
+        ModelWarning, RuntimeWarning
+            As :func:`viscoroll.roll`, the latter where the motion is given up; a fit suppresses both.
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0

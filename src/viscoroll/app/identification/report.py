@@ -48,10 +48,14 @@ def _heading(fit: Any) -> str:
     deviations.
 
     Of a plan it says that the standard deviations are those to expect.  Where any standard deviation was estimated it
-    lists the estimates, that of the first point of each column.  Else it has chi2 and the degrees of freedom and,
-    unless the fit is robust or has no degree of freedom, p, the probability that noise gives a larger chi2.
+    lists the estimates, each after its column's "QUANTITY of RECORD": that of the first point, in SI units, to three
+    digits; standard deviations that were given, and chi2, are then left out.  Else it has chi2 and the degrees of
+    freedom and, unless the fit is robust or has no degree of freedom, p, the probability that noise gives a larger
+    chi2.
 
-    fit : a :class:`viscoroll.app.identification.Identification`.
+    fit : a :class:`viscoroll.app.identification.Identification`, of which values, planned, sigma, chi2, dof and, of
+        ``_problem``, y, columns and robust are read.
+    Returns a str without a line break.
     """
     from scipy import stats
 
@@ -68,9 +72,11 @@ def _heading(fit: Any) -> str:
 def _noise(fit: Any) -> Iterator[str]:
     """Yield a sentence for each quantity of a record whose residuals are no noise, as ``fit.misfit`` names them.
 
-    A sentence has the lag-1 correlation, its limit, and the rms of the residuals; none is yielded where all are noise.
+    A sentence has the lag-1 correlation, its limit, and the rms of the residuals in units of sigma, of a robust fit as
+    found by their median; none is yielded where all are noise.
 
-    fit : a :class:`viscoroll.app.identification.Identification`.
+    fit : a :class:`viscoroll.app.identification.Identification`, of which misfit, noise and ``_problem.robust`` are
+        read.
     """
     for name in fit.misfit:
         rms, lag, allowed, _ = fit.noise[name]
@@ -236,8 +242,9 @@ def as_json(fit: Any) -> dict[str, Any]:
     "source", name and version of this package; "unknowns", name -> {"value", "stderr", "interval"} (the interval at 95
     %, two numbers, None on a side that is open; stderr None of an unknown that does not act); "says", a list of the
     sentences of the report on noise and limits; "products", a list of dicts with the fields of
-    :class:`.profile.Product`; "correlations", a list of rows; "noise", "QUANTITY of RECORD" -> a dict with the fields
-    of :class:`.problem.Noise`; and "sigma", "QUANTITY of RECORD" -> standard deviation of the first point.
+    :class:`.profile.Product` (powers, value, low, high, near); "correlations", a list of rows; "noise", "QUANTITY of
+    RECORD" -> a dict with the fields of :class:`.problem.Noise` (rms, lag, allowed, is_noise); and "sigma", "QUANTITY
+    of RECORD" -> standard deviation of the first point.
     """
     fields = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}

@@ -229,12 +229,13 @@ class Steady(Values):
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
 
         Returns a dataset over the axes of the loads (of one load there are none; named as in labelled arguments, else
-        ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  A coordinate of the labels that
-        has the name of a field is called ``given_`` and that name.  Its variables are V, delta, Q, M_half_space,
-        M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, 0 or 1; ``rate_fast`` and
-        ``rate_slow``, the real parts of the eigenvalues; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
+        ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  An axis or a coordinate of the
+        labels that has the name NAME of one of these fields or of ``count`` is called given_NAME; a coordinate with the
+        name of another variable is left out.  Its variables are V, delta, Q, M_half_space, M_cylinder, beta, omega, M,
+        grip, force and torque of this result; ``stable``, int8, 0 or 1; ``rate_fast`` and ``rate_slow``, the real parts
+        of the eigenvalues, whose imaginary parts are left out; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
         ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; and ``count``, over the axes of the loads
-        alone.  Units are those of the result; ``reason`` is left out.
+        alone.  Padding is NaN, of ``stable`` 0.  Units are those of the result; ``reason`` is left out.
 
         Examples
         --------

@@ -174,8 +174,8 @@ def contact_fields_at(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any
 
     law : table of the material.
     kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V : speeds, > 0, (n,), dimensionless.
-    delta : creepage, any sign, a number or (n,).
+    V : speeds, dimensionless, > 0, which is not checked, (n,).
+    delta : creepage, dimensionless, any sign, a number or (n,).
     names : fields that kernels compute, as ``Q`` or ``dQ_dV``; ``full_slip`` is 0 or 1, ``dQ_dV`` is at fixed delta.
     Returns the fields, (names, n), dimensionless.
     """
@@ -186,8 +186,9 @@ def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
     """Return delta_0 at V > 0, the creepage of free rolling, at which Q = 0.
 
     law : table of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V : speeds, > 0, (n,).
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,); mu is only passed on, delta_0 does not
+        depend on it.
+    V : speeds, dimensionless, > 0, which is not checked, (n,).
     Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float 0.0 of half-spaces.
     """
     return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
@@ -198,7 +199,7 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
 
     law : table of the material.
     kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V, delta : speeds, > 0, and creepages, (n,), dimensionless.
+    V, delta : speeds, > 0, which is not checked, and creepages, (n,), dimensionless.
     Returns rows of :class:`Field` with slopes, (10, n); row 6 is dQ/dV at fixed omega.  In full slip Q is mu or -mu,
     and beta and the slopes of Q are 0.
     """

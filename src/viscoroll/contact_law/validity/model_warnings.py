@@ -1,8 +1,9 @@
 """Warnings of states and motions that the model does not describe: all :class:`ModelWarning` are given here.
 
-Worker processes never warn.  The texts of faults contain no numbers, so that Python shows the same one once for each
-line of a program.  In a scene, which is dimensionless, kappa = R/l0 with the contact length at rest l0, mu is the
-coefficient of friction, gamma = P T_ref^2/(m R), j the moment of inertia over m R^2, M the rolling moment over P R.
+Worker processes never warn.  The texts of faults do not depend on the values of a call, though fixed limits may occur
+in them, so that Python shows the same one once for each line of a program.  In a scene, which is dimensionless, kappa =
+R/l0 with the contact length at rest l0, mu is the coefficient of friction, gamma = P T_ref^2/(m R), j the moment of
+inertia over m R^2, M the rolling moment over P R.
 """
 
 from __future__ import annotations
@@ -60,17 +61,21 @@ def _warn(text: str) -> None:
     """Give a :class:`ModelWarning` at the caller's line outside the package; in worker processes do nothing.
 
     text: the message.
+    Returns None.
     """
     if not is_worker():
         warnings.warn(text, ModelWarning, stacklevel=caller_level())
 
 
 def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
-    """Give one warning of several faults; none for an empty list.
+    """Give one :class:`ModelWarning` of several faults, at the caller's line outside the package; none in worker
+    processes.
 
-    faults: sentences without numbers, without a full stop.
+    faults: sentences without a full stop, whose text does not depend on the values of the call (fixed limits may
+        occur); [] gives no warning.
     subject: "motion" or "contact".
     report: the call that reports each assumption, as "validity(V).small_contact", for the message.
+    Returns None.
     """
     if faults:
         _warn(f"the model does not hold for this {subject}: {'; '.join(faults)}.  {report} reports each assumption")
@@ -210,7 +215,8 @@ def _start_faults(
     kappa, mu, gamma, j: parameters of the scene, dimensionless.
     V0, omega0: start speeds, dimensionless, any sign; rest is no fault.
     driven: whether something drives the motion, or it is rolled with the added mass N; it may be slow then.
-    Returns the sentences, without numbers and full stops, three at most; an empty list where there is no fault.
+    Returns the sentences, without full stops, three at most, whose text does not depend on the arguments; an empty list
+    where there is no fault.
     """
     faults: list[str] = []
     one_time = type(material) is float

@@ -32,6 +32,8 @@ def draw(data: xr.Dataset) -> Figure:
         If the dataset is none of these, or has a single state.
     KeyError
         If a variable or attribute that the figure needs is missing.
+    ValueError
+        If there is an axis "input", but no Sobol indices.
     """
     from . import ensembles, states
 

@@ -26,14 +26,16 @@ _STARTS = 1000
 
 
 def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Floats]:
-    """Draw the inputs of the motions of a block.
+    """Draw the inputs of the motions of a block: the same run, block and ``most`` give the same bits, whatever blocks
+    were drawn before.
 
     run: :class:`Run`, of which the inputs, the block size, and seed, design and n of the settings are read.
     block: number of the block, from 0 to ``run.blocks - 1``, which is not checked.
     most: number of motions at most, >= 1; None: all of the block.  The inputs of a smaller number are a sample of the
-        same distributions, but only with "sobol" exactly the first ones of the whole block.
-    Returns name of each uncertain input -> values, float64, (motions,), in the units of the run file; {} without
-    uncertain inputs.  A draw may be infinite where its distribution overflows, which a motion refuses.
+        same distributions, but only with "sobol" are they surely the first ones of the whole block.
+    Returns name of each uncertain input -> values, float64, (motions,), in the units of the run file, where motions is
+    their number in the block, or ``most`` if that is smaller; {} without uncertain inputs.  A draw may be infinite
+    where its distribution overflows, which a motion refuses.
     """
     start, stop = run.edges(block)
     settings, dimensions = run.settings, len(run.inputs.dimensions)

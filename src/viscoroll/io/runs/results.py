@@ -121,12 +121,15 @@ class RunResults(Result):
     def to_pandas(self) -> pd.DataFrame:
         """Return a row for each quantity and time: mean, std, min, max, and a column for each quantile.
 
+        All are over the motions of the run; values that are not finite do not count.
+
         Returns a table of float64, the quantities in the order of ``names`` and the times ascending.  The levels of its
         index are "quantity", the name with its unit as in "V [m s-1]", and the time, named "t" or "t [s]" and NaN for a
         quantity that is one number per motion.  Columns are "mean", "std", "min", "max", then the quantiles in the
         order of the run file, each labelled by its level, a float in [0, 1].
-        std is that of all values, divided by their number.  At a time at which no motion has a value all entries are
-        NaN.
+        std is the root of the mean squared difference from the mean (divided by the number of values, not by one less).
+        Quantiles are known to the width of a bin, at most 2^-8 of the value.  At a time at which no motion has a
+        value all entries are NaN.
 
         Examples
         --------

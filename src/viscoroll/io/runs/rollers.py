@@ -100,13 +100,14 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
 def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
     """Return the loads and prescribed speeds of the section [drive] as keywords of :func:`viscoroll.ensemble`.
 
-    content: name of a section -> keys and values, numbers or arrays (n,); a table within [drive] has the keys times and
-        values.
+    content: name of a section -> keys and values, in the units of the file, of which "drive" is read: numbers, or
+        arrays (n,) for n motions; a table within it has the keys times and values, lists of k corners, each a number or
+        (n,).
     Returns name of the load or speed ("force", "torque", "brake", "slope", "drag", "V" or "omega") -> number, array
     (n,) or, of a table, :class:`Schedule`, in the units of the file; {} without [drive].  Numbers and arrays are
     returned themselves and are not checked, nor are the names.
-    Raises ParameterError, which names the load, for a wrong schedule; ValueError as :func:`_schedule`; TypeError for a
-    table with other keys.
+    Raises ParameterError, which names the load, for a wrong schedule; ValueError as :func:`_schedule` (an empty list,
+    or arrays of different n in one list); TypeError for a table with a key missing or unknown.
     """
     drive = content.get("drive", {})
     return {name: _schedule(name, **load) if isinstance(load, dict) else load for name, load in drive.items()}

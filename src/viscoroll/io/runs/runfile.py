@@ -215,8 +215,9 @@ class Run:
     def block(self) -> int:
         """Number of motions in a full block, an int from 1 to n: as the file states, else as many as fit the memory.
 
-        That is the largest power of two of motions that take at most 128 MiB, and not more than 2^20 motions of a flow
-        map or 2^16 that are integrated.
+        That is the largest power of two of motions that take at most 128 MiB together, but 1 where a single one takes
+        more; not more than 2^20 motions of a flow map or 2^16 that are integrated.  In either case it is n if n is
+        smaller.
         """
         if self.settings.block is not None:
             return min(self.settings.block, self.settings.n)

@@ -175,13 +175,16 @@ class _Reader:
         """Read the column of a file that is the sample of an uncertain number, and collect it in ``joint``.
 
         In SI units the numbers of a CSV are converted to the unit of the key.  Strengths and times of a series and
-        corners of a load, which stand in tables within a section, must be without a unit there.
+        corners of a load, which stand in tables within a section, must be dimensionless there, as must all columns
+        where the run is not in SI units.  Numbers of a .nc or .parquet are taken as they are, in the unit of the key.
+        ``joint[FILE][number.name]`` becomes the column, float64, (rows,), with FILE the first spelling of the file.
 
         number: the uncertain number, whose name the column gets in ``joint``.
         table: its table of TOML: file, a .csv, .nc or .parquet, relative to the run file, and column.
-        Raises FileError for a table without a text at either key or with an unknown key, and for a file or column that
-        cannot be read, or whose length differs from that of its other columns; MissingDependencyError for .parquet
-        without pyarrow.
+        Raises FileError for a table without a text at either key or with an unknown key, for a file or column that
+        cannot be read, for a column that is empty, has several axes, numbers that are not finite or a unit that is
+        unknown or of another dimension, and where its length differs from that of the other columns of the file;
+        MissingDependencyError for .parquet without pyarrow.
         """
         check_keys(self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution"))
         file, column = table.get("file"), table.get("column")

@@ -44,7 +44,9 @@ class _FunctionsOfW:
     def at_speed(self, u: Floats) -> tuple[Floats, Floats]:
         """Return lam, epsilon, and M/V of half-space and cylinder at u, and their derivatives with respect to ln u.
 
-        u: kappa |V|, dimensionless, > 0, shape (n,).
+        :func:`fit_rows` fits the rows of u to it.
+        u: kappa |V|, dimensionless, > 0, shape (n,), such that w = 2 u (1 + 2 h/z)^(1/2) lies within ``rows``, which is
+            not checked.
         Returns (values of the four functions, their derivatives), (4, n) each, dimensionless.
         """
         (shift, rise, *parts), (d_shift, d_rise, *d_parts) = self._solve(u, 1, lambda whole: 2.0 * np.sqrt(whole))
@@ -54,7 +56,9 @@ class _FunctionsOfW:
     def at_stick_limit(self, v: Floats) -> tuple[Floats, Floats]:
         """Return eta/F and H/F^2 at v, and their derivatives with respect to ln v.
 
-        v: 1/F(eta), dimensionless, > 0, shape (n,); eta is half the transit time of the stick zone.
+        :func:`fit_rows` fits the rows of v to it.
+        v: 1/F(eta), dimensionless, > 0, shape (n,), such that w = v (1 + g/z) lies within ``rows``, which is not
+            checked; eta is half the transit time of the stick zone.
         Returns (values of both functions, their derivatives), (2, n) each, dimensionless.
         """
         (shift, rise, *_), (d_shift, d_rise, *_) = self._solve(v, 0, lambda whole: whole)
@@ -67,7 +71,8 @@ class _FunctionsOfW:
 
         Two steps are made from an interpolated start; the error that is left is subtracted to first order from the
         values.
-        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), such that w lies within ``rows``.
+        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), such that w lies within ``rows``, which is not
+            checked.
         which: index into ``powers`` of the function in the equation: 0 for g/z, 1 for h/z, of which twice is taken.
         factor: function of the sum in brackets, an array of any shape, that returns an array of that shape.
         Returns (values of g/z, h/z, and M/V of half-space and cylinder; their derivatives with respect to ln x), (4, n)
