@@ -257,13 +257,13 @@ class FromPrograms:
         E, nu = check_number("E0", E, unit=SI, above=0.0), check_poisson(nu)
         values, times = check_pairs(name, fractions, "tau", tau)
         rest = _remaining_fraction(name, values)
-        if bulk is None:
+        others = values if bulk is None else check_pairs("k", bulk, "tau", times)[0]
+        if np.array_equal(values, others):  # nu is constant in time
             return cls._from_moduli(1.0, nu, values / rest, times, None, more, E=E if long_term else E * rest)
-        others = check_pairs("k", bulk, "tau", times)[0]
         rest_of_bulk = _remaining_fraction("k", others)
         G, K = E / (2.0 * (1.0 + nu)), E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else math.inf
         G, K = (G, K) if long_term else (G * rest, K * rest_of_bulk)
-        if nu < 0.5 and (values != others).any():  # nu of long times
+        if nu < 0.5:  # nu of long times
             nu = (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)
         bulk_terms = others / rest_of_bulk * (K if nu < 0.5 else 1.0)
         return cls._from_moduli(G, nu, values / rest * G, times, bulk_terms, more, K)

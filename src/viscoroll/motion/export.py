@@ -146,8 +146,9 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
     creep_times) over (motion, mode).  Of two bodies: the same of each, with the prefix cylinder_ or base_, over
     (motion, cylinder_mode) and (motion, base_mode), and ``share`` over (motion).  Of covers: ``cover_thickness`` over
     (motion), divided by l0, whose attributes are also the layer's relaxation_strengths and relaxation_times, (modes,)
-    each, divided by its long-time modulus and T_ref, in whichever form it was given.  A cover's nu, its side and the
-    other body are not included (:func:`_dataset` has the side, and nu if it is one number).
+    each, divided by its long-time modulus and T_ref, in whichever form it was given; ``cover_nu`` over (motion), if the
+    covers have several.  The side of a cover and the other body are not included (:func:`_dataset` has the side, and nu
+    if it is one number).
     """
     if materials is None or not materials.shape:
         return {}
@@ -167,7 +168,8 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
 
     if isinstance(materials, Cover):
         layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
-        return along("cover_thickness", materials.thickness, "thickness of the cover divided by l0", **layer)
+        found = along("cover_thickness", materials.thickness, "thickness of the cover divided by l0", **layer)
+        return found | (along("cover_nu", materials.nu, "Poisson's ratio of the cover") if np.ndim(materials.nu) else {})
     return (
         _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _mode_variables(materials.base, count, "base_", "base: ")
