@@ -182,11 +182,11 @@ def find_line(text: str, name: str, key: str) -> int | None:
     """Return the number of the line that sets a key, for an error.
 
     text: content of the file, TOML.
-    name: name of the section, as "material.prony", "" for the top level; an inline table counts as a section.
+    name: name of the section, as "material.prony", "" for the top level.
     key: key in the section, "" for the section itself.
     Returns the number, from 1, of the first line that sets the key or is the header of that subsection; if there is
-    none, that of the header of the section, or of the line of an inline table of that name; None where these are
-    missing too.
+    none, that of the header of the section; if there is none and the name has a point, as of an inline table
+    ``prony = { ... }`` in [material], what is found for "prony" as a key of "material"; else None.
     """
     full = f"{name}.{key}" if name else key
     plain = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]")

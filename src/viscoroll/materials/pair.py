@@ -87,7 +87,7 @@ class Pair:
             allowed = "given for one body only: the law of two layers is not available; give base=, rigid or elastic"
             raise described_error("thickness", "is given for both bodies", allowed)
         if self.plane != "strain":
-            raise ParameterError("plane", repr(self.plane), "'strain' where a body has a thickness")
+            raise ParameterError("plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)")
 
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:

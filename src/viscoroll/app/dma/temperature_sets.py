@@ -155,6 +155,6 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
     index = nearest(base, temperatures)
     if abs(temperatures[index] - base) > LEAST_DISTANCE:
         listed = ", ".join(f"{T:g}" for T in temperatures)
-        allowed = f"one of {listed}, where a factor is given; or give shift as a function of the temperature"
+        allowed = f"{listed}, whose factors shift lists; for another one give shift as a function of the temperature"
         raise ParameterError("reference", base, allowed)
     return found / found[index], base

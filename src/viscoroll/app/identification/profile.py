@@ -185,12 +185,12 @@ class Likelihood:
     def products(self, which: list[int], delta_chi2: float) -> list[Product]:
         """Return the products of powers of undetermined unknowns that the data determine.
 
-        A product is determined if its interval is closed on both sides and at most a factor of e long, which is 1 in
-        the combination of coordinates.  Combinations are tried from the best determined one on, up to the first that
-        does not meet this.  Their exponents are found by the points that fit, or, if those give no product, by the
-        slopes at the best fit; the intervals are profiles.  Then the products are added that meet the same criterion
-        with exponents and intervals by the slopes, and whose ``high - low`` is below a third of the least one before
-        (any, if there is none): they hold near the best fit alone.
+        A product is determined if its interval has two ends whose ratio is at most e.  Combinations are tried from the
+        best determined one on, up to the first that is not determined.  Their exponents are those along which the
+        points with chi2 below the bound (of all searches) differ least, or, if those give no product, those of the
+        slopes at the best fit; the intervals are profiles of chi2.  Then products are added whose exponents and
+        intervals both follow from the slopes: they hold near the best fit alone.  Of these only such are kept whose
+        relative interval, ``high - low``, is below a third of the narrowest one found before (all, if none was found).
 
         which : indices of the undetermined unknowns, ascending, as of :meth:`undetermined`.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.

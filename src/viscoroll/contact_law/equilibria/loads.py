@@ -79,9 +79,10 @@ def loads_of(
 
     scene : dimensionless parameters of the roller, on the slope, of which alpha, kappa, mu and j are read; one alpha or
         one material, the others numbers or arrays.
-    force, torque : numbers, arrays or :class:`Feedback`, divided by P and P R; None: 0.
-    slope : angle, rad, a number or an array; tan(slope) is added to the force, which is divided by the load on the
-        slope, P cos(slope).  None: level.
+    force, torque : numbers, arrays or :class:`Feedback`, divided by P and by P R, where P is the load that presses the
+        cylinder on the slope, its weight times cos(slope); None: 0.
+    slope : angle, rad, a number or an array; tan(slope), the part of the weight along the slope divided by P, is added
+        to the force.  None: level.
     V : given speeds, dimensionless, any sign, a number or an array; None where the speed is to be found.
     Returns the :class:`Loads`: the broadcast ``shape``; ``gains``; ``given``, the name of the load beside V or None;
     and force, torque, kappa, mu, j and V (None where it is to be found), flattened to (n,), (1,) where all are numbers.

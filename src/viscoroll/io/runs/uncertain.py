@@ -267,8 +267,8 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
     for (a, b), value in pairs.items():
         problem = ""
         if unknown := [name for name in (a, b) if name not in random]:
-            names_allowed = f"must be one of {', '.join(random)}{suggestion(unknown[0], random)}"
-            problem = f"{unknown[0]!r} has no distribution: {names_allowed}"
+            allowed = f"must be one of the inputs with a distribution, {', '.join(random)}"
+            problem = f"{unknown[0]!r} has none: {allowed}{suggestion(unknown[0], random)}"
         elif a == b or not _is_number(value) or not -1.0 < value < 1.0:
             problem = f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1) for two different inputs"
         elif pairs.get((b, a), value) != value:
