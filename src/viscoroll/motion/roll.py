@@ -70,8 +70,8 @@ def roll(
     slope : angle in radians, > 0 if +V points downhill: P sin(slope) is added to ``force``.  The load is then
         P cos(slope), by which force, torque, Q and M of a scene are divided; ``scene`` of the result has the kappa and
         gamma of that load.
-    brake : largest torque of a brake, divided by P R, >= 0: a number, a Schedule or a callable, as for ``force``, but no
-        Feedback.  It acts against omega, and keeps omega = 0 while |Q + M_cylinder - torque| does not exceed it.
+    brake : largest torque of a brake, divided by P R, >= 0: a number, a Schedule or a callable, as for ``force``, but
+        no Feedback.  It acts against omega, and keeps omega = 0 while |Q + M_cylinder - torque| does not exceed it.
     drag : torque of a bearing against omega, for each unit of omega, >= 0, a number, divided by P R T_ref or in
         N m s/m.  It is part of ``torque`` of the result.
     omega : prescribed angular velocity, in place of ``torque``: a number, a Schedule or a callable of t, continuous;
@@ -86,8 +86,8 @@ def roll(
     unsteady : in partial slip use M(V) + N(V) V' for M: N adds to the mass, (1 + j + gamma N) V' = -gamma M where
         creepage is small.  The errors of V by the law of steady rolling become some five times smaller
         (docs/validity.md).  The motion ends where gamma N has risen to 1 + j or fallen to -(1 + j)/2, or to -1 if that
-        comes first: below that speed the cylinder stays in its own indentation.  A drive may jump; V' then jumps too, which the real contact
-        follows with a delay.  Refused where the bodies differ.
+        comes first: below that speed the cylinder stays in its own indentation.  A drive may jump; V' then jumps too,
+        which the real contact follows with a delay.  Refused where the bodies differ.
     rested : whether the cylinder stood still for long before the start, or the time for which it did, divided by T_ref
         or in s.  Leaving its indentation costs energy (``validity(V0).steady.start``), by which V0 and omega0 are
         reduced.  A motion that would lose seven tenths of its energy stays there: its outputs are NaN, its status is

@@ -206,11 +206,11 @@ def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
     """Solve the cover with elastic bodies: the limit of slow rolling, all relaxation completed, or of fast rolling.
 
     lam is the contact length divided by l0, delta_star the critical creepage, delta_0 the creepage of free rolling,
-    epsilon the shift of the contact ahead of the axis in half contact lengths.  lam, L and delta_0 of elastic bodies do not depend on the speed, so that one solve, at u = 1/2, gives them.  In fast
-    rolling all compliances are divided by alpha.  Then the length that carries the load is that of a load alpha times
-    smaller on bodies of the long-time stiffness, and the slopes and creep of elastic bodies depend on that length and
-    the layer's part of the compliance alone: bodies of the long-time stiffness are solved in both limits, under a load
-    that ``stiffness`` divides.
+    epsilon the shift of the contact ahead of the axis in half contact lengths.  lam, L and delta_0 of elastic bodies do
+    not depend on the speed, so that one solve, at u = 1/2, gives them.  In fast rolling all compliances are divided by
+    alpha.  Then the length that carries the load is that of a load alpha times smaller on bodies of the long-time
+    stiffness, and the slopes and creep of elastic bodies depend on that length and the layer's part of the compliance
+    alone: bodies of the long-time stiffness are solved in both limits, under a load that ``stiffness`` divides.
     modes: :class:`CoverModes` of the viscoelastic bodies, of which the Poisson's ratios and the thickness are taken.
     share: the layer's part of the compliance of both bodies, in (0, 1]: of long times for slow rolling, of the
         instantaneous compliance for fast rolling.
