@@ -296,7 +296,7 @@ def _to_scalar(value: Any) -> Any:
     an array of no or more elements, and any other value, as it is.
     """
     if np.size(value) == 1:
-        value = np.ravel(value)[0]
+        value = np.asarray(value).item()
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 
