@@ -1,5 +1,6 @@
 """From storage and loss modulus to a Prony series: what is recovered, what is said, what is refused."""
 
+import sys
 from functools import cache
 
 import numpy as np
@@ -354,6 +355,14 @@ def test_forms_of_a_file(tmp_path, text, factors):
     assert close(
         np.array(found), np.array(factors)[:, None] * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]), tol.DMA_READ
     )
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="names of files that are no UTF-8")
+def test_source_is_a_text(tmp_path):
+    """A name of a file that is no UTF-8 is a source that files can hold."""
+    path = tmp_path / "\udcff.csv"
+    path.write_text("omega [rad/s],E' [Pa],E'' [Pa]\n1,1e6,1e5\n10,2e6,2e5\n100,3e6,3e5\n")
+    assert vr.read_dma(path).source == "?.csv"
 
 
 def test_units_are_asked_for(tmp_path):

@@ -75,11 +75,12 @@ def contact(
         ``lam``: contact length divided by l0, the contact length at rest of half-spaces;
         ``epsilon``: shift of the contact towards the leading edge in half contact lengths, 0 at V = 0;
         ``delta_star``: critical creepage, > 0;
-        ``delta``: creepage; infinite with the sign of omega at V = 0 with omega other than 0;
+        ``delta``: creepage; infinite with the sign of omega at V = 0 with omega other than 0, and where
+        omega R/V exceeds the doubles;
         ``full_slip``: whether |delta - delta_0| >= delta_star, where delta_0 is 0 unless a body is a layer;
         ``beta``: length of the stick zone divided by the contact length, 0 in full slip, 1 where Q = 0.
         Those with a unit of their own, by which those of a Scene are divided:
-        ``zeta``: half the transit time, T_ref or s; infinite at V = 0;
+        ``zeta``: half the transit time, T_ref or s; infinite at V = 0, and where lam/V exceeds the doubles;
         ``Q``: force on the cylinder by friction, positive in the direction of a positive V, of the sign of delta V, at
         V = 0 of delta (of a layer with delta - delta_0 for delta); P or N/m; in full slip |Q| = mu P;
         ``M``: rolling resistance moment, of the sign of V, 0 at V = 0 and of elastic bodies; P R or N m/m.

@@ -348,18 +348,29 @@ def refuse_cover(scene: Parameters, why: str) -> None:
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
 
 
-def refuse_arrays(scene: Parameters, names: Iterable[str], allowed: str = "a single number") -> None:
+#: Arguments from which alpha and kappa may have their shape, each before those that it makes superfluous.
+_CAUSES = ("material", "T_epsilon", "T_sigma", "slope", "R", "E", "nu", "load", "m", "g")
+
+
+def refuse_arrays(
+    roller: Roller, scene: Parameters, names: Iterable[str], allowed: str = "a single number", slope: Any = None
+) -> None:
     """Raise ParameterError for the first of some parameters that is an array, also of shape (1,).
 
-    scene: the dimensionless parameters of a roller.
-    names: names of the parameters that must be numbers, as "alpha"; as values None and arrays without axes are accepted
-        too.
-    allowed: words of the message that follow "must be".
-    Returns nothing.
+    roller: as the caller gave it, on no slope.
+    scene: its dimensionless parameters, on the slope.
+    names: names of the parameters that must be numbers, "alpha", "kappa" or "mu".
+    allowed: words of the message that follow "must be", for numbers.
+    slope: angle, rad, a number or an array; None: level.
+    Returns nothing.  The message names what the caller gave: the load, say, of a cylinder whose kappa is an array.
     """
+    given = roller._arrays | {"slope": slope}
     for name in names:
-        if shape := np.shape(getattr(scene, name)):
-            raise shape_error(name, shape, allowed)
+        if np.shape(getattr(scene, name)):
+            cause = next(each for each in (name, *_CAUSES) if np.shape(given.get(each, 0.0)))
+            if cause == "material":
+                raise ParameterError(cause, repr(given[cause]), "one material, as material[i]")
+            raise shape_error(cause, np.shape(given[cause]), allowed)
 
 
 def _refuse_ratio(mu: Floats, kappa: Floats) -> None:

@@ -238,7 +238,8 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     Parameters
     ----------
     name : name of the argument, for errors.
-    value : what a caller gave; an int or an integer of numpy is accepted, a truth value or a float is not.
+    value : what a caller gave; an int or an integer of numpy is accepted, a truth value, a float or a duration
+        is not.
     low, high : smallest and largest allowed value, whole numbers; ``high`` is infinite by default, no limit.
 
     Returns
@@ -253,10 +254,16 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     """
     if type(value) is int and low <= value <= high:
         return value
-    if isinstance(value, bool) or not (isinstance(value, int | np.integer) and low <= value <= high):
+    if isinstance(value, bool | np.timedelta64) or not (isinstance(value, int | np.integer) and low <= value <= high):
         allowed = f"a whole number >= {low}" if high == math.inf else f"a whole number in [{low}, {high}]"
         raise ParameterError(name, describe_value(value), allowed)
     return int(value)
+
+
+def check_text(name: str, value: Any) -> None:
+    """Raise ParameterError if the argument ``name`` has a ``value`` that is no text, or one that files cannot hold."""
+    if not (isinstance(value, str) and value == value.replace("\0", "").encode(errors="ignore").decode()):
+        raise ParameterError(name, describe_value(value), "a text without NUL and surrogates")
 
 
 def check_choice(name: str, value: Any, *allowed: str) -> None:

@@ -10,7 +10,7 @@ import re
 from datetime import timedelta
 from decimal import Decimal
 from numbers import Real
-from typing import Any
+from typing import Any, TypeGuard
 
 import numpy as np
 
@@ -177,7 +177,7 @@ def _as_floats(name: str, value: Any) -> Any:
     raise ParameterError(name, describe_value(value), "a finite number")
 
 
-def is_real(value: Any) -> bool:
+def is_real(value: Any) -> TypeGuard[float]:
     """Whether an object is a real number of Python or another library, and not a truth value."""
     return isinstance(value, Real | Decimal) and not isinstance(value, bool)
 

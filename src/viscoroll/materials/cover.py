@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from numbers import Real
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import check_array, check_number, read_only
+from ..core.checks import check_array, check_choice, check_number, read_only
 from ..core.errors import ParameterError, described_error, shape_error
+from ..core.quantities import is_real
 from ..core.results import format_value
 from .bodies import Bodies
 from .prony import Prony, series_of_alpha
@@ -100,12 +100,11 @@ class Cover(Bodies):
         Raises ParameterError for a value out of range, a ``series`` or ``other`` of many materials or of another type,
         and shapes that do not agree.  A cover that is too thin for its law is refused where the law is computed.
         """
-        if isinstance(series, Real) and not isinstance(series, bool):
-            series = series_of_alpha(float(check_array("alpha", float(series), low=1.0, high=HIGHEST_ALPHA)))
+        if is_real(series):
+            series = series_of_alpha(check_number("alpha", series, low=1.0, high=HIGHEST_ALPHA))
         if not isinstance(series, Prony) or series.shape:
             raise ParameterError("series", f"{series!r:.60}", "a Prony series of one material, or an alpha")
-        if on not in ("cylinder", "base"):
-            raise ParameterError("on", repr(on), "'cylinder' or 'base'")
+        check_choice("on", on, "cylinder", "base")
         ratio = check_array("nu", nu, low=0.0, high=0.5)
         other_nu = check_number("other_nu", other_nu, low=0.0, high=0.5)
         part = check_number("part", part, above=0.0, high=1.0)

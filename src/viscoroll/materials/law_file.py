@@ -292,11 +292,11 @@ def _to_scalar(value: Any) -> Any:
     """Return the value of an attribute as text or number: some programs write arrays of one, and texts as bytes.
 
     value: what h5py reads.
-    Returns a text for bytes, in UTF-8 with replacements of wrong bytes; of an array of one its element, bytes likewise;
-    an array of no or more elements, and any other value, as it is.
+    Returns a text for bytes, in UTF-8 with replacements of wrong bytes; of an array of one its element, as Python
+    has it; an array of no or more elements, and any other value, as it is.
     """
     if np.size(value) == 1:
-        value = np.ravel(value)[0]
+        value = np.asarray(value).item()
     return value.decode(errors="replace") if isinstance(value, bytes) else value
 
 

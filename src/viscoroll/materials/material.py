@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.array_types import Floats
-from ..core.checks import check_array, check_number
+from ..core.checks import check_array, check_number, check_text
 from ..core.errors import ParameterError
 from ..core.results import Result, SummaryRow
 from ..core.scale import SI
@@ -52,7 +52,7 @@ class Material(FromPrograms):
     Raises
     ------
     ParameterError
-        A value that is not finite or out of range, a rigid body that relaxes.
+        A value that is not finite or out of range, a rigid body that relaxes, a name with NUL or surrogates.
 
     Notes
     -----
@@ -95,8 +95,7 @@ class Material(FromPrograms):
         else:
             check_fields(self, E=0.0)
         object.__setattr__(self, "nu", check_poisson(self.nu))
-        if not isinstance(self.name, str):
-            raise ParameterError("name", f"{self.name!r:.60}", "a text")
+        check_text("name", self.name)
         given = [name for name in ("density", "thickness") if getattr(self, name) is not None]
         check_fields(self, SI, **dict.fromkeys(["T_ref", *given], 0.0))
         if not isinstance(self.measured, Measured | None):
@@ -254,7 +253,7 @@ class Material(FromPrograms):
         >>> rubber.at(20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=-10.0)) == rubber
         True
         """
-        if not callable(shift):
+        if not callable(shift) or isinstance(shift, type):
             raise ParameterError("shift", f"{shift!r:.60}", "a WLF, an Arrhenius or a function of the temperature")
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:

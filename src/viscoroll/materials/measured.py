@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-from ..core.checks import check_number
+from ..core.checks import check_number, check_text
 from ..core.errors import ParameterError
 from .shift import check_fields
 
@@ -41,14 +41,13 @@ class Measured:
     def __post_init__(self) -> None:
         """Check the fields, and replace the numbers by floats in rad/s; a value with a unit is converted.
 
-        Raises ParameterError as the class states, and for a source that is no text.
+        Raises ParameterError as the class states, and for a source that is no text, or has NUL or surrogates.
         """
         check_fields(self, "rad s-1", low=0.0, high=0.0)
         object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")
-        if not isinstance(self.source, str):
-            raise ParameterError("source", f"{self.source!r:.60}", "a text")
+        check_text("source", self.source)
 
     def shifted(self, a_T: float) -> Measured:
         """Return the measured band at another temperature.

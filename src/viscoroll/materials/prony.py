@@ -21,7 +21,15 @@ from numpy.typing import ArrayLike, NDArray
 from ..core.array_types import Floats, Integers
 from ..core.checks import broadcast_shape, check_array
 from ..core.errors import ParameterError, shape_error
-from .prony_forms import HIGHEST_ALPHA, LARGEST_TIME_RATIO, MOST_MODES, Modes, modes_of_creep, modes_of_relaxation
+from .prony_forms import (
+    HIGHEST_ALPHA,
+    LARGEST_TIME_RATIO,
+    LONGEST_TIME,
+    MOST_MODES,
+    Modes,
+    modes_of_creep,
+    modes_of_relaxation,
+)
 
 #: difference of 1/alpha and 1 - sum J that rounding of the strengths explains, for each mode and one more
 _AGREEMENT = 1e-14
@@ -94,8 +102,8 @@ class Prony(OneOrMany):
     Raises
     ------
     ParameterError
-        Negative strengths, times that are not positive, more than 64 modes, times that span more than 32 decades, or a
-        sum of E above 1e12; for any of them.
+        Negative strengths, times that are not positive, more than 64 modes, times outside 1e-140 to 1e140 or that span
+        more than 32 decades, or a sum of E above 1e12; for any of them.
 
     Notes
     -----
@@ -320,8 +328,8 @@ class Prony(OneOrMany):
 
         factor: dimensionless, > 0, a number, or (n,), one for each of n materials; of a single material (n,) makes n.
         Returns a new :class:`Prony` in the same form, with the same strengths.
-        Raises ParameterError for a factor that is not positive or not finite, for one that makes a time 0 or infinite,
-        for another number of factors than of materials, and for factors of more than one axis.
+        Raises ParameterError for a factor that is not positive or not finite, for one with which a time leaves
+        1e-140 to 1e140, for another number of factors than of materials, and for factors of more than one axis.
 
         Examples
         --------
@@ -379,6 +387,8 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
     times that span more than :data:`LARGEST_TIME_RATIO`.
     """
     values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, above=0.0)
+    values = np.minimum(values, 1e300)  # sums stay finite, and are refused
+    check_array(names[1], each, low=1.0 / LONGEST_TIME, high=LONGEST_TIME)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
         allowed = f"one time for each {names[0]}, of shape {values.shape}"
         raise shape_error(names[1], each.shape, allowed)

@@ -24,11 +24,14 @@ HIGHEST_ALPHA = 1e12
 MOST_MODES = 64
 #: largest ratio of the longest to the shortest time of a series, likewise
 LARGEST_TIME_RATIO = 1e32
+#: longest time of a series, and inverse of the shortest one, with which neither conversions nor sums overflow
+LONGEST_TIME = 1e140
 #: halvings of the interval of ln(distance): 20 leave an error of 1e-3, from which Newton's method converges
 _HALVINGS = 20
 #: steps of Newton's method from there to rounding
 _NEWTON_STEPS = 3
-#: least distance of a zero from its pole, as a fraction of the interval, whose logarithm is halved
+#: least distance of a zero from its pole, as a fraction of the interval, whose logarithm is halved; where it underflows
+#: it is the smallest double
 _CLOSEST = 1e-300
 
 
@@ -122,7 +125,7 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
     middle = _sum_near(half, _relative_poles(left, spread), weight, constant)
     in_left[..., : poles - 1] = middle[..., : poles - 1] >= 0.0
     origin, side = np.where(in_left, left, left + 1), np.where(in_left, 1.0, -1.0)
-    seen, low, high = _relative_poles(origin, spread), np.log(half * _CLOSEST), np.log(half)
+    seen, low, high = _relative_poles(origin, spread), np.log(np.maximum(half * _CLOSEST, 5e-324)), np.log(half)
     for _ in range(_HALVINGS):
         mid = 0.5 * (low + high)
         beyond = side * _sum_near(side * np.exp(mid), seen, weight, constant) > 0.0

@@ -127,7 +127,8 @@ def read_dma(
     notes += [f"unused: {listed}"] * bool(others)
     _warn_of_assumed_units(table, taken)
     record = DynamicModuli(
-        omega, storage, loss, temperature and temperature.values, mode, Path(path).name,
+        omega, storage, loss, temperature and temperature.values, mode,
+        Path(path).name.encode(errors="replace").decode(),
         {column.name: column.heading for column in taken}, {column.name: column.unit for column in taken}, tuple(notes),
     )  # fmt: skip
     _refuse_mixed_sweeps(table, record)

@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 
+from ...core.checks import check_choice, check_integer
 from ...core.errors import FileError, MissingDependencyError, ParameterError, shape_error
 from ...core.extras import import_extra
 from ...core.files import replace_file
@@ -26,8 +27,6 @@ from ...materials.law_file import dataset_content
 from .description import build_description, model_description
 from .variables import MODELS, Variable
 
-#: Versions of the FMI standard that can be written.
-VERSIONS = (2, 3)
 #: Options of the C compiler.  -ffp-contract=off keeps the bits independent of the machine's fused multiply-add.
 _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC")
 #: Functions of the standard that change modes only.  These models have one mode, so that they return OK.
@@ -69,10 +68,8 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     law of a cover holds at one contact length at rest: the FMU refuses values of R, load, width and E_prime that
     make another one.
     """
-    if model not in MODELS:
-        raise ParameterError("model", repr(model), f"one of {', '.join(MODELS)}")
-    if version not in VERSIONS:
-        raise ParameterError("version", version, "2 or 3, of FMI")
+    check_choice("model", model, *MODELS)
+    version = check_integer("version", version, 2, 3)
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)
     if table.cover is not None and not MODELS[model].states:

@@ -17,7 +17,7 @@ from ...core.checks import broadcast_shape, check_array
 from ...core.drive import Feedback, slope_tan_cos
 from ...core.errors import ParameterError, described_error
 from ..contact_table import refuse_overflow
-from ..parameters import Parameters, refuse_arrays
+from ..parameters import Parameters
 
 #: largest kappa |V| of a given speed
 FASTEST = 1e100
@@ -86,12 +86,10 @@ def loads_of(
     V : given speeds, dimensionless, any sign, a number or an array; None where the speed is to be found.
     Returns the :class:`Loads`: the broadcast ``shape``; ``gains``; ``given``, the name of the load beside V or None;
     and force, torque, kappa, mu, j and V (None where it is to be found), flattened to (n,), (1,) where all are numbers.
-    Raises ParameterError: several alphas or materials; NaN or infinite input; a slope outside (-pi/2, pi/2); shapes
+    Raises ParameterError: NaN or infinite input; a slope outside (-pi/2, pi/2); shapes
     that do not broadcast; kappa |V| above :data:`FASTEST`; a feedback that changes with time or has arrays of gains;
     with V both or neither of force and torque (a slope alone counts as the force), or a feedback.
     """
-    if type(scene.alpha) is not float:
-        refuse_arrays(scene, ("alpha",))
     given = None if V is None else _given_load(slope, force=force, torque=torque)
     tangent = slope_tan_cos(slope)[0]
     push, *of_force = _split_feedback("force", force)

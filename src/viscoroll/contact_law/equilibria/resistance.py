@@ -168,7 +168,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
     np.True_
     """
     _, scene, scale = resolve_model(roller, "resistance_extrema")
-    refuse_arrays(scene, ("alpha", "kappa"))
+    refuse_arrays(roller, scene, ("alpha", "kappa"))
     law = scene.table
     assert law is not None
     if law.alpha == 1.0:

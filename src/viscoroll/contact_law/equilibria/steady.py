@@ -17,7 +17,7 @@ from ...core.drive import Feedback, make_dimensionless
 from ...core.errors import ParameterError
 from ...core.labels import strip_labels
 from ...materials.law.table import LawTable
-from ..parameters import Roller, resolve_model, scale_of
+from ..parameters import Roller, refuse_arrays, resolve_model, scale_of
 from ..validity.model_warnings import warn_of_contact
 from .loads import Loads, loads_of
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
@@ -102,13 +102,14 @@ def steady(
     units = scale_of(roller)
     plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
-    roller, scene, scale = resolve_model(roller, "steady", slope=slope)
+    level, (roller, scene, scale) = roller, resolve_model(roller, "steady", slope=slope)
+    refuse_arrays(level, scene, ("alpha",), slope=slope)
     force = make_dimensionless("force", plain["force"], scale)
     torque = make_dimensionless("torque", plain["torque"], scale)
     V = make_dimensionless("V", plain["V"], scale)
     loads = loads_of(scene, force, torque, slope, V)
     law = scene.table
-    assert law is not None  # loads_of refuses arrays of materials
+    assert law is not None  # arrays of materials are refused
     elastic = law.alpha == 1.0
     gained = bool(loads.gains.V or loads.gains.omega)
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest

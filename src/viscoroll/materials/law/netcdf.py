@@ -7,7 +7,6 @@ import tomllib
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import replace
-from numbers import Real
 from os import PathLike
 from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
@@ -15,8 +14,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...core.array_types import Floats
-from ...core.checks import check_array, check_number
+from ...core.checks import check_number
 from ...core.errors import FileError, ParameterError, described_error
+from ...core.quantities import is_real
 from ..bodies import Bodies
 from ..cover import Cover
 from ..law_file import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, make_dataset, read_law
@@ -57,10 +57,10 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
         material = Pair(material, base)
     if isinstance(material, Pair):
         return replace(law_table(material.law), T_ref=material.T_ref, pair=material)
-    if not isinstance(material, Real):
+    if not is_real(material):
         allowed = "a Prony, Bodies, a Material, a Cylinder or an alpha"
         raise described_error("material", f"is of type {type(material).__name__}", allowed)
-    return law_table(float(check_array("alpha", float(material), low=1.0, high=HIGHEST_ALPHA)))
+    return law_table(check_number("alpha", material, low=1.0, high=HIGHEST_ALPHA))
 
 
 def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
