@@ -22,6 +22,7 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll import fmu
+from viscoroll.app.cli.plot import _figure_of_netcdf
 from viscoroll.app.identification.measurements_toml import read_measurements
 from viscoroll.contact_law.contact_fields import FIELDS, SLOPES
 from viscoroll.contact_law.validity.assumptions import REACH_LIMIT, WAVE_LIMIT, assess_coupling
@@ -35,6 +36,7 @@ from viscoroll.io.runs.evaluate import block_inputs, roll_inputs
 from viscoroll.io.runs.sensitivity import sobol_indices
 from viscoroll.io.runs.uncertain import read_column
 from viscoroll.io.sampling import sample
+from viscoroll.io.tables.check import check_table
 from viscoroll.kernels.bessel.ratios import ratio_i2, ratio_k, ratio_r
 from viscoroll.materials.law.netcdf import law_table_of
 from viscoroll.materials.law.table import law_table

@@ -31,7 +31,8 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
     """Raise an OSError of the body of the ``with`` as FileError, which gives the system's reason; a context manager.
 
-    The message is "PATH: PROBLEM (REASON)REMEDY", and the OSError is its cause.  Other exceptions pass unchanged.
+    The message is "PATH: PROBLEM (REASON)REMEDY", and the OSError is its cause.  Other exceptions pass unchanged.  A
+    path with a null character, of which Python raises ValueError, is refused before the body.
 
     path: path of the file or folder, for the message.
     problem: what fails, in words, as "cannot be read".
@@ -39,6 +40,8 @@ def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
         brackets; "" without.
     Yields None.
     """
+    if "\0" in str(path):
+        raise FileError(path, f"{problem} (its name has a null character)")
     try:
         yield
     except OSError as error:

@@ -13,7 +13,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from ..core.errors import FileError, ParameterError, unknown_name_error
+from ..core.errors import FileError, ParameterError, check_one_given, unknown_name_error
 from ..core.sections import as_section_error, as_struct, check_keys, read_toml, section_error
 from ..cylinder import Cylinder
 from ..materials.material_netcdf import SUFFIX
@@ -158,6 +158,7 @@ def make_roller(path: Any, content: Mapping[str, Any], materials: Mapping[str, A
     given = dict(content.get("scene", {}))
     if (series := parse_series(path, "scene", given)) is not None:
         given["material"] = series
+        check_one_given(alpha=given.get("alpha"), **{"creep" if "creep" in given else "prony": series})
     given = {name: value for name, value in given.items() if name not in ("prony", "creep")}
     if "preset" in content:
         return preset(content["preset"]).replace(**given)

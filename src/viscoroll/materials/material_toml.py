@@ -15,6 +15,7 @@ from typing import Any
 import msgspec
 import numpy as np
 
+from ..core.checks import check_number
 from ..core.errors import FileError
 from ..core.sections import as_section_error, as_struct, read_toml, section_error
 from .law_file import is_law, read_law
@@ -22,7 +23,7 @@ from .material import Material
 from .material_netcdf import SUFFIX
 from .measured import Measured
 from .prony import Prony
-from .shift import WLF, Arrhenius, relative_shift
+from .shift import ABSOLUTE_ZERO, WLF, Arrhenius, relative_shift
 
 #: sections of a file that describe a body
 SECTIONS = ("material", "base")
@@ -280,7 +281,8 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
             raise section_error(path, name, "", "needs nu")
         nu = Material.rigid().nu
     more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured")}
-    more["temperature"] = section.reference
+    reference = section.reference
+    more["temperature"] = reference and check_number("reference", reference, above=ABSOLUTE_ZERO)
     series = parse_series(path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep}))
     times = section.T_epsilon, section.T_sigma
     if times != (None, None):

@@ -30,8 +30,7 @@ def plot(arguments: Namespace) -> None:
         output, path of the figure that is written; its suffix is the format: .png, .pdf or .svg.
     Returns None.
     Raises ParameterError for another suffix of what, and for content without a figure, as a single state; FileError for
-    a file that cannot be read or written; MissingDependencyError for a .zarr without zarr; KeyError, AttributeError or
-    ValueError as :func:`_figure_of_netcdf`.
+    a file that cannot be read or written; MissingDependencyError for a .zarr without zarr.
     """
     from ...core.plots.style import save
 
@@ -51,9 +50,8 @@ def _figure_of_netcdf(path: str) -> Any:
 
     path: path of a netCDF-4 file; one of netCDF-3 counts as no netCDF file.
     Raises FileError for a file that does not exist, cannot be read, or is no netCDF-4, also for a material that is
-    damaged, as one whose SHA-256 does not fit; ParameterError for a dataset that is no result, or has a single state.
-    One that looks like a result but lacks a variable or an attribute raises KeyError, with a dimension ``motion`` also
-    AttributeError; one with a dimension ``input`` but without Sobol indices ValueError.
+    damaged, as one whose SHA-256 does not fit, and for what looks like a result but lacks a variable or an attribute;
+    ParameterError for a dataset that is no result, or has a single state.
     """
     import xarray as xr
 
@@ -72,6 +70,10 @@ def _figure_of_netcdf(path: str) -> Any:
             "is damaged or is not a netCDF file" if os.access(path, os.R_OK) else "cannot be read (Permission denied)"
         )
         raise vr.FileError(path, problem) from error
+    except vr.ParameterError:
+        raise
+    except (AttributeError, KeyError, ValueError) as error:
+        raise vr.FileError(path, f"lacks a part of the result that its axes announce ({error})") from error
 
 
 def _figure_of_toml(path: str) -> Any:

@@ -17,6 +17,8 @@ from ...core.errors import ParameterError, shape_error
 
 #: least number of points of a curve: a series of one mode has three constants
 FEWEST_POINTS = 3
+#: least and largest value of a column, in its unit: doubles hold their squares, of which the least squares are made
+RANGE = 1e-100, 1e100
 #: number of points above which the means of logarithmic bins are fitted in their place: the time of the least squares
 #: is proportional to the number of points
 MOST_POINTS = 1000
@@ -166,11 +168,15 @@ def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS)
     Raises
     ------
     ParameterError
-        Values that are no numbers, not positive or not finite, of a unit of another dimension, columns of other shapes,
+        Values that are no numbers, outside of :data:`RANGE`, of a unit of another dimension, columns of other shapes,
         or fewer than ``fewest`` points.
     """
     names = kind._fields
-    values = [check_array(name, given, unit=UNITS[name], above=0.0) for name, given in zip(names, columns, strict=True)]
+    low, high = RANGE
+    values = [
+        check_array(name, given, unit=UNITS[name], low=low, high=high)
+        for name, given in zip(names, columns, strict=True)
+    ]
     for name, column in zip(names, values, strict=True):
         if column.ndim != 1 or column.shape != values[0].shape:
             raise shape_error(name, column.shape, f"one column, with the shape of {names[0]}")

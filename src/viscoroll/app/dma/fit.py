@@ -101,7 +101,7 @@ def fit_prony(
     Raises
     ------
     ParameterError
-        Fewer than 3 points, or a curve of fewer than 2 frequencies; values that are not positive or not finite; columns
+        Fewer than 3 points, or a curve of fewer than 2 frequencies; values outside of 1e-100 to 1e100; columns
         of other shapes; frequencies that span more than 30 decades; a curve that does not level off at low frequencies;
         neighbouring curves that do not overlap; factors larger at the highest temperature than at the lowest; a
         reference outside of the curves, or of which the factors say nothing; ``modes``, ``misfit``, ``on`` or ``mode``
@@ -197,7 +197,7 @@ def fit_relaxation(
     Raises
     ------
     ParameterError
-        Fewer than 3 points; values that are not positive or not finite; columns of other shapes; times that span more
+        Fewer than 3 points; values outside of 1e-100 to 1e100; columns of other shapes; times that span more
         than 30 decades; a modulus whose last value is above 1.1 times the first, or that does not level off at long
         times; ``modes``, ``misfit``, ``mode`` or ``temperature`` that are not allowed; a unit of another dimension.
     RuntimeError

@@ -65,10 +65,10 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
     if not isinstance(cylinder, Cylinder):
         raise section_error(path, "", "scene", "measurements are in SI units: give [cylinder]")
     for section, kind in _SECTIONS.items():
-        if not isinstance(content.get(section), kind):
-            raise section_error(
-                path, "", section, f"section {'[[data]]' if kind is list else f'[{section}]'} is missing"
-            )
+        if not isinstance(given := content.get(section), kind):
+            header = "[[data]]" if kind is list else f"[{section}]"
+            found = f"{section} = {given!r:.40}: must be a section {header}"
+            raise section_error(path, "", section, found if section in content else f"section {header} is missing")
     data = [_record(Path(path), section) for section in content["data"]]
     ranges = {name: content[name] for name in ("unknown", "prior")}
     return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | ranges
@@ -84,7 +84,7 @@ def _record(path: Path, content: Any) -> Record:
         decimal, "." or ",", and encoding, both optional, "" for what the file shows;
         columns, name -> heading, and units, name -> unit, both optional;
         fields of the record but coordinates and quantities, as sigma, load or V0, in SI units, all optional; "unknown"
-        stands for None.
+        stands for None, but for a name.
     Returns a :class:`Resistance`, :class:`Traction` or :class:`Coastdown`, a plan where the file has no quantity.
     Raises FileError for unknown keys, wrong types, values that make no record, and as :func:`_columns` does, whose
     ParameterError becomes a FileError too.
@@ -98,7 +98,8 @@ def _record(path: Path, content: Any) -> Record:
     section: Any = as_struct(path, "data", content, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):
         check_keys(path, f"data.{name}", getattr(section, name), columns)
-    more: Any = {name: None if (value := getattr(section, name)) == _UNKNOWN else value for name, *_ in own}
+    more: Any = {name: getattr(section, name) for name, *_ in own}
+    more = {name: None if value == _UNKNOWN and name != "name" else value for name, value in more.items()}
     try:
         return kind(**more, **_columns(path.parent / section.file, kind, section))
     except ParameterError as error:

@@ -25,8 +25,11 @@ _ONE_SIDED_STEP = 1e-5
 FAILED = 1e6
 #: weight of the rule that keeps a combination of coordinates fixed, far above those of the data
 _STIFF = 1e6
-#: ratio of a standard deviation that was not given to that of the values, as a start
-_FIRST_SIGMA = 1e-3
+#: ratios of a standard deviation that was not given, as a start, to that of the values and to the largest of them: the
+#: second keeps predictions that are far from nearly equal values within the largest residual
+_FIRST_SIGMA = 1e-3, 1e-4
+#: least ratio of an estimated standard deviation to the largest value: rounding of the predictions
+_LEAST_SIGMA = 1e-14
 #: most rounds in which standard deviations are estimated
 _ROUNDS = 20
 #: relative change of the standard deviations at which the rounds end
@@ -90,6 +93,11 @@ class Minimum(NamedTuple):
     chi2: float
 
 
+def _largest(values: Floats) -> float:
+    """Return the largest magnitude of the values of a column, SI; 1 where all are 0."""
+    return float(np.abs(values).max()) or 1.0
+
+
 class Problem:
     """The least squares of an identification: chi2 over the coordinates of the unknowns.
 
@@ -102,7 +110,7 @@ class Problem:
     start, low, high : coordinates of start and bounds, shape (unknowns,).
     y : all data, SI, one column after the other, shape (n,); of a plan the predictions at the start.
     sigma : their standard deviations, SI, shape (n,).  Those that were not given begin at 1e-3 of the standard
-        deviation of the values of their column; :meth:`estimate_sigma` changes them.
+        deviation of the values of their column, at least at 1e-4 of the largest; :meth:`estimate_sigma` changes them.
     columns : list of :class:`Column`, the columns of y.
     points : number of residuals: n data, and one for each prior.
     active : indices of the unknowns that are varied, ascending; the others change no residual and stay at their start.
@@ -134,7 +142,8 @@ class Problem:
             values = vars(record) if record.measured else self.predicted(record, self.start, record_name)
             for quantity, given in record.sigma.items():
                 own = np.ravel(values[quantity])
-                spread = max(_FIRST_SIGMA * float(np.std(own)), 1e-300) if given is None else np.ravel(given)
+                first = np.max(np.multiply(_FIRST_SIGMA, (np.std(own), _largest(own))))
+                spread = first if given is None else np.ravel(given)
                 y.append(own)
                 sigma.append(np.broadcast_to(spread, own.shape))
                 self.columns.append(Column(record_name, quantity, slice(size, size + own.size), given is None))
@@ -307,8 +316,9 @@ class Problem:
 
         A column has one standard deviation: the root mean square of its residuals, divided by the root of 1 - (number
         of active unknowns)/(number of all residuals), which is taken as at least 0.1; in a robust fit their median
-        absolute value over that of normal noise.  The rounds end when no standard deviation changes by 0.1 %, at the
-        latest after 20; there are none where all standard deviations were given.  ``sigma`` is changed in place.
+        absolute value over that of normal noise; it is at least 1e-14 of the largest value.  The rounds end when no
+        standard deviation changes by 0.1 %, at the latest after 20; there are none where all standard deviations were
+        given.  ``sigma`` is changed in place.
 
         best : :class:`Minimum`, minimum with the present standard deviations.
         Returns the :class:`Minimum` of the last round, with the standard deviations estimated in it; ``best`` itself if
@@ -321,7 +331,8 @@ class Problem:
             for column in estimated:
                 own = r[column.at]
                 size = np.median(np.abs(own)) / _MEDIAN if self.robust else np.sqrt(np.mean(own**2) / share)
-                self.sigma[column.at] *= max(float(size), 1e-12)
+                floor = _LEAST_SIGMA * _largest(self.y[column.at])
+                self.sigma[column.at] = np.maximum(self.sigma[column.at] * size, floor)
             best = self.minimize(best.u)
             if np.abs(self.sigma / before - 1.0).max() < _SIGMA_CHANGE:
                 break

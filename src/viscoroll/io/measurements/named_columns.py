@@ -35,7 +35,7 @@ def named_table(
 def _is_named(heading: str, name: str) -> bool:
     """Return whether a heading of a file is a name, alone or with a unit.
 
-    A heading of logarithms, as "log10(f/Hz)", must be equal to the name: its numbers are not those of f.
+    A heading of logarithms, as "log10(f/Hz)", must be equal to the name, so that who names it has seen what it is.
 
     heading: text of the heading.
     name: the name that the user gives.
@@ -91,7 +91,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     Returns
     -------
     array of shape (n,)
-        The numbers, in the unit ``wanted``, float64; of a heading of logarithms they stay logarithms.
+        The numbers, in the unit ``wanted``, float64; those of a heading of logarithms to base 10 are raised to powers.
 
     Raises
     ------
@@ -110,4 +110,5 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     named = [each for each in found if each.name == name]
     unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
     factor, offset = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
-    return factor * table.numbers(index).values + offset
+    values = table.numbers(index).values
+    return factor * (10.0**values if any(each.log for each in found) else values) + offset

@@ -136,7 +136,8 @@ class _Reader:
             )
         low, high = max(low, float(cut[0])), min(high, float(cut[1]))
         if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
-            raise self.fault(number, f"truncate = {cut!r:.40}: this interval has zero probability")
+            interval = f"truncate = {cut!r:.40}" if "truncate" in table else f"support [{low:g}, {high:g}]"
+            raise self.fault(number, f"{interval}: this interval has zero probability")
         return Distribution(law, low, high)
 
     def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:

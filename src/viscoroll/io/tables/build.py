@@ -16,16 +16,15 @@ from numpy.typing import ArrayLike
 
 from ...contact_law.contact import contact
 from ...core.array_types import Floats
-from ...core.errors import ParameterError, described_error, shape_error
+from ...core.errors import described_error
 from ...cylinder import Cylinder
-from ...materials.law.netcdf import bodies_as_toml, parse_law
+from ...materials.law.netcdf import bodies_as_toml
 from ...materials.law.table import LawTable
-from ...materials.law_file import dataset_content
 from ...materials.prony_forms import HIGHEST_ALPHA
 from ...scene import Scene
 from . import schema
 from .interpolate import Interpolant
-from .nodes import MAX_NODES, increasing
+from .nodes import MAX_NODES, increasing, roller_of
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -114,12 +113,10 @@ def build(
     """
     import xarray as xr
 
-    what = _roller_of(what)
+    what = roller_of(what, alpha)
     si = isinstance(what, Cylinder)
     axes = {"V": increasing("V", V, unit=what.scale, above=0.0), "delta": increasing("delta", delta)}
     if alpha is not None:
-        if isinstance(what, Cylinder) or what.material is not None:
-            raise described_error("alpha", "is given", "left out: the material determines alpha")
         axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
     if (nodes := math.prod(axis.size for axis in axes.values())) > MAX_NODES:
         raise described_error("the grid", f"has {nodes:g} nodes", f"a grid of at most {MAX_NODES:g} nodes")
@@ -143,24 +140,6 @@ def build(
         for name, difference in differences(table, what).items():
             table[name].attrs["difference_from_rows"] = difference
     return table
-
-
-def _roller_of(what: Any) -> Scene | Cylinder:
-    """Return the roller of a grid: a scene or a cylinder itself, of a law the scene with kappa = mu = 1.
-
-    what: a :class:`Scene`, a :class:`Cylinder`, a :class:`LawTable` of half-spaces, or the dataset of one.
-    Raises ParameterError for anything else (the law of a layer or of every alpha too), for a roller whose parameters
-    are arrays, and for a cylinder whose scene is out of range; FileError for a dataset of a law that is incomplete.
-    """
-    if str(getattr(what, "attrs", {}).get(schema.KIND)) == "law":
-        what = parse_law(dataset_content(what), "law")
-    if isinstance(what, LawTable) and what.cover is None:
-        what = Scene(kappa=1.0, mu=1.0, material=what)
-    if not isinstance(what, Scene | Cylinder):
-        raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law of half-spaces")
-    if shape := (what if isinstance(what, Scene) else what.scene()).shape:
-        raise shape_error("what", shape, "one scene or cylinder whose parameters are numbers")
-    return what
 
 
 def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:

@@ -209,7 +209,7 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError("path", path, "a file name that is a valid C identifier, for example rubber.h")
-    table = parse_law(dataset_content(dataset), path)
+    table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))
     front = table.record.rows[:8]
     arrays = {f"{name}_coefficients": table.coefficients}
     fields, of_cover = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays], ["0", "{0.0}"]

@@ -9,9 +9,13 @@ from numpy.typing import ArrayLike
 
 from ...core.array_types import Floats
 from ...core.checks import check_array, check_choice, check_integer, check_number
-from ...core.errors import ParameterError, described_error
+from ...core.errors import ParameterError, described_error, shape_error
 from ...cylinder import Cylinder
+from ...materials.law.netcdf import parse_law
+from ...materials.law.table import LawTable
+from ...materials.law_file import dataset_content
 from ...scene import Scene
+from . import schema
 
 #: Largest number of nodes of a grid: 400 MB a field, more than any look-up block reads.
 MAX_NODES = 50_000_000
@@ -69,7 +73,7 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
 
     Parameters
     ----------
-    what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, as of :func:`build`; not checked.
+    what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, or a law, as of :func:`build`.
     V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_ref, where T_ref is T_epsilon of a
         scene with alpha, else the unit of time of its material; of a Cylinder in m/s.
     count : number of nodes, odd, 5 to 5e7.
@@ -86,9 +90,11 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     Raises
     ------
     ParameterError
-        A count that is even, no whole number, or outside of 5 to 5e7; speeds or alphas that are empty, out of range or
-        not increasing; ``alpha`` of a Cylinder or beside a material; what :func:`viscoroll.contact` refuses, as kappa V
-        above 1e300.
+        Where ``what`` is none of these or has arrays; a count that is even, no whole number, or outside of 5 to 5e7;
+        speeds or alphas that are empty, out of range or not increasing; ``alpha`` of a Cylinder or beside a material;
+        what :func:`viscoroll.contact` refuses, as kappa V above 1e300.
+    FileError
+        The dataset of a law that is incomplete or does not state its material.
 
     Examples
     --------
@@ -99,10 +105,9 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     """
     if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
         raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
-    if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
-        raise described_error("alpha", "is given", "left out: the material determines alpha")
-    roller: Any = what if alpha is None else what.replace(alpha=increasing("alpha", alpha, low=1.0))
-    speeds = increasing("V", V, above=0.0)
+    roller: Any = roller_of(what, alpha)
+    speeds = increasing("V", V, unit=roller.scale, above=0.0)
+    roller = roller if alpha is None else roller.replace(alpha=increasing("alpha", alpha, low=1.0))
     speeds = speeds if alpha is None else speeds[:, np.newaxis]
     found = roller.contact(speeds, delta=0.0, fields=("delta_star", "delta_0"))
     edges = np.sort(np.abs([found.delta_star + found.delta_0, found.delta_star - found.delta_0]), axis=None)
@@ -111,6 +116,28 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     fraction = _EVEN_FRACTION * np.linspace(0.0, 1.0, _DENSITY_POINTS) + (1.0 - _EVEN_FRACTION) * below
     half = np.interp(np.linspace(0.0, 1.0, count // 2 + 1), fraction, creep)
     return np.concatenate([-half[:0:-1], half])
+
+
+def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
+    """Return the roller of a grid: a scene or a cylinder itself, of a law the scene with kappa = mu = 1.
+
+    what: a :class:`Scene`, a :class:`Cylinder`, a :class:`LawTable` of half-spaces, or the dataset of one.
+    alpha: what the caller gave for an axis of alpha; None without.
+    Raises ParameterError for anything else (the law of a layer or of every alpha too), for a roller whose parameters
+    are arrays, for a cylinder whose scene is out of range, and for alpha of a cylinder or beside a material; FileError
+    for a dataset of a law that is incomplete.
+    """
+    if str(getattr(what, "attrs", {}).get(schema.KIND)) == "law":
+        what = parse_law(dataset_content(what), "law")
+    if isinstance(what, LawTable) and what.cover is None:
+        what = Scene(kappa=1.0, mu=1.0, material=what)
+    if not isinstance(what, Scene | Cylinder):
+        raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law of half-spaces")
+    if shape := (what if isinstance(what, Scene) else what.scene()).shape:
+        raise shape_error("what", shape, "one scene or cylinder whose parameters are numbers")
+    if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
+        raise described_error("alpha", "is given", "left out: the material determines alpha")
+    return what
 
 
 def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:

@@ -108,6 +108,7 @@ def load(path: str | PathLike[str]) -> xr.Dataset:
         problem = f"is damaged or is not a table of viscoroll ({' '.join(str(error).split()):.120}): build it again"
         raise FileError(path, problem) from error
     check(table, path)
+    table.encoding["source"] = str(path)  # for messages, as where xarray reads a file
     return table
 
 
