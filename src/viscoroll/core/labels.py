@@ -71,8 +71,11 @@ class Labels(NamedTuple):
         """Whether a coordinate has the ``name`` of an argument, but not its ``values``, an array."""
         import xarray as xr
 
-        own = xr.Variable(self.dims[len(self.dims) - values.ndim :], values)
-        return name in self.coords and not xr.Variable(*self.coords[name]).broadcast_equals(own)
+        if name not in self.coords:
+            return False
+        dims, label = self.coords[name]
+        own = xr.DataArray(values, dims=self.dims[len(self.dims) - values.ndim :])
+        return not xr.DataArray(label, dims=dims).broadcast_equals(own)
 
     def axes_beside(self, names: Iterable[str], *dims: str) -> tuple[tuple[str, ...], dict[str, Any]]:
         """Return axes and coordinates for a dataset; what has the name of a variable there is called given_NAME.
@@ -190,7 +193,6 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     like = next(iter(whole.values())).drop_attrs()
     others = {name: each for array in reversed(whole.values()) for name, each in array.coords.items()}
     like = like.assign_coords({name: each for name, each in others.items() if name not in like.coords})
-
     coords = {str(name): (tuple(map(str, each.dims)), each.values) for name, each in like.coords.items() if each.dims}
     labels = Labels(like.shape, like, tuple(map(str, like.dims)), coords)
     return {name: array.values for name, array in whole.items()}, labels
@@ -206,8 +208,6 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     of which is a coordinate; levels without a name are called level_0, level_1 and so on.
     Raises ParameterError if the indices differ.
     """
-    import pandas as pd
-
     first, *others = series.values()
     index = first.index
     if not all(index.equals(other.index) for other in others):

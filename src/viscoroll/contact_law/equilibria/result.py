@@ -230,11 +230,12 @@ class Steady(Values):
 
         Returns a dataset over the axes of the loads (of one load there are none; named as in labelled arguments, else
         ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  An axis or a coordinate of the
-        labels that has the name NAME of a variable, or "equilibrium", is called given_NAME.  Its variables are V, delta, Q, M_half_space, M_cylinder, beta, omega, M,
-        grip, force and torque of this result; ``stable``, int8, 0 or 1; ``rate_fast`` and ``rate_slow``, the real parts
-        of the eigenvalues, whose imaginary parts are left out; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
-        ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; and ``count``, over the axes of the loads
-        alone.  Padding is NaN, of ``stable`` 0.  Units are those of the result; ``reason`` is left out.
+        labels that has the name NAME of a variable, or "equilibrium", is called given_NAME.  Its variables are V,
+        delta, Q, M_half_space, M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, int8, 0
+        or 1; ``rate_fast`` and ``rate_slow``, the real parts of the eigenvalues, whose imaginary parts are left out;
+        ``loss_slip``, ``loss_half_space``, ``loss_cylinder``, ``coefficient`` and ``efficiency``, the fields of
+        :class:`Loss`; and ``count``, over the axes of the loads alone.  Padding is NaN, of ``stable`` 0.  Units are
+        those of the result; ``reason`` is left out.
 
         Examples
         --------
