@@ -68,11 +68,14 @@ class Labels(NamedTuple):
         return pd.Series(values, index=self.like, name=name)
 
     def differ(self, name: str, values: Any) -> bool:
-        """Whether a coordinate has the ``name`` of an argument, but not its ``values``, an array."""
+        """Whether a coordinate or an axis has the ``name`` of an argument, but not its ``values``, an array.
+
+        An axis without a coordinate differs from a number alone.
+        """
         import xarray as xr
 
         if name not in self.coords:
-            return False
+            return name in self.dims and not values.ndim
         dims, label = self.coords[name]
         own = xr.DataArray(values, dims=self.dims[len(self.dims) - values.ndim :])
         return not xr.DataArray(label, dims=dims).broadcast_equals(own)

@@ -180,7 +180,9 @@ def _material_variables(materials: Any, count: int) -> dict[str, Any]:
     if isinstance(materials, Cover):
         layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
         found = along("cover_thickness", materials.thickness, "thickness of the cover divided by l0", **layer)
-        return found | (along("cover_nu", materials.nu, "Poisson's ratio of the cover") if np.ndim(materials.nu) else {})
+        return found | (
+            along("cover_nu", materials.nu, "Poisson's ratio of the cover") if np.ndim(materials.nu) else {}
+        )
     return (
         _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
         | _mode_variables(materials.base, count, "base_", "base: ")

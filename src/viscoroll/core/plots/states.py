@@ -93,11 +93,13 @@ def stresses(data: xr.Dataset) -> Figure:
     """Draw pressure and shear stress along the contact.
 
     data: dataset with ``x``, place along the contact, ``p``, pressure, and ``tau``, shear stress, with the attribute
-        units; of several states, along other axes than the first one of x, the first is drawn.
+        units; of several states, along other axes than the first that x varies along, the first is drawn.
     Returns the :class:`matplotlib.figure.Figure`, with both curves in one panel.
     """
     figure, axes = new_figure("Pressure and shear stress along the contact")
-    data = data.isel(dict.fromkeys(set(data.dims) - {data["x"].dims[0]}, 0))
+    x = data["x"]
+    along = next((dim for n, dim in enumerate(x.dims) if np.diff(x.values, axis=n).any()), None)
+    data = data.isel(dict.fromkeys(set(data.dims) - {along}, 0))
     for name, line in zip(("p", "tau"), LINES, strict=False):
         axes.plot(data["x"].values, data[name].values, label=variable_label(data[name]), **line)
     zero_line(axes)
