@@ -136,16 +136,16 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
     Returns
     -------
     plain : name -> value without labels and unit; labelled arrays are broadcast to their common shape, and numbers of
-        other kinds, as an index of pandas, a nested list or a Decimal, are float64.  It may be ``given`` itself, if no argument has a label or a unit.
+        other kinds, as an index of pandas, a nested list or a Decimal, are float64.  It may be ``given`` itself, if no
+        argument has a label or a unit.
     labels : the :class:`Labels` of the arguments; None where no argument has any.
 
     Raises
     ------
     ParameterError
         What :func:`.drive.convert_argument` refuses, as a unit of another dimension; numbers of other kinds that are
-        not finite; labelled arrays beside plain ones
-        (numbers and schedules may stand beside them), arrays of xarray whose common axes have different coordinates,
-        series of pandas with different indices, or both kinds together.
+        not finite; labelled arrays beside plain ones (numbers and schedules may stand beside them), arrays of xarray
+        whose common axes have different coordinates, series of pandas with different indices, or both kinds together.
     """
     if UNLABELLED_TYPES.issuperset(map(type, given.values())) or all(map(has_no_unit, given.values())):
         return given, None

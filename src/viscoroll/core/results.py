@@ -215,8 +215,8 @@ class Values(Result):
         units: name -> unit as "m s-1", where it is not that of the field's name.  None: no field has such a unit.
         title: first line of the summary, title of dataset and figure.
         si: whether values are in SI units, else dimensionless.
-        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape, also after axes of the
-            roller; None: fields stay plain arrays.
+        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape, also after axes
+            of the roller; None: fields stay plain arrays.
         about: further attributes of the dataset by name; None: there are none.
         """
         self._about = about or {}
