@@ -194,7 +194,8 @@ def numbers_of(result):
     elif isinstance(result, vr.Prony):
         yield from (result.E, result.tau)
     elif dataclasses.is_dataclass(result):
-        yield from itertools.chain.from_iterable(map(numbers_of, vars(result).values()))
+        held = (value for name, value in vars(result).items() if name != "labels")  # they hold the arguments
+        yield from itertools.chain.from_iterable(map(numbers_of, held))
     elif isinstance(result, tuple | list):
         yield from itertools.chain.from_iterable(map(numbers_of, result))
     elif isinstance(result, Mapping):

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable
+from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from .drive import Schedule, convert_argument
+from .checks import check_array
+from .drive import Feedback, Schedule, convert_argument
 from .errors import ParameterError
 from .quantities import has_no_unit
 from .scale import HasUnits
@@ -18,56 +19,105 @@ class Labels(NamedTuple):
     """Labels that the arguments of a call have in common.
 
     shape : shape of the arguments, broadcast.
-    wrap : function (name of the result, values, names of further axes after those of ``shape``) -> the values as an
-        array of xarray, or a series or data frame of pandas.
+    like : array of xarray with the axes and coordinates of the arguments, or their index of pandas.
     dims : names of the axes, as many as ``shape`` has.
     coords : name of a coordinate -> (names of its axes, its values), as xarray has them, for pandas too.
     """
 
     shape: tuple[int, ...]
-    wrap: Callable[[str, Any, tuple[str, ...]], Any]
+    like: Any
     dims: tuple[str, ...]
     coords: dict[str, Any]
+
+    def axes_in_front(self, shape: tuple[int, ...], after: int = 0) -> int:
+        """Return how many axes an array has before those of the arguments, as arrays of the roller give them.
+
+        shape: shape of the array.
+        after: number of its axes after those of the arguments.
+        Returns -1 if the array has not the axes of the arguments there.
+        """
+        front = len(shape) - len(self.shape) - after
+        return front if front >= 0 and shape[front : len(shape) - after] == self.shape else -1
 
     def apply(self, name: str, values: Any, *further: str) -> Any:
         """Return values with the labels of the arguments.
 
         name: name of the result, which the labelled array gets.
-        values: array whose first axes are those of the arguments.
+        values: array with the axes of the arguments, perhaps others in front of them, which :func:`state_axes` names.
         further: names of its axes after those of the arguments.
-        Returns an array of xarray, or a series of pandas, with one further axis a data frame.  ``values`` itself is
-        returned if its shape is another one, and with pandas if there are several further axes.
+        Returns an array of xarray, in which an axis or a coordinate of the arguments with the name of another axis is
+        called given_NAME, or a series of pandas, with one further axis a data frame, whose columns are 0 to m - 1.
+        ``values`` itself is returned if its shape is another one, and with pandas if there are more axes.
         """
         shape = np.shape(values)
-        fits = shape[: len(self.shape)] == self.shape and len(shape) == len(self.shape) + len(further)
-        return self.wrap(name, values, further) if fits else values
+        front = self.axes_in_front(shape, len(further))
+        if front < 0:
+            return values
+        if hasattr(self.like, "dims"):
+            import xarray as xr
 
-    def renamed_coords(self, names: tuple[str, ...], prefix: str) -> tuple[tuple[str, ...], dict[str, Any]]:
-        """Rename those axes and coordinates whose names the variables of a dataset have already.
+            before, own = state_axes(len(shape) - len(further))[:front], {*self.like.dims, *self.like.coords}
+            like = self.like.rename({other: f"given_{other}" for other in (*before, *further) if other in own})
+            return xr.DataArray(values, dims=(*before, *like.dims, *further), coords=like.coords, name=name)
+        import pandas as pd
 
-        names: names of the variables of the dataset.
-        prefix: word that is put before such an axis or coordinate, as "given" for given_V; others keep their names.
-            Whether a new name is free is not checked.
-        Returns (names of the axes; dict from the name of a coordinate to (its axes, its values)), as xarray takes
-        them.
+        if front or len(further) > 1:  # no type of pandas has more axes
+            return values
+        if further:
+            return pd.DataFrame(values, index=self.like, columns=pd.RangeIndex(shape[1], name=further[0]))
+        return pd.Series(values, index=self.like, name=name)
+
+    def differ(self, name: str, values: Any) -> bool:
+        """Whether a coordinate or an axis has the ``name`` of an argument, but not its ``values``, an array.
+
+        An axis without a coordinate differs from a number alone.
         """
-        new = {name: f"{prefix}_{name}" if name in names else name for name in (*self.dims, *self.coords)}
-        coords = {new[name]: (tuple(new[dim] for dim in dims), values) for name, (dims, values) in self.coords.items()}
+        import xarray as xr
+
+        if name not in self.coords:
+            return name in self.dims and not values.ndim
+        dims, label = self.coords[name]
+        own = xr.DataArray(values, dims=self.dims[len(self.dims) - values.ndim :])
+        return not xr.DataArray(label, dims=dims).broadcast_equals(own)
+
+    def axes_beside(self, names: Iterable[str], *dims: str) -> tuple[tuple[str, ...], dict[str, Any]]:
+        """Return axes and coordinates for a dataset; what has the name of a variable there is called given_NAME.
+
+        names: names of the variables of the dataset, and of its other axes.
+        dims: new names of the axes, which their coordinates get too; without any they keep their names.
+        Returns (names of the axes; dict from the name of a coordinate to (its axes, its values, {"long_name": name in
+        the arguments})), as xarray takes them.  Whether a name given_NAME is free is not checked.
+        """
+        new = {name: f"given_{name}" if name in names else name for name in (*self.dims, *self.coords)}
+        new |= zip(self.dims, dims, strict=False)
+        coords = {
+            new[name]: (tuple(new[dim] for dim in own), values, {"long_name": name})
+            for name, (own, values) in self.coords.items()
+        }
         return tuple(new[dim] for dim in self.dims), coords
 
-    def axis_coords(self, dim: str) -> dict[str, Any]:
-        """Return the coordinates of arguments with one axis, for a dataset in which that axis is named ``dim``.
 
-        dim: new name of the axis, and of the coordinate that had the axis' old name; others keep their names.
-        Returns a dict from a name to (``dim``, values, {"long_name": old name}), as xarray takes them; {} without
-        coordinates.  Where another coordinate is named ``dim`` already, the later of the two is kept.
-        Raises ValueError for arguments without axes.
-        """
-        (own,) = self.dims[:1]
-        return {
-            dim if name == own else name: (dim, values, {"long_name": name})
-            for name, (_, values) in self.coords.items()
-        }
+def state_axes(count: int) -> tuple[str, ...]:
+    """Return names of ``count`` axes without labels: "state" of a single one, else "state_0", "state_1" and so on."""
+    return ("state",) if count == 1 else tuple(f"state_{n}" for n in range(count))
+
+
+def dataset_axes(
+    labels: Labels | None, shape: tuple[int, ...], names: Iterable[str]
+) -> tuple[tuple[str, ...], dict[str, Any]]:
+    """Return the axes of a dataset of results, and its coordinates by the labels of the arguments.
+
+    labels: labels of the arguments; None: they had none.
+    shape: shape of the results; other axes may be in front of those of the labels.
+    names: names of the variables of the dataset.
+    Returns (names of the axes, by :func:`state_axes` where they have no labels; coordinates as of
+    :meth:`Labels.axes_beside`, {} if the labels have another shape).
+    """
+    axes = state_axes(len(shape))
+    if labels is None or (front := labels.axes_in_front(shape)) < 0:
+        return axes, {}
+    dims, coords = labels.axes_beside((*names, *axes[:front]))
+    return axes[:front] + dims, coords
 
 
 #: Types that have neither labels nor units.
@@ -85,16 +135,17 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
 
     Returns
     -------
-    plain : name -> value without labels and unit, of the same kind; labelled arrays are broadcast to their common
-        shape.  It may be ``given`` itself, if no argument has a label or a unit.
+    plain : name -> value without labels and unit; labelled arrays are broadcast to their common shape, and numbers of
+        other kinds, as an index of pandas, a nested list or a Decimal, are float64.  It may be ``given`` itself, if no
+        argument has a label or a unit.
     labels : the :class:`Labels` of the arguments; None where no argument has any.
 
     Raises
     ------
     ParameterError
-        What :func:`.drive.convert_argument` refuses, as a unit of another dimension; labelled arrays beside plain ones
-        (numbers and schedules may stand beside them), arrays of xarray whose common axes have different coordinates,
-        series of pandas with different indices, or both kinds together.
+        What :func:`.drive.convert_argument` refuses, as a unit of another dimension; numbers of other kinds that are
+        not finite; labelled arrays beside plain ones (numbers and schedules may stand beside them), arrays of xarray
+        whose common axes have different coordinates, series of pandas with different indices, or both kinds together.
     """
     if UNLABELLED_TYPES.issuperset(map(type, given.values())) or all(map(has_no_unit, given.values())):
         return given, None
@@ -104,6 +155,11 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
         for kind in (_loaded_type("xarray", "DataArray"), _loaded_type("pandas", "Series"))
     )
     labelled = arrays | series
+    given |= {
+        name: check_array(name, value)[()]
+        for name, value in given.items()
+        if not (name in labelled or has_no_unit(value) or callable(value) or isinstance(value, Schedule | Feedback))
+    }
     if not labelled:
         return given, None
     plain = [
@@ -141,13 +197,8 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     like = next(iter(whole.values())).drop_attrs()
     others = {name: each for array in reversed(whole.values()) for name, each in array.coords.items()}
     like = like.assign_coords({name: each for name, each in others.items() if name not in like.coords})
-
-    def wrap(name: str, values: Any, further: tuple[str, ...]) -> Any:
-        """Return values as an array of xarray with the axes and coordinates of the arguments, then ``further`` axes."""
-        return xr.DataArray(values, dims=(*like.dims, *further), coords=like.coords, name=name)
-
     coords = {str(name): (tuple(map(str, each.dims)), each.values) for name, each in like.coords.items() if each.dims}
-    labels = Labels(like.shape, wrap, tuple(map(str, like.dims)), coords)
+    labels = Labels(like.shape, like, tuple(map(str, like.dims)), coords)
     return {name: array.values for name, array in whole.items()}, labels
 
 
@@ -161,8 +212,6 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
     of which is a coordinate; levels without a name are called level_0, level_1 and so on.
     Raises ParameterError if the indices differ.
     """
-    import pandas as pd
-
     first, *others = series.values()
     index = first.index
     if not all(index.equals(other.index) for other in others):
@@ -171,20 +220,7 @@ def _from_pandas(series: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
             names, "unlike indices", "of one index", f"{names} have different indexes: align them first"
         )
 
-    def wrap(name: str, values: Any, further: tuple[str, ...]) -> Any:
-        """Return values, (n,) or (n, m), as a series or a data frame with the index of the arguments.
-
-        name: name of the series; a data frame has none.
-        values: array; it is returned itself if it has more axes.
-        further: names of its axes after the first; with one the columns of the data frame are 0 to m - 1, of that name.
-        """
-        if len(further) > 1:  # no type of pandas has more axes
-            return values
-        if further:
-            return pd.DataFrame(values, index=index, columns=pd.RangeIndex(np.shape(values)[1], name=further[0]))
-        return pd.Series(values, index=index, name=name)
-
     levels = first.rename("").reset_index().iloc[:, :-1]
     dim = str(levels.columns[0]) if index.nlevels == 1 else "state"
     coords = {str(name): ((dim,), values.to_numpy()) for name, values in levels.items()}
-    return {name: each.to_numpy() for name, each in series.items()}, Labels(first.shape, wrap, (dim,), coords)
+    return {name: each.to_numpy() for name, each in series.items()}, Labels(first.shape, index, (dim,), coords)

@@ -31,6 +31,8 @@ _HERTZ = re.compile(r"(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz", re.IGNORECASE
 _FRACTION = re.compile(r"%|percent|permille|ppm", re.IGNORECASE)
 #: A unit in brackets at the end of the title of a column.
 _TITLE_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
+#: Labels of a series that are searched for the units of columns: more would take time, and a row of a table has fewer.
+_MOST_COLUMNS = 100
 #: The only unit of arguments whose zero differs from that of other units of its dimension.
 _TEMPERATURE = "degC"
 
@@ -97,9 +99,9 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     Raises
     ------
     ParameterError
-        A list with truth values, or of numbers with and without units; a duration in months, years or without a unit;
-        units of different dimensions in one list, or between the elements and the stated unit of an array of xarray or
-        a series.
+        A table of pandas, or a row of one; a list with truth values, or of numbers with and without units; a duration
+        in months, years or without a unit; units of different dimensions in one list, or between the elements and the
+        stated unit of an array of xarray or a series.
     """
     if has_no_unit(value):
         return value, None
@@ -114,6 +116,8 @@ def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
         unit = value.units
         # The full name of the unit does not depend on the default format of its registry.
         return value.magnitude, format(unit, "D") if hasattr(unit, "dimensionality") else str(unit)
+    if hasattr(value, "columns"):
+        raise described_error(name, "is a table", "a column of it")
     if hasattr(value, "dtype") and (hasattr(value, "attrs") or hasattr(value, "to_numpy")):
         return _split_labelled(name, value)
     if (duration := _to_seconds(name, value)) is not None:
@@ -228,11 +232,14 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     name: name of the argument, for errors.
     value: the array, series or index; not changed.
     Returns (numbers; unit).  Without a unit that is (``value`` itself, None); else the numbers are a new array or
-    series with its labels and without attributes, of an index a plain array.
-    Raises ParameterError where the unit of the elements is of another dimension than the stated one, and as
-    :func:`split_unit` for the elements.
+    series with its labels, without attributes and name, of an index or a variable of xarray a plain array.
+    Raises ParameterError where the unit of the elements is of another dimension than the stated one, for a series that
+    is a row of a table, whose index has titles with units, and as :func:`split_unit` for the elements.
     """
     is_xarray = hasattr(value, "dims")
+    index = None if is_xarray else getattr(value, "index", None)
+    if index is not None and any(map(_title_unit, index[:_MOST_COLUMNS])):
+        raise described_error(name, "is a row of a table, with units in its index", "a column of it, or a number")
     data = value.data if is_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
     numbers, own = split_unit(name, data)
     stated = getattr(value, "attrs", {}).get("units", _title_unit(getattr(value, "name", None)))
@@ -241,10 +248,10 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     if stated is not None and own is not None:
         numbers = convert(name, numbers, own, str(stated))
     unit = own if stated is None else str(stated)
-    if not is_xarray:
-        return type(value)(numbers, index=value.index, name=value.name) if hasattr(value, "index") else numbers, unit
+    if not hasattr(value, "coords"):
+        return type(value)(numbers, index=index) if index is not None else numbers, unit
     labelled = value.copy(deep=False, data=numbers)
-    labelled.attrs = {}
+    labelled.attrs, labelled.name = {}, None
     return labelled, unit
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .labels import Labels
+from .labels import Labels, dataset_axes, state_axes
 from .symbols import attributes
 
 if TYPE_CHECKING:
@@ -215,8 +215,8 @@ class Values(Result):
         units: name -> unit as "m s-1", where it is not that of the field's name.  None: no field has such a unit.
         title: first line of the summary, title of dataset and figure.
         si: whether values are in SI units, else dimensionless.
-        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape; None: fields stay
-            plain arrays.
+        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape, also after axes
+            of the roller; None: fields stay plain arrays.
         about: further attributes of the dataset by name; None: there are none.
         """
         self._about = about or {}
@@ -268,7 +268,8 @@ class Values(Result):
 
         An axis along which one argument alone varies has the name and the values of that argument; another axis is
         named ``state``, or of several axes ``state_0``, ``state_1`` and so on.  Arguments with labels of xarray or
-        pandas determine axes and coordinates.  Results and arguments are broadcast to the common shape, numbers are
+        pandas determine axes and coordinates; one with the name NAME of a field, or of an argument with other values,
+        is called given_NAME.  Results and arguments are broadcast to the common shape, numbers are
         variables without axes, truth values become 0 or 1 (int8).  Attributes of a variable are long_name and units, of
         some symbol and equation; those of the dataset are its title and those that the call added, as measured_V, the
         lowest and the highest speed at which the material was measured.
@@ -285,8 +286,9 @@ class Values(Result):
         given = {name: np.asarray(value) for name, value in self._given.items()}
         arrays = given | {name: np.asarray(value) for name, value in self._values.items()}
         shape = np.broadcast_shapes(*(array.shape for array in arrays.values()))
-        if self._labels and self._labels.shape == shape:
-            dims, coords = self._labels.dims, self._labels.coords
+        if self._labels and self._labels.axes_in_front(shape) >= 0:
+            alike = {name for name in given if not self._labels.differ(name, given[name])}
+            dims, coords = dataset_axes(self._labels, shape, arrays.keys() - alike)
         else:
             dims, axes = _name_axes(given, shape)
             coords = {name: ((name,), values, self._attributes(name)) for name, values in axes.items()}
@@ -325,5 +327,5 @@ def _name_axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple
             dims.append(varying[0])
             values[varying[0]] = given[varying[0]].ravel()
         else:
-            dims.append("state" if len(shape) == 1 else f"state_{axis + len(shape)}")
+            dims.append(state_axes(len(shape))[axis])
     return tuple(dims), values

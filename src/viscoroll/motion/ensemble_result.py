@@ -214,7 +214,8 @@ class Ensemble(RollResult):
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status, drive and scene.
 
         It is in the units of the roller, alpha, kappa, mu, gamma and j dimensionless.  Fields that were not requested
-        are left out; labels of the starts become coordinates of the axis "motion", unless a variable has their name.
+        are left out; labels of the starts become coordinates of the axis "motion", called given_NAME where a variable
+        has their name.
         Over motion it has V0, omega0, onset_time, rest_time, status and flow; alpha, kappa, mu, gamma, j and the drive
         are without axis where all motions have the same.  :func:`.export.ensemble_dataset` states the attributes.
 

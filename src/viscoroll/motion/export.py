@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 import xarray as xr
+from numpy.typing import NDArray
 
 from .. import __version__
 from ..contact_law.parameters import PARAMETERS
@@ -127,12 +128,22 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
         dims: tuple[str, ...] = ("motion",)
         if isinstance(value, Schedule):
             about_times = {"long_name": f"times of the given {name}", "units": result.scale.unit("t")}
-            dims = "motion", f"{key}_time" if value.times.ndim == 1 else f"{key}_corner"
-            variables[f"{key}_time"] = dims[-value.times.ndim :], value.times, about_times
-            value, about = value.values, about | {"comment": _LINEAR}
-        array = np.asarray(value, np.float64)
+            times, value = _shared(value.times, 1), value.values
+            dims = "motion", f"{key}_time" if times.ndim == 1 else f"{key}_corner"
+            variables[f"{key}_time"] = dims[-times.ndim :], times, about_times
+            about = about | {"comment": _LINEAR}
+        array = _shared(np.asarray(value, np.float64), len(dims) - 1)
         variables[key] = dims[len(dims) - array.ndim :], array, about
     return variables, texts
+
+
+def _shared(array: NDArray, own: int = 0) -> NDArray:
+    """Return numbers of motions, without the axis of the motions if it has length 1: they are those of all motions.
+
+    array: (n, ...), or without that axis.
+    own: number of its other axes.
+    """
+    return array[0] if array.ndim > own and len(array) == 1 else array
 
 
 def _material_variables(materials: Any, count: int) -> dict[str, Any]:
@@ -230,7 +241,8 @@ def motion_dataset(motion: Any) -> xr.Dataset:
 def ensemble_dataset(result: Any) -> xr.Dataset:
     """Return the dataset over (motion, t) of an ensemble.
 
-    result: an :class:`Ensemble`; labels of its starts of length n become coordinates, unless a variable has their name.
+    result: an :class:`Ensemble`; labels of its starts of length n become coordinates, called given_NAME where a
+    variable has their name.
     Returns the dataset of :func:`_dataset`, in the units of the roller: quantities that the ensemble keeps over
     (motion, t); V0, omega0, onset_time, rest_time, status and flow over motion; alpha, kappa, mu, gamma and j,
     dimensionless, and the drive over motion, or without dimension where all motions have the same; of several materials
@@ -238,12 +250,13 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
     """
     si, variables = result.scale.si, _material_variables(result.scene.material, len(result))
     for name in PARAMETERS:
-        value = np.asarray(getattr(result.scene, name))
+        value = _shared(np.asarray(getattr(result.scene, name)))
         variables[name] = ("motion",)[: value.ndim], value, attributes(name)
     for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
         variables[name] = "motion", result[name], column_attributes(name, si)
     variables["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
     about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
     dataset = _dataset(result, "Ensemble of motions", ("motion", "t"), variables, about)
-    labels = result.labels.axis_coords("motion") if result.labels and result.labels.shape == (len(result),) else {}
-    return dataset.assign_coords({name: values for name, values in labels.items() if name not in dataset})
+    if result.labels is None or result.labels.shape != (len(result),):
+        return dataset
+    return dataset.assign_coords(result.labels.axes_beside({*dataset.variables, *dataset.dims}, "motion")[1])

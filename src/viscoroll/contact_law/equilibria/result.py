@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.array_types import Floats, Integers
-from ...core.labels import Labels
+from ...core.labels import Labels, dataset_axes
 from ...core.results import SummaryRow, Values, format_value, unit_of
 from ...core.scale import DIMENSIONS, Scale
 from .loads import Loads
@@ -219,10 +219,10 @@ class Steady(Values):
         if not self.count:
             return "Steady rolling: no equilibrium", [SummaryRow("reason", str(self.reason))]
         rows = []
-        for n in range(self.count):
+        for n in range(int(self.count)):
             rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "unstable"))
             for name in ("V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"):
-                rows.append(SummaryRow(f"  {name}", f"{self[name][n]:.6g}", unit_of(self._attributes(name))))
+                rows.append(SummaryRow(f"  {name}", f"{float(self[name][n]):.6g}", unit_of(self._attributes(name))))
         return "Steady rolling", rows
 
     def to_xarray(self) -> xr.Dataset:
@@ -230,12 +230,12 @@ class Steady(Values):
 
         Returns a dataset over the axes of the loads (of one load there are none; named as in labelled arguments, else
         ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  An axis or a coordinate of the
-        labels that has the name NAME of one of these fields or of ``count`` is called given_NAME; a coordinate with the
-        name of another variable is left out.  Its variables are V, delta, Q, M_half_space, M_cylinder, beta, omega, M,
-        grip, force and torque of this result; ``stable``, int8, 0 or 1; ``rate_fast`` and ``rate_slow``, the real parts
-        of the eigenvalues, whose imaginary parts are left out; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
-        ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; and ``count``, over the axes of the loads
-        alone.  Padding is NaN, of ``stable`` 0.  Units are those of the result; ``reason`` is left out.
+        labels that has the name NAME of a variable, or "equilibrium", is called given_NAME.  Its variables are V,
+        delta, Q, M_half_space, M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, int8, 0
+        or 1; ``rate_fast`` and ``rate_slow``, the real parts of the eigenvalues, whose imaginary parts are left out;
+        ``loss_slip``, ``loss_half_space``, ``loss_cylinder``, ``coefficient`` and ``efficiency``, the fields of
+        :class:`Loss`; and ``count``, over the axes of the loads alone.  Padding is NaN, of ``stable`` 0.  Units are
+        those of the result; ``reason`` is left out.
 
         Examples
         --------
@@ -245,18 +245,15 @@ class Steady(Values):
         """
         import xarray as xr
 
-        shape = np.shape(self.count)
-        dims = ("state",) if len(shape) == 1 else tuple(f"state_{n}" for n in range(len(shape)))
-        dims, coords = self._labels.renamed_coords((*_FIELDS, "count"), "given") if self._labels else (dims, {})
         found = {name: self[name] for name in _FIELDS} | {"stable": np.asarray(self.stable).astype(np.int8)}
         rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
         found |= dict(zip(("rate_fast", "rate_slow"), rates, strict=True))
         found |= dict(zip(_LOSSES, vars(self.loss).values(), strict=True))
+        dims, coords = dataset_axes(self._labels, np.shape(self.count), (*found, "count", "equilibrium"))
         over = (*dims, "equilibrium")
         data = {name: (over, np.asarray(each), self._attributes(name)) for name, each in found.items()}
         data["count"] = dims, np.asarray(self.count), self._attributes("count")
-        apart = {name: values for name, values in coords.items() if name not in data}
-        return xr.Dataset(data, apart, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
+        return xr.Dataset(data, coords, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
 
 
 def append_axis(unit: Any) -> Any:
@@ -274,7 +271,7 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     reasons : :class:`Diagnosis`, data of the loads without equilibrium; its ``number`` is the number of states of each
         load.
     scale : units of the roller, which the result has.
-    labels : labels of the arguments of the call, or None; the fields get them if their shape is that of the loads.
+    labels : labels of the arguments of the call, or None; arrays of the scene may add axes in front of them.
     Returns the :class:`Steady`, whose fields V, delta, Q, M_half_space, M_cylinder, beta, omega, M, grip, force, torque
     and ``stable`` have the shape (loads..., equilibria), of one load (equilibria,), padded with NaN (``stable``: False)
     where loads have fewer equilibria than others; ``eigenvalues`` have a further axis of two, ``count`` has the axes of
@@ -307,8 +304,6 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     eigenvalues.imag[..., 0], eigenvalues.imag[..., 1] = -imaginary, imaginary
     found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
     found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
-    if labels is not None and labels.shape != loads.shape:
-        labels = None  # arrays of the scene give further axes, which have no labels
     if labels is not None:
         axes_after = {"count": (), "eigenvalues": ("equilibrium", "rate")}
         found = {

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from ..symbols import MEASURED
 from .style import (
     LINES,
+    has_numbers,
     log_ticks,
     new_figure,
     new_panels,
@@ -56,6 +57,7 @@ def field_curves(data: xr.Dataset) -> Figure:
     Returns the :class:`matplotlib.figure.Figure`, with the first :data:`_MAX_PANELS` of those fields that depend on the
     first axis.  Its axis is logarithmic if the values are spaced by factors.
     """
+    data = data.squeeze(drop=True)
     first, *others = varied_axes(data)
     title, band = str(data.attrs.get("title", "Contact")), data.attrs.get(MEASURED) if first == "V" else None
     if band is not None:
@@ -67,6 +69,7 @@ def field_curves(data: xr.Dataset) -> Figure:
     names = [name for name in _shown_fields(data) if first in data[name].dims][:_MAX_PANELS]
     figure, panels = new_panels(title, len(names), 2.2, sharex=True)
     x, second = data[first].values, others[:1]
+    x = x.astype(str) if x.dtype.kind in "Om" else x  # matplotlib places texts evenly
     indices = np.linspace(0, data.sizes[second[0]] - 1, len(LINES)).astype(int) if second else [0]
     for name, axes in zip(names, panels, strict=True):
         for index, line in zip(np.unique(indices).tolist(), LINES, strict=False):
@@ -79,7 +82,7 @@ def field_curves(data: xr.Dataset) -> Figure:
         if spaced_by_factors(x):
             axes.set_xscale("log")
             log_ticks(axes.xaxis)
-        else:
+        elif has_numbers(x):
             axes.locator_params(axis="x", nbins=6)
     if second:
         small_legend(panels[0])
@@ -90,11 +93,13 @@ def stresses(data: xr.Dataset) -> Figure:
     """Draw pressure and shear stress along the contact.
 
     data: dataset with ``x``, place along the contact, ``p``, pressure, and ``tau``, shear stress, with the attribute
-        units; of several states, along other axes than the first one of x, the first is drawn.
+        units; of several states, along other axes than the first that x varies along, the first is drawn.
     Returns the :class:`matplotlib.figure.Figure`, with both curves in one panel.
     """
     figure, axes = new_figure("Pressure and shear stress along the contact")
-    data = data.isel(dict.fromkeys(set(data.dims) - {data["x"].dims[0]}, 0))
+    x = data["x"]
+    along = next((dim for n, dim in enumerate(x.dims) if np.diff(x.values, axis=n).any()), None)
+    data = data.isel(dict.fromkeys(set(data.dims) - {along}, 0))
     for name, line in zip(("p", "tau"), LINES, strict=False):
         axes.plot(data["x"].values, data[name].values, label=variable_label(data[name]), **line)
     zero_line(axes)
@@ -203,4 +208,5 @@ def _finite(values: xr.DataArray) -> NDArray[Any]:
 
 def _value_label(data: xr.Dataset, name: str, index: int) -> str:
     """Return a value of the axis ``name`` of ``data``, at an ``index``, in words."""
-    return f"{variable_label(data[name])} = {float(data[name].values[index]):.4g}"
+    values = data[name].values
+    return f"{variable_label(data[name])} = {values[index]:{'.4g' if has_numbers(values) else ''}}"

@@ -88,6 +88,11 @@ def plot_measured_range(axes: Any, x: NDArray, y: NDArray, band: tuple[float, fl
     return [*drawn, *axes.plot(x, np.where(outside, y, np.nan), **line | {"linestyle": "--", "label": None})]
 
 
+def has_numbers(x: NDArray[Any]) -> bool:
+    """Whether an array has real numbers, not texts, dates or other objects."""
+    return x.dtype.kind in "iuf"
+
+
 def spaced_by_factors(x: NDArray[Any]) -> bool:
     """Whether the numbers ``x``, any order, are spaced more evenly on a logarithmic axis than on a linear one.
 
@@ -95,7 +100,7 @@ def spaced_by_factors(x: NDArray[Any]) -> bool:
     result is False for fewer than three different numbers, where one is not finite or not > 0, and where both spacings
     are as even.
     """
-    points = np.unique(x)
+    points = np.unique(x) if has_numbers(x) else x[:0]
     if points.size < 3 or points[0] <= 0.0:
         return False
     linear, logarithmic = np.diff(points), np.diff(np.log(points))
