@@ -27,6 +27,13 @@ _SEAL = b"\nSHA-256 of all before, by viscoroll: "
 _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 
+def as_path(path: Any) -> Path:
+    """Return a path that a caller gave; raise FileError for what is none, as None, a number, bytes or an open file."""
+    if not isinstance(path, str | PathLike) or "\0" in str(path):
+        raise FileError(f"{path!r:.60}", "is not a path: must be a text without null characters, or a Path")
+    return Path(path)
+
+
 @contextmanager
 def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
     """Raise an OSError of the body of the ``with`` as FileError, which gives the system's reason; a context manager.
@@ -39,9 +46,9 @@ def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
     remedy: further words with their own punctuation, as ": it must be a table", appended directly after the reason in
         brackets; "" without.
     Yields None.
+    Raises FileError too for what is no path (:func:`as_path`).
     """
-    if "\0" in str(path):
-        raise FileError(path, f"{problem} (its name has a null character)")
+    as_path(path)
     try:
         yield
     except OSError as error:
@@ -63,11 +70,11 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     FileError
-        If it cannot be written there: no such folder, a full disk, a read-only folder or file, a directory, a device,
-        a loop of links; or if the body wrote no file.  An OSError of the body becomes a FileError too.  Where the last
-        sync alone fails, that of the folder, ``path`` is replaced already.
+        If it is no path; if it cannot be written there: no such folder, a full disk, a read-only folder or file, a
+        directory, a device, a loop of links; or if the body wrote no file.  An OSError of the body becomes a FileError
+        too.  Where the last sync alone fails, that of the folder, ``path`` is replaced already.
     """
-    target = Path(os.path.realpath(path))
+    target = Path(os.path.realpath(as_path(path)))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
     try:
         with as_file_error(path, "cannot be written"):
@@ -132,13 +139,17 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
     Raises
     ------
     FileError
-        A file that cannot be read, is too large, or differs from its seal.
+        What is no path; a file that cannot be read, is too large, or differs from its seal; netCDF-3, unless a "grid"
+        is expected, which another program may have written so.
     """
-    file = Path(path)
+    file = as_path(path)
     with as_file_error(path, "cannot be read", f": it must be a {kind}"):
         if file.is_file() and file.stat().st_size > max_bytes:
             raise FileError(path, f"is not a {kind}: it is larger than {max_bytes} bytes")
         content = file.read_bytes()
+    if content.startswith(b"CDF") and kind != "grid":
+        problem = "is netCDF-3, which viscoroll writes for other programs and does not read"
+        raise FileError(path, f"{problem}: it must be a {kind}, with the suffix .nc")
     if seal_matches(content) is False:
         raise FileError(path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}")
     return content

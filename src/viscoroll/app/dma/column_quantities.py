@@ -12,10 +12,16 @@ import numpy as np
 from ...core.errors import FileError, ParameterError
 from ...core.sections import suggestion
 from ...io.measurements import NO_UNIT, Numbers, Table, conversion, find_column, readings
+from ...materials.shift import ABSOLUTE_ZERO
 from .vocabulary import ASSUMED, UNITS, Meaning, meanings
 
 #: degrees; temperatures without a unit that go above it are taken to be kelvins, in which DMA seldom goes below
 _KELVIN = 200.0
+#: quantity -> bounds of its numbers, and these in words
+_RANGES = {
+    "phase angle": (-math.inf, 0.5 * math.pi, "below 90 degrees"),
+    "temperature": (ABSOLUTE_ZERO, math.inf, f"finite and above {ABSOLUTE_ZERO} °C"),
+}
 #: units of frequency that say revolutions or cycles, or radians; "1/s" and "1/min" say neither
 _CYCLES = re.compile(r"(?i)hz|rpm|rad|rev|cycle|u/|r/|upm|deg|°")
 #: units of angles
@@ -125,6 +131,7 @@ def _contradiction(meaning: Meaning, overruling: Mapping[str, str]) -> str:
     return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
 
 
+@np.errstate(all="ignore")  # a number beyond the doubles is infinite, which is refused
 def numbers_of(table: Table, column: Column) -> Numbers:
     """Return the numbers of a column, converted to the unit of its quantity.
 
@@ -135,7 +142,9 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     Returns :class:`Numbers` in rad/s, Pa, 1/Pa, degrees Celsius, or dimensionless for tan delta: the values, (n,), and
     half a unit of the last digit that the file states of each, converted in the same way, (n,).
     Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be assumed: of
-    compliances, of temperatures above 200, and of phase angles that may be in radians.
+    compliances, of temperatures above 200, and of phase angles that may be in radians; for a phase angle of
+    90 degrees and more, and a temperature at or below absolute zero.  Other values are not checked: they may be
+    infinite.
     """
     name, unit = column.name, column.unit
     values, half = table.numbers(column.position)
@@ -154,4 +163,7 @@ def numbers_of(table: Table, column: Column) -> Numbers:
     if column.quantity.endswith("frequency") and "angular" not in name and not _CYCLES.search(unit):
         factor *= 2.0 * math.pi
     values, half = factor * values + offset, factor * half
+    if name in _RANGES:
+        low, high, words = _RANGES[name]
+        table.require((values > low) & (values < high), f"the {name} is not {words}: remove the row")
     return Numbers(np.tan(values), half / np.cos(values) ** 2) if name == "phase angle" else Numbers(values, half)

@@ -70,7 +70,7 @@ def fit_prony(
     ----------
     omega : angular frequencies, rad/s, > 0, (n,), in any order, repeated or not; or what :func:`viscoroll.read_dma`
         returns, alone: its moduli, temperatures, mode and source are then taken.  With ``temperature`` a list of
-        curves, one vector each, is allowed too.
+        curves, one vector each, or a 2-D array of one a row, is allowed too.
     storage, loss : storage and loss modulus at them, > 0, (n,), both in one unit; lists where ``omega`` is one.
     modes : number of modes, an int from 1 to 64; fewer are returned only where the least squares give no more modes a
         strength > 0.  Default: as few as ``misfit`` needs, or, where no grid reaches it, as few as come within 5 % of

@@ -95,7 +95,8 @@ def master_curve(
         points or curves; temperatures that drift, so that sweeps cannot be told apart; a reference more than 0.5 K
         outside of the temperatures where the overlap gives the shifts, or with listed factors at none of them; a curve
         of a single frequency, where the overlap gives the shifts; neighbouring curves that do not overlap; shift
-        factors of another number than the curves, not > 0, or larger at the highest temperature than at the lowest.
+        factors of another number than the curves, not > 0, or larger at the highest temperature than at the lowest,
+        also those that the overlap determines.
 
     Warns
     -----
@@ -121,15 +122,16 @@ def master_curve(
         curves = (thinned(data_of(Curve, *part, fewest=2)) for part in parts)
         logs, mismatch, freedom = _shifts_by_overlap([_LogCurve(curve, on) for curve in curves], temperatures)
         factor = np.exp(logs - np.interp(base, temperatures, logs))
-    if shift is not None and factor[-1] > factor[0]:
+    shifts = Shifts(temperatures, factor, base, mismatch, freedom, np.unique(point_temperatures).size)
+    open_shifts = undetermined_shifts(shifts)
+    if factor[-1] > factor[0] and not open_shifts:
         ends = f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at {temperatures[-1]:g} C"
         allowed = (
             "shift factors a_T (time divided by time at the reference), which decrease with "
             "temperature, in the order of the curves"
         )
-        raise ParameterError("shift", ends, allowed)
-    shifts = Shifts(temperatures, factor, base, mismatch, freedom, np.unique(point_temperatures).size)
-    if open_shifts := undetermined_shifts(shifts):
+        raise ParameterError("shift" if shift is not None else "shift by the overlap", ends, allowed)
+    if open_shifts:
         text = (
             f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the curves are flat: give shift="
         )

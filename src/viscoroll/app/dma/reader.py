@@ -68,11 +68,13 @@ def read_dma(
     FileError
         A file that cannot be read, is no text or has no table; tables with different headings; columns that are
         missing, ambiguous or contradict each other, units that are missing, unknown or of another dimension, gaps and
-        separators of thousands; a frequency that is not > 0; a modulus from a magnitude and storage or loss that the
-        digits of the file leave uncertain by more than 5 %; all rows at one frequency; several moduli at one frequency,
-        or several tables, without a column of temperatures.
+        separators of thousands; a frequency or modulus that is not > 0 and finite, a phase angle of 90 degrees and
+        more, a temperature at or below absolute zero; a modulus from a magnitude and storage or loss that the digits of
+        the file leave uncertain by more than 5 %; all rows at one frequency; several moduli at one frequency, or
+        several tables, without a column of temperatures.
     ParameterError
-        Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file.
+        Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file,
+        also the unit of a quantity of which the file has no column.
 
     Warns
     -----
@@ -84,6 +86,8 @@ def read_dma(
     >>> import viscoroll as vr
     >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
+    if not isinstance(columns, Mapping | None):
+        raise ParameterError("columns", f"{columns!r:.60}", "quantity -> heading")
     named = dict(columns or {})
     check_names("columns", named, UNITS, "a quantity")
     overruling, defaults = _units(units)
@@ -95,6 +99,7 @@ def read_dma(
             raise FileError(path, f"{problem}: name them by columns={{...}}")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
     found, others = columns_of(table, named, overruling, defaults)
+    check_names("units", overruling, [column.name for column in found], "a quantity of this file")
     notes = [f"{table.parts} tables"] * (table.parts > 1)
     # as rheometers write; instruments of tension name E
     beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
@@ -111,14 +116,16 @@ def read_dma(
         temperature = None
         others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies belong to one temperature"
     omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
-    table.require(omega > 0.0, "the frequency is not > 0: remove the row")
     moduli = {name: numbers[name] for names in PAIRS for name in names if name in numbers}
     storage, loss = storage_and_loss(table, pair, moduli)
     taken = [alike[0] for alike in columns_of_quantity.values()]
     sources = [columns_of_quantity[name][0].name for name in pair]
     if any(UNITS[name] == "1/Pa" for name in sources):
-        square = storage**2 + loss**2
-        storage, loss = storage / square, loss / square
+        with np.errstate(all="ignore"):  # what is not finite is refused
+            square = storage**2 + loss**2
+            storage, loss = storage / square, loss / square
+    for name, values in {"frequency": omega, "storage modulus": storage, "loss modulus": loss}.items():
+        table.require((values > 0.0) & (values < np.inf), f"the {name} is not > 0 and finite: remove the row")
     if sources != ["storage", "loss"]:
         notes.append(f"moduli are from {' and '.join(sources)}")
     notes += [f"{name} agrees with them" for name in moduli if name not in pair]

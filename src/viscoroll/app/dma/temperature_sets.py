@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from itertools import zip_longest
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -38,8 +39,8 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     temperature : of columns of points one number for all of them, or (n,), number i of point i; of lists of curves
         (curves,), number k of vector k of each column, also if it is the only one; degrees Celsius.
     *columns : omega, storage and loss, three, each a column of points, (n,), or each a list or tuple of ``curves``
-        vectors, those of curve k equally long; with units or without.  They count as lists of curves if omega is a list
-        or tuple whose first element is a vector.
+        vectors, those of curve k equally long, or a 2-D array of one curve a row; with units or without.  They count as
+        lists of curves if omega is a 2-D array, or a list or tuple whose first element is a vector.
     Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each, curve after curve, in
     rad/s and the unit of the moduli (Pa, if they have units); index of the first point of each curve, (curves,), or
     None of columns of points).  Whether the columns are numbers, finite and > 0, is not checked here.
@@ -48,9 +49,14 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     """
     given = check_array("temperature", temperature, unit="degC")
     columns = tuple(to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True))
+    columns = tuple([*np.asarray(each)] if getattr(each, "ndim", 0) == 2 else each for each in columns)
     if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
         sizes, *others = ([np.size(curve) for curve in column] for column in columns)
-        if others != [sizes, sizes] or given.shape != (len(sizes),):
+        for name, other in zip(Curve._fields[1:], others, strict=True):
+            for n, (own, wanted) in enumerate(zip_longest(other, sizes, fillvalue=0), 1):
+                if own != wanted:
+                    raise described_error(name, f"has {own} points in curve {n}", f"as many as omega, {wanted}")
+        if given.shape != (len(sizes),):
             raise shape_error("temperature", given.shape, f"one for each of the {len(sizes)} curves")
         if 0 in sizes:
             found = f"has no points for curve {sizes.index(0) + 1}"

@@ -119,7 +119,8 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     Raises
     ------
     FileError
-        A file that cannot be read; a coordinate, or a column that the section names, that is missing; other columns
+        A file that cannot be read; a coordinate, or a column that the section names or gives a unit of,
+        that is missing; other columns
         where none is a quantity, since one of them may be; a cell that is no number.
     ParameterError
         A column whose unit has another dimension.
@@ -133,7 +134,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     table = named_table(path, headings.values(), section.decimal or None, section.encoding or None)
     columns = {name: find_column(table, heading) for name, heading in headings.items()}
     present = [name for name, column in columns.items() if column is not None]
-    for name in (*kind.COORDINATES, *section.columns):
+    for name in (*kind.COORDINATES, *section.columns, *section.units):
         if name not in present:
             raise missing_column(table, headings[name], f": name one of these in columns = {{ {name} = ... }}")
     others = [repr(heading) for n, heading in enumerate(table.headings) if heading and n not in columns.values()]

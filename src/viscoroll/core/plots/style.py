@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import re
 from os import PathLike
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ..errors import FileError
-from ..files import replace_file
+from ..files import as_path, replace_file
 from ..symbols import SYMBOLS
 
 if TYPE_CHECKING:
@@ -194,10 +193,10 @@ def save(figure: Figure, path: str | PathLike[str]) -> None:
     Raises
     ------
     FileError
-        If it cannot be written there, or the suffix names no format of matplotlib or is missing.
+        If it is no path or cannot be written there, or the suffix names no format of matplotlib or is missing.
     """
     formats = sorted(figure.canvas.get_supported_filetypes())
-    suffix = Path(path).suffix
+    suffix = as_path(path).suffix
     if suffix.removeprefix(".").lower() not in formats:
         raise FileError(path, f"suffix {suffix!r} names no format: must be one of .{', .'.join(formats)}")
     with replace_file(path) as temporary:

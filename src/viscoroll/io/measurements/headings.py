@@ -20,6 +20,8 @@ _LOGARITHM = re.compile(r"(?i)(?:log|lg)(?![a-z])[\s_]*(?:10(?!\d))?[\s_]*(?P<of
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
 _POWERS = re.compile(r"(?<=[A-Za-z%°µμ)])\s*(?:\^|\*\*)?\s*[({]?[-+−]?\d(?!\d)[)}]?")
+#: rounding of factors of conversion
+_ROUNDING = 1e-9
 #: longest text that may be a unit
 _LONGEST = 24
 #: unit in small letters and without blanks, degrees and points -> unit of pint
@@ -62,7 +64,8 @@ def readings(heading: str, row: str = "") -> list[Reading]:
         this one, without brackets around it.
     Returns a list of :class:`Reading`, of "Frequency/Hz" ("Frequency/Hz", "") and ("Frequency", "Hz").  Each has
     ``log`` set if the heading begins with log, lg or log10, which its name leaves out.  The list is [] for an empty
-    heading.
+    heading.  Where the heading and the row give different units of one dimension, all have both as unit, as "Hz and
+    rad/s", which is no unit.
     """
     log = False
     if found := _LOGARITHM.fullmatch(heading.strip()):
@@ -76,8 +79,24 @@ def readings(heading: str, row: str = "") -> list[Reading]:
         unit = heading[gap.end() :]
         if unit in NO_UNIT[1:] or (may_be_unit(unit) and not re.search(r"[\[\](){}]", unit)):
             ways.append((heading[: gap.start()], unit))
-    row = row[1:-1] if row[:1] in ("[", "(") and row.count("(") <= 1 else row
-    return [Reading(" ".join(name.split()), unit or row.strip(), log) for name, unit in ways if name]
+    row = (row[1:-1] if row[:1] in ("[", "(") and row.count("(") <= 1 else row).strip()
+    differing = next((f"{unit} and {row}" for _, unit in ways if _differ(unit, row)), "")
+    return [Reading(" ".join(name.split()), differing or unit or row, log) for name, unit in ways if name]
+
+
+def _differ(unit: str, row: str) -> bool:
+    """Return whether a heading and the row of units give two units of one dimension that are not equal.
+
+    unit, row : texts of both; what is no unit, and units of two dimensions, as of "Temperature (T)" and "°C", where the
+        one is a symbol, do not count.
+    """
+    if not (may_be_unit(unit) and may_be_unit(row)):
+        return False
+    try:
+        factor, offset = conversion(unit, row)
+    except ParameterError:
+        return False
+    return abs(factor - 1.0) + abs(offset) > _ROUNDING
 
 
 def may_be_unit(text: str) -> bool:

@@ -67,7 +67,7 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     for name in (given,) if given else _USUAL:
         try:
             text = raw.decode(name).removeprefix("\ufeff").replace("\u2212", "-")
-        except LookupError:
+        except (LookupError, TypeError):
             raise ParameterError("encoding", f"{name!r:.40}", "an encoding that Python knows, as 'utf-8'") from None
         except UnicodeError as error:
             problem = f"cannot be read in {name} ({error})"

@@ -280,7 +280,7 @@ def read_run(path: str | PathLike[str]) -> Run:
     >>> vr.runs.read_run(vr.datasets.path("run.toml")).settings.n
     16
     """
-    path, content = Path(path), read_toml(path)
+    content, path = read_toml(path), Path(path)
     inputs = inputs_of(path, content)
     medians = inputs.filled(inputs.medians)
     sections = {"start": StartSection, "drive": DriveSection, "run": RunSection, "correlation": None}

@@ -15,7 +15,7 @@ import numpy as np
 from ... import __version__
 from ...core.array_types import Floats
 from ...core.errors import ParameterError, described_error
-from ...core.files import replace_file, write_text
+from ...core.files import as_path, replace_file, write_text
 from ...core.symbols import PAPER
 from ...materials.law.netcdf import parse_law
 from ...materials.law_file import CHECKSUM, dataset_content
@@ -45,8 +45,8 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
         Another suffix; for C a file name that, without its suffix, is no identifier; for Modelica a grid over several
         alphas or an atlas (a grid of version 0.1.0, over three axes), as its tables have two inputs.
     FileError
-        If it cannot be written there; ``table`` is neither a law nor a grid, is incomplete, of another major version of
-        the schema, or a law whose numbers differ from their checksum; for C the law of every alpha.
+        If it is no path or cannot be written there; ``table`` is neither a law nor a grid, is incomplete, of another
+        major version of the schema, or a law whose numbers differ from their checksum; for C the law of every alpha.
 
     Examples
     --------
@@ -60,7 +60,7 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     M alone; a header of C has the polynomials and their limits; JSON has all variables, and of the attributes title,
     viscoroll_table, bodies, material, comment, references, source, license, the checksum and law_schema.
     """
-    path = Path(path)
+    path = as_path(path)
     store.check(table, "export")
     formats, suffix = LAW if store.is_law(table) else GRID, path.suffix.lower()
     if suffix not in formats:

@@ -41,7 +41,9 @@ class Interpolant:
     Raises
     ------
     FileError
-        If it is not a grid, as the law of a material is none, or is incomplete.
+        If it is not a grid, as the law of a material is none, is incomplete, or is in other units than it was built in.
+    ParameterError
+        A mu, or a load beside it, that is no finite number > 0.
 
     Examples
     --------
@@ -58,7 +60,7 @@ class Interpolant:
         table : the grid, dataset of a file or of ``build``.
         linear : whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V, delta and ln
             alpha; grids of the kinds "literal" and "material" (before 1.0) are always interpolated linearly.
-        Raises FileError if it is not a grid, or is incomplete.
+        Raises FileError if it is not a grid, is incomplete or in other units; ParameterError for its mu and load.
         """
         schema.check(table, "interpolate")
         self._table, self._axes = table, schema.axes_of(table)
@@ -225,9 +227,9 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
         A coordinate outside the axis of the table, naming the range.
     ParameterError
         An unknown field, a coordinate that is missing, unknown, NaN, infinite or of a unit of another dimension, shapes
-        that do not broadcast.
+        that do not broadcast; a mu of ``table``, or a load beside it, that is no finite number > 0.
     FileError
-        If ``table`` is not a grid, or is incomplete.
+        If ``table`` is not a grid, is incomplete, or is in other units than it was built in.
 
     Examples
     --------

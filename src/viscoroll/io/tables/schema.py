@@ -113,8 +113,8 @@ def check(table: Any, path: Any) -> None:
     """Check kind, version, variables, dimensions, axes and values of a grid; nothing is returned or changed.
 
     Each axis and field must have float64 values, all finite; each axis at least one, strictly increasing; dimensions
-    must be axes of the grid, in their order.  beta and Q are required, of the fields over V (:data:`PLANE`) none, of an
-    atlas all fields; other variables are not examined.
+    must be axes of the grid, in their order, and units those that :func:`variable` writes.  beta and Q are required, of
+    the fields over V (:data:`PLANE`) none, of an atlas all fields; other variables are not examined.
 
     Parameters
     ----------
@@ -139,11 +139,14 @@ def check(table: Any, path: Any) -> None:
     for name in (*axes, *fields_of(table)):
         if name not in table.variables:
             raise FileError(path, f"is an incomplete table: variable {name!r} is missing")
-        if tuple(dim for dim in axes if dim in table[name].dims) != table[name].dims:
-            raise FileError(
-                path, f"variable {name!r} has the dimensions {table[name].dims}, out of {axes} in this order"
-            )
-        values = table[name].values
+        values, dims = table[name].values, table[name].dims
+        own = (name,) if name in axes else tuple(dim for dim in axes if dim in dims)
+        if dims != own:
+            raise FileError(path, f"variable {name!r} has the dimensions {dims}: must be {own}")
+        unit, written = table[name].attrs.get("units"), attributes(name, "load" in about)["units"]
+        if unit != written:
+            allowed = f"{written!r}, as it was built (a grid in SI units has the attribute load)"
+            raise FileError(path, f"variable {name!r} is in {unit!r:.40}: must be in {allowed}")
         if values.dtype != np.float64 or not np.isfinite(values).all():
             raise FileError(path, f"variable {name!r} must hold finite 64-bit floats")
         if name in axes and (not values.size or (np.diff(values) <= 0.0).any()):

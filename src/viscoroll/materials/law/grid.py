@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.array_types import Floats
 from ...core.checks import check_array, check_number
-from ...core.errors import FileError, OutOfTableError, ParameterError
+from ...core.errors import FileError, OutOfTableError, ParameterError, describe_value
 from ...core.files import read_sealed
 from ...core.units import conversion_factor
 from .splines import fit_spline, pack_spline
@@ -80,10 +80,13 @@ def friction_limit(attributes: Any) -> float:
 
     attributes: mapping of the attributes of a grid, of which "mu" (dimensionless) and "load" (N/m; without it 1) are
         used.
-    Returns a float in the unit of Q: dimensionless, or N/m; infinite without a mu.  Sign and NaN are not checked.
-    Raises ValueError for a text that is no number, TypeError for an array of several.
+    Returns a float in the unit of Q: dimensionless, or N/m; infinite without a mu, beside which load is not used.
+    Raises ParameterError for one of them that is no finite number > 0.
     """
-    return float(attributes.get("mu", np.inf)) * float(attributes.get("load", 1.0))
+    if "mu" not in attributes:
+        return np.inf
+    mu, load = (check_number(name, attributes.get(name, 1.0), above=0.0) for name in ("mu", "load"))
+    return mu * load
 
 
 def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
@@ -94,7 +97,7 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V, each with an attribute ``units`` ("1"
         for none); all over alpha too where there is an axis of that name.  In place of M there may be M_half_space and
         M_cylinder; one that is missing is half of M.  Its global attributes are mu (without it Q has no bound), and
-        where V has a unit R in m and the load in N/m.
+        where V has a unit R in m and, beside mu, the load in N/m; all > 0.
     alpha : required where the grid has an axis alpha, whose nodes must be > 0 and ascend; between them a spline in
         ln alpha is used.  It must be left out, or None, for a grid without that axis.
 
@@ -106,8 +109,9 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     Raises
     ------
     FileError
-        A file that cannot be read or differs from its seal; a variable that is missing, has other dimensions or other
-        units, is not finite or does not increase; no R beside speeds with a unit.
+        A file that cannot be read or differs from its seal; a variable that is missing or empty, is not of real
+        numbers, has other dimensions or other units, is not finite or does not increase; an R, mu or load that is no
+        finite number > 0; beside speeds with a unit no R, or a mu without load.
     ParameterError
         An alpha outside the grid, or none for a grid with that axis; an alpha for a grid without it.
     """
@@ -120,6 +124,10 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         return None
     if not {"V", "delta", "Q"} <= set(map(str, table.variables)):
         return None
+    for name in (*UNITS, "alpha"):
+        if name in table.variables and not (table[name].size and table[name].dtype.kind in "iuf"):
+            problem = f"is not a grid of a law: {name} = {describe_value(table[name].values)}"
+            raise FileError(path, f"{problem}: must be real numbers, at least one")
     table = _at_alpha(table, path, alpha)
     try:
         return _law_of(_in_si(table))
@@ -161,7 +169,7 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
     table: dataset of a grid; V, delta, Q, M, M_half_space and M_cylinder, where present, must have an attribute
         ``units``; "1" is no unit.
     Returns a dataset with doubles in the units of :data:`UNITS`; if the unit of V is "1" all must be dimensionless, and
-    the attribute R is 1.
+    the attributes R and load are 1.
     Raises ParameterError for a unit that is missing or of another dimension.
     """
     names = [name for name in UNITS if name in table.variables]
@@ -174,7 +182,7 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
             allowed = "1, since V has no unit" if wanted == "1" else f"a unit of {wanted}, since V has a unit"
             raise ParameterError(f"unit of {name}", unit, allowed) from error
         table = table.assign({name: table[name].astype(np.float64) * by})
-    return table.assign_attrs(R=1.0) if given["V"] == "1" else table
+    return table.assign_attrs(R=1.0, load=1.0) if given["V"] == "1" else table
 
 
 def _law_of(table: xr.Dataset) -> LawGrid:
@@ -186,11 +194,12 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     Returns the :class:`LawGrid`, whose ends of V and delta are those of the axes; without the attribute ``mu`` Q is not
     clipped and ``slips`` is False.
     Raises KeyError for a missing variable, and ValueError, of which ParameterError is one, for values that are not
-    finite, speeds that are not positive, axes that do not increase or have a single node, other dimensions, or no R >
-    0.
+    finite, speeds that are not positive, axes that do not increase or have a single node, other dimensions, or an R,
+    or a mu and load, that are no finite numbers > 0.
     """
     V, delta = check_array("V", table["V"].values, above=0.0), table["delta"].values
-    axes, most, splines = {"V": np.log(V), "delta": delta}, friction_limit(table.attrs), {}
+    axes, splines = {"V": np.log(V), "delta": delta}, {}
+    most = friction_limit({"load": "missing, in N/m"} | table.attrs)
     for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
         field = table[name] if name in table else 0.5 * table["M"]
         found = fit_spline(field.transpose(*over).values, [axes[each] for each in over], 3)
