@@ -99,6 +99,13 @@ def test_a_process_waits_for_what_another_one_compiles(kernels, monkeypatch):
     assert not [*kernels.rglob("*.lock")]
 
 
+def test_a_cache_folder_that_cannot_be_searched(kernels, monkeypatch):
+    """Its name is too long; a folder of another user gives the same error class."""
+    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(kernels / ("long" * 80)))
+    with pytest.warns(RuntimeWarning, match="compiled kernels are not cached"):
+        assert kernel(cubed.py_func)(2.0) == 8.0
+
+
 def test_an_ordinary_function_between_kernels_works(kernels):
     """It is compiled by itself, with all below it: LLVM would end the process for a symbol that it misses."""
     between = numba.njit(lambda x: square(x) + 1.0)

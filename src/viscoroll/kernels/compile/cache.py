@@ -15,6 +15,7 @@ import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from functools import lru_cache
+from os.path import exists
 from pathlib import Path
 from typing import Callable
 
@@ -93,11 +94,10 @@ class DiskCache:
 
         signature : tuple of numba's types of the arguments of the kernel.
         codegen : numba's code generator, which knows the processor.
-        Yields None.  Raises what the block raises, and PermissionError if this user may not search the folder of the
-        cache.
+        Yields None.  Raises the exceptions of the block.
         """
         path = self._path(signature, codegen)
-        if path.exists():
+        if exists(path):  # False too where the folder cannot be searched, unlike path.exists()
             yield
             return
         from filelock import FileLock

@@ -294,7 +294,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     threshold.
     """
     kappa, level = flow.kappa, request.level
-    if max(abs(V0), abs(omega0)) < request.rest:
+    if abs(V0) < request.rest and abs(omega0) < request.rest:
         _write_rest(0, 0.0, 0.0, 0.0, out)
         return CAME_TO_REST, np.nan, 0.0
     if not kappa * abs(V0) < HIGHEST:

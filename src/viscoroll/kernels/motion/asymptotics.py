@@ -35,7 +35,7 @@ from ..compile.jit import inline_kernel, kernel
 from .collocation import NODE_FRACTIONS, N
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
 from .law import added_inertia, low_speed_limits, rest_limits
-from .output import accept_step, write_column, write_quadrature
+from .output import accept_step, record_switch, write_column, write_quadrature
 from .records import AT_REST, CAME_TO_REST, COMPLETED, N_QUADRATURES, PARTIAL_SLIP, State, Step, StepState
 from .rhs import current_rates
 from .step_control import moderate_speed
@@ -244,17 +244,19 @@ def coast_to_end(state, regime, step_state, work):
 
     The rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit V -> 0 and
     inertia = 1 + j (1 + delta_0) + gamma N.  With a rest threshold the motion ends when the larger speed has fallen to
-    it: from then on V = omega = 0, forces of 0, delta = delta_0 and the code AT_REST are written, the kinetic energy
-    that is left counts as lost, and works and losses are those of the whole decay to V = 0.
+    it: from then on V = omega = delta = 0, forces of 0 and the code AT_REST are written (an output at that very time
+    still moves), the kinetic energy that is left counts as lost, and works and losses are those of the whole decay to V = 0.
+    delta_0 is the creepage of free rolling for V -> 0, 0 for half-spaces; gamma N is the added mass
+    (:func:`.law.added_inertia`).
 
-    state: State, the present one, in partial slip; its V is the start of the decay, its d is replaced by that of the
-    decay.
+    state: State, one for which :func:`is_coasting` holds; V, the start of the decay, is read.
     regime: Regime, at that state; ``direction`` is read.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; all outputs from ``next_output`` on are written, and REST_TIME where the motion
-    comes to rest.  The change of regime to AT_REST is not recorded among the switches.
+    work: Workspace, of the motion; all outputs from ``next_output`` on are written, and where the motion comes to rest
+    REST_TIME, t = tau/gamma, and the change of regime to AT_REST, among the switches.
     Returns (status, StepState): CAME_TO_REST if the threshold is reached at or before the last output time, else
-    COMPLETED; the StepState at the last output time, with the numbers of steps unchanged.
+    COMPLETED; the StepState at the last output time or, if earlier, at the time of coming to rest, with the numbers of
+    steps unchanged.
     """
     scene, direction = work.scene, regime.direction
     half_space, cylinder, force, torque = low_speed_limits(work)
@@ -275,7 +277,7 @@ def coast_to_end(state, regime, step_state, work):
         expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))
         decay = 1.0 + expm1_decay if expm1_decay > -0.5 else np.exp(-rate * (tau[column] - step_state.tau))
         V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
-        speeds = direction * V, direction * (V * (omega_over_V + delta)), delta + delta_0
+        speeds = direction * V, direction * (V * (omega_over_V + delta)), delta + delta_0 if moves else 0.0
         code = PARTIAL_SLIP if moves else AT_REST
         write_column(column, speeds, code, (force * direction * V, torque * direction * V), work)
         distance = -direction * state.V * expm1_decay / (rate * scene.gamma)
@@ -284,9 +286,10 @@ def coast_to_end(state, regime, step_state, work):
         write_quadrature(column, 1, distance * omega_over_V, work)
         for n in range(2, N_QUADRATURES):
             write_quadrature(column, n, energies[n - 2] * energy, work)
-    last = last_output_tau(work)
-    step_state = StepState(last, tau.size, step_state.segment, step_state.n_steps, step_state.n_accepted, 0.0)
-    if end > last:
+    stop = min(end, last_output_tau(work))
+    step_state = StepState(stop, tau.size, step_state.segment, step_state.n_steps, step_state.n_accepted, 0.0)
+    if end > stop:
         return COMPLETED, step_state
+    record_switch(AT_REST, step_state, work)
     work.nodes[REST_TIME] = end / scene.gamma
     return CAME_TO_REST, step_state

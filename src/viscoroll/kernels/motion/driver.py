@@ -259,7 +259,8 @@ def _come_to_rest(code, state, regime, step_state, work):
 def _record_regime(code, new_code, stick_formed, step_state, work):
     """Record a change of the regime, and the time at which the stick zone first forms.
 
-    Nothing is recorded if the code stays, as it does while a brake holds omega at 0, in full and in partial slip.
+    While a brake holds omega at 0 the code is the same in full and in partial slip: a stick zone that forms then is
+    recorded by its time alone.
 
     code: int, regime in the outputs before; -1 before the first one, which is no change.
     new_code: int, regime in the outputs from now on.
@@ -269,11 +270,10 @@ def _record_regime(code, new_code, stick_formed, step_state, work):
     work: Workspace, of the motion; switches, their numbers and ONSET_TIME are written.
     Returns ``new_code``, an int, also where it equals ``code``.
     """
-    if new_code != code:
-        if code >= 0:
-            record_switch(new_code, step_state, work)
-        if stick_formed and np.isnan(work.nodes[ONSET_TIME]):
-            work.nodes[ONSET_TIME] = step_state.tau / work.scene.gamma
+    if new_code != code and code >= 0:
+        record_switch(new_code, step_state, work)
+    if stick_formed and np.isnan(work.nodes[ONSET_TIME]):
+        work.nodes[ONSET_TIME] = step_state.tau / work.scene.gamma
     return new_code
 
 

@@ -191,7 +191,7 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     for i in range(1, ROW_LENGTH):
         nodes[ROW_D_RESIDUAL + i] -= nodes[ROW_COUPLING + i] * nodes[ROW_P_UPDATE + i]
     multiply_matrix(d_matrix, ROW_D_RESIDUAL, 0.0, nodes, ROW_D_UPDATE, nodes)
-    # A NaN of an update must reach the result: max() loses it in its second argument.
+    # A NaN of an update must reach the result: max() loses it in its second argument, so change_d is the first below.
     change_d, change_V = 0.0 * (nodes[ROW_P_UPDATE + N] + nodes[ROW_D_UPDATE + N]), 0.0
     for i in range(1, ROW_LENGTH):
         d_update = nodes[ROW_D_UPDATE + i]
@@ -201,7 +201,7 @@ def _newton_iteration(refactor, coupled, step, regime, work):
         nodes[ROW_OMEGA_OR_D + i] += d_update
         nodes[ROW_P + i] += nodes[ROW_P_UPDATE + i]
     scale_V, scale_d = error_scales(step, regime, work)
-    return max(change_V / scale_V, change_d / scale_d)
+    return max(change_d / scale_d, change_V / scale_V)
 
 
 @inline_kernel

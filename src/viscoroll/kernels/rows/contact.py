@@ -257,12 +257,11 @@ def Q_slopes(u, L, dL, D, state, law):
     law : :class:`Law` of the material, of which the polynomials of H/F^2 and, of a cover, ``cover_rows`` are read.
 
     Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta or at fixed omega,
-    whichever ``state`` has, the others at fixed V.  All are 0 where D is infinite.  In partial slip at V = 0 the last
-    is infinite, since omega = V (1 + delta) then changes delta without bound, and so is the first if omega is given.
-
-    A state of partial slip whose D is rounded to L has dQ/ddelta = 0, and dQ/domega = 0, or NaN at V = 0.
+    whichever ``state`` has, the others at fixed V.  All are 0 in full slip, where |D| >= L; a state of partial slip
+    whose D is rounded to L counts as one of full slip.  In partial slip at V = 0 the last is infinite, since
+    omega = V (1 + delta) then changes delta without bound, and so is the first if omega is given.
     """
-    if abs(D) == np.inf:
+    if abs(D) >= L:
         return 0.0, 0.0, 0.0
     over_u, over_D = traction_slopes(u, L, dL, abs(D), law)
     over_delta = 2.0 * state.kappa * over_D
