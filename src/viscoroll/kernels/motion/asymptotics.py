@@ -243,11 +243,12 @@ def coast_to_end(state, regime, step_state, work):
     V.
 
     The rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit V -> 0 and
-    inertia = 1 + j (1 + delta_0) + gamma N.  With a rest threshold the motion ends when the larger speed has fallen to
-    it: from then on V = omega = delta = 0, forces of 0 and the code AT_REST are written (an output at that very time
-    still moves), the kinetic energy that is left counts as lost, and works and losses are those of the whole decay to V = 0.
-    delta_0 is the creepage of free rolling for V -> 0, 0 for half-spaces; gamma N is the added mass
-    (:func:`.law.added_inertia`).
+    inertia = 1 + j (1 + delta_0) + gamma N.  delta_0 is the creepage of free rolling for V -> 0, 0 for half-spaces;
+    gamma N is the added mass (:func:`.law.added_inertia`).
+
+    With a rest threshold the motion ends when the larger speed has fallen to it; an output at that very time still
+    moves.  From then on V = omega = delta = 0, forces of 0 and the code AT_REST are written, the kinetic energy that is
+    left counts as lost, and works and losses are those of the whole decay to V = 0.
 
     state: State, one for which :func:`is_coasting` holds; V, the start of the decay, is read.
     regime: Regime, at that state; ``direction`` is read.
