@@ -221,9 +221,11 @@ class Parameters(Roller):
 
     @property
     def material_array(self) -> Prony | Bodies | None:
-        """The n materials of an array of materials, which are like bodies or pairs; None of one material and of alpha.
+        """The n materials, if the parameter ``material`` holds several; None of one material and of alpha.
 
-        Of pairs of like bodies their n series.  An array of a single material, of shape (1,), counts as several.
+        A :class:`Prony` of n series is returned as it is.  Of n pairs of bodies whose two bodies are alike in each
+        pair, the series of the cylinders, a Prony of n; else the pairs or covers, a :class:`Bodies`.  An array of a
+        single material, of shape (1,), counts as several.
         """
         several: Any = self.material
         if several is None or not several.shape:

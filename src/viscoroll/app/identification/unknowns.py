@@ -143,17 +143,19 @@ def _make_unknown(name: str, start: float, span: Any, prior: Any) -> Unknown:
 
 
 def _check_pair(argument: str, name: str, numbers: Any) -> list[float]:
-    """Return two numbers, each a value that the unknown may have, as a list of floats in SI units.
+    """Check a range or a prior of an unknown, and return its two numbers as a list of floats.
 
     argument : "unknown" for a range, which must ascend, or "prior" for value and standard deviation; it is named in the
         message.
     name : name of the unknown.
     numbers : the pair; a range may have units, a prior may not.
-    Returns [low, high], or [value, standard deviation].
+    Returns [low, high], in SI units; or of a prior [value, standard deviation], the value in SI units, the standard
+    deviation that of ln(value), dimensionless, or for a linear unknown that of the value, in SI units.  The bounds of a
+    value are applied to both numbers.
     Raises ParameterError for another number of them, values out of bounds, and for a range that does not ascend.
     """
     bounds = Unknown.bounds(name)
-    if argument == "prior":  # the standard deviation is of a logarithm: one unit is none of both
+    if argument == "prior":  # value and standard deviation may have different units, so that none is taken
         del bounds["unit"]
     pair = check_array(f"{argument} {name}", numbers, **bounds)
     if pair.shape != (2,) or (argument == "unknown" and not pair[0] < pair[1]):

@@ -81,7 +81,9 @@ def _advance_at_rest(step_state, work):
     - STAYS_AT_REST: State of zeros, REGIME_AT_REST; the StepState at the time at which the drive will move it
       (:func:`find_departure_time`), or at the end of the segment or of the motion, with one trial step more, the
       outputs before that time written, and at the last output time that one too;
-    - AMBIGUOUS: the same at the present time, with an output at that time written.
+    - AMBIGUOUS: the equations allow a departure in both directions, or rolling off as well as sliding, so that the
+      motion is not unique; State of zeros, REGIME_AT_REST; the StepState at the present time, with one trial step more;
+      an output at that time is written.
     """
     kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
     if kind == ROLLS_OFF or kind == SLIDES_OFF:

@@ -160,8 +160,9 @@ def omega_and_delta(state, regime, scene):
 def added_mass_margin(n, j):
     """Return the margin of the added mass, above 0 while the equations are regular, dimensionless.
 
-    It is 1 without added mass.  It is 0 where n = 1 + j, and 0 where a negative n takes half of the inertia 1 + j, or
-    half of 1, from the factor 1 + n/2 of V', whichever comes first as n falls; beyond these two zeros it is negative.
+    The factor of V' vanishes at n = 1 + j, where the equations are singular.  A motion also ends where n has fallen to
+    -min(1 + j, 2)/2: there the added mass takes half of the inertia 1 + j, or half of the factor 1 + n/2 of V', and the
+    correction by N is no longer small.  The margin is 1 without added mass, 0 at these two n, negative beyond them.
 
     n: float, gamma N, signed, dimensionless.
     j: float, moment of inertia J/(m R^2), above 0, dimensionless.

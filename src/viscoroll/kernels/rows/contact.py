@@ -344,8 +344,11 @@ def _write_other_fields(n, c, law, scratch, request):
     request : :class:`Request` of states and quantities; of ``out`` the numbers of state n in the rows of the requested
         quantities are written, dimensionless.
 
-    Returns nothing.  The quantities: delta_star, delta, delta_0 (creepage of free rolling), full_slip (1.0 or 0.0),
-    grip (1 - |Q|/mu), lam, zeta, epsilon, beta, the slopes of M and Q, the two parts of M and their slopes over V.
+    Returns nothing.  The quantities: delta_star (critical creepage), delta (creepage), delta_0 (creepage of free
+    rolling), full_slip (1.0 or 0.0), grip (1 - |Q|/mu), lam (contact length divided by l0), zeta (half the transit time
+    divided by T_ref), epsilon (shift of the contact ahead of the axis, in half contact lengths), beta (stick zone
+    divided by the contact length), dQ_dV, dQ_ddelta, dQ_domega, dM_dV, and M of half-space and cylinder with their
+    slopes in V.
 
     At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta and the slopes of Q
     are 0; grip and beta are 0 too where D of a state of partial slip is rounded to L.  ``dQ_dV`` is at fixed delta or

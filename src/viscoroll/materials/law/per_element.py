@@ -261,9 +261,11 @@ def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
         ``many_nu``, is that of all laws.
     many_nu: whether laws are made at the 12 nodes of Poisson's ratio in [0, 1/2] too; else at the ``nu`` of
         ``thinnest`` alone.
-    Returns (numbers of their records, (laws, numbers in front and rows, then those of the cover), 14 laws a Poisson's
-    ratio, with the nodes of thickness running fastest; the record of the last law, :class:`...kernels.rows.record.Law`,
-    from which number of rows and e0, equal for all, are read).
+    Returns two values.  The first is an array (laws, numbers).  Law k n + i belongs to Poisson's ratio k and thickness
+    i: n = 14 thicknesses ascend, at the Chebyshev zeros of the logarithm of the thickness; Poisson's ratios fall from
+    near 1/2 to near 0, at the Chebyshev zeros x of nu = 3/4 - 3^((1 + x)/2)/4.  Its numbers are ``rows`` and then
+    ``cover_rows`` of the record of that law.  The second is the record of the last law,
+    :class:`...kernels.rows.record.Law`, from which number of rows and e0, equal for all, are read.
     Raises ParameterError for a cover at a node that is too thin.
     """
     from ...kernels.numerics.interpolation import chebyshev, to_doubles
