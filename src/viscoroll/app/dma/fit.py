@@ -143,7 +143,7 @@ def fit_prony(
     if temperature is None:
         for name, value in (("reference", reference), ("shift", shift)):
             if value is not None:
-                raise ParameterError(name, f"{value!r:.60}", "given with temperature only")
+                raise described_error(name, "is given, but temperature is not", "left out, or temperature given too")
         curve, shifts = data_of(Curve, omega, storage, loss), None
     else:
         curve, shifts = master_curve(omega, storage, loss, temperature, reference, shift, on)

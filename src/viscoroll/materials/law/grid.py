@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.array_types import Floats
 from ...core.checks import check_array, check_number
-from ...core.errors import FileError, OutOfTableError, ParameterError, describe_value
+from ...core.errors import FileError, OutOfTableError, ParameterError, described_error, describe_value
 from ...core.files import read_sealed
 from ...core.units import conversion_factor
 from .splines import fit_spline, pack_spline
@@ -199,7 +199,10 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     """
     V, delta = check_array("V", table["V"].values, above=0.0), table["delta"].values
     axes, splines = {"V": np.log(V), "delta": delta}, {}
-    most = friction_limit({"load": "missing, in N/m"} | table.attrs)
+    for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
+        if name not in table.attrs:
+            raise described_error(f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit")
+    most = friction_limit(table.attrs)
     for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
         field = table[name] if name in table else 0.5 * table["M"]
         found = fit_spline(field.transpose(*over).values, [axes[each] for each in over], 3)
@@ -207,6 +210,6 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     return LawGrid(
         splines, V=(V[0], V[-1]), delta=(delta[0], delta[-1]),
         slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= _FULL_SLIP * most).all()),
-        R=check_number("R", table.attrs.get("R", "missing, the radius in m"), above=0.0),
+        R=check_number("R", table.attrs["R"], above=0.0),
         title=str(table.attrs.get("title", "of another program")),
     )  # fmt: skip
