@@ -15,7 +15,7 @@ import numpy as np
 
 from ...core.array_types import Floats
 from ...core.checks import check_array, check_number
-from ...core.errors import FileError, OutOfTableError, ParameterError, described_error, describe_value
+from ...core.errors import FileError, OutOfTableError, ParameterError, describe_value, described_error
 from ...core.files import read_sealed
 from ...core.units import conversion_factor
 from .splines import fit_spline, pack_spline
