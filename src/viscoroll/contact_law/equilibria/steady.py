@@ -103,7 +103,8 @@ def steady(
     plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
     slope = plain["slope"]
     level, (roller, scene, scale) = roller, resolve_model(roller, "steady", slope=slope)
-    refuse_arrays(level, scene, ("alpha",), slope=slope)
+    if type(scene.alpha) is not float:
+        refuse_arrays(level, scene, ("alpha",), slope=slope)
     force = make_dimensionless("force", plain["force"], scale)
     torque = make_dimensionless("torque", plain["torque"], scale)
     V = make_dimensionless("V", plain["V"], scale)
