@@ -108,8 +108,9 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
         found = _solve_by_flow_map(batch, speed, about)
     if found is None:
         found = FlowResult.empty(len(batch.rows), immobile.size, batch.times.size)
-    about["flow"] = (found.status >= 0) & ~immobile
+    about["flow"] = found.status >= 0
     if immobile.any():
+        about["flow"] &= ~immobile
         found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
         found.status[immobile], found.switches[immobile] = MotionStatus.CAUGHT, 0
     about["steps"] = _integrate_others(found, batch)
