@@ -431,8 +431,10 @@ def scene_of(R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: 
     shapes do not broadcast; ValueError of numpy where those of R, load and E_prime, or of R, m, load and T_ref, do not.
     """
     R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
-    # what leaves the range of doubles becomes 0 or infinite, which Scene refuses by name
+    # values beyond the range of doubles become 0 or infinite, and are refused with the formula
     with np.errstate(all="ignore"):
         kappa, gamma = R / contact_length(R, load, E_prime), load * T**2 / (m * R)
+    check_array("kappa = R/sqrt(32 R P/E')", kappa, above=0.0)
+    check_array("gamma = P T_ref^2/(m R)", gamma, above=0.0)
     material = "alpha" if isinstance(law, float | np.ndarray) else "material"
     return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{material: law})

@@ -183,7 +183,7 @@ def _from_xarray(arrays: dict[str, Any]) -> tuple[dict[str, Any], Labels]:
 
     arrays: name of an argument -> array of xarray; at least one.
     Returns (name -> values, all of the broadcast shape, perhaps read-only views; :class:`Labels`, whose ``coords`` are
-    those of all arrays that have an axis; of two of one name that of the first array).
+    the coordinates along an axis of every array; of two of one name that of the first array).
     Raises ParameterError if arrays differ in the coordinates or the length of an axis that they share.
     """
     import xarray as xr

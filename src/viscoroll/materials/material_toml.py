@@ -298,9 +298,10 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     """Return the series of a section by its key prony or creep.
 
     path, name: path of the file and name of the section, for errors.
-    given: keys and values of the section; prony is a dict of E and tau, creep of J, T and perhaps alpha.  Each but
-        alpha is a list by mode, whose elements may be arrays (n,) of n materials; other keys are ignored, as is a key
-        that is None.
+    given: keys and values of the section; prony is a dict of E and tau, creep of J, T and perhaps alpha: strengths E
+        and J divided by the long-time modulus and compliance, times tau and T divided by T_ref, alpha the glassy
+        modulus divided by the long-time one.  Each but alpha is a list by mode, whose elements may be arrays (n,) of n
+        materials; other keys are ignored, as is a key that is None.
     Returns a :class:`Prony`, of shape () or (n,), also for empty lists (elastic); None if neither key is given.
     Raises FileError for both keys, values out of range, and lists of different lengths; TypeError for another key in
     such a dict, ValueError for arrays of different lengths in a list.

@@ -126,7 +126,7 @@ def _solve_by_flow_map(batch: Batch, speed: float | None, about: dict[str, Any])
     batch: :class:`Batch`, free motions of one scene; all but ``immobile`` is read.
     speed: highest speed for which the flow map is made, > 0, dimensionless; None: the largest |V0| or |omega0|.
     about: dict that receives "flow_error" and "flow_problem" of the map; it stays as it is where all motions are at
-    rest.
+    rest and ``speed`` is None.
     Raises ParameterError for a ``speed`` that, in the material's own unit of time, is above 1e100.
     Returns the :class:`.flow.FlowResult` of all n motions; those that the map does not contain have a status below 0,
     and their other entries are undefined.  Returns None, with nothing looked up, where all motions are at rest and

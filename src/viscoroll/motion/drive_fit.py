@@ -185,7 +185,7 @@ class _Sampled:
         """Return the neighbouring doubles between which the callable jumps.
 
         t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,), n >= 2.
-        allowed: absolute error allowed to a fit at its end, dimensionless; a change up to it is no jump.
+        allowed: absolute error of a fit allowed at the end of the piece, dimensionless; a change up to it is no jump.
         Returns (last time before the jump, first time after it), in T_ref.  Returns None unless the largest change
         between two neighbouring times exceeds ``allowed`` and half of the sum of all changes, and more than half of it
         is left where the interval has shrunk to two neighbouring doubles.  Raises as :meth:`values`.

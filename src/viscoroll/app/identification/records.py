@@ -147,22 +147,22 @@ class Record:
         """Return the start values V0, omega0 and t0 of the motion, which a fit may need; :class:`Coastdown` has them.
 
         R : radius of the cylinder, m; not used here.
-        Returns {}: other records have no motion.  :meth:`Coastdown.initial_values` returns name -> (initial value; low
-        and high where the record does not give it, else None), in SI units.
+        Returns {}: other records have no motion.  :meth:`Coastdown.initial_values` returns name -> (initial value,
+        limits), in SI units; limits are (low, high) where the record does not give the value, else None.
         """
         return {}
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Return all :attr:`QUANTITIES` of the record as the model predicts them; each kind of record does this itself.
 
-        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load, the mass and the
-            temperature of this record, which are not read here.
+        cylinder : :class:`Cylinder` with the present values of the unknowns, which has the load, the mass and the
+            temperature of this record already.
         values : name -> value of the unknowns of bearing and record, without the name of the record: "brake" in N m/m,
             "drag" in N m s/m, "V0" in m/s, "omega0" in rad/s, "t0" in s; those that are missing are 0 or as the record
             has them.
         Returns a dict, quantity -> values in SI units, in the shape of the points of the record.
-        Raises NotImplementedError here, in the base class; each kind of record ViscorollError where the values make no
-        contact or no motion.
+        Raises NotImplementedError here, in the base class; in the kinds of records ViscorollError, where the values
+        make no contact or no motion.
         """
         raise NotImplementedError
 

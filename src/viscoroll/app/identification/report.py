@@ -142,8 +142,8 @@ def _product_text(product: Any, values: dict[str, float]) -> str:
     The value is in SI units without their names, the ends of the interval are relative to it.  Exponents of equal
     absolute value stay in the order of the product; an exponent of 1 is not written.
 
-    product : a :class:`.profile.Product`, of which powers, value, low and high are read; its interval is at the level
-        0.95.
+    product : a :class:`.profile.Product`, of which powers, value, low and high (both as ratios to value) are read; its
+        interval is at the level 0.95.
     values : name -> value of the unknowns, SI; the name of a negative one is put between bars, as "|V0|^0.5".
     """
     powers = sorted(product.powers.items(), key=lambda item: -abs(item[1]))

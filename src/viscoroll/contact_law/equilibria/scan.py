@@ -121,8 +121,8 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     law : table of the material.
     loads : the loads, of which at least one of force and torque has a gain on omega; V is not given.
     Returns the :class:`States` of both directions of motion, with the signs of the motion, and those that spin at V = 0
-    and omega other than 0; load by load, else unsorted.  In all of them the friction suffices.  Rest, V = omega = 0, is
-    not among them.
+    and omega other than 0; load by load, else unsorted.  States of full slip, with Q = +-mu, are among
+    them; rest, V = omega = 0, is not.  omega of all of them is finite.
     Raises ParameterError where the gains on omega add to 0, for a gain on V that :func:`.resistance.branches` refuses.
     """
     gains = loads.gains

@@ -83,8 +83,9 @@ class _Reader:
 
         value: value at a key of the file.
         section, key: section and key of the value; of a member of a table "section.key" and its key.
-        words: keys from the section down to it, and positions in lists from "1"; joined by "_" they make the name of
-            the input, as "tau_2".
+        words: keys from the section down to it, and positions in lists from "1"; joined by "_", without
+            prony, creep and values and with time for times, they make the name of the input, as "tau_2" of ("prony",
+            "tau", "2"); of sections base and drive it begins with "base_" and "drive_".
         Returns an Input of an uncertain number, a new list or dict of a list or another table, else ``value``.
         Raises FileError for an uncertain number that is wrong, or a table whose key is like one of an uncertain number,
         as a misspelt one is; MissingDependencyError as :meth:`add_column`.

@@ -145,7 +145,7 @@ def check(table: Any, path: Any) -> None:
             raise FileError(path, f"variable {name!r} has the dimensions {dims}: must be {own}")
         unit, written = table[name].attrs.get("units"), attributes(name, "load" in about)["units"]
         if unit != written:
-            allowed = f"{written!r}, as it was built (a grid in SI units has the attribute load)"
+            allowed = f"{written!r} (a grid in SI units has the attribute load: the force per length, N/m)"
             raise FileError(path, f"variable {name!r} is in {unit!r:.40}: must be in {allowed}")
         if values.dtype != np.float64 or not np.isfinite(values).all():
             raise FileError(path, f"variable {name!r} must hold finite 64-bit floats")

@@ -122,8 +122,9 @@ def _predict_relaxation(step, relaxation, regime, nodes):
     step: Step, the one to predict, with V > 0 or in full slip at its left end; ``h`` is read.
     relaxation: float, derivative of the slope of the second unknown in itself, per unit of tau; below 0 it relaxes.
     regime: Regime, that of the step; ``full_slip`` is read.
-    nodes: Workspace.nodes, with V, V', the second unknown and the weighted rate at node 0; V and the second unknown are
-    written at nodes 1 ... N, limited as by :func:`_store_unknowns`.  Returns nothing.
+    nodes: Workspace.nodes, with V, V', the second unknown and its weighted rate (omega' in full slip, V d' in partial
+    slip) at node 0; V and the second unknown are written at nodes 1 ... N, limited as by :func:`_store_unknowns`.
+    Returns nothing.
     """
     omega_or_d_rate = nodes[ROW_WEIGHTED_RATE] if regime.full_slip else nodes[ROW_WEIGHTED_RATE] / nodes[ROW_V]
     for i in range(1, N + 1):

@@ -286,7 +286,7 @@ def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
     scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`.
     Returns Rates, dimensionless.  In full slip p is V, the second unknown omega, the weight of its equation 1.  In
     partial slip p is the unknown proportional to V + j omega (V itself under strong friction), the second unknown d,
-    the weight V.  The derivatives are those that :func:`full_slip_rates` and :func:`partial_slip_rates` list.
+    the weight V.  The derivatives in V and in the second unknown are the fields dp_dV to dweight_dV of :class:`Rates`.
     """
     if regime.full_slip:
         return full_slip_rates(V, omega_or_d, load, regime, scene)

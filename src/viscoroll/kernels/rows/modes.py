@@ -9,8 +9,9 @@ N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed ch
 
 z is half the transit time of the contact, a_i = 1/tau_i and b_j = 1/T_j are the rates of the modes, E_i the strengths
 of relaxation, g, h and X_i functions of z (:mod:`.series`), H = z^2 + 2 z h, and T_mean = sum E_i tau_i.  _s is the
-slope over s of a jet.  (Divided by 1 + T_mean s, which makes the long-time modulus 1 again, h and y gain T_mean times
-themselves and g nothing: hence the last term of U.)  Unit of N: that of time squared.
+derivative in s at s = 0, where s is subtracted from all rates a_i and b_j (:mod:`.series`).  (Divided by 1 + T_mean s,
+which makes the long-time modulus 1 again, h and y gain T_mean times themselves and g nothing: hence the last term of
+U.)  Unit of N: that of time squared.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
@@ -72,7 +73,9 @@ def _jet(rate, z, function):
 
 @kernel
 def _write_ratio_jets(z, series, work):
-    """Write the jets of 1/r, k and i2 of every mode (:mod:`.series`): value, d/dz, d/ds, d2/dz ds.
+    """Write value, d/dz, d/ds and d2/dz ds of 1/r, k and i2 of every mode; s is subtracted from the rates, s = 0.
+
+    r = I1/I0 and i2 = I2/I0 are ratios of Bessel functions at a_i z, k = K0/K1 at b_i z.
 
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series; at infinity values are 1
         and derivatives over s are NaN.

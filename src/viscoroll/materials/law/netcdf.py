@@ -45,7 +45,8 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     material: a :class:`..prony.Prony`, a :class:`..bodies.Bodies` or :class:`..cover.Cover`, an alpha >= 1 as a number,
         a :class:`..material.Material`, a :class:`..pair.Pair`, or a LawTable, which is returned.
     base: Material of the half-space, only beside a Material; None: that of the cylinder.
-    Returns the table; of a Material or a Pair with its T_ref in s and the bodies as ``pair``, of others with T_ref = 1.
+    Returns the table; of a Material or a Pair with its T_ref in s and the bodies as ``pair``, of a series, of
+    bodies and of an alpha with T_ref = 1.
     Raises ParameterError for another type, an alpha out of [1, 1e12], a base beside anything but a Material, a Material
     or Pair with a thickness (its law depends on load and radius), many materials, and as :func:`.table.law_table`.
     """

@@ -200,8 +200,8 @@ def pack_record(table: Floats, e0: int, alpha: float, fast_limit: Floats, cover:
 def _pack_rows(table: Floats, e0: int, alpha: float, fast: Floats, cover_L: Floats | None) -> Floats:
     """Return the rows of a record in the order in which kernels read them (:mod:`...kernels.rows.evaluate`).
 
-    L is not taken from the table: two steps of Newton's method from that value make L^2 press(2 u/L) = 1 hold to
-    rounding, as Q would lose digits by an error in it; that at rest is set to its exact limit.
+    L is not taken from the table: two steps of Newton's method from lam (1 + epsilon), or from ``cover_L``, make L^2
+    press(2 u/L) = 1 hold to rounding, as Q would lose digits by an error in L; L at rest is set to its exact limit.
     table: coefficients of the functions, (rows, 24 powers, 7 functions), in the order of :data:`FUNCTIONS`; N is not
         read.
     e0: exponent of the end of the first row.
