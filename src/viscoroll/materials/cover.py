@@ -159,11 +159,27 @@ class Cover(Bodies):
     def of_thickness(self, thickness: ArrayLike, nu: ArrayLike | None = None) -> Cover:
         """Return the same bodies with other thicknesses and Poisson's ratios, as one :class:`Cover`.
 
-        thickness: thickness divided by l0, in (0, 1e15], a number or (n,).
-        nu: Poisson's ratio of the layer, in [0, 0.5], a number or, beside an array of thicknesses, (n,); None: that of
+        Parameters
+        ----------
+        thickness : thickness divided by l0, in (0, 1e15], a number or (n,).
+        nu : Poisson's ratio of the layer, in [0, 0.5], a number or, beside an array of thicknesses, (n,); None: that of
             this cover, which must then fit.
-        Returns a new cover of shape (), or (n,) of n thicknesses.
-        Raises ParameterError for values out of range, and shapes that do not agree.
+
+        Returns
+        -------
+        Cover
+            New, of shape (), or (n,) of n thicknesses.
+
+        Raises
+        ------
+        ParameterError
+            For values out of range, and shapes that do not agree.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Cover(1.0, nu=0.3, thickness=0.5).of_thickness([0.2, 0.4]).thickness
+        array([0.2, 0.4])
         """
         more: dict[str, Any] = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
         return Cover(self.layer, nu=self.nu if nu is None else nu, thickness=thickness, **more)
