@@ -8,6 +8,10 @@ from ..core.checks import check_number, check_text
 from ..core.errors import ParameterError
 from .shift import check_fields
 
+#: Ratio of the highest angular frequency that a contact needs, rad/s, to its transit frequency, 1/s.  Data that end
+#: there leave an error of M of 5 to 10 % (docs/validity.md), as data do that begin at the transit frequency.
+HIGHEST_RATE = 2.0
+
 
 @dataclass(frozen=True)
 class Measured:
@@ -48,6 +52,19 @@ class Measured:
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")
         check_text("source", self.source)
+
+    @property
+    def transit_band(self) -> tuple[float, float]:
+        """(lowest, highest) transit frequency, 1/s, of a contact for which the data suffice: ``low``, and ``high``
+        divided by :data:`HIGHEST_RATE`; the first is above the second of data over less than that ratio.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Measured(low=0.1, high=100.0, misfit=0.004).transit_band
+        (0.1, 50.0)
+        """
+        return self.low, self.high / HIGHEST_RATE
 
     def shifted(self, a_T: float) -> Measured:
         """Return the measured band at another temperature.

@@ -126,7 +126,8 @@ class SeriesFit(Result):
         - ``E``: long-time modulus of the wider fit, in the unit of the data;
         - ``alpha``: its instantaneous divided by its long-time modulus, dimensionless;
         - ``prony``: its :class:`viscoroll.Prony`, strengths divided by its E, times in units of T_ref of this fit;
-        - ``V``: kappa V, dimensionless, (n,), at speeds whose transit frequency lies within the data; n may be 0;
+        - ``V``: kappa V, dimensionless, (n,), at speeds whose transit frequency lies in
+          :attr:`viscoroll.Measured.transit_band`; n may be 0;
         - ``M``: kappa M of the wider fit at these speeds, dimensionless, (n,);
         - ``M_fit``: kappa M of this fit at the same speeds and the same load, dimensionless, (n,).
 
@@ -191,13 +192,12 @@ class SeriesFit(Result):
         )  # fmt: skip
 
     def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
-        """Return whether the transit frequency of a contact with this material lies within the data, and the misfit of
-        the fit is at most 5 %.
+        """Return whether the data hold the frequencies that a contact with this material needs, and the misfit of the
+        fit is at most 5 %.
 
-        The transit frequency |V|/(lam l0) must lie within the frequencies of the data, ends included, so that it does
-        not at V = 0.  Where the material was shifted to another temperature (``Material.at``), the frequency is
-        converted to that of the data.  At its front edge every contact has a layer with a shorter transit time: modes
-        faster than the transit act there.
+        The transit frequency |V|/(lam l0) must lie in :attr:`viscoroll.Measured.transit_band` of the data, ends
+        included, so that it does not at V = 0.  Where the material was shifted to another temperature
+        (``Material.at``), the frequency is converted to that of the data.
 
         Parameters
         ----------
@@ -208,7 +208,7 @@ class SeriesFit(Result):
         Returns
         -------
         Assumption
-            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``: whether it lies within the data and
+            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``: whether it lies in that band and
             the larger misfit is at most 0.05; ``sentence``: both in words.  The first two have the shape of V,
             broadcast with that of the cylinder's parameters.
 

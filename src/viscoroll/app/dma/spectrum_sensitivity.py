@@ -12,6 +12,7 @@ import numpy as np
 from ...contact_law.contact import contact
 from ...contact_law.validity.assumptions import transit_frequency
 from ...core.array_types import Floats
+from ...materials.measured import Measured
 from ...materials.prony import Prony
 from ...scene import Scene
 from .mode_selection import grid_of_times
@@ -31,7 +32,7 @@ class ExtendedGridFit(NamedTuple):
     alpha : its instantaneous over its long-time modulus.
     prony : its series, strengths divided by its E and times over the T_ref of the fit.
     V : kappa V, V in R/T_ref and kappa of the fit, dimensionless, (n,): speeds at which the transit frequency of the
-        contact lies within the data; n may be 0.
+        contact lies in ``transit_band`` of the data (:class:`viscoroll.Measured`); n may be 0.
     M, M_fit : kappa M of the wider fit and of the fit at these speeds and the same load, dimensionless, (n,).
     """
 
@@ -73,16 +74,16 @@ def fit_on_extended_grid(
     times = grid_of_times((max(grid[0] / reach, data.shortest), grid[1] * reach), _TIMES)
     found = on_times(data, np.concatenate([times, prony.tau * T_ref]))
     other = Prony(found.strength / found.E, found.tau / T_ref)
-    V, M_fit = _moments_within_data(prony, *(rate * T_ref for rate in data.band))
+    V, M_fit = _moments_within_data(prony, *(rate * T_ref for rate in Measured(*data.band, 0.0).transit_band))
     M = _contact_of(other, float(np.sqrt(found.E / E)), V).M
     return ExtendedGridFit(decades, found.E, other.alpha, other, V, M, M_fit)
 
 
 def _moments_within_data(prony: Prony, slow: float, fast: float) -> tuple[Floats, Floats]:
-    """Compute the rolling moment of free rolling at speeds whose transit frequency |V|/(lam l0) lies within the data.
+    """Compute the rolling moment of free rolling at speeds whose transit frequency |V|/(lam l0) lies in a band.
 
     prony : :class:`Prony`, series of the fit.
-    slow, fast : lowest and highest angular frequency of the data, times T_ref, dimensionless.
+    slow, fast : lowest and highest transit frequency, times T_ref, dimensionless.
     Returns (kappa V, kappa M), (n,) each, dimensionless, in ascending order of V, about four speeds a decade; n may be
     0.  They are computed with kappa = 1 and mu = 1.
     """

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...core.results import SummaryRow, as_html, as_text
 from ...materials.law.evaluate import evaluate_by_modes
-from ...materials.measured import Measured
+from ...materials.measured import HIGHEST_RATE, Measured
 from ...materials.prony import Prony
 
 #: Largest distance from the axis to the far end of the contact, divided by R.  The parabola of the theory lies
@@ -100,8 +100,8 @@ class Validity(NamedTuple):
         moment is computed with the speed of the axis for both.  Needs omega.
     bodies : value: Dundurs' constant of the pair, of long times or of the instantaneous moduli, whichever is larger in
         size; needs the materials.
-    measured : value: :func:`transit_frequency`, 1/s, compared with the frequencies at which each body was measured;
-        needs a material's ``measured``.
+    measured : value: :func:`transit_frequency`, 1/s, compared with :attr:`viscoroll.Measured.transit_band` of each
+        body; needs a material's ``measured``.
     thick : for a layer of known thickness; value: half the contact length divided by the thickness.  Up to its limit
         one stick zone in front with slip behind is right.
     plane : plane strain or plane stress, which V does not decide.
@@ -173,8 +173,8 @@ UNKNOWN_CREEP = Assumption(
 def transit_frequency(V: Any, length: Any) -> Any:
     """Return the transit frequency, the rate at which a point passes the contact: |V| divided by the contact length.
 
-    The law is valid where the material is known at angular frequencies of this size.  Near the leading edge every
-    contact has higher rates: modes faster than the transit frequency act there.
+    The rolling moment needs the moduli at angular frequencies of this size: half of the loss is above 1.8 times it and
+    nine tenths below 4.4 times it, where the loss modulus is constant and the pressure that of Hertz.
 
     V: speed of the axis, any sign, any unit, any shape.
     length: contact length, > 0, not checked, in the unit of length of V; broadcasts with V.
@@ -293,21 +293,23 @@ def assess_coupling(long: float, instant: float, *, like: bool) -> Assumption:
 
 
 def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Assumption:
-    """Compare the transit frequency with the frequencies at which each body was measured.
+    """State whether every body was measured at the frequencies that the contact needs: from the transit frequency to
+    :data:`HIGHEST_RATE` times it.
 
     frequency: transit frequency, 1/s, >= 0, any shape.
     records: name of a body -> :class:`Measured`, the band of angular frequencies, rad/s, at which it was measured, and
         the misfit of the fit; for the bodies that have data.
     Returns the assumption ``measured``, whose value is the frequency.  It holds, in that shape, where the frequency
-    lies in the band of every body, ends included, and every fit meets its data to :data:`MISFIT_LIMIT`; at V = 0 it
-    does not hold, though M = 0 there.  Without records it is undecided.
+    lies in the ``transit_band`` of every body, ends included, and every fit meets its data to
+    :data:`MISFIT_LIMIT`; at V = 0 it does not hold, though M = 0 there.  Without records it is undecided.
     """
     if not records:
         return UNKNOWN.measured
-    ends = dict.fromkeys(f"{end:.2g}" for end in (np.min(frequency, initial=np.inf), np.max(frequency, initial=0.0)))
-    sentence = f"the transit frequency of the contact is {' to '.join(ends)} 1/s, at its leading edge higher"
+    ends = np.min(frequency, initial=np.inf), HIGHEST_RATE * np.max(frequency, initial=0.0)
+    sentence = "the contact needs the moduli from {:.2g} to {:.2g} rad/s".format(*ends)
     holds = np.full(np.shape(frequency), True)[()]
     for body, data in records.items():
-        holds = holds & (data.low <= frequency) & (frequency <= data.high) & (data.misfit <= MISFIT_LIMIT)
+        low, high = data.transit_band
+        holds = holds & (low <= frequency) & (frequency <= high) & (data.misfit <= MISFIT_LIMIT)
         sentence += f"; {body} was measured from {data}"
     return Assumption(holds, frequency, sentence)

@@ -95,7 +95,7 @@ class BodyData:
 
     @cached_property
     def measured_rates(self) -> tuple[float, float] | None:
-        """Return (lowest, highest) |V|/l0, 1/s, at which the transit frequency is in the measured bands of all bodies.
+        """Return (lowest, highest) |V|/l0, 1/s, at which the transit frequency is in ``transit_band`` of all bodies.
 
         |V|/l0 is used because it does not depend on load and radius for half-spaces.  For a cover the ends have an
         error below 1 %.  None where nothing was measured, and for an array of materials.  Bands that do not overlap
@@ -104,8 +104,8 @@ class BodyData:
         records, series = self.records.values(), self.scene.series
         if not records or series is None:
             return None
-        ends = max(data.low for data in records), min(data.high for data in records)
-        low, high = (rate * self.T_ref for rate in ends)
+        lowest, highest = zip(*(data.transit_band for data in records), strict=True)
+        low, high = max(lowest) * self.T_ref, min(highest) * self.T_ref
         if self.scene.cover is not None:
             u = np.exp2(_OCTAVES_OF_SPEED)
             (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
@@ -116,7 +116,7 @@ class BodyData:
 
     @cached_property
     def measured_speeds(self) -> tuple[float, float] | None:
-        """Return (lowest, highest) |V|, m/s, at which the transit frequency of every cylinder is in the measured band.
+        """Return (lowest, highest) |V|, m/s, at which the transit frequency of each cylinder is in ``transit_band``.
 
         None without data.  A transit frequency at an end of a band is inside.  No speed is between them (the lowest is
         above the highest) where the bands have no speed in common; :data:`NO_SPEEDS` for a fit that misses its data by

@@ -176,14 +176,14 @@ def _body(path: Path, name: str, section: Any) -> Any:
 
 
 def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
-    """Return the band of angular frequencies that each body was measured in, at the temperature of each motion.
+    """Return the transit frequencies for which the data of each body suffice, at the temperature of each motion.
 
     path : path of the run file, for errors, and to which files that a section names are relative.
     content : name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs, of which the
         sections "material" and "base" are read; either may be a :class:`Material`.
-    Returns record of a measurement, a :class:`Measured` -> (lowest, highest frequency), rad/s, arrays (n,) where the
-    temperature differs between motions, else floats.  Bodies without a record, as a given series is, are left out; of
-    two bodies with equal records the band of "base" is returned; {} if there is no record.
+    Returns record of a measurement, a :class:`Measured` -> its ``transit_band``, lowest and highest transit frequency,
+    1/s, arrays (n,) where the temperature differs between motions, else floats.  Bodies without a record, as a given
+    series is, are left out; of two bodies with equal records the band of "base" is returned; {} if there is no record.
     Raises FileError as :func:`_first_material`, ParameterError for a temperature that the shift does not allow.
     """
     bands: dict[Measured, Any] = {}
@@ -192,7 +192,7 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
         if section is None or (record := _first_material(path, name, section).measured) is None:
             continue
         factors = None if isinstance(section, Material) else _time_factors(path, name, section)
-        bands[record] = tuple(end if factors is None else end / factors for end in (record.low, record.high))
+        bands[record] = tuple(end if factors is None else end / factors for end in record.transit_band)
     return bands
 
 
