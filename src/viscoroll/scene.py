@@ -29,7 +29,32 @@ class Methods(Roller):
     validity = validity
 
     def humps(self) -> ResistanceExtrema:
-        """Old name of ``resistance_extrema``: gives a DeprecationWarning, and its result."""
+        """Old name of ``resistance_extrema``: gives a DeprecationWarning, and its result.
+
+        Returns
+        -------
+        ResistanceExtrema
+            As of :func:`viscoroll.resistance_extrema`.
+
+        Raises
+        ------
+        ParameterError
+            As of :func:`viscoroll.resistance_extrema`.
+
+        Warns
+        -----
+        DeprecationWarning
+            At each call; it names the new name.
+
+        Examples
+        --------
+        >>> import warnings
+        >>> import viscoroll as vr
+        >>> with warnings.catch_warnings(action="ignore"):
+        ...     found = vr.presets.RUBBER_CYLINDER.humps()
+        >>> found.V.size == vr.presets.RUBBER_CYLINDER.resistance_extrema().V.size
+        True
+        """
         warn_renamed("humps", "resistance_extrema")
         return self.resistance_extrema()
 

@@ -1,7 +1,12 @@
-"""The examples in docstrings run."""
+"""Public functions and methods have docstrings in sections, whose examples run."""
 
+import dis
 import doctest
+import inspect
+import pkgutil
+import re
 from importlib import import_module
+from itertools import pairwise
 
 import pytest
 from places import ROOT
@@ -15,6 +20,40 @@ MODULES = [
 ]  # fmt: skip
 
 
+def callables(name, thing):
+    """Yield name and function: the public functions of a module, the methods of a class, or a function itself."""
+    if inspect.ismodule(thing):
+        for part in thing.__all__:
+            yield from callables(f"{name}.{part}", getattr(thing, part))
+    elif inspect.isclass(thing):
+        for part, method in inspect.getmembers(thing, lambda each: inspect.isfunction(each) or inspect.ismethod(each)):
+            if not part.startswith("_") and method.__module__.startswith("viscoroll"):
+                yield f"{name}.{part}", getattr(method, "__func__", method)
+    elif inspect.isfunction(thing):
+        yield name, inspect.unwrap(thing)
+
+
+def shown_on_the_site():
+    """Return the functions and methods that the site shows, once each: function -> its first name.
+
+    They are all that are public, and those of the classes that the reference lists beside.
+    """
+    found = [pair for name in vr.__all__ for pair in callables(name, getattr(vr, name))]
+    for line in (ROOT / "docs/api.rst").read_text(encoding="utf-8").splitlines():
+        if line.startswith(".. currentmodule:: "):
+            module = line.removeprefix(".. currentmodule:: ")
+        elif re.fullmatch(r"   [\w.]+", line):
+            owner, _, name = f"{module}.{line.strip()}".rpartition(".")
+            found += callables(name, getattr(pkgutil.resolve_name(owner), name))
+    names = {}
+    for name, function in found:
+        names.setdefault(function, name)
+    return names
+
+
+SHOWN = shown_on_the_site()
+
+
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
 @pytest.mark.parametrize("name", MODULES)
 def test_examples_of_docstrings(name, tmp_path, monkeypatch):
@@ -24,3 +63,20 @@ def test_examples_of_docstrings(name, tmp_path, monkeypatch):
     tried = doctest.testmod(import_module(name), extraglobs={"vr": vr}, optionflags=options)
     assert tried.attempted
     assert not tried.failed
+
+
+@pytest.mark.parametrize("function", SHOWN, ids=SHOWN.get)
+def test_sections_of_docstrings(function):
+    """Parameters, Returns or Yields, and Raises where there are any, and Examples; lines are as long as titles."""
+    signature = inspect.signature(function)
+    result = "Yields" if inspect.isgeneratorfunction(function) else "Returns"
+    needed = {
+        "Parameters": signature.parameters.keys() - {"self", "cls"},
+        result: signature.return_annotation not in (None, "None"),
+        "Raises": any(step.opname == "RAISE_VARARGS" for step in dis.get_instructions(function)),
+        "Examples": True,
+    }
+    lines = (inspect.getdoc(function) or "").splitlines()
+    titles = {title for title, line in pairwise(lines) if line and line == len(title) * "-"}
+    missing = [title for title, applies in needed.items() if applies and title not in titles]
+    assert not missing, missing

@@ -71,11 +71,28 @@ class Roller:
     def take(self, index: Integers, count: int) -> Self:
         """Select some of the ``count`` rollers that this object with array parameters stands for.
 
-        index: index of numpy into an array (count,): an integer for one roller, a slice, a mask, or integers (k,).
-        count: number of rollers; numbers and materials of shape (count,) are indexed, all others stay as they are.
-        Returns a roller of the same class whose indexed parameters are numbers, or arrays (k,), in the order of the
-        index; this object itself if no parameter has that shape.
-        Raises IndexError for an index beyond ``count``, if a parameter has that shape.
+        Parameters
+        ----------
+        index : index of numpy into an array (count,): an integer for one roller, a slice, a mask, or integers (k,).
+        count : number of rollers; numbers and materials of shape (count,) are indexed, all others stay as they are.
+
+        Returns
+        -------
+        Scene or Cylinder
+            A roller of the same class whose indexed parameters are numbers, or arrays (k,), in the order of the index;
+            this object itself if no parameter has that shape.
+
+        Raises
+        ------
+        IndexError
+            An index beyond ``count``, if a parameter has that shape.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> rollers = vr.presets.RUBBER_CYLINDER.replace(mu=[0.2, 0.3, 0.4])
+        >>> rollers.take(slice(0, 2), 3).mu
+        array([0.2, 0.3])
         """
         parts = {name: value[index] for name, value in self._arrays.items() if getattr(value, "shape", ()) == (count,)}
         return self.replace(**parts) if parts else self
@@ -186,7 +203,19 @@ class Parameters(Roller):
         return {name: value for name, value in values.items() if value is not None}
 
     def scene(self) -> Self:
-        """Return itself."""
+        """Return the scene itself, so that functions may call it for a scene as for a cylinder.
+
+        Returns
+        -------
+        Scene
+            This object.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.presets.RUBBER_ROLLER.scene() is vr.presets.RUBBER_ROLLER
+        True
+        """
         return self
 
     def replace(self, **changes: Any) -> Self:
@@ -197,12 +226,23 @@ class Parameters(Roller):
         changes : new values of alpha, kappa, mu, gamma, j and material by name; an alpha takes the place of a material,
             and the reverse.  Without both the material stays, with its :class:`LawTable` if it was given as one.
 
+        Returns
+        -------
+        Scene
+            A new one.
+
         Raises
         ------
         ParameterError
             As the class does: for values out of range, and for alpha and material together.
         TypeError
             For an unknown name.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.presets.RUBBER_ROLLER.replace(alpha=11.0, mu=0.4).alpha
+        11.0
         """
         material: dict[str, Any] = {}
         if changes.keys() & {"alpha", "material"}:
@@ -236,9 +276,18 @@ class Parameters(Roller):
         """Return the one material of the scene in its own unit of time, in which its slow time is near 1.
 
         Curves of a material are kept in that time, so that scenes with one material in two units share them.
-        Returns (material, unit): the series, with times divided by the unit; the unit divided by T_ref.  For alpha
-        (alpha, 1.0), where alpha may be an array; for an elastic series (1.0, 1.0); for a cover (the cover, 1.0), since
-        its law is not that of the series alone.  Not for several materials, of which (their alphas, 1.0) is returned.
+
+        Returns
+        -------
+        material, unit : the series, with times divided by the unit, and the unit divided by T_ref.  For alpha (alpha,
+            1.0), where alpha may be an array; for an elastic series (1.0, 1.0); for a cover (the cover, 1.0), since its
+            law is not that of the series alone.  Not for several materials, of which (their alphas, 1.0) is returned.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Scene(material=vr.Prony([2.0], [8.0]), kappa=10.0, mu=0.3).in_own_time()[1]
+        32.0
         """
         if self.cover is not None:
             return self.cover, 1.0
@@ -257,12 +306,29 @@ class Parameters(Roller):
     def on_slope(self, slope: Any) -> Self:
         """Return the scene under the load P cos(slope), the normal part of the weight on a slope.
 
-        slope: angle, rad, in (-pi/2, pi/2), a number or an array, which broadcasts with the parameters; None: level.
-        Returns a new scene whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied
-        by cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array
-        of slopes gives as many covers.
-        Raises ParameterError for a slope out of range, for shapes that do not broadcast, and for parameters that the
-        class refuses, as mu/kappa out of its range.
+        Parameters
+        ----------
+        slope : angle, rad, in (-pi/2, pi/2), a number or an array, which broadcasts with the parameters; None: level.
+
+        Returns
+        -------
+        Scene
+            A new one, whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one, is multiplied by
+            cos(slope).  The thickness of a cover, which is divided by l0, is divided by sqrt(cos(slope)) too; an array
+            of slopes gives as many covers.
+
+        Raises
+        ------
+        ParameterError
+            A slope out of this range, not numeric or with a unit that is no angle; shapes that do not broadcast;
+            parameters that the class refuses, as mu/kappa out of its range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> level = vr.presets.RUBBER_ROLLER
+        >>> bool(level.on_slope(0.1).gamma < level.gamma)
+        True
         """
         cosine = slope_tan_cos(slope)[1]
         sizes = self.numbers | ({} if self.cover is None else {"thickness": self.cover.thickness})

@@ -51,10 +51,25 @@ class Result:
         """Return the dataset of :meth:`to_xarray` as a pandas.DataFrame, a row for each time or state.
 
         A column of a quantity with a unit is named as "V [m s-1]", because pandas writes no attributes into files.
-        The index has the axes of the variable that has most axes, the first one of several with as many; a result of a
-        single state has one row, with index 0 named "state".  Variables over fewer of these axes are repeated along the
-        others; variables over other axes, as the corners of a drive, are left out.  A dataset without variables raises
-        ValueError.
+
+        Returns
+        -------
+        pandas.DataFrame
+            The index has the axes of the variable that has most axes, the first one of several with as many; a result
+            of a single state has one row, with index 0 named "state".  Variables over fewer of these axes are repeated
+            along the others; variables over other axes, as the corners of a drive, are left out.
+
+        Raises
+        ------
+        ValueError
+            A dataset without variables.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> table = vr.contact(vr.presets.RUBBER_CYLINDER, [0.5, 1.0], delta=0.0, fields="M").to_pandas()
+        >>> table.index.name, list(table.columns)
+        ('V [m s-1]', ['delta', 'M [N m m-1]'])
         """
         data = self.to_xarray()
         dims = max((variable.dims for variable in data.values()), key=len)
@@ -81,6 +96,13 @@ class Result:
             If the result has no axis, as that of a single state.
         FileError
             If the file cannot be written, or its suffix names no format.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> figure = vr.contact(vr.presets.RUBBER_CYLINDER, [0.5, 1.0, 2.0], delta=0.0, fields="M").plot("M.png")
+        >>> len(figure.axes)
+        1
         """
         from .plots.style import save
 
@@ -96,7 +118,25 @@ class Result:
         return draw(self.to_xarray())
 
     def keys(self) -> Iterable[str]:
-        """Names of the fields."""
+        """Return the names of the fields, which are attributes and are read by ``result[name]`` too.
+
+        Returns
+        -------
+        list of str
+            The names, in the order of the class.
+
+        Raises
+        ------
+        TypeError
+            Of an :class:`.identification.Identification` and of the results of a run: they have attributes alone.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, 2.0)
+        >>> "onset_time" in motion.keys()
+        True
+        """
         return [field.name for field in fields(self) if not field.name.startswith("_")]  # type: ignore[arg-type]
 
     def __getitem__(self, name: str) -> Any:
@@ -243,7 +283,12 @@ class Values(Result):
         return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]
 
     def as_dict(self) -> dict[str, Any]:
-        """Return the results by name, numbers or arrays.
+        """Return the results by name.
+
+        Returns
+        -------
+        dict
+            Name -> number or array, in the order of the printed summary; a new dict.
 
         Examples
         --------
@@ -254,6 +299,19 @@ class Values(Result):
         return dict(self._values)
 
     def keys(self) -> Iterable[str]:
+        """Return the names of the results, which are attributes and are read by ``result[name]`` too.
+
+        Returns
+        -------
+        iterable of str
+            The names, in the order of the printed summary.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> list(vr.contact(vr.presets.RUBBER_CYLINDER, 0.5, delta=0.01, fields=("Q", "M")).keys())
+        ['Q', 'M']
+        """
         return self._values.keys()
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
@@ -264,15 +322,18 @@ class Values(Result):
         return title, [SummaryRow(name, format_value(value), units[name]) for name, value in self._values.items()]
 
     def to_xarray(self) -> xr.Dataset:
-        """Return all results, and the arguments that vary, as a dataset with long names and units.
+        """Return all results and arguments as a dataset with long names and units.
 
-        An axis along which one argument alone varies has the name and the values of that argument; another axis is
-        named ``state``, or of several axes ``state_0``, ``state_1`` and so on.  Arguments with labels of xarray or
-        pandas determine axes and coordinates; one with the name NAME of a field, or of an argument with other values,
-        is called given_NAME.  Results and arguments are broadcast to the common shape, numbers are
-        variables without axes, truth values become 0 or 1 (int8).  Attributes of a variable are long_name and units, of
-        some symbol and equation; those of the dataset are its title and those that the call added, as measured_V, the
-        lowest and the highest speed at which the material was measured.
+        Returns
+        -------
+        xarray.Dataset
+            An axis along which one argument alone varies has the name and the values of that argument; another axis is
+            named ``state``, or of several axes ``state_0``, ``state_1`` and so on.  Arguments with labels of xarray or
+            pandas determine axes and coordinates; one with the name NAME of a field, or of an argument with other
+            values, is called given_NAME.  Results and arguments are broadcast to the common shape, numbers are
+            variables without axes, truth values become 0 or 1 (int8).  Attributes of a variable are long_name and
+            units, of some symbol and equation; those of the dataset are its title and those that the call added, as
+            measured_V, the lowest and the highest speed at which the material was measured.
 
         Examples
         --------

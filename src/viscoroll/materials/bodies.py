@@ -151,9 +151,31 @@ class Bodies(OneOrMany):
         """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations on whole arrays.
 
         It is for n pairs, not for a single one.
-        which: indices of the pairs, (m,), int; empty: nothing is yielded.
-        Yields a :class:`Block` with weights for each number of modes that occurs, ascending; its ``rows`` are places in
-        ``which``, ascending.
+
+        Parameters
+        ----------
+        which : indices of the pairs, (m,), int; empty: nothing is yielded.
+
+        Yields
+        ------
+        Block
+            One with weights for each number of modes that occurs, ascending: ``rows``, places in ``which``, ascending,
+            ``modes``, the modes of both bodies together, and ``weights``, the half-space's part of each, (rows, modes).
+
+        Raises
+        ------
+        TypeError
+            A single pair.
+        IndexError
+            An index beyond the n pairs.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> pairs = vr.Bodies(vr.Prony([4.0], [1.0]), vr.Prony.elastic(), share=[0.5, 0.8])
+        >>> [block.modes.J.shape for block in pairs.blocks(np.arange(2))]
+        [(2, 1)]
         """
         some = self[which]
         for block in some.total.blocks(np.arange(len(some))):

@@ -146,8 +146,20 @@ class Cover(Bodies):
     def refuse_unknown_split(self, call: str) -> None:
         """Raise ParameterError if the other body relaxes, for functions that need slip and M of each body.
 
-        call: name of that function, for the error.
-        Returns nothing beside a rigid or elastic body.
+        Parameters
+        ----------
+        call : name of that function, for the error.
+
+        Raises
+        ------
+        ParameterError
+            The series of the other body relaxes; beside a rigid or elastic body nothing is done.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> cover = vr.Cover(vr.Prony([10.0], [0.1]), nu=0.5, thickness=1.0)
+        >>> cover.refuse_unknown_split("steady")  # the other body is rigid
         """
         if self.other.alpha > 1.0:
             allowed = (

@@ -126,6 +126,12 @@ class FromPrograms:
             A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
             decades, an unknown keyword; where k differs from alpha, more than 64 creep modes of shear and bulk
             together.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material.ansys(10e6, 0.49, alpha=[0.2, 0.3], tau=[0.1, 10.0]).E
+        5000000.0
         """
         return cls._from_fractions(E0, nu, "alpha", alpha, tau, k, False, more)
 
@@ -160,6 +166,12 @@ class FromPrograms:
             A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
             decades, an unknown keyword; where K is not in proportion to G, more than 64 creep modes of shear and bulk
             together.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material.comsol(3e6, 0.5, G=[2e6], tau=[0.01]).instant  # long-time G is 1 MPa
+        9000000.0
         """
         E, nu = check_number("E", E, unit=SI, above=0.0), check_poisson(nu)
         strengths, times = check_pairs("G", G, "tau", tau)
@@ -215,6 +227,12 @@ class FromPrograms:
             A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
             decades, no long-time modulus or several, both or neither of nu and bulk, an unknown keyword; more than 64
             creep modes of shear and bulk together where these do not relax in proportion.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Material.lsdyna(G=[2e6, 1e6], beta=[100.0, 0.0], nu=0.5).E
+        3000000.0
         """
         strengths, rates = check_pairs("G", G, "beta", beta, above=-math.inf)
         resting = rates == 0.0

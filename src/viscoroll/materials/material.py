@@ -300,9 +300,19 @@ class Material(FromPrograms):
         """Return the loss modulus E'' in tension, E sum E_i x_i/(1 + x_i^2) with x_i = omega tau_i T_ref.
 
         Of a material imported with bulk terms unlike those of shear the series is that of E/(1 - nu^2).
-        omega: angular frequencies, rad/s, >= 0, of any shape.
-        Returns a number or an array of that shape, Pa, >= 0; 0 of an elastic and of a rigid body.
-        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
+
+        Parameters
+        ----------
+        omega : angular frequencies, rad/s, >= 0, of any shape.
+
+        Returns
+        -------
+        number or array, Pa, >= 0, of the shape of ``omega``; 0 of an elastic and of a rigid body
+
+        Raises
+        ------
+        ParameterError
+            A frequency that is negative, NaN, infinite or no number, or has a unit of another dimension.
 
         Examples
         --------
@@ -317,9 +327,19 @@ class Material(FromPrograms):
         """Return the loss factor E''/E' in tension, of :meth:`loss` and :meth:`storage`.
 
         Of a material imported with bulk terms unlike those of shear it is that of E/(1 - nu^2).
-        omega: angular frequencies, rad/s, >= 0, of any shape.
-        Returns a number or an array of that shape, dimensionless, >= 0; 0 of an elastic and of a rigid body.
-        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
+
+        Parameters
+        ----------
+        omega : angular frequencies, rad/s, >= 0, of any shape.
+
+        Returns
+        -------
+        number or array, dimensionless, >= 0, of the shape of ``omega``; 0 of an elastic and of a rigid body
+
+        Raises
+        ------
+        ParameterError
+            A frequency that is negative, NaN, infinite or no number, or has a unit of another dimension.
 
         Examples
         --------
@@ -365,9 +385,19 @@ class Material(FromPrograms):
 
         It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of shear it is that of
         (1 - nu^2)/E, divided by its long-time value.
-        t: times, s, >= 0, of any shape.
-        Returns a number or an array of that shape, dimensionless; 1 at all times for an elastic and a rigid body.
-        Raises ParameterError for a time that is negative, NaN, infinite or no number, or of another dimension.
+
+        Parameters
+        ----------
+        t : times, s, >= 0, of any shape.
+
+        Returns
+        -------
+        number or array, dimensionless, of the shape of ``t``; 1 at all times for an elastic and a rigid body
+
+        Raises
+        ------
+        ParameterError
+            A time that is negative, NaN, infinite or no number, or has a unit of another dimension.
 
         Examples
         --------

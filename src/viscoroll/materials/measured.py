@@ -69,10 +69,21 @@ class Measured:
     def shifted(self, a_T: float) -> Measured:
         """Return the measured band at another temperature.
 
-        a_T: factor of all times from the temperature of the band to the other one, dimensionless, > 0.
-        Returns a new :class:`Measured` whose frequencies are divided by ``a_T``; misfit and source stay.
-        Raises ParameterError for a factor with which a frequency is 0, negative, infinite or NaN; ZeroDivisionError for
-        the float 0.0.
+        Parameters
+        ----------
+        a_T : factor of all times from the temperature of the band to the other one, dimensionless, > 0.
+
+        Returns
+        -------
+        Measured
+            A new one, whose frequencies are divided by ``a_T``; misfit and source stay.
+
+        Raises
+        ------
+        ParameterError
+            A factor with which a frequency is 0, negative, infinite or NaN.
+        ZeroDivisionError
+            The float 0.0.
 
         Examples
         --------

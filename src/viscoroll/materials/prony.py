@@ -234,7 +234,23 @@ class Prony(OneOrMany):
         return Prony._make(self.by_creep, strengths, times, alpha)
 
     def repeated(self, count: int) -> Prony:
-        """Return ``count`` >= 1 materials that are equal to this single one, as a :class:`Prony` of shape (count,)."""
+        """Return several materials that are equal to this single one.
+
+        Parameters
+        ----------
+        count : number of materials, an int >= 1.
+
+        Returns
+        -------
+        Prony
+            A new one, of shape (count,), in the same form.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Prony([2.0], [1.0]).repeated(3).alpha
+        array([3., 3., 3.])
+        """
         strengths, times = (np.broadcast_to(values, (count, values.size)) for values in (self._strengths, self._times))
         return Prony._make(self.by_creep, strengths, times, np.full(count, self.alpha))
 
@@ -254,9 +270,30 @@ class Prony(OneOrMany):
         """Yield materials in blocks of equal numbers of modes, for computations on whole arrays.
 
         It is for n materials, not for a single one, which has :attr:`modes`.
-        which: indices of the materials, (m,), int; empty: nothing is yielded.
-        Yields a :class:`Block` for each number of modes that occurs, ascending, without weights; its ``rows`` are
-        places in ``which``, ascending.  Elastic materials make a block of 0 modes.
+
+        Parameters
+        ----------
+        which : indices of the materials, (m,), int; empty: nothing is yielded.
+
+        Yields
+        ------
+        Block
+            One for each number of modes that occurs, ascending, without weights: ``rows``, places in ``which``,
+            ascending, and ``modes``, both forms of the series, (rows, modes).  Elastic materials make a block of 0
+            modes.
+
+        Raises
+        ------
+        IndexError
+            A single material, an index beyond the n materials.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> materials = vr.Prony([[2.0, 6.0], [3.0, 0.0]], [1.0, 0.1])
+        >>> [(block.rows.tolist(), block.modes.E.tolist()) for block in materials.blocks(np.arange(2))]
+        [([1], [[3.0]]), ([0], [[2.0, 6.0]])]
         """
         counts = np.count_nonzero(self._strengths[which], axis=-1)
         for count in np.unique(counts).tolist():
@@ -326,10 +363,20 @@ class Prony(OneOrMany):
     def slower(self, factor: ArrayLike) -> Prony:
         """Return the material with all times multiplied by a factor, as of a colder rubber.
 
-        factor: dimensionless, > 0, a number, or (n,), one for each of n materials; of a single material (n,) makes n.
-        Returns a new :class:`Prony` in the same form, with the same strengths.
-        Raises ParameterError for a factor that is not positive or not finite, for one with which a time leaves
-        1e-140 to 1e140, for another number of factors than of materials, and for factors of more than one axis.
+        Parameters
+        ----------
+        factor : dimensionless, > 0, a number, or (n,), one for each of n materials; of a single material (n,) makes n.
+
+        Returns
+        -------
+        Prony
+            A new one in the same form, with the same strengths.
+
+        Raises
+        ------
+        ParameterError
+            A factor that is not positive or not finite, or with which a time leaves 1e-140 to 1e140; several factors of
+            another number than that of several materials, factors of more than one axis.
 
         Examples
         --------
@@ -347,9 +394,23 @@ class Prony(OneOrMany):
     def in_own_time(self) -> tuple[Prony, float]:
         """Return a single series with its :attr:`slow_time` near 1, and the unit of time that this takes.
 
-        Returns (the series with times divided by the unit, so that its slow time is within a factor of 2^(1/2) of 1;
-        the unit in T_ref, a power of two, so that no time is rounded).  With a unit of 1, as of an elastic series, the
-        series itself is returned.
+        Returns
+        -------
+        series : the :class:`Prony` with times divided by the unit, so that its slow time is within a factor of 2^(1/2)
+            of 1; with a unit of 1, as of an elastic series, the series itself.
+        unit : the unit in T_ref, a float, a power of two, so that no time is rounded.
+
+        Raises
+        ------
+        TypeError
+            Several materials.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> series, unit = vr.Prony([2.0], [8.0]).in_own_time()
+        >>> series.tau, unit
+        (array([0.25]), 32.0)
         """
         return self._in_own_time
 

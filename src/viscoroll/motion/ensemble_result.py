@@ -30,7 +30,7 @@ class Fastest(NamedTuple):
 
     motion : indices of the motions, (m,), int.
     V, omega : largest magnitudes of the speeds that each starts with or reaches at an output time, (m,); omega has the
-    sign of the product V0 omega0, which is negative also for -0, the product of 0 and a negative start speed.
+    sign of the product V0 omega0, and is positive where that is 0.
     """
 
     motion: Integers
@@ -179,7 +179,19 @@ class Ensemble(RollResult):
         These are all motions, or, of more than 256, as many as that, evenly spaced.  The highest speed is the largest
         magnitude of the start and of the output times that the motion reached; of a speed that is not among the fields,
         that of the start.
-        Returns :class:`Fastest`, arrays (m,), m <= 256, motions ascending, in the unit of the roller; V is >= 0.
+
+        Returns
+        -------
+        Fastest
+            Named tuple of arrays (m,), m <= 256: ``motion``, indices of the motions, ascending; ``V``, >= 0, and
+            ``omega``, in the unit of the roller.  omega has the sign of V0 omega0, and is positive where that is 0.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+        >>> motions.fastest().V
+        array([1., 2.])
         """
         speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
         for name, start in speeds.items():
@@ -213,11 +225,14 @@ class Ensemble(RollResult):
     def to_xarray(self) -> xr.Dataset:
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status, drive and scene.
 
-        It is in the units of the roller, alpha, kappa, mu, gamma and j dimensionless.  Fields that were not requested
-        are left out; labels of the starts become coordinates of the axis "motion", called given_NAME where a variable
-        has their name.
-        Over motion it has V0, omega0, onset_time, rest_time, status and flow; alpha, kappa, mu, gamma, j and the drive
-        are without axis where all motions have the same.  :func:`.export.ensemble_dataset` states the attributes.
+        Returns
+        -------
+        xarray.Dataset
+            In the units of the roller, alpha, kappa, mu, gamma and j dimensionless.  Fields that were not requested are
+            left out; labels of the starts become coordinates of the axis "motion", called given_NAME where a variable
+            has their name.  Over motion it has V0, omega0, onset_time, rest_time, status and flow; alpha, kappa, mu,
+            gamma, j and the drive are without axis where one was given for all motions.
+            :func:`.export.ensemble_dataset` states the attributes.
 
         Examples
         --------

@@ -306,10 +306,14 @@ class Motion(RollResult):
     def to_xarray(self) -> xr.Dataset:
         """Return the dataset over t with V, omega, x, angle, delta and regime, and the scene as attributes.
 
-        It is in the units of the roller; regime is int8, -1 where it was not reached.  The dataset of a motion with a
-        drive also has force, torque, work_force, work_torque, brake_loss, slip_loss and rolling_loss over t, what was
-        given as ``drive_force`` and so on, and ``reversals``, the times at which V changes its sign.
-        Attributes are those of :func:`.export.motion_dataset`.
+        Returns
+        -------
+        xarray.Dataset
+            In the units of the roller; regime is int8, -1 where it was not reached.  The dataset of a motion with a
+            drive also has force, torque, work_force, work_torque, brake_loss, slip_loss and rolling_loss over t, what
+            was given as ``drive_force`` and so on (of a function of time a text among the attributes), and
+            ``reversals``, the times at which V changes its sign.  Attributes are those of
+            :func:`.export.motion_dataset`.
 
         Examples
         --------

@@ -96,8 +96,11 @@ class DynamicModuli(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return the points as a dataset.
 
-        Its variables are omega (rad s-1), storage and loss (Pa) and, where the file has one, temperature (degC), each
-        over the dimension ``point``; its attributes are title, mode, source and notes.
+        Returns
+        -------
+        xarray.Dataset
+            Variables omega (rad s-1), storage and loss (Pa) and, where ``temperature`` is not None, temperature (degC),
+            each over the dimension ``point``; attributes title, mode, source and notes, one text, parted by "; ".
 
         Examples
         --------

@@ -93,8 +93,20 @@ class SeriesFit(Result):
     def misfit_text(self, digits: int) -> str:
         """Return the misfit of each modulus in words, as "0.35% in E', 0.80% in E''".
 
+        Parameters
+        ----------
         digits : number of digits after the decimal point of the per cent, an int >= 0.
-        Returns a text, of two parts for storage and loss, parted by a comma, of one for relaxation.
+
+        Returns
+        -------
+        str
+            Two parts for storage and loss, parted by a comma; one part for relaxation.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv"))).misfit_text(1)
+        "0.4% in E', 0.4% in E''"
         """
         pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
         return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
@@ -249,11 +261,22 @@ class SeriesFit(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return the data, the fit and its series as a dataset.
 
-        Over omega (rad/s) or t (s): the data that were fitted, storage and loss or relaxation, and the fit at the same
-        points, storage_fit and loss_fit or relaxation_fit, in the unit of the data.  Over ``mode``: E, strengths
-        divided by the long-time modulus, and tau, s.  Attributes: E_long, long-time modulus in the unit of the data;
-        T_ref, s; title; modulus, "tension" or "shear"; and misfit_storage and misfit_loss, or misfit, root mean squares
-        of relative errors, dimensionless.  The attribute ``units`` of the moduli is the text "unit of the data".
+        Returns
+        -------
+        xarray.Dataset
+            Over omega (rad/s) or t (s): the data that were fitted, storage and loss or relaxation, and the fit at the
+            same points, storage_fit and loss_fit or relaxation_fit, in the unit of the data.  Over ``mode``: E,
+            strengths divided by the long-time modulus, and tau, s.  Attributes: E_long, long-time modulus in the unit
+            of the data; T_ref, s; title; modulus, "tension" or "shear"; and misfit_storage and misfit_loss, or misfit,
+            root mean squares of relative errors, dimensionless.  The attribute ``units`` of the moduli is the text
+            "unit of the data".
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> data = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv"))).to_xarray()
+        >>> data["storage_fit"].dims, data["tau"].dims
+        (('omega',), ('mode',))
         """
         import xarray as xr
 
@@ -310,8 +333,13 @@ class Fit(SeriesFit):
 
         They are E' and E'', or G' and G'' where ``mode`` is "shear".
 
+        Parameters
+        ----------
         omega : angular frequencies, rad/s, > 0, not checked, of any shape, also outside of the data.
-        Returns (storage, loss), each of the shape of ``omega``.
+
+        Returns
+        -------
+        storage, loss : the moduli, each of the shape of ``omega``; NaN where omega is NaN.
 
         Examples
         --------
@@ -359,8 +387,14 @@ class RelaxationFit(SeriesFit):
     def modulus(self, t: ArrayLike) -> Floats:
         """Return the relaxation modulus of the fit, E(t) or of shear G(t), in the unit of the data.
 
+        Parameters
+        ----------
         t : times, s, > 0, not checked, of any shape, also outside of the data.
-        Returns the modulus, of the shape of ``t``.
+
+        Returns
+        -------
+        array
+            The modulus, of the shape of ``t``; NaN where t is NaN.
 
         Examples
         --------

@@ -213,6 +213,16 @@ class Identification(Result):
         ------
         ParameterError
             For another level.
+
+        Examples
+        --------
+        The rolling resistance at one speed does not tell the modulus from the times of the rubber:
+
+        >>> import viscoroll as vr
+        >>> drum = vr.Resistance(V=[0.5, 0.5], sigma=0.01)
+        >>> result = vr.identify(vr.presets.RUBBER_CYLINDER, {"E": (1e6, 1e7), "T_ref": (0.1, 10.0)}, [drum])
+        >>> [list(product.powers) for product in result.products()]
+        [['E', 'T_ref']]
         """
         return self._likelihood.products(self._likelihood.undetermined(self._delta_chi2()), self._delta_chi2(level))
 
@@ -317,9 +327,27 @@ class Identification(Result):
         residuals of the data are 1e6, and so are those at times that a motion does not reach; elsewhere they are within
         -+1e6.
 
+        Parameters
+        ----------
         values : name -> value of unknowns, SI; others are at their start, not at the best fit.
-        Returns a vector, (residuals,), dimensionless: of the records in their order, then one for each prior.
-        Raises ParameterError for unknown names, and for values that the unknown cannot have.
+
+        Returns
+        -------
+        array of shape (residuals,)
+            Residuals, dimensionless: of the records in their order, then one for each prior.
+
+        Raises
+        ------
+        ParameterError
+            Unknown names, and values that the unknown cannot have.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+        >>> result = vr.identify(vr.presets.RUBBER_CYLINDER, {"mu": (0.1, 1.0)}, [plan])
+        >>> result.residuals({"mu": 0.3})  # the start
+        array([0., 0.])
         """
         return self._problem.residuals(self._coordinates(values))
 
@@ -328,10 +356,28 @@ class Identification(Result):
 
         At an end of the range of an unknown, and outside of its range, the difference is one-sided, towards the range.
 
+        Parameters
+        ----------
         values : name -> value of unknowns, SI; others are at their start, not at the best fit.
-        Returns an array, (residuals, unknowns), in one over the SI unit of each unknown, in the order of
-        ``self.values``; the column of an unknown that does not act is (nearly) 0.
-        Raises ParameterError as :meth:`residuals` does.
+
+        Returns
+        -------
+        array of shape (residuals, unknowns)
+            Derivatives, in one over the SI unit of each unknown, in the order of the attribute ``values``; the column
+            of an unknown that does not act is (nearly) 0.
+
+        Raises
+        ------
+        ParameterError
+            As :meth:`residuals`.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+        >>> result = vr.identify(vr.presets.RUBBER_CYLINDER, {"mu": (0.1, 1.0)}, [plan])
+        >>> result.jacobian({"mu": 0.3}).shape
+        (2, 1)
         """
         u = self._coordinates(values)
         scales = [unknown.slope(unknown.to_value(x)) for unknown, x in zip(self._problem.unknowns, u, strict=True)]

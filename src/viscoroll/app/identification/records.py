@@ -104,11 +104,43 @@ class Record:
 
     @staticmethod
     def unit(name: str) -> str:
-        """Return the SI unit of a coordinate or quantity by its name, as "m s-1" of V; "1" of a creepage."""
+        """Return the SI unit of a field of a record.
+
+        Parameters
+        ----------
+        name : name of a coordinate, a quantity or a number of a record, as "V".
+
+        Returns
+        -------
+        str
+            The unit, as "m s-1"; "1" of a creepage and of other names without a dimension.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Resistance.unit("F"), vr.Traction.unit("delta")
+        ('N m-1', '1')
+        """
         return si_unit("force" if name == "F" else name)
 
     def label(self, name: str) -> str:
-        """Return the name of a field in messages, "RECORD: FIELD"; an unnamed record has the name of its kind."""
+        """Return the name of a field as messages have it.
+
+        Parameters
+        ----------
+        name : name of the field, as "V"; not checked.
+
+        Returns
+        -------
+        str
+            "RECORD: FIELD"; an unnamed record has the name of its kind.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Traction(V=1.0, delta=0.02).label("Q")
+        'traction: Q'
+        """
         return f"{self.name or self.LABEL}: {name}"
 
     def _sigmas(self) -> dict[str, Any]:
@@ -146,9 +178,21 @@ class Record:
     def initial_values(self, R: float) -> InitialValues:
         """Return the start values V0, omega0 and t0 of the motion, which a fit may need; :class:`Coastdown` has them.
 
+        Parameters
+        ----------
         R : radius of the cylinder, m; not used here.
-        Returns {}: other records have no motion.  :meth:`Coastdown.initial_values` returns name -> (initial value,
-        limits), in SI units; limits are (low, high) where the record does not give the value, else None.
+
+        Returns
+        -------
+        dict
+            Empty: other records have no motion.  :meth:`Coastdown.initial_values` returns name -> (initial value,
+            limits), in SI units; limits are (low, high) where the record does not give the value, else None.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Traction(V=1.0, delta=0.02).initial_values(R=0.1)
+        {}
         """
         return {}
 
@@ -232,6 +276,14 @@ class Resistance(Record):
         -----
         ModelWarning
             As :func:`viscoroll.contact`; a fit suppresses it.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> drum = vr.Resistance(V=[0.5, 1.0])
+        >>> free, braked = (drum.model(vr.presets.RUBBER_CYLINDER, {"brake": brake})["M"] for brake in (0.0, 0.1))
+        >>> (braked - free).round(6)
+        array([0.1, 0.1])
         """
         V, brake, drag = np.asarray(self.V), values.get("brake", 0.0), values.get("drag", 0.0)
         M = cylinder.contact(V, delta=0.0, fields="M").M + np.sign(V) * brake + drag * V / cylinder.R
@@ -291,6 +343,13 @@ class Traction(Record):
         -----
         ModelWarning
             As :func:`viscoroll.contact`; a fit suppresses it.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> found = vr.Traction(V=1.0, delta=[-0.02, 0.0, 0.02]).model(vr.presets.RUBBER_CYLINDER, {})
+        >>> (found["Q"] > 0.0).tolist()
+        [False, False, True]
         """
         return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
 
@@ -359,12 +418,32 @@ class Coastdown(Record):
     def initial_values(self, R: float) -> InitialValues:
         """Return the unknowns of the release with their initial values.
 
+        Parameters
+        ----------
         R : radius of the cylinder, m.
-        Returns a dict, name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high) where the
-        record leaves it open, None where it gives it), in s, m/s and rad/s.  The (low, high) of V0 and omega0 is a
-        tuple, that of t0 an array, (2,), whose order is not checked here.  A t0 that is open starts at 0 limited to its
-        range: low where low > 0, high where high < 0.  V0 and omega0 start as :meth:`_first` says.
-        Raises ParameterError where V0 or omega0 is open and the record has no data that show it.
+
+        Returns
+        -------
+        dict
+            Name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high) where the record
+            leaves it open, None where it gives it), in s, m/s and rad/s.  The (low, high) of V0 and omega0 is a tuple,
+            that of t0 an array, (2,), whose order is not checked here.  A t0 that is open starts at 0 limited to its
+            range: low where low > 0, high where high < 0.  V0 and omega0 that are open start at the first measured
+            value, within the largest magnitude measured to either side.  Where V was not measured, V0 starts at R times
+            the first omega, if omega0 is "rolling" and omega was measured, else at the slope of the first tenth of x
+            (at least three points, or all), within its magnitude to either side.
+
+        Raises
+        ------
+        ParameterError
+            V0 or omega0 is open and the record has no data that show it.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> run = vr.Coastdown(t=[0.0, 1.0, 2.0], V=[2.0, 1.7, 1.5])
+        >>> run.initial_values(R=0.1)
+        {'t0': (0.0, None), 'V0': (2.0, (0.0, 4.0))}
         """
         ends: Any = np.ravel(self.t0)
         found: InitialValues = {"t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)}
@@ -428,6 +507,14 @@ class Coastdown(Record):
         -----
         ModelWarning, RuntimeWarning
             As :func:`viscoroll.roll`, the latter where the motion is given up; a fit suppresses both.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> run = vr.Coastdown(t=[0.0, 1.0, 2.0], V0=2.0)
+        >>> found = run.model(vr.presets.RUBBER_CYLINDER, {})
+        >>> float(found["V"][0]), bool(found["x"][2] > found["x"][1])
+        (2.0, True)
         """
         V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
         t, omega0 = np.asarray(self.t) - t0, V0 / cylinder.R if omega0 == ROLLING else omega0

@@ -202,13 +202,27 @@ def _phases(fit: Any) -> Iterator[str]:
 def as_dataset(fit: Any) -> xr.Dataset:
     """Return an identification as a dataset, for files.
 
-    fit : a :class:`viscoroll.app.identification.Identification`.
-    Returns a dataset of xarray, in SI units.  Over ``unknown``: value, stderr (infinite for an unknown that does not
-    act), and low and high of the 95 % interval, NaN on a side that is open.  Over (``unknown``, ``other``):
-    correlation.  Over "RECORD point", for each record, with its name for RECORD and that of a coordinate or quantity
-    for NAME: "RECORD NAME" of coordinates and data (a plan has no data), and "RECORD NAME fit" and "RECORD NAME sigma"
-    of each quantity that was measured or planned.  Attributes: title, source, report (the text), chi2, dof.  Points of
-    a record are flat, in the order given.
+    Parameters
+    ----------
+    fit : a :class:`viscoroll.app.identification.Identification`; as its method ``to_xarray`` there is no argument.
+
+    Returns
+    -------
+    xarray.Dataset
+        In SI units.  Over ``unknown``: value, stderr (infinite for an unknown that does not act), and low and high of
+        the 95 % interval, NaN on a side that is open.  Over (``unknown``, ``other``): correlation.  Over "RECORD
+        point", for each record, with its name for RECORD and that of a coordinate or quantity for NAME: "RECORD NAME"
+        of coordinates and data (a plan has no data), and "RECORD NAME fit" and "RECORD NAME sigma" of each quantity
+        that was measured or planned.  Attributes: title, source, report (the text), chi2, dof.  Points of a record are
+        flat, in the order given.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+    >>> data = vr.identify(vr.presets.RUBBER_CYLINDER, {"mu": (0.1, 1.0)}, [plan]).to_xarray()
+    >>> data["stderr"].dims, data["traction Q fit"].dims
+    (('unknown',), ('traction point',))
     """
     import xarray as xr
 

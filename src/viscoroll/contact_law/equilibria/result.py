@@ -157,6 +157,19 @@ class Steady(Values):
         self.reasons, self.scale, self._labels = reasons, scale, labels
 
     def keys(self) -> Iterable[str]:
+        """Return the names of the fields, which are attributes and are read by ``result[name]`` too.
+
+        Returns
+        -------
+        list of str
+            The names of the arrays, then "loss" and "reason".
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> list(vr.steady(vr.presets.RUBBER_CYLINDER, slope=0.005).keys())[-2:]
+        ['loss', 'reason']
+        """
         return [*self._values, "loss", "reason"]
 
     @cached_property
@@ -228,14 +241,17 @@ class Steady(Values):
     def to_xarray(self) -> xr.Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
 
-        Returns a dataset over the axes of the loads (of one load there are none; named as in labelled arguments, else
-        ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  An axis or a coordinate of the
-        labels that has the name NAME of a variable, or "equilibrium", is called given_NAME.  Its variables are V,
-        delta, Q, M_half_space, M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, int8, 0
-        or 1; ``rate_fast`` and ``rate_slow``, the real parts of the eigenvalues, whose imaginary parts are left out;
-        ``loss_slip``, ``loss_half_space``, ``loss_cylinder``, ``coefficient`` and ``efficiency``, the fields of
-        :class:`Loss`; and ``count``, over the axes of the loads alone.  Padding is NaN, of ``stable`` 0.  Units are
-        those of the result; ``reason`` is left out.
+        Returns
+        -------
+        xarray.Dataset
+            Over the axes of the loads (of one load there are none; named as in labelled arguments, else ``state``, of
+            several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  An axis or a coordinate of the labels that
+            has the name NAME of a variable, or "equilibrium", is called given_NAME.  Variables are V, delta, Q,
+            M_half_space, M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, int8, 0 or 1;
+            ``rate_fast`` and ``rate_slow``, the real parts of the eigenvalues, whose imaginary parts are left out;
+            ``loss_slip``, ``loss_half_space``, ``loss_cylinder``, ``coefficient`` and ``efficiency``, the fields of
+            :class:`Loss`; and ``count``, over the axes of the loads alone.  Padding is NaN, of ``stable`` 0.  Units are
+            those of the result; ``reason`` is left out.
 
         Examples
         --------

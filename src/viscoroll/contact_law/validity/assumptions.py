@@ -68,9 +68,24 @@ class Assumption(NamedTuple):
         """Return the assumption with one state for each part of a sequence of states, and the same sentence.
 
         ``holds`` and ``value`` must be arrays over the states, (states,).
-        last: index of the last state of each part, (parts,), ascending; a part begins after the one before.
-        Returns the same kind of assumption, with holds and value of shape (parts,): those of the first state of the
-        part that violates it, else those of its last state.
+
+        Parameters
+        ----------
+        last : index of the last state of each part, an array (parts,), ascending; a part begins after the one before.
+
+        Returns
+        -------
+        Assumption
+            With holds and value of shape (parts,): those of the first state of the part that violates it, else those of
+            its last state.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> creep = vr.presets.RUBBER_CYLINDER.validity(1.0, omega=[10.0, 20.0, 10.0]).creep
+        >>> creep.worst_of_parts(np.array([0, 2])).holds  # the second state slips fully
+        array([ True, False])
         """
         faults = np.flatnonzero(~self.holds)
         next_fault = np.append(faults, self.holds.size)[np.searchsorted(faults, np.append(0, last[:-1] + 1))]

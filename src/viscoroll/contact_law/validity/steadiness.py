@@ -55,9 +55,23 @@ class Steadiness(Assumption):
     def of(cls, free: FreeRolling) -> Assumption:
         """Return the assumption ``steady`` of states from which the cylinder rolls freely.
 
-        free: the states, in the units of the call; gamma must be known.
-        Returns a :class:`Steadiness` whose value is the unsteadiness of each state; a plain :class:`Assumption`, which
-        is undecided, if all states (one at least) are at rest.
+        Parameters
+        ----------
+        free : the states, a :class:`.free_rolling.FreeRolling`, in the units of the call; gamma must be known.
+
+        Returns
+        -------
+        Assumption
+            A :class:`Steadiness` whose value is the unsteadiness of each state; a plain :class:`Assumption`, which is
+            undecided, if all states (one at least) are at rest.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> from viscoroll.contact_law.validity.steadiness import Steadiness
+        >>> states = vr.presets.RUBBER_CYLINDER.validity([1.0, 2.0]).steady.free
+        >>> Steadiness.of(states).holds
+        array([ True,  True])
         """
         if free.u.size and not free.u.any():
             return Assumption(None, None, "the assumption is not checked at rest: give a speed")
@@ -83,6 +97,15 @@ class Steadiness(Assumption):
             The assumption, whose value is dimensionless; its ``share``, () or (motions,), is the part of each
             motion's distance with an error of V above 10 %, 0 for a motion that stays where it is, NaN where x is not
             known.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> from viscoroll.contact_law.validity.steadiness import Steadiness
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> states = motion.roller.validity(motion.V).steady.free
+        >>> float(Steadiness.along(states, motion.regime > 0, motion.x, ends=True).share)
+        0.0
         """
         free = replace(free, u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0))
         value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)
@@ -121,8 +144,22 @@ class Steadiness(Assumption):
     def worst_of_parts(self, last: Any) -> Steadiness:
         """Return the assumption of a motion with one value for each part of it: the largest up to the end of the part.
 
-        last: index of the last state of each part, (parts,), ascending.
-        Returns a :class:`Steadiness` with holds and value of shape (parts,); its attributes are those of the motion.
+        Parameters
+        ----------
+        last : index of the last state of each part, an array (parts,), ascending.
+
+        Returns
+        -------
+        Steadiness
+            With holds and value of shape (parts,); its attributes are those of the motion.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> steady = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0, 3.0]).validity().steady
+        >>> steady.worst_of_parts(np.array([1, 2])).value.shape
+        (2,)
         """
         chosen: Any = self._replace(holds=self.holds[last], value=self.value[last])
         chosen.free, chosen.motion_share = self.free, self.motion_share

@@ -100,14 +100,17 @@ class RunResults(Result):
     def to_xarray(self) -> xr.Dataset:
         """Return the summaries: moments, quantiles, histograms, and how the motions ended.
 
-        It is the dataset ``summaries`` itself, not a copy, in the units of the run file.  For each quantity NAME it has
-        NAME_counted, NAME_mean, NAME_std, NAME_min and NAME_max over t, NAME_quantiles over (quantile, t),
-        NAME_histogram, numbers of motions, over (NAME_bin, t), and the edges NAME_bin_low and NAME_bin_high of the
-        bins; of a quantity that is one number for each motion all are without the axis t.  ``ended`` over status is the
-        number of motions with each :class:`MotionStatus`.  Values that are not finite do not count; at a time without
-        values the moments and quantiles are NaN, and counts 0.  Attributes are failed_motions,
-        motions_from_the_flow_map, and how the run was made (:func:`.identity.about`): motions, motions_a_block, blocks,
-        seed, design, method, quantities, versions, run_file, title, source and Conventions.
+        Returns
+        -------
+        xarray.Dataset
+            The dataset ``summaries`` itself, not a copy, in the units of the run file.  For each quantity NAME it has
+            NAME_counted, NAME_mean, NAME_std, NAME_min and NAME_max over t, NAME_quantiles over (quantile, t),
+            NAME_histogram, numbers of motions, over (NAME_bin, t), and the edges NAME_bin_low and NAME_bin_high of the
+            bins; of a quantity that is one number for each motion all are without the axis t.  ``ended`` over status is
+            the number of motions with each :class:`MotionStatus`.  Values that are not finite do not count; at a time
+            without values the moments and quantiles are NaN, and counts 0.  Attributes are failed_motions,
+            motions_from_the_flow_map, and how the run was made (:func:`.identity.about`): motions, motions_a_block,
+            blocks, seed, design, method, quantities, versions, run_file, title, source and Conventions.
 
         Examples
         --------
@@ -123,13 +126,16 @@ class RunResults(Result):
 
         All are over the motions of the run; values that are not finite do not count.
 
-        Returns a table of float64, the quantities in the order of ``names`` and the times ascending.  The levels of its
-        index are "quantity", the name with its unit as in "V [m s-1]", and the time, named "t" or "t [s]" and NaN for a
-        quantity that is one number per motion.  Columns are "mean", "std", "min", "max", then the quantiles in the
-        order of the run file, each labelled by its level, a float in [0, 1].
-        std is the root of the mean squared difference from the mean (divided by the number of values, not by one less).
-        Quantiles are known to the width of a bin, at most 2^-8 of the value.  At a time at which no motion has a
-        value all entries are NaN.
+        Returns
+        -------
+        pandas.DataFrame
+            A table of float64, the quantities in the order of ``names`` and the times ascending.  The levels of its
+            index are "quantity", the name with its unit as in "V [m s-1]", and the time, named "t" or "t [s]" and NaN
+            for a quantity that is one number per motion.  Columns are "mean", "std", "min", "max", then the quantiles
+            in the order of the run file, each labelled by its level, a float in [0, 1].  std is the root of the mean
+            squared difference from the mean (divided by the number of values, not by one less).  Quantiles are known to
+            the width of a bin, at most 2^-8 of the value.  At a time at which no motion has a value all entries are
+            NaN.
 
         Examples
         --------
