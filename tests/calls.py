@@ -54,7 +54,9 @@ DMA = OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA
 LABELLED = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"], "day": 3}, name="speed")
 FRAME = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=pd.Index(["x", "y"], name="roller"))
 UNSURE = DMA_ROLLER.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA_SERIES.E), DMA_SERIES.tau))
-MEASURED = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 628.0, 0.01, "dma.csv"))
+MEASURED = vr.Material(
+    2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 1256.0, 0.01, "dma.csv")
+)
 BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=MEASURED, mu=0.5)
 SERIES, MANY = vr.Prony([2.0, 6.0], [1.0, 1e-4]), vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
 SOFT, STEEL = vr.Material(2.3e5, 0.49, SERIES, density=1100.0), vr.Material.elastic(2e11, 0.3)

@@ -314,6 +314,10 @@ DMA_MANY = 0.02
 #: E' and E'' of a series fitted to E(t) to 0.1 and 0.3 %, a decade inside the band: E'' has the ripple of one mode a
 #: decade, which E(t) does not show; measured 0.007 and 0.11.
 DMA_RELAXATION, DMA_RELAXATION_LOSS = 0.02, 0.2
+#: M at the ends of the band that the data of three decades determine, and a factor of 5 inside; measured 0.10 and 0.02.
+MEASURED_END, MEASURED_INSIDE = 0.12, 0.03
+#: M where the transit frequency is that of the last datum; measured 0.18 to 0.32.
+MEASURED_BEYOND = 0.15
 #: share of 1000 random draws, 27 %, and that lam changes with a_T too: three standard deviations and 5 %.
 SHARE = 0.2
 #: Fit of exact data of two modes: rounding of the least squares; measured 3e-15.

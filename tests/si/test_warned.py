@@ -16,20 +16,42 @@ from viscoroll.contact_law.validity import model_warnings
 from viscoroll.core.plots import draw
 from viscoroll.io.runs import estimate
 
-DATA = vr.Measured(0.06, 628.0, 0.01, "dma.csv")
+DATA = vr.Measured(0.06, 1256.0, 0.01, "dma.csv")
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=DATA)
 BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5)
-#: the speed at which that contact is passed at 628 1/s
+#: the speed at which the transit frequency of that contact is 628 1/s, half of the last frequency of the data
 LAST = 2.866
 
 
 def test_where_the_data_end():
-    """Of the same contact, by the law itself: the two ends are passed at the frequencies of the data."""
-    for at, end in zip(BELT.body_data.measured_rates, (DATA.low, DATA.high), strict=True):
+    """Of the same contact, by the law itself: at both ends the transit frequency is at the end of its band."""
+    for at, end in zip(BELT.body_data.measured_rates, DATA.transit_band, strict=True):
         speed = at * BELT.l0
         assert close(speed / BELT.contact(speed, delta=0.0, fields="length").length, end, tol.CONTACT)
     found = BELT.validity(np.array([0.99, 1.01]) * LAST).measured
     assert found.holds.tolist() == [True, False]
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+@pytest.mark.parametrize("growth", [0.0, 0.12, 0.3])
+def test_data_over_the_band_determine_M(growth):
+    """Rubbers of 15 modes, whose moduli of three decades are fitted: M at both ends of transit_band is that of the
+    rubber to a tenth, and five times as near a factor of 5 inside; twice as fast it is wrong.
+    """
+    k = np.arange(-6.0, 9.0)
+    rubber = vr.Material(1e6, 0.49, vr.Prony(0.05 * 10.0 ** (growth * k), 10.0 ** (-k - 1.0)), T_ref=1.0)
+    omega = np.geomspace(1.0, 1e3, 31)
+    fit = vr.fit_prony(omega, rubber.storage(omega), rubber.loss(omega))
+    rollers = [vr.Cylinder(R=0.1, m=35.0, mu=0.3, load=1e3, material=each) for each in (rubber, fit.material(nu=0.49))]
+    for data, allowed in (
+        (vr.Measured(1.0, 1e3, 0.0), tol.MEASURED_END),
+        (vr.Measured(5.0, 200.0, 0.0), tol.MEASURED_INSIDE),
+    ):
+        speeds = rollers[0].replace(material=replace(rubber, measured=data)).body_data.measured_speeds
+        M, found = (each.contact(np.array(speeds), delta=0.0).M for each in rollers)
+        assert close(found, M, rel=allowed)
+    M, found = (each.contact(2.0 * speeds[1] * 5.0, delta=0.0).M for each in rollers)
+    assert abs(found / M - 1.0) > tol.MEASURED_BEYOND
 
 
 @pytest.mark.parametrize("worker", [False, True])
@@ -98,7 +120,7 @@ nu = 0.5
 E = {E}
 nu = 0.5
 prony = {{ E = [2.0, 6.0], tau = [1e-3, 1e-5] }}
-measured = {{ low = 0.06, high = 628.0, misfit = 0.01 }}
+measured = {{ low = 0.06, high = 1256.0, misfit = 0.01 }}
 [start]
 V0 = {{ distribution = "uniform", loc = 1.0, scale = {spread} }}
 omega0 = 10.0
@@ -118,13 +140,13 @@ temperature = { distribution = "norm", loc = 20.0, scale = 5.0 }
 
 
 def test_the_share_of_motions_that_were_not_measured(tmp_path, monkeypatch):
-    """N(20, 5) degrees: the contact at 1 m/s is passed at a rate that the data hold where a_T is below a bound."""
+    """N(20, 5) degrees: the contact at 1 m/s needs frequencies that the data hold where a_T is below a bound."""
     monkeypatch.setattr(model_warnings, "_warned_records", set())
     text = RUN.format(E="2.0e6", spread=1e-9).replace("n = 20", "n = 1000")
     text = text.replace("[start]", WARM + "[start]")
     rate = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5).validity(1.0).measured.value
-    high = rate * vr.WLF(C1=8.86, C2=101.6, T0=20.0)(17.0)
-    text = text.replace("high = 628.0", f"high = {high}")
+    high = 2.0 * rate * vr.WLF(C1=8.86, C2=101.6, T0=20.0)(17.0)
+    text = text.replace("high = 1256.0", f"high = {high}")
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
         estimate(run_of(text, tmp_path), 1)
@@ -144,4 +166,4 @@ def test_a_run_file_beyond_what_was_measured(tmp_path, monkeypatch, E, spread):
     said = [str(each.message) for each in found if "as measured" in str(each.message)]
     assert len(said) == (spread == 9.0)
     assert not said or "% of the motions" in said[0]
-    assert not said or "measured from 0.06 to 628" in said[0]
+    assert not said or "measured from 0.06 to 1.26e+03" in said[0]
