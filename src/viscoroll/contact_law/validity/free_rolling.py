@@ -64,7 +64,7 @@ class Reach(NamedTuple):
     Attributes
     ----------
     speed : speed at which the part ends; 0: it lasts to rest.  Where the unsteadiness is above the level already at V,
-        the next higher speed above which it is below the level; infinite if there is none.
+        the speed above which it stays below the level; there is always one.
     time, distance : time and distance from V to there; where the part lasts to rest the time is infinite, and of
         elastic bodies, which never stop, the distance too.  0 where the unsteadiness is above the level at V.
     left : distance from the end of the part to rest: 0 where it lasts to rest and for elastic bodies; where the

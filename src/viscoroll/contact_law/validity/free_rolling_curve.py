@@ -115,17 +115,16 @@ class Curve:
         level: level of |N|, > 0.
         Returns (speed; whether |N| is below the level at the start), both in the shape of u.  The speed is the u at
         which |N| first reaches the level as u falls, 0 if never.  Where |N| is at or above the level at the start
-        already, it is the next higher u just above which |N| is below the level (at still higher u it may exceed the
-        level again); infinite if there is none.
+        already, it is the u above which |N| stays below the level.
         """
         roots = np.sort(np.concatenate([self._N.solve(value, extrapolate=False) for value in (level, -level)]))
         falls = roots[self._N(roots) * self._N(roots, 1) < 0.0]
         last = float(np.abs(self._N(self.ln_u[-1])))
         behind = [self._high * math.sqrt(last / level)] if last >= level else []  # where N falls as u^-2
-        ends = np.concatenate([[0.0], np.exp(falls), behind, [np.inf]])
+        ends = np.concatenate([[0.0], np.exp(falls), behind])
         below = np.abs(self.N(u)) < level
         index = np.searchsorted(ends, u, side="right")
-        return ends[np.where(below, index - 1, np.minimum(index, ends.size - 1))], below
+        return np.where(below, ends[index - 1], ends[-1]), below
 
     def work(self, u: Floats, distance: Floats, rested: Floats) -> Floats:
         """Return the work W that it takes to roll out of the indentation of a standstill; in SI units P l0^2 W/(4 R).
