@@ -23,12 +23,16 @@ PAPER_SECTION_5_ROUNDED = Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4, j=0
 #: (1, 1.5, 21.5, 81.5 in Figs. 2 and 3b, 11 in Fig. 3a).
 PAPER_FIGURES_2_3 = Scene(alpha=11.0, kappa=29.1, mu=0.2, gamma=1.1e4, j=0.5)
 #: The paper's cylinder made of a rubber with short times, so that the law of steady rolling may drive its motion at
-#: any speed (:meth:`Scene.validity`).  T_ref is 1 s: V is the speed in radii a second.
+#: any speed (:meth:`Scene.validity`): R = 0.1 m, m = 35.5 kg/m, mu = 0.3, j = 0.5, load m g = 348 N/m; long-time
+#: modulus E = 3 MPa, nu = 0.5, density 1130 kg/m^3, and a Prony series with the strengths (divided by E)
+#: 0.3, 0.6, 1.5 and the times 20 ms, 1 ms, 10 us, also of the half-space.
+#: T_ref is 1 s: V of its scene is in radii a second.
+#: ``rubber.toml`` of the sample files holds another rubber.
 RUBBER_CYLINDER = Cylinder(
     R=0.1, m=35.5, mu=0.3,
     material=Material(3e6, 0.5, Prony([0.3, 0.6, 1.5], [2e-2, 1e-3, 1e-5]), name="rubber", density=1130.0),
 )  # fmt: skip
-#: Its dimensionless scene.
+#: Its dimensionless scene: kappa = 10.62, mu = 0.3, gamma = 98.1, j = 0.5.
 RUBBER_ROLLER = RUBBER_CYLINDER.scene()
 #: Scenes by the names of the command line.
 PRESETS = {

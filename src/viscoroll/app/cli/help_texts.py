@@ -79,8 +79,8 @@ Fit a material to DMA data.
 The command fits a Prony series to columns of frequency, storage modulus and loss modulus, with units in their
 headings, and prints how well the data determine it.  With -o it writes a [material] of a TOML file, or netCDF.
 
-If the misfit exceeds --misfit or 5 %, the exit code is 1 and no file is written.  With --force the
-file is written, and the source of the data in it states the misfit.
+The exit code is 1 and no file is written if the misfit exceeds --misfit, or if it exceeds 5 % with any --misfit.
+With --force the exit code is 0 and the file is written; the source of the data in it states the misfit.
 
 example:
   viscoroll samples
