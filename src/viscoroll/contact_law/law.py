@@ -7,6 +7,7 @@ doi:10.1007/s00707-020-02643-5.
 from __future__ import annotations
 
 import ctypes
+import math
 from collections.abc import Callable
 from functools import partial
 from typing import Any, Literal, overload
@@ -25,6 +26,8 @@ from .validity.model_warnings import warn_of_contact
 
 #: Types that the compiled function takes; others go through :func:`contact`.
 _NUMBERS = frozenset({float, int, np.float64})
+#: (lowest, highest) |V| between which nothing is warned of, where nothing is known of the bodies.
+_EVERY_SPEED = 0.0, math.inf
 #: Makes :class:`Loads` from four numbers, faster than its constructor.
 _loads = partial(tuple.__new__, Loads)
 #: Makes :class:`LoadsAndSlopes` from eight numbers.
@@ -56,8 +59,8 @@ class Law:
         roller: a scene or a cylinder whose alpha or material, kappa and mu are single; gamma and j are not used.
         Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape (1,)), for an array
         of materials, for times of a material beyond 1e-100 to 1e100 T_ref, and for a layer beside a body that relaxes
-        too or too thin for its law.  Sets ``roller``, ``scene``, ``_kappa`` (kappa over the unit of V), ``_warns`` and
-        the attributes of :meth:`_use`.
+        too or too thin for its law.  Sets ``roller``, ``scene``, ``_kappa`` (kappa over the unit of V), ``_covered``,
+        and the attributes of :meth:`_use`.
         """
         from ..kernels.rows.c_function import pack_scenes
         from ..kernels.rows.jitted_law import Jitted
@@ -67,8 +70,8 @@ class Law:
         table = scene.table
         assert table is not None
         self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])
-        #: whether there are speeds that give a warning
-        self._warns = roller.body_data is not None and roller.body_data.covered_speeds is not None
+        #: (lowest, highest) |V| between which nothing is warned of, in the unit of V
+        self._covered = (roller.body_data and roller.body_data.covered_speeds) or _EVERY_SPEED
         scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
         self._use(Jitted(scenes, table))
 
@@ -143,7 +146,8 @@ class Law:
             status = 1
         if status:
             self._refuse(check_array("V", V), check_array("omega", omega))
-        if self._warns:
+        low, high = self._covered
+        if abs(V) < low or abs(V) > high:
             warn_of_contact(self.roller, V, (V, V))
         return _loads_and_slopes(out) if slopes else _loads(out[:4])
 
@@ -218,7 +222,7 @@ class _LawOfGrid(Law):
         from ..kernels.splines.law import jitted_grid
 
         self.roller: Any = grid
-        self._warns = False
+        self._covered = _EVERY_SPEED
         (low, high), slowest = grid.delta, grid.V[0]
         self._use(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
 

@@ -225,8 +225,9 @@ def slope_tan_cos(slope: ArrayLike | None) -> tuple[Any, Any]:
     theta = check_array("slope", slope, unit="rad")
     steep = np.abs(theta) >= 0.5 * np.pi
     if steep.any():
-        allowed = "in (-pi/2, pi/2), in radians, for example np.radians(5.0)"
-        raise ParameterError("slope", f"{theta[steep].flat[0]:g}", allowed)
+        given = theta[steep].flat[0]
+        allowed = f"in (-pi/2, pi/2), in radians; {given:g} degrees are {np.radians(given):.4g}"
+        raise ParameterError("slope", f"{given:g}", allowed)
     return np.tan(theta), np.cos(theta)
 
 

@@ -207,6 +207,10 @@ def find_line(text: str, name: str, key: str) -> int | None:
 
 
 def suggestion(name: str, candidates: Iterable[str]) -> str:
-    """Return a question for the one of ``candidates`` that is most similar to ``name``, "" if none is."""
-    similar = difflib.get_close_matches(name, list(candidates), n=1, cutoff=0.5)
+    """Return a question for the one of ``candidates`` that is most similar to ``name``, or differs by
+    capitals alone; "" if none is.
+    """
+    known = list(candidates)
+    similar = [each for each in known if each.lower() == name.lower()]
+    similar += difflib.get_close_matches(name, known, n=1, cutoff=0.5)
     return f"; did you mean {similar[0]!r}?" if similar else ""

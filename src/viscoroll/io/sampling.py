@@ -133,7 +133,7 @@ def _is_distribution(name: str, value: Any) -> bool:
     try:
         check_number(name, value.ppf(0.5) if random else value)
     except (TypeError, ValueError):
-        allowed = "a finite number or a frozen scipy.stats distribution"
+        allowed = "a finite number or a frozen scipy.stats distribution" + " with a finite median (scale > 0)" * random
         raise ParameterError(name, f"{value!s:.60}", allowed) from None
     return random
 

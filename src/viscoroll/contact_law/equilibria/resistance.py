@@ -22,6 +22,7 @@ from ...core.renamed import warn_renamed
 from ...materials.law.table import LawTable
 from ..contact_table import pure_rolling_fields
 from ..parameters import Roller, refuse_arrays, resolve_model
+from ..validity.model_warnings import warn_of_contact
 
 #: octaves of u on either side of the rates of a material with closely spaced nodes
 _CLOSE_OCTAVES = 15
@@ -175,6 +176,7 @@ def resistance_extrema(roller: Roller) -> ResistanceExtrema:
         return ResistanceExtrema(np.empty(0), np.empty(0), np.empty(0, dtype=bool))
     found = branches(law, 0.0)
     V, M = found.u[found.extremum] / scene.kappa, found.resistance[found.extremum] / scene.kappa
+    warn_of_contact(roller, V * scale["V"])
     return ResistanceExtrema(V * scale["V"], M * scale["M"], np.arange(V.size) % 2 == 0)
 
 

@@ -140,7 +140,12 @@ class BodyData:
         :data:`NO_SPEEDS` (or a lowest speed above the highest) where every speed gives one, as of a contact at rest
         that is longer than the radius.
         """
-        bands = [band for band in (self.measured_speeds, None if self.small_at_rest else NO_SPEEDS) if band is not None]
+        below_waves = None if self.wave_speed is None else (0.0, self.wave_speed)
+        bands = [
+            band
+            for band in (self.measured_speeds, None if self.small_at_rest else NO_SPEEDS, below_waves)
+            if band is not None
+        ]
         return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
 
     @cached_property
@@ -225,11 +230,11 @@ def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
     band: (lowest, highest) |V|, in the same unit, both inside; a range without 0 leaves every band whose lowest is
         above its highest.
     """
-    slowest, fastest = max(extent[0], -extent[1], 0.0), max(extent[1], -extent[0])
-    return fastest > band[1] or 0.0 < slowest < band[0]
+    (low, high), (lowest, highest) = extent, band
+    return high > highest or -low > highest or 0.0 < low < lowest or 0.0 < -high < lowest
 
 
 def extent_of(values: Any) -> tuple[float, float]:
     """Return (smallest, largest) of numbers of any shape, without NaN, as floats; (0.0, 0.0) if nothing is left."""
-    ends = (end.reduce(values, axis=None, initial=np.nan) for end in (np.fmin, np.fmax))
-    return tuple(0.0 if np.isnan(end) else float(end) for end in ends)  # type: ignore[return-value]
+    low = float(np.fmin.reduce(values, axis=None, initial=np.nan))
+    return (0.0, 0.0) if low != low else (low, float(np.fmax.reduce(values, axis=None, initial=np.nan)))

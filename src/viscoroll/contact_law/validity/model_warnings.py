@@ -51,6 +51,8 @@ _LEAST_FAST_ROLLING = 1.0
 #: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, below which the error of V exceeds 10 % at the
 #: start already, for one relaxation time and kappa V above that speed.
 _SLOW = 0.6 / 16.0 / STEADY_LIMIT
+#: Fault of a motion or contact, where a density is known; M is doubtful from :data:`WAVE_LIMIT` on already.
+_FASTER_THAN_WAVES = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
 #: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
 _EXAMINED = 256
 #: Data of materials for which this process has warned already.
@@ -82,7 +84,7 @@ def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
 
 
 def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None = None, *, motion: bool = False) -> None:
-    """Warn of contacts at rest longer than the radius, and of transit frequencies outside the measured band.
+    """Warn of contacts at rest longer than the radius, speeds above the shear wave speed, and unmeasured frequencies.
 
     These are at most two warnings, of :func:`_warn_of_faults` and :func:`_warn_of_band`.  Only the extreme speeds are
     examined; rest is passed over, since M = 0 there, and speeds on both sides of 0 are compared with the upper end of
@@ -91,8 +93,8 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
     V: speeds, m/s, any sign and shape, NaN where they are not known; None, for prescribed ones that are not known,
         gives no warning.
     extent: (smallest, largest) of the speeds, m/s, signed, where the caller knows them; None: they are found.
-    motion: whether the speeds are of a motion, whose kappa :func:`warn_of_start` has examined, so that the length at
-        rest gives no warning here.
+    motion: whether the speeds are of a motion, which :func:`warn_of_start` has examined, so that neither the length at
+        rest nor the shear wave speed gives a warning here.
     """
     data = roller.body_data
     if data is None or data.covered_speeds is None or V is None:
@@ -100,8 +102,12 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
     ends = extent or extent_of(V)
     if not is_outside(ends, data.covered_speeds):
         return
-    if not (data.small_at_rest or motion):
-        _warn_of_faults([NOT_SMALL], "contact", "validity(V).small_contact")
+    if not motion:
+        waves = data.wave_speed
+        too_fast = waves is not None and (ends[1] > waves or -ends[0] > waves)
+        _warn_of_faults(
+            [NOT_SMALL] * (not data.small_at_rest) + [_FASTER_THAN_WAVES] * too_fast, "contact", "validity(V)"
+        )
     if data.measured_speeds is not None and is_outside(ends, data.measured_speeds):
         _warn_of_band(data, V)
 
@@ -192,8 +198,7 @@ def warn_of_start(
     if wave_speed is not None:
         V, omega = (0.0 if speed is None else np.abs(speed) for speed in start)
         if float(np.max(np.maximum(V, omega * roller.body_data.R), initial=0.0)) > wave_speed:
-            fault = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
-            _warn_of_faults([fault], "motion", "validity() of cylinder or result")
+            _warn_of_faults([_FASTER_THAN_WAVES], "motion", "validity() of cylinder or result")
     if type(V0) is type(omega0) is float and not scene.shape:
         material = scene.alpha if scene.material is None else scene.material
         faults = _start_faults(material, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, driven)

@@ -211,7 +211,8 @@ def _describe_free(free: FreeRolling) -> str:
     text = f"unsteadiness {value:.2g} (up to {STEADY_LIMIT} is allowed): "
     if value > STEADY_LIMIT:
         return text + (
-            "too slow for the quasi-steady assumption of a motion (contact states and constant speeds are valid, not their stability); "
+            "too slow for the quasi-steady assumption of a motion (contact states and constant speeds are valid, their "
+            "stability is not); "
             f"the error of V is below 10 % above {most.speed:.2g}{speed}"
         )
     if not np.isfinite(whole):

@@ -68,11 +68,15 @@ class _Reader:
         section: content of the section.  What is no table is returned as it is; checks of the file refuse it later.
         Returns a new dict.  Of a material only the numbers of :data:`_UNCERTAIN_IN_MATERIAL` may be uncertain (E, nu,
         prony, creep, temperature, thickness); the values of its other keys stay as they are.
-        Raises FileError for an uncertain number that is wrong; MissingDependencyError as :meth:`add_column`.
+        Raises FileError for an uncertain number that is wrong, or at another key of a material; MissingDependencyError
+        as :meth:`add_column`.
         """
         if not isinstance(section, dict):
             return section
         keys = _UNCERTAIN_IN_MATERIAL if name in SECTIONS else section
+        for key, value in section.items():
+            if key not in keys and isinstance(value, dict) and "distribution" in value:
+                raise section_error(self.path, name, key, f"{key} cannot be uncertain; {', '.join(keys)} can")
         return {key: self.part(value, name, key, (key,)) if key in keys else value for key, value in section.items()}
 
     def part(self, value: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
@@ -138,7 +142,7 @@ class _Reader:
         low, high = max(low, float(cut[0])), min(high, float(cut[1]))
         if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
             interval = f"truncate = {cut!r:.40}" if "truncate" in table else f"support [{low:g}, {high:g}]"
-            raise self.fault(number, f"{interval}: this interval has zero probability")
+            raise self.fault(number, f"{interval}: must have low < high and a probability above 0")
         return Distribution(law, low, high)
 
     def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
