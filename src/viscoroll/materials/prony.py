@@ -388,7 +388,7 @@ class Prony(OneOrMany):
         broadcast_shape(factor=factors, materials=np.empty(self.shape))
         times = self._times * factors[..., np.newaxis]
         if self.by_creep:
-            return Prony.creep(self._strengths, times, alpha=self.alpha)
+            return Prony.creep(self._strengths, times, alpha=np.broadcast_to(self.alpha, times.shape[:-1]))
         return Prony(self._strengths, times)
 
     def in_own_time(self) -> tuple[Prony, float]:

@@ -132,7 +132,7 @@ def make_problem(
     if single and scene.shape:
         require_single(material=roller.material, **roller.numbers)
     if rest is not None and np.ndim(scale["V"]):
-        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref for all motions")
+        raise ParameterError("rest", rest, "None", "rest needs the same R and T_ref (or T_epsilon) for all motions")
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
     try:
         limits, last = controls(rtol, rest, max_steps, scale), float(end) / scale["t"]
