@@ -154,6 +154,16 @@ def test_validation_finds_a_wrong_node(alphas):
     stated = alphas.copy(deep=True)
     stated.beta.attrs["spline_error"] *= 0.1
     assert [check.name for check in check_table(stated, 2000, 1) if not check.passed] == ["grid: beta, splines"]
+    stated.beta.attrs["spline_error"] = 1.0  # an error as large as the range of beta
+    assert [check.allowed for check in check_table(stated, 2000, 1) if check.name == "grid: beta, splines"] == [0.5]
+
+
+def test_validation_refuses_a_grid_whose_error_is_the_range_of_a_field():
+    scene, speeds = vr.presets.PAPER_SECTION_5, np.linspace(1e-3, 2e-3, 4)
+    star = vr.contact(scene, speeds[0], delta=0.0).delta_star
+    grid = vr.tables.build(scene, speeds, delta=star * np.array([0.0, 0.99, 0.9999, 0.999999, 1.1]))
+    assert grid.beta.attrs["spline_error"] > 0.9
+    assert [check.name for check in check_table(grid, 2000, 1) if not check.passed] == ["grid: beta, splines"]
 
 
 def test_creep_nodes_have_less_error_than_equal_steps():

@@ -115,8 +115,8 @@ def validate(arguments: Namespace) -> int:
     arguments: parsed command line with
         file, path of a law or a grid;
         n, number of random points, a whole number >= 1, 10000 if not given.
-    Returns True, exit code 1, if an error is larger than its check allows (of a law twice the error that the file
-    states, and rounding), else False, exit code 0.
+    Returns True, exit code 1, if an error is larger than its check allows (twice the error that the file states,
+    and rounding; of a grid at most half of the largest value of the field), else False, exit code 0.
     Raises ParameterError for n, FileError for a file that cannot be read or is no table, and for a grid of a material
     or a cylinder.
     """
