@@ -162,7 +162,7 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
       the field at the nodes, unless that is 0.
 
     Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a cylinder, a
-    material, or a version before 1.0); KeyError for a field without ``spline_error``.
+    material, or of version 0.1.0); KeyError for a field without ``spline_error``.
     """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 SCHEMA_VERSION = "1.4"
 #: Global attribute with the kind of a file.
 KIND = "viscoroll_table"
-#: Kinds of grids; all but the first are of versions before 1.0.
+#: Kinds of grids; all but the first are of version 0.1.0.
 KINDS = ("grid", "atlas", "literal", "material")
 #: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
