@@ -246,7 +246,7 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     Tensor not-a-knot cubic spline in ln V, delta and ln alpha, of a lower degree along an axis of fewer than four
     nodes, clipped to |Q| <= mu P and 0 <= beta <= 1; the largest error at random points is stated in ``spline_error``
     of each field, which another point may exceed (``tests/tables/test_grids.py``), and the point in
-    ``spline_error_at``.  The largest errors of beta and Q occur where full slip begins: beta falls there with a vertical
+    ``spline_error_at``.  The largest errors of beta occur where full slip begins, as beta falls there with a vertical
     tangent.  Tables over (V, delta) of version 0.1.0 are interpolated linearly, as their files state.  Each call builds
     the splines anew, which takes most of its time; keep an :class:`Interpolant` for repeated calls.  A law
     (:func:`viscoroll.io.tables.law`, :func:`viscoroll.contact`) has none of these errors.
