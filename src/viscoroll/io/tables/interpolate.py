@@ -64,7 +64,7 @@ class Interpolant:
             linearly.
         Raises FileError if it is not a grid, is incomplete or in other units; ParameterError for its mu and load.
         """
-        schema.check(table, "interpolate")
+        schema.check(table, getattr(table, "encoding", {}).get("source", "interpolate"))
         self._table, self._axes = table, schema.axes_of(table)
         # Files of version 0.1.0 state the errors of linear interpolation in V, delta and alpha.
         self._linear = linear or table.attrs[schema.KIND] in ("literal", "material")

@@ -17,6 +17,7 @@ import numpy as np
 from ... import __version__
 from ...core.errors import FileError
 from ...core.symbols import PAPER, SYMBOLS, attributes
+from ...materials.law_file import KINDS as LAW_KINDS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -129,6 +130,8 @@ def check(table: Any, path: Any) -> None:
     if not hasattr(table, "attrs"):
         raise FileError(path, f"needs a dataset, not {table!r:.60}: read a file by vr.tables.load")
     about = table.attrs
+    if str(about.get(KIND)) in LAW_KINDS:
+        raise FileError(path, "is a law, not a grid: load it by vr.load_law, and evaluate it by vr.contact")
     if str(about.get(KIND)) not in KINDS:
         raise FileError(path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
     version, major = about.get("schema_version"), SCHEMA_VERSION.partition(".")[0]
