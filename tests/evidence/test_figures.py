@@ -78,7 +78,7 @@ times = 3
 rtol = 1e-8
 [benchmark]
 law = "{law}"
-sizes = [31]
+sizes = [15]
 V = [1e-5, 2.1]
 rtol = [1e-6]
 root_solves = [1e-5]
@@ -119,7 +119,7 @@ def test_stages_leave_records(demo):
 
 def test_motions_from_tables_are_those_of_root_solves(demo):
     rows = list(csv.DictReader((demo[1] / "benchmark.csv").read_text().splitlines()))
-    assert [row["law by"] for row in rows] == ["grid, 31 by 31", "law file", "numerical roots", "vr.roll"]
+    assert [row["law by"] for row in rows] == ["grid, 15 by 15", "law file", "numerical roots", "vr.roll"]
     for kind in ("paper", "random"):
         grid, *exact = (float(row[f"error, {kind}"]) / float(row["rtol"]) for row in rows)
         assert 0.0 < max(exact) < tol.DEMO_MOTION < grid

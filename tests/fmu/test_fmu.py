@@ -373,8 +373,9 @@ def test_program(tmp_path, capsys):
     scene = tmp_path / "scene.toml"
     scene.write_text("[scene]\nalpha = 11.0\nkappa = 2.91\nmu = 0.2\n")
     capsys.readouterr()
-    assert main(["fmu", str(scene), "-o", str(roller)]) == 0
-    assert "kappa, mu, gamma and j of the dimensionless scene are not used" in capsys.readouterr().err
+    for what in (str(scene), "rubber-roller"):
+        assert main(["fmu", what, "-o", str(roller)]) == 0
+        assert "kappa, mu, gamma and j of the dimensionless scene are not used" in capsys.readouterr().err
     toml = "src/viscoroll/datasets/rubber.toml"
     assert main(["fmu", toml, "-o", str(roller), "--model", "ContactElement"]) == 0
     assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}["load"] == "2000.0"

@@ -154,19 +154,42 @@ def test_validation_finds_a_wrong_node(alphas):
     stated = alphas.copy(deep=True)
     stated.beta.attrs["spline_error"] *= 0.1
     assert [check.name for check in check_table(stated, 2000, 1) if not check.passed] == ["grid: beta, splines"]
+    stated.beta.attrs["spline_error"] = 1.0  # an error as large as the range of beta
+    assert [check.allowed for check in check_table(stated, 2000, 1) if check.name == "grid: beta, splines"] == [0.5]
 
 
-def test_creep_nodes_lie_around_the_edge_of_full_slip():
-    scene = vr.presets.PAPER_SECTION_5
-    nodes = vr.tables.creep_nodes(scene, V, 41, alpha=ALPHA)
-    assert nodes.size == 41
+def test_validation_refuses_a_grid_whose_error_is_the_range_of_a_field():
+    scene, speeds = vr.presets.PAPER_SECTION_5, np.linspace(1e-3, 2e-3, 4)
+    star = vr.contact(scene, speeds[0], delta=0.0).delta_star
+    grid = vr.tables.build(scene, speeds, delta=star * np.array([0.0, 0.99, 0.9999, 0.999999, 1.1]))
+    assert grid.beta.attrs["spline_error"] > 0.9
+    assert [check.name for check in check_table(grid, 2000, 1) if not check.passed] == ["grid: beta, splines"]
+
+
+def test_creep_nodes_have_less_error_than_equal_steps():
+    """Of a material whose onset of full slip falls to a thirtieth at fast speeds."""
+    scene, speeds = vr.Scene(alpha=1000.0, kappa=10.0, mu=0.3), np.geomspace(1e-4, 100.0, 60)
+    nodes = vr.tables.creep_nodes(scene, speeds, 81)
+    assert nodes.size == 81
     assert np.array_equal(nodes, -nodes[::-1])
-    grid = vr.tables.build(scene, V, delta=nodes, alpha=ALPHA)
+    grid = vr.tables.build(scene, speeds, delta=nodes)
     assert (np.abs(grid.Q[:, [0, -1]]) == scene.mu).all()
-    even = vr.tables.build(scene, V, delta=np.linspace(nodes[0], nodes[-1], 41), alpha=ALPHA)
-    star, steps = grid.delta_star.values.ravel(), np.diff(nodes)
-    inside = (nodes[:-1] >= star.min()) & (nodes[1:] <= star.max())
-    assert steps[inside].mean() < np.diff(even.delta).mean()
+    even = vr.tables.build(scene, speeds, delta=np.linspace(nodes[0], nodes[-1], 81))
+    for field in ("Q", "beta"):
+        for way in ("spline_error", "linear_error"):
+            assert grid[field].attrs[way] < 0.7 * even[field].attrs[way]
+
+
+@pytest.mark.parametrize(
+    ("lowest", "highest", "alpha"), [(1e-3, 2.0, [7.0, 11.0, 16.0]), (1e-3, 0.05, [11.0]), (1.0, 2.0, [1.0])]
+)
+def test_splines_slip_where_the_law_slips(lowest, highest, alpha):
+    """At slow speeds and for elastic bodies all onsets of full slip coincide: beside too many nodes there splines
+    reached beta = 1 beyond them."""
+    scene, speeds = vr.presets.PAPER_SECTION_5_ROUNDED, vr.tables.spread(lowest, highest, 41, "log")
+    grid = vr.tables.build(scene, speeds, delta=vr.tables.creep_nodes(scene, speeds, 41, alpha=alpha), alpha=alpha)
+    assert grid.beta.attrs["spline_error"] < tol.ONSET_BETA
+    assert grid.Q.attrs["spline_error"] < tol.ONSET_Q * scene.mu
 
 
 def test_creep_nodes_of_a_cover_reach_full_slip_on_both_sides():

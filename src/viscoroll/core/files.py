@@ -139,15 +139,15 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
     Raises
     ------
     FileError
-        What is no path; a file that cannot be read, is too large, or differs from its seal; netCDF-3, unless a "grid"
-        is expected, which another program may have written so.
+        What is no path; a file that cannot be read, is too large, or differs from its seal; netCDF-3, unless a "law
+        or grid" is expected, of which another program may have written the grid so.
     """
     file = as_path(path)
     with as_file_error(path, "cannot be read", f": it must be a {kind}"):
         if file.is_file() and file.stat().st_size > max_bytes:
             raise FileError(path, f"is not a {kind}: it is larger than {max_bytes} bytes")
         content = file.read_bytes()
-    if content.startswith(b"CDF") and kind != "grid":
+    if content.startswith(b"CDF") and kind != "law or grid":
         problem = "is netCDF-3, which viscoroll writes for other programs and does not read"
         raise FileError(path, f"{problem}: it must be a {kind}, with the suffix .nc")
     if seal_matches(content) is False:

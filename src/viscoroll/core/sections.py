@@ -20,6 +20,10 @@ from .files import as_file_error
 T = TypeVar("T")
 #: Line with the header of a section.
 _HEADER = re.compile(r"\s*\[+\s*([^\]]*?)\s*\]")
+#: Number with a decimal comma as the value of a key.
+_DECIMAL_COMMA = re.compile(r"=\s*([-+]?[\d.]+,\d+)")
+#: List in one line.
+_LIST = re.compile(r"\[[^\]]*\]")
 #: Keys and indices in the path of a msgspec error, as ".prony.E[2]".
 _KEYS = re.compile(r"\w+")
 #: Message of msgspec for a wrong type.
@@ -51,7 +55,22 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
     except (ValueError, RecursionError) as error:  # a ValueError of tomllib, or of Python for a number of 5000 digits
-        raise FileError(path, f"is not TOML ({error})") from error
+        advice = _advise_on_comma(Path(path), str(error))
+        raise FileError(path, f"is not TOML ({error}){advice}") from error
+
+
+def _advise_on_comma(path: Path, problem: str) -> str:
+    """Return advice on a decimal comma in a file that is not TOML, to be appended to the error.
+
+    path: path of the file, which is read again.
+    problem: message of tomllib, which names the line.
+    Returns ": " and words if the value of a key in that line, outside of lists, has a decimal comma, else "".
+    """
+    if number := re.search(r"line (\d+)", problem):
+        line = path.read_text(encoding="utf-8-sig").split("\n")[int(number[1]) - 1]
+        if comma := _DECIMAL_COMMA.search(_LIST.sub("", line)):
+            return f": {comma[1]} must have a decimal point"
+    return ""
 
 
 def as_struct(path: Any, name: str, content: Any, kind: type[T]) -> T:

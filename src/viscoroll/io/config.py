@@ -188,7 +188,7 @@ def read_law_source(path: str | PathLike[str]) -> Any:
     Parameters
     ----------
     path : TOML file with [material] and perhaps [base], or with a preset, [scene] or [cylinder]; or the netCDF file of
-        a material.
+        a material; or the name of a preset.
 
     Returns
     -------
@@ -202,9 +202,10 @@ def read_law_source(path: str | PathLike[str]) -> Any:
         As :func:`read_materials` and :func:`read_roller`, of which the latter reads a file with a preset, [scene] or
         [cylinder]; any other file without [material]; a [base] that does not fit the material.
     """
-    content = {} if Path(path).suffix.lower() == SUFFIX else read_toml(path)
-    if content.keys() & set(SCENES):
-        roller = read_roller(path)
+    known = PRESETS.get(str(path))
+    content = {} if known or Path(path).suffix.lower() == SUFFIX else read_toml(path)
+    if known or content.keys() & set(SCENES):
+        roller = known or read_roller(path)
         return roller if isinstance(roller, Cylinder) else roller.alpha if roller.material is None else roller.material
     found = read_materials(path)
     if "material" not in found:

@@ -9,6 +9,7 @@ import sys
 from collections.abc import Mapping
 from datetime import UTC, datetime
 from os import PathLike
+from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -31,6 +32,8 @@ CHECKSUM = "sha256_of_numbers"
 REMEDY = "write it again by `viscoroll tables law`"
 #: largest file that is read, bytes; laws have less than 10 MB
 _MOST_BYTES = 1 << 27
+#: first bytes of netCDF-4
+_HDF5 = b"\x89HDF"
 #: attribute that names the kind of a file
 KIND = "viscoroll_table"
 #: kind: the law of one material or pair
@@ -257,8 +260,8 @@ def read_law(path: str | PathLike[str]) -> Content:
 
     path: path of the file; a file without a seal is verified by its schema and checksum alone.
     Returns :class:`Content`: ``numbers``, with all variables of the kind, a key of :data:`KINDS`, and ``attributes``.
-    Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no law, is of another
-    schema, lacks a variable, or has one that is not numeric.
+    Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no netCDF, is no law, is
+    of another schema, lacks a variable, or has one that is not numeric.
     """
     try:
         content = read_content(path, "law file of viscoroll", REMEDY)
@@ -266,6 +269,8 @@ def read_law(path: str | PathLike[str]) -> Content:
     except FileError:
         raise
     except Exception as error:  # libraries raise many kinds
+        if not Path(path).read_bytes().startswith(_HDF5):
+            raise FileError(path, "is not netCDF: must be the .nc file of a law or a grid") from error
         raise FileError(path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}") from error
     return content
 

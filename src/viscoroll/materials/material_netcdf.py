@@ -12,7 +12,7 @@ import numpy as np
 from .. import __version__
 from ..core.errors import FileError, ParameterError
 from ..core.files import seal_matches
-from .law_file import read_content
+from .law_file import KIND, KINDS, read_content
 from .measured import Measured
 from .prony import Prony
 
@@ -96,6 +96,10 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
     """
     try:
         numbers, about = read_content(path, "material of this package", "write it again")
+        if str(about.get(KIND)) in KINDS:
+            raise FileError(path, "is not a material file: it is a law, for vr.load_law")
+        if {"V", "Q"} <= numbers.keys():
+            raise FileError(path, "is not a material file: it is a grid, for vr.load_law and vr.tables.interpolate")
         if about.get("schema") != _SCHEMA:
             raise FileError(path, f"is not a material file: its schema is {about.get('schema')!r}, not {_SCHEMA!r}")
         if seal_matches(Path(path).read_bytes()) is None:

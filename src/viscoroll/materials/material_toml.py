@@ -246,7 +246,9 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
             raise section_error(other, section, "file", "file: the file of a material must not name another file")
         return _parse_material(other, section, content[section])
     except FileError as error:
-        raise section_error(path, name, "file", str(error)) from error
+        known = other.suffix.lower() in (SUFFIX, ".toml")
+        advice = "" if known else "; file must be TOML with [material], or the .nc file of a material or its law"
+        raise section_error(path, name, "file", f"{error}{advice}") from error
 
 
 def _material_of_law(path: Path) -> Material:

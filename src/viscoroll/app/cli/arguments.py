@@ -139,7 +139,10 @@ def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = 
 FILE = option("file", metavar="FILE")
 #: A scene or cylinder.
 SCENE = option(
-    "scene", metavar="SCENE", help="TOML file with [scene], [cylinder] (SI units) or preset, or the name of a preset"
+    "scene",
+    metavar="SCENE",
+    help="TOML file with [cylinder] (all numbers are in SI units), or with [scene] or preset (all numbers are "
+    "dimensionless); or the name of a preset (dimensionless)",
 )
 #: Output of a table of numbers: to a file, or to standard output in a format.
 TABLE = [

@@ -126,7 +126,8 @@ example:
     "tables validate": """\
 Compare a law file with the formulas of its relaxation modes at random speeds, or a grid with the law.
 
-The exit code is 1 if an error is larger than the file states.
+The exit code is 1 if an error is larger than twice the one that the file states, or than half of the largest value
+of a field of a grid.
 
 example:
   viscoroll samples

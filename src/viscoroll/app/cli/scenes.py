@@ -17,7 +17,7 @@ _POSITIONS = 101
 #: Largest number of loads without an equilibrium that ``steady`` lists.
 _MOST_LINES = 3
 #: Help of a speed.
-_V_HELP = "velocity of the axis, any sign"
+_V_HELP = "velocity of the axis, any sign; in m/s for [cylinder], divided by R/T_ref for [scene] and presets"
 
 
 def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:

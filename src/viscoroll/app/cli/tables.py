@@ -40,7 +40,8 @@ def _print_size(path: Path) -> None:
 @command(
     "tables law",
     option("file", metavar="MATERIAL", nargs="?",
-           help="TOML file with [material] (and [base]), [scene] or [cylinder], or netCDF file of a material"),
+           help="TOML file with [material] (and [base]), [scene] or [cylinder], netCDF file of a material, or name "
+           "of a preset"),
     option("--alpha", type=_low_high, metavar="LOW:HIGH", help="range of alpha, for example 1:4096; it takes "
         "the place of MATERIAL"),
     output(*_LAW),
@@ -49,7 +50,7 @@ def law(arguments: Namespace) -> None:
     """Write the law of a material, pair or cover, or of every alpha of a range, and print the size of the file.
 
     arguments: parsed command line with
-        file, path of a TOML file or of the netCDF of a material, or None;
+        file, path of a TOML file or of the netCDF of a material, name of a preset, or None;
         alpha, (low, high) of alpha, dimensionless, for the law of every alpha between, or None;
         output, path that is written; its suffix is the format: .nc, .cdf, .h or .json.
     Exactly one of file and alpha must be given.
@@ -115,8 +116,8 @@ def validate(arguments: Namespace) -> int:
     arguments: parsed command line with
         file, path of a law or a grid;
         n, number of random points, a whole number >= 1, 10000 if not given.
-    Returns True, exit code 1, if an error is larger than its check allows (of a law twice the error that the file
-    states, and rounding), else False, exit code 0.
+    Returns True, exit code 1, if an error is larger than its check allows (twice the error that the file states,
+    and rounding; of a grid at most half of the largest value of the field), else False, exit code 0.
     Raises ParameterError for n, FileError for a file that cannot be read or is no table, and for a grid of a material
     or a cylinder.
     """
@@ -154,7 +155,7 @@ def export(arguments: Namespace) -> None:
     "fmu",
     option("file", metavar="MATERIAL_OR_LAW",
            help="TOML with [material], perhaps [base], and perhaps [cylinder], whose numbers are the start values; the "
-           "file of `viscoroll tables law`; or the netCDF of a material"),
+           "file of `viscoroll tables law`; the netCDF of a material; or the name of a preset"),
     option("--model", default="Roller", help="Roller (default) or ContactElement"),
     option("--fmi", type=int, default=2, help="version of the standard: 2 (default) or 3"),
     output(".fmu"),
@@ -166,7 +167,8 @@ def fmu(arguments: Namespace) -> None:
     and a ModelWarning says that its other numbers are not used.
 
     arguments: parsed command line with
-        file, path of a TOML file with a cylinder, a material or a scene, or of the netCDF (.nc) of a law or a material;
+        file, path of a TOML file with a cylinder, a material or a scene, or of the netCDF (.nc) of a law or a material,
+            or name of a preset;
         model, "Roller" (if not given) or "ContactElement";
         fmi, version of the standard, 2 (if not given) or 3;
         output, path of the FMU that is written.
@@ -178,7 +180,10 @@ def fmu(arguments: Namespace) -> None:
     from ...materials.law_file import is_law
 
     path = arguments.file
-    content = {} if Path(path).suffix.lower() == ".nc" else read_toml(path)
+    if path in vr.presets.PRESETS:
+        content: dict[str, object] = {"preset": path}
+    else:
+        content = {} if Path(path).suffix.lower() == ".nc" else read_toml(path)
     source = vr.load_law(path) if not content and is_law(path) else read_law_source(path)
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 NODES_ALLOWED = 1e-12
 #: Ratio by which the error in a random sample may exceed the stated error, which is the largest of another sample.
 SAMPLE_RATIO = 2.0
+#: Largest allowed error of the splines of a grid, divided by the largest value of the field, whatever the grid states:
+#: a bound beyond the range of the field would allow anything.
+_MOST_ALLOWED = 0.5
 #: Kind of the file of a law -> points at which it is checked, and the reference.
 _REFERENCES = {
     LAW: "points, against the formulas of the modes",
@@ -155,10 +158,11 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
       zeta and delta_star relative at each node, of the other fields divided by their largest magnitude.  Allowed are
       1e-12.
     - "grid: NAME, splines": the largest error at ``count`` random points, absolute, in the unit of the field.  Allowed
-      are 2 times the ``spline_error`` that the grid states, plus 2e-15.
+      are 2 times the ``spline_error`` that the grid states, plus 2e-15, and at most half of the largest magnitude of
+      the field at the nodes, unless that is 0.
 
     Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a cylinder, a
-    material, or a version before 1.0); KeyError for a field without ``spline_error``.
+    material, or of version 0.1.0); KeyError for a field without ``spline_error``.
     """
     schema.check(table, source)
     if table.attrs[schema.KIND] != "grid" or not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
@@ -170,7 +174,8 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
     for name in schema.fields_of(table):
         kind = "relative" if name in RELATIVE_FIELDS else "divided by the largest"
         checks.append(Check(f"grid: {name}, nodes", nodes[name], NODES_ALLOWED, f"{kind}; all, against rows"))
-        allowed = SAMPLE_RATIO * float(table[name].attrs["spline_error"]) + ROUNDING
+        most = _MOST_ALLOWED * float(np.abs(table[name]).max()) or np.inf
+        allowed = min(SAMPLE_RATIO * float(table[name].attrs["spline_error"]) + ROUNDING, most)
         meaning = f"absolute; {count} points, against rows"
         checks.append(Check(f"grid: {name}, splines", float(np.max(splines[name])), allowed, meaning))
     return checks

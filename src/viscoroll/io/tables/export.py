@@ -155,7 +155,7 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
 def linear_error(field: xr.DataArray) -> float:
     """Return the stated error of linear interpolation in a field, absolute, in its unit.
 
-    field: variable of a grid.  Its attribute "linear_error" is returned; files before 1.2 state that error as
+    field: variable of a grid.  Its attribute "linear_error" is returned; files of version 0.1.0 state that error as
         "interpolation_error".
     Returns the error; NaN if the field states none, and of an atlas, whose errors are of another interpolation.
     """

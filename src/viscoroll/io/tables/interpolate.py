@@ -36,7 +36,8 @@ class Interpolant:
     table : a Dataset of :func:`viscoroll.io.tables.build` or :func:`viscoroll.io.tables.load`.
         The spline of a field is computed at its first use, from the values at that time.
     linear : whether to interpolate linearly in V, delta and alpha, as look-up blocks do; else by cubic splines in ln V,
-        delta and ln alpha.  Tables over (V, delta) of versions before 1.0 are interpolated linearly in any case.
+        delta and ln alpha.  Tables over (V, delta) that version 0.1.0 wrote are
+        interpolated linearly in any case.
 
     Raises
     ------
@@ -59,12 +60,13 @@ class Interpolant:
 
         table : the grid, dataset of a file or of ``build``.
         linear : whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V, delta and ln
-            alpha; grids of the kinds "literal" and "material" (before 1.0) are always interpolated linearly.
+            alpha; grids of the kinds "literal" and "material" (of version 0.1.0) are always interpolated
+            linearly.
         Raises FileError if it is not a grid, is incomplete or in other units; ParameterError for its mu and load.
         """
-        schema.check(table, "interpolate")
+        schema.check(table, getattr(table, "encoding", {}).get("source", "interpolate"))
         self._table, self._axes = table, schema.axes_of(table)
-        # Files of versions before 1.2 state the errors of linear interpolation in V, delta and alpha.
+        # Files of version 0.1.0 state the errors of linear interpolation in V, delta and alpha.
         self._linear = linear or table.attrs[schema.KIND] in ("literal", "material")
         self._splines: dict[str, tuple[tuple[str, ...], Any]] = {}
         # The law has these bounds; a spline may exceed them near the kink at delta_star.
@@ -244,9 +246,9 @@ def interpolate(table: xr.Dataset, fields: Iterable[str] | None = None, **points
     Tensor not-a-knot cubic spline in ln V, delta and ln alpha, of a lower degree along an axis of fewer than four
     nodes, clipped to |Q| <= mu P and 0 <= beta <= 1; the largest error at random points is stated in ``spline_error``
     of each field, which another point may exceed (``tests/tables/test_grids.py``), and the point in
-    ``spline_error_at``.  Tables over
-    (V, delta) of earlier versions are interpolated linearly, as their files state.  Each call builds the splines anew,
-    which takes most of its time; keep an :class:`Interpolant` for repeated calls.  A law
+    ``spline_error_at``.  The largest errors of beta occur where full slip begins, as beta falls there with a vertical
+    tangent.  Tables over (V, delta) of version 0.1.0 are interpolated linearly, as their files state.  Each call builds
+    the splines anew, which takes most of its time; keep an :class:`Interpolant` for repeated calls.  A law
     (:func:`viscoroll.io.tables.law`, :func:`viscoroll.contact`) has none of these errors.
     """
     return Interpolant(table)(fields, **points)

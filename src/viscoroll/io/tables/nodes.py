@@ -1,4 +1,4 @@
-"""Nodes of the axes of a grid: in equal steps or ratios, and of creepage, dense where full slip begins."""
+"""Nodes of the axes of a grid: in equal steps or ratios, and of creepage, for the onset of full slip at every speed."""
 
 from __future__ import annotations
 
@@ -19,14 +19,9 @@ from . import schema
 
 #: Largest number of nodes of a grid: 400 MB a field, more than any look-up block reads.
 MAX_NODES = 50_000_000
-#: Fraction of the nodes of creepage that lie in equal steps; the others lie as densely as the onsets of full slip.
-#: Of fractions from 0.3 to 1 it has the smallest error of Q and beta in the grid of the paper.
-_EVEN_FRACTION = 0.5
 #: Largest creepage divided by the largest one at which full slip begins: some nodes lie beyond, so that the ends of the
 #: spline are flat.
 _END_RATIO = 1.1
-#: Points at which the density of the onsets is integrated; more move no node by a thousandth of a step.
-_DENSITY_POINTS = 20_001
 
 
 def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"] = "linear") -> Floats:
@@ -67,9 +62,9 @@ def spread(low: float, high: float, count: int, spacing: Literal["linear", "log"
 
 
 def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: ArrayLike | None = None) -> Floats:
-    """Return nodes of creepage for a grid, dense where full slip begins.
+    """Return nodes of creepage for a grid, which resolve the partial slip at every speed and alpha.
 
-    It begins at delta = +-delta_star(V, alpha), of a layer at delta_0 +- delta_star.
+    Full slip begins at delta = +-delta_star(V, alpha), of a layer at delta_0 +- delta_star.
 
     Parameters
     ----------
@@ -84,8 +79,9 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     -------
     array of shape (count,)
         Creepages, dimensionless, ascending, symmetric about 0, which is one of them.  Half of the nodes lie in equal
-        steps, half as densely as the values of delta_star at all (V, alpha), of a layer those of |delta_star +-
-        delta_0|.  The ends are +-1.1 times the largest of these values: there the whole contact slips.
+        steps.  The other half are divided equally among all (V, alpha): those of each lie in equal steps within +-1.1
+        times its delta_star, of a layer its delta_star + |delta_0|.  The ends are +-1.1 times the largest of these
+        values: there the whole contact slips.
 
     Raises
     ------
@@ -110,11 +106,11 @@ def creep_nodes(what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: Arra
     roller = roller if alpha is None else roller.replace(alpha=increasing("alpha", alpha, low=1.0))
     speeds = speeds if alpha is None else speeds[:, np.newaxis]
     found = roller.contact(speeds, delta=0.0, fields=("delta_star", "delta_0"))
-    edges = np.sort(np.abs([found.delta_star + found.delta_0, found.delta_star - found.delta_0]), axis=None)
-    creep = np.linspace(0.0, _END_RATIO * edges[-1], _DENSITY_POINTS)
-    below = np.searchsorted(edges, creep) / edges.size
-    fraction = _EVEN_FRACTION * np.linspace(0.0, 1.0, _DENSITY_POINTS) + (1.0 - _EVEN_FRACTION) * below
-    half = np.interp(np.linspace(0.0, 1.0, count // 2 + 1), fraction, creep)
+    ends = np.sort(_END_RATIO * (found.delta_star + np.abs(found.delta_0)), axis=None)
+    # nodes divided by their number, per creepage; between two ends it is constant
+    density = (1.0 / ends[-1] + np.cumsum(1.0 / ends[::-1])[::-1] / ends.size) / 2.0
+    fraction, places = np.append(0.0, np.cumsum(density * np.diff(ends, prepend=0.0))), np.append(0.0, ends)
+    half = np.interp(np.linspace(0.0, fraction[-1], count // 2 + 1), fraction, places)
     return np.concatenate([-half[:0:-1], half])
 
 

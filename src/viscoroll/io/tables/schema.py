@@ -17,6 +17,7 @@ import numpy as np
 from ... import __version__
 from ...core.errors import FileError
 from ...core.symbols import PAPER, SYMBOLS, attributes
+from ...materials.law_file import KINDS as LAW_KINDS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 SCHEMA_VERSION = "1.4"
 #: Global attribute with the kind of a file.
 KIND = "viscoroll_table"
-#: Kinds of grids; all but the first are of versions before 1.0.
+#: Kinds of grids; all but the first are of version 0.1.0.
 KINDS = ("grid", "atlas", "literal", "material")
 #: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
@@ -129,6 +130,8 @@ def check(table: Any, path: Any) -> None:
     if not hasattr(table, "attrs"):
         raise FileError(path, f"needs a dataset, not {table!r:.60}: read a file by vr.tables.load")
     about = table.attrs
+    if str(about.get(KIND)) in LAW_KINDS:
+        raise FileError(path, "is a law, not a grid: load it by vr.load_law, and evaluate it by vr.contact")
     if str(about.get(KIND)) not in KINDS:
         raise FileError(path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}")
     version, major = about.get("schema_version"), SCHEMA_VERSION.partition(".")[0]

@@ -117,17 +117,27 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     """
     import xarray as xr
 
-    content = io.BytesIO(read_sealed(path, _MOST_BYTES, "grid", "build it again"))
+    content = io.BytesIO(read_sealed(path, _MOST_BYTES, "law or grid", "build it again"))
     try:
         table = xr.load_dataset(content, decode_times=False)
     except Exception:  # libraries raise many kinds
         return None
     if not {"V", "delta", "Q"} <= set(map(str, table.variables)):
         return None
-    for name in (*UNITS, "alpha"):
-        if name in table.variables and not (table[name].size and table[name].dtype.kind in "iuf"):
+    names = [name for name in (*UNITS, "alpha") if name in table.variables]
+    if "M" not in names and not {"M_half_space", "M_cylinder"} <= set(names):
+        raise FileError(path, "is not a grid of a law: variable 'M' is missing: must be given over V")
+    for name in names:
+        if not (table[name].size and table[name].dtype.kind in "iuf"):
             problem = f"is not a grid of a law: {name} = {describe_value(table[name].values)}"
             raise FileError(path, f"{problem}: must be real numbers, at least one")
+        if (bad := ~np.isfinite(table[name].values)).any():
+            first = np.argwhere(bad)[0]
+            place = ", ".join(f"{dim}[{n}]" for dim, n in zip(table[name].dims, first, strict=True))
+            problem = f"is not a grid of a law: {name} = {table[name].values[tuple(first)]} at {place or name}"
+            raise FileError(path, f"{problem}: must be finite")
+        if name in ("V", "delta") and (table[name].size < 2 or (np.diff(table[name].values) <= 0.0).any()):
+            raise FileError(path, f"is not a grid of a law: {name} must increase strictly, over at least two nodes")
     table = _at_alpha(table, path, alpha)
     try:
         return _law_of(_in_si(table))
