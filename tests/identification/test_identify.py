@@ -22,6 +22,8 @@ from experiments import (
 )
 
 import viscoroll as vr
+from viscoroll.app.identification.problem import Minimum
+from viscoroll.app.identification.profile import Likelihood
 from viscoroll.app.identification.report import _product_text
 
 V = HUMP
@@ -280,3 +282,37 @@ def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
         for start in ({}, {"E_1": 72.0, "T_ref": 2e-4})
     )
     assert close(far.chi2, near.chi2, tol.IDENTIFIED)
+
+
+class Slow:
+    """Least squares of one coordinate whose root of chi2 rises to 99 % of the bound at 1, then by 2.8 % of it per unit,
+    or no more.
+    """
+
+    low, high, start, active = np.array([-6.0]), np.array([6.0]), np.array([0.0]), [0]
+
+    def __init__(self, rate):
+        self.rate = rate
+
+    def weighted(self, u):
+        return np.zeros(1), np.ones((1, 1))
+
+    def minimize(self, u, *_):
+        far = abs(u[0])
+        return Minimum(u, tol.CHI2_95 * min(far, 0.99 + self.rate * max(far - 1.0, 0.0)) ** 2)
+
+    def cost(self, u):
+        return self.minimize(u).chi2
+
+    def at_bounds(self, u):
+        return []
+
+
+@pytest.mark.parametrize(("rate", "end"), [(0.028, 1.0 + 0.01 / 0.028), (0.0, None)])
+def test_a_walk_does_not_stop_just_below_the_bound(rate, end):
+    problem = Slow(rate)
+    ends = Likelihood(problem, [problem.minimize(problem.start)]).profile(np.ones(1), tol.CHI2_95).ends
+    if end is None:
+        assert ends == [None, None]
+    else:
+        assert close(ends, [-end, end], tol.INTERVAL, scale=2.0 * end)

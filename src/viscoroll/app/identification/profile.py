@@ -397,8 +397,8 @@ class ProfileWalk:
             a, fa = d, f
             d = a + math.copysign(min(step, abs(reach - a)), reach)
             f = excess(d)
-            rate = max((f - fa) / step, 0.05 * goal / step)
-            step = min(max(-1.05 * f / rate, 0.3 * step), 3.0 * step, _LONGEST_STEP)
+            rise = max(f - fa, -0.35 * f)  # at most three times the step
+            step = min(max(-1.05 * f / rise, 0.3) * step, _LONGEST_STEP)
         end = brentq(excess, a, d, xtol=_CLOSE * min(self.sd, 1.0))
         return end, found[min(found, key=lambda d: abs(d - end))]
 
