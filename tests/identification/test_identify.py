@@ -108,6 +108,23 @@ def test_slow_rolling_tells_a_product_alone():
     assert "E, E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
 
 
+def test_a_product_that_a_range_limits_is_told():
+    """Slow rolling tells E_1 T_ref; E_1 and E_1/T_ref end where T_ref comes to an end of its range."""
+    plan = vr.Resistance(np.repeat(SLOW[0], 2), sigma=1e-3)
+    fit = vr.identify(roller(), {"E_1": (5.0, 20.0), "T_ref": (0.8e-3, 1.2e-3)}, [plan])
+    ratio = fit.products()[1]
+    assert ratio.powers == {"E_1": 1.0, "T_ref": -1.0}
+    assert ratio.limited_by == fit._likelihood.axes(tol.CHI2_95)[0].limited_by == [["T_ref"], ["T_ref"]]
+    assert "E_1 T_ref^-1 = 9000 (95%: -32 % to +60 %, both ends by the range of T_ref)" in str(fit)
+
+
+def test_a_product_by_slopes_is_told_to_hold_near_the_values():
+    V = 0.3 * np.ones(3)
+    fit = vr.identify(roller(), ranges("E", "T_ref"), [vr.Resistance(V, sigma=0.01)])
+    assert any(product.near for product in fit.products())
+    assert "linearised, valid only while each unknown changes by less than a fifth" in str(fit)
+
+
 # --- what is not a fit of one minimum of good data ---
 
 
