@@ -109,13 +109,16 @@ def test_slow_rolling_tells_a_product_alone():
 
 
 def test_a_product_that_a_range_limits_is_told():
-    """Slow rolling tells E_1 T_ref; E_1 and E_1/T_ref end where T_ref comes to an end of its range."""
-    plan = vr.Resistance(np.repeat(SLOW[0], 2), sigma=1e-3)
-    fit = vr.identify(roller(), {"E_1": (5.0, 20.0), "T_ref": (0.8e-3, 1.2e-3)}, [plan])
-    ratio = fit.products()[1]
-    assert ratio.powers == {"E_1": 1.0, "T_ref": -1.0}
+    """M at one speed tells a product; E and E/T_ref end where T_ref comes to an end of its range."""
+    plan = vr.Resistance([2.0, 2.0], sigma=1e-3)
+    fit = vr.identify(roller(), {"E": (1e6, 1e7), "T_ref": (0.8e-3, 1.2e-3)}, [plan])
+    known, ratio = fit.products()
+    assert known.limited_by == [["T_ref"], []]
+    assert ratio.powers == {"E": -1.0, "T_ref": 1.0}
     assert ratio.limited_by == fit._likelihood.axes(tol.CHI2_95)[0].limited_by == [["T_ref"], ["T_ref"]]
-    assert "E_1 T_ref^-1 = 9000 (95%: -32 % to +60 %, both ends by the range of T_ref)" in str(fit)
+    said = str(fit)
+    assert "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end by the range of T_ref) and" in said
+    assert "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are determined" in said
 
 
 def test_a_product_by_slopes_is_told_to_hold_near_the_values():

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from functools import cache
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -232,8 +232,11 @@ class Likelihood:
         found, values = [], self.problem.values(self.best.u)
         for powers in family:
             half, centre = math.sqrt(delta_chi2 * (powers @ self.cov @ powers)), powers @ self.best.u
-            by_slopes = [centre - half, centre + half], [[], []]
-            (low, high), limits = by_slopes if near else self.profile(powers, delta_chi2)[:2]
+            ends: list[Any] = [centre - half, centre + half]
+            limits: list[list[str]] = [[], []]
+            if not near:
+                ends, limits, *_ = self.profile(powers, delta_chi2)
+            low, high = ends
             if low is None or high is None or high - low > _NARROW:
                 break
             exponents = {
