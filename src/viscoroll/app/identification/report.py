@@ -263,7 +263,7 @@ def as_json(fit: Any) -> dict[str, Any]:
     "source", name and version of this package; "unknowns", name -> {"value", "stderr", "interval"} (the interval at 95
     %, two numbers, None on a side that is open; stderr None of an unknown that does not act); "says", a list of the
     sentences of the report on noise and limits; "products", a list of dicts with the fields of
-    :class:`.profile.Product` (powers, value, low, high, near); "correlations", a list of rows; "noise", "QUANTITY of
+    :class:`.profile.Product` (powers, value, low, high, near, limited_by); "correlations", a list of rows; "noise", "QUANTITY of
     RECORD" -> a dict with the fields of :class:`.problem.Noise` (rms, lag, allowed, is_noise); and "sigma", "QUANTITY
     of RECORD" -> standard deviation of the first point.
     """
