@@ -263,9 +263,9 @@ def as_json(fit: Any) -> dict[str, Any]:
     "source", name and version of this package; "unknowns", name -> {"value", "stderr", "interval"} (the interval at 95
     %, two numbers, None on a side that is open; stderr None of an unknown that does not act); "says", a list of the
     sentences of the report on noise and limits; "products", a list of dicts with the fields of
-    :class:`.profile.Product` (powers, value, low, high, near, limited_by); "correlations", a list of rows; "noise", "QUANTITY of
-    RECORD" -> a dict with the fields of :class:`.problem.Noise` (rms, lag, allowed, is_noise); and "sigma", "QUANTITY
-    of RECORD" -> standard deviation of the first point.
+    :class:`.profile.Product` (powers, value, low, high, near, limited_by); "correlations", a list of rows; "noise",
+    "QUANTITY of RECORD" -> a dict with the fields of :class:`.problem.Noise` (rms, lag, allowed, is_noise); and
+    "sigma", "QUANTITY of RECORD" -> standard deviation of the first point.
     """
     fields = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
