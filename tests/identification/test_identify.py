@@ -22,6 +22,8 @@ from experiments import (
 )
 
 import viscoroll as vr
+from viscoroll.app.identification.problem import Minimum
+from viscoroll.app.identification.profile import Likelihood
 from viscoroll.app.identification.report import _product_text
 
 V = HUMP
@@ -104,6 +106,26 @@ def test_slow_rolling_tells_a_product_alone():
     text = str(fit)
     assert "the data do not depend on mu" in text
     assert "E, E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
+
+
+def test_a_product_that_a_range_limits_is_told():
+    """M at one speed tells a product; E and E/T_ref end where T_ref comes to an end of its range."""
+    plan = vr.Resistance([2.0, 2.0], sigma=1e-3)
+    fit = vr.identify(roller(), {"E": (1e6, 1e7), "T_ref": (0.8e-3, 1.2e-3)}, [plan])
+    known, ratio = fit.products()
+    assert known.limited_by == [["T_ref"], []]
+    assert ratio.powers == {"E": -1.0, "T_ref": 1.0}
+    assert ratio.limited_by == fit._likelihood.axes(tol.CHI2_95)[0].limited_by == [["T_ref"], ["T_ref"]]
+    said = str(fit)
+    assert "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end by the range of T_ref) and" in said
+    assert "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are determined" in said
+
+
+def test_a_product_by_slopes_is_told_to_hold_near_the_values():
+    V = 0.3 * np.ones(3)
+    fit = vr.identify(roller(), ranges("E", "T_ref"), [vr.Resistance(V, sigma=0.01)])
+    assert any(product.near for product in fit.products())
+    assert "linearised, valid only while each unknown changes by less than a fifth" in str(fit)
 
 
 # --- what is not a fit of one minimum of good data ---
@@ -280,3 +302,37 @@ def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
         for start in ({}, {"E_1": 72.0, "T_ref": 2e-4})
     )
     assert close(far.chi2, near.chi2, tol.IDENTIFIED)
+
+
+class Slow:
+    """Least squares of one coordinate whose root of chi2 rises to 99 % of the bound at 1, then by 2.8 % of it per unit,
+    or no more.
+    """
+
+    low, high, start, active = np.array([-6.0]), np.array([6.0]), np.array([0.0]), [0]
+
+    def __init__(self, rate):
+        self.rate = rate
+
+    def weighted(self, u):
+        return np.zeros(1), np.ones((1, 1))
+
+    def minimize(self, u, *_):
+        far = abs(u[0])
+        return Minimum(u, tol.CHI2_95 * min(far, 0.99 + self.rate * max(far - 1.0, 0.0)) ** 2)
+
+    def cost(self, u):
+        return self.minimize(u).chi2
+
+    def at_bounds(self, u):
+        return []
+
+
+@pytest.mark.parametrize(("rate", "end"), [(0.028, 1.0 + 0.01 / 0.028), (0.0, None)])
+def test_a_walk_does_not_stop_just_below_the_bound(rate, end):
+    problem = Slow(rate)
+    ends = Likelihood(problem, [problem.minimize(problem.start)]).profile(np.ones(1), tol.CHI2_95).ends
+    if end is None:
+        assert ends == [None, None]
+    else:
+        assert close(ends, [-end, end], tol.INTERVAL, scale=2.0 * end)

@@ -201,7 +201,7 @@ def find_line(text: str, name: str, key: str) -> int | None:
     """Return the number of the line that sets a key, for an error.
 
     text: content of the file, TOML.
-    name: name of the section, as "material.prony", "" for the top level.
+    name: name of the section, as "material.prony", "" for the top level; of the second of several [[data]] "data 2".
     key: key in the section, "" for the section itself.
     Returns the number, from 1, of the first line that sets the key or is the header of that subsection; if there is
     none, that of the header of the section; if there is none and the name has a point, as of an inline table
@@ -210,10 +210,13 @@ def find_line(text: str, name: str, key: str) -> int | None:
     full = f"{name}.{key}" if name else key
     plain = re.compile(rf"\s*[\"']?{re.escape(key)}[\"']?\s*[=.]")
     dotted = re.compile(rf"\s*{re.escape(full)}\s*[=.]")
-    header, header_line = "", None
+    header, header_line, tables = "", None, []
     for number, line in enumerate(text.splitlines(), 1):
         if found := _HEADER.match(line):
             header = found.group(1)
+            if line.lstrip().startswith("[["):
+                tables.append(header)
+                header += f" {tables.count(header)}" * (tables.count(header) > 1)
             if header == full:
                 return number
             if header == name:

@@ -205,9 +205,10 @@ class Identification(Result):
         -------
         list[Product]
             :class:`.profile.Product`, each with ``.powers`` (name -> exponent), ``.value`` (at the best fit, of the
-            magnitudes of SI values), ``.low`` and ``.high`` (both divided by ``value``) and ``.near`` (whether it holds
-            near the values found only); of either kind the best determined first.  It is empty where fewer than two
-            unknowns are undetermined, or no product has an interval that is closed and at most a factor of e long.
+            magnitudes of SI values), ``.low`` and ``.high`` (both divided by ``value``), ``.near`` (whether it holds
+            near the values found only) and ``.limited_by`` (for each end the names of unknowns whose range, not the
+            data, limits it); of either kind the best determined first.  It is empty where fewer than two unknowns are
+            undetermined, or no product has an interval that is closed and at most a factor of e long.
 
         Raises
         ------

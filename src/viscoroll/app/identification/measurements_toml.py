@@ -13,7 +13,7 @@ from typing import Any
 import msgspec
 
 from ...core.errors import FileError, ModelWarning, ParameterError, caller_level, described_error
-from ...core.sections import as_struct, check_keys, read_toml, section_error
+from ...core.sections import as_struct, check_keys, read_toml, section_error, suggestion
 from ...cylinder import Cylinder
 from ...io.config import read_roller
 from ...io.measurements import column_in_unit, find_column, missing_column, named_table
@@ -69,12 +69,12 @@ def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
             header = "[[data]]" if kind is list else f"[{section}]"
             found = f"{section} = {given!r:.40}: must be a section {header}"
             raise section_error(path, "", section, found if section in content else f"section {header} is missing")
-    data = [_record(Path(path), section) for section in content["data"]]
+    data = [_record(Path(path), section, number) for number, section in enumerate(content["data"], 1)]
     ranges = {name: content[name] for name in ("unknown", "prior")}
     return {"cylinder": cylinder, "data": data, "shift": parse_shifts(path, content)} | ranges
 
 
-def _record(path: Path, content: Any) -> Record:
+def _record(path: Path, content: Any, number: int) -> Record:
     """Return the record of one [[data]].
 
     path : path of the TOML file, from whose folder files of data are found.
@@ -85,19 +85,24 @@ def _record(path: Path, content: Any) -> Record:
         columns, name -> heading, and units, name -> unit, both optional;
         fields of the record but coordinates and quantities, as sigma, load or V0, in SI units, all optional; "unknown"
         stands for None, but for a name.
+    number : which of the sections [[data]] it is, from 1.
     Returns a :class:`Resistance`, :class:`Traction` or :class:`Coastdown`, a plan where the file has no quantity.
     Raises FileError for unknown keys, wrong types, values that make no record, and as :func:`_columns` does, whose
     ParameterError becomes a FileError too.
     """
-    kind = _KINDS.get(str(content.get("kind"))) if isinstance(content, dict) else None
+    header = f"data {number}" if number > 1 else "data"
+    given = content.get("kind") if isinstance(content, dict) else None
+    kind = _KINDS.get(str(given))
     if kind is None:
-        raise FileError(path, f"[[data]] kind: must be one of {', '.join(_KINDS)}")
+        found = "needs kind" if given is None else f"kind = {given!r:.40}"
+        problem = f"{found}: must be one of {', '.join(_KINDS)}{suggestion(str(given), _KINDS)}"
+        raise section_error(path, header, "kind", problem)
     columns = (*kind.COORDINATES, *kind.QUANTITIES)
     fields = (field for field in dataclasses.fields(kind) if field.init and field.name not in columns)
     own = [(field.name, Any, field.default) for field in fields]
-    section: Any = as_struct(path, "data", content, msgspec.defstruct("Data", [*_SECTION, *own]))
+    section: Any = as_struct(path, header, content, msgspec.defstruct("Data", [*_SECTION, *own]))
     for name in ("columns", "units"):
-        check_keys(path, f"data.{name}", getattr(section, name), columns)
+        check_keys(path, f"{header}.{name}", getattr(section, name), columns)
     more: Any = {name: getattr(section, name) for name, *_ in own}
     more = {name: None if value == _UNKNOWN and name != "name" else value for name, value in more.items()}
     try:

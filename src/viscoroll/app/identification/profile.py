@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable, Iterator
 from functools import cache
 from operator import attrgetter
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -82,6 +82,8 @@ class Product(NamedTuple):
     low, high : ends of its interval, divided by ``value``, dimensionless: low <= 1 <= high.
     near : True: the interval is by the slopes at the best fit, and the product holds within about a fifth of the values
         found; farther off other exponents hold.  False: the interval is a profile.
+    limited_by : two lists, for the lower and the upper end, of the names of unknowns whose range, not the data, limits
+        that end; [] where the data alone do, and where ``near`` is True.
     """
 
     powers: dict[str, float]
@@ -89,6 +91,7 @@ class Product(NamedTuple):
     low: float
     high: float
     near: bool
+    limited_by: list[list[str]]
 
 
 class Likelihood:
@@ -106,6 +109,9 @@ class Likelihood:
         fit are searched; those within 1e-6 of the best are left out.
     ends : coordinates of points at the ends of all intervals, (unknowns,) each, further starts of that search; empty
         until :meth:`axes` meets an open interval.
+    minimize : a function of coordinates and powers, as bytes of float64 arrays, that returns the
+        :class:`.problem.Minimum` from there with the combination of these powers fixed, and keeps it, as profiles that
+        are computed again with further starts begin with the same searches.
     """
 
     def __init__(self, problem: Problem, found: list[Minimum]) -> None:
@@ -126,6 +132,9 @@ class Likelihood:
         self.others = [v for v in (*(minimum.u for minimum in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
         self.ends: list[Floats] = []
         self._profiles = cache(lambda delta_chi2, *powers: ProfileWalk(self, np.array(powers), delta_chi2).profile())
+        self.minimize = cache(
+            lambda u, powers: problem.minimize(np.frombuffer(u), np.frombuffer(powers), _TOLERANCE, _EVALUATIONS)
+        )
 
     def profile(self, powers: Floats, delta_chi2: float) -> Profile:
         """Return the interval of a combination of coordinates within which chi2 rises by no more than a bound.
@@ -223,7 +232,11 @@ class Likelihood:
         found, values = [], self.problem.values(self.best.u)
         for powers in family:
             half, centre = math.sqrt(delta_chi2 * (powers @ self.cov @ powers)), powers @ self.best.u
-            low, high = (centre - half, centre + half) if near else self.profile(powers, delta_chi2).ends
+            ends: list[Any] = [centre - half, centre + half]
+            limits: list[list[str]] = [[], []]
+            if not near:
+                ends, limits, *_ = self.profile(powers, delta_chi2)
+            low, high = ends
             if low is None or high is None or high - low > _NARROW:
                 break
             exponents = {
@@ -231,7 +244,7 @@ class Likelihood:
                 for unknown, p in zip(self.problem.unknowns, powers.tolist(), strict=True) if p
             }  # fmt: skip
             value = math.prod(abs(values[name]) ** p for name, p in exponents.items())
-            found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near))
+            found.append(Product(exponents, value, math.exp(low - centre), math.exp(high - centre), near, limits))
         return found
 
     def _combinations_by_points(self, which: list[int], delta_chi2: float) -> Iterator[Floats]:
@@ -321,7 +334,7 @@ class ProfileWalk:
         Returns the :class:`.problem.Minimum`, within the ranges, to a relative tolerance of 1e-5, or the best point
         that 30 evaluations found; its distance may differ from d where the ranges do not allow d.
         """
-        self.visited.append(self.problem.minimize(self.shift_to(d, u), self.powers, _TOLERANCE, _EVALUATIONS))
+        self.visited.append(self.likelihood.minimize(self.shift_to(d, u).tobytes(), self.powers.tobytes()))
         return self.visited[-1]
 
     def is_below(self, minimum: Minimum, part: float = 1.0) -> bool:
@@ -397,8 +410,8 @@ class ProfileWalk:
             a, fa = d, f
             d = a + math.copysign(min(step, abs(reach - a)), reach)
             f = excess(d)
-            rate = max((f - fa) / step, 0.05 * goal / step)
-            step = min(max(-1.05 * f / rate, 0.3 * step), 3.0 * step, _LONGEST_STEP)
+            rise = max(f - fa, -0.35 * f)  # at most three times the step
+            step = min(max(-1.05 * f / rise, 0.3) * step, _LONGEST_STEP)
         end = brentq(excess, a, d, xtol=_CLOSE * min(self.sd, 1.0))
         return end, found[min(found, key=lambda d: abs(d - end))]
 
@@ -429,19 +442,20 @@ class ProfileWalk:
     def limiting_bounds(self, u: Floats) -> list[str]:
         """Return the names of unknowns at a bound beyond which chi2 would fall, with the combination fixed.
 
-        Such a bound, not the data, limits the interval.  Unknowns of the combination itself are left out.
+        Such a bound, not the data, limits the interval.  The unknown of a combination of one is left out.
 
         u : coordinates at the end of an interval, (unknowns,).
         Returns a list of names, ascending by index, of those unknowns without whose bound chi2 would fall by more than
         2 % of ``delta_chi2``, by the slopes at u.  Each is tried by itself: the unknowns that act and lie at no bound
-        are free, but for the first of the combination, which is held for it.  [] where no unknown that acts, outside of
-        the combination, lies at a bound, or none limits the interval.
+        are free, but for one of the combination, which follows from the others.  [] where no such unknown lies at a
+        bound, or none limits the interval.
         """
-        problem = self.problem
-        if not (at := [i for i in problem.at_bounds(u) if i in problem.active and not self.powers[i]]):
+        problem, together, bounds = self.problem, np.flatnonzero(self.powers), self.problem.at_bounds(u)
+        follows = next((i for i in together if i not in bounds), together[0])
+        if not (at := [i for i in bounds if i in problem.active and i != follows]):
             return []
-        (r, J), others = problem.weighted(u), [i for i in problem.active if i not in at]
-        others.remove(np.flatnonzero(self.powers)[0])
+        (r, J), others = problem.weighted(u), [i for i in problem.active if i not in (*at, follows)]
+        J = J - np.outer(J[:, follows], self.powers / self.powers[follows])
         own = J[:, at] - J[:, others] @ np.linalg.lstsq(J[:, others], J[:, at], rcond=None)[0]
         gains = (r @ own) ** 2 / np.maximum((own**2).sum(axis=0), 1e-300)
         return [problem.names[i] for i, gain in zip(at, gains, strict=True) if gain > _LIMITS * self.delta_chi2]

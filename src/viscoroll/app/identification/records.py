@@ -220,7 +220,7 @@ class Resistance(Record):
     V : speeds, m/s, any sign, (n,) or one number.
     M : rolling moments, N m per m of length, (n,), the torque of the bearing included, as on the shaft of a drum; its
         sign is that of V where it resists.
-    F : pulling forces M/R, N/m, in place of M or beside it.  A record without both is a plan.
+    F : pulling forces M/R, N/m, of the sign of M, in place of M or beside it.  A record without both is a plan.
     sigma : standard deviation of M or F, in its unit, a number or one for each point; of both {"M": ..., "F": ...}.
         None: estimated from the residuals.
     load : load of this record, N/m; None: the cylinder's.
@@ -232,7 +232,7 @@ class Resistance(Record):
     ------
     ParameterError
         Values that are not finite, with their row, or of another unit (``attrs["units"]``), sigma <= 0, a load that is
-        not > 0.
+        not > 0; M or F of which all values drive, by more than three sigma where it is given.
 
     Examples
     --------
@@ -248,6 +248,19 @@ class Resistance(Record):
     M: Numbers | None = None
     _: KW_ONLY
     F: Numbers | None = None
+
+    def __post_init__(self) -> None:
+        """Check the sign of M and F beside all that every record checks.
+
+        Raises ParameterError as :meth:`Record.__post_init__` does, and where all values of M or F have the sign that is
+        opposite to V, by more than three sigma where it is given.
+        """
+        super().__post_init__()
+        for name in self.measured:
+            noise = 0.0 if self.sigma[name] is None else 3.0 * self.sigma[name]
+            if (getattr(self, name) * np.sign(self.V) < -noise).all():
+                allowed = "of the sign of V, as it resists: reverse its sign"
+                raise described_error(self.label(name), "has at all points the sign opposite to V", allowed)
 
     def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
         """Predict rolling moment and pulling force of free rolling, the torque of the bearing included.

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 _FEW = 5
 #: correlation from which on the report names it
 _CLOSE = 0.9
+#: where a product by slopes holds
+_NEAR = "linearised, valid only while each unknown changes by less than a fifth"
 #: fall of chi2 below the best fit from which on the report names a point of a profile
 _BETTER = 0.1
 
@@ -120,8 +122,9 @@ def _products(fit: Any) -> str:
     """Return a sentence on the products of unknowns that the data determine.
 
     fit : a :class:`viscoroll.app.identification.Identification`.
-    Returns a sentence with the products that hold over the whole intervals, then those that hold near the values found;
-    with the latter alone if there are no others, and one that says so if there are none at all.
+    Returns a sentence with the products that hold over the whole intervals, then those that hold near the values found
+    only, with the distance to which they do; with the latter alone if there are no others, and one that says so if
+    there are none at all.
     """
     found = fit.products()
     sure, near = (
@@ -132,25 +135,29 @@ def _products(fit: Any) -> str:
         return "the data determine no product of their powers"
     text = f"only {sure or near} {'are' if ' and ' in (sure or near) else 'is'} determined"
     more = f"; near these values also {near}, more precisely" if sure else ", near these values"
-    return text + more * bool(near)
+    return text + f"{more}: {_NEAR}" * bool(near)
 
 
 def _product_text(product: Any, values: dict[str, float]) -> str:
     """Return a product as text, as "E T_ref^0.5 = 1200 (95%: -2 % to +2 %)", the exponent of largest absolute value
     first.
 
-    The value is in SI units without their names, the ends of the interval are relative to it.  Exponents of equal
-    absolute value stay in the order of the product; an exponent of 1 is not written.
+    The value is in SI units without their names, the ends of the interval are relative to it.  An end that the range of
+    an unknown limits is named, as "the lower end by the range of nu".  Exponents of equal absolute value stay in the
+    order of the product; an exponent of 1 is not written.
 
-    product : a :class:`.profile.Product`, of which powers, value, low and high (both as ratios to value) are read; its
-        interval is at the level 0.95.
+    product : a :class:`.profile.Product`, whose low and high are ratios to its value; its interval is at the level
+        0.95.
     values : name -> value of the unknowns, SI; the name of a negative one is put between bars, as "|V0|^0.5".
     """
     powers = sorted(product.powers.items(), key=lambda item: -abs(item[1]))
     names = {name: f"|{name}|" if values[name] < 0.0 else name for name in product.powers}
     text = " ".join(names[name] if p == 1.0 else f"{names[name]}^{p:.3g}" for name, p in powers)
     low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (product.low, product.high))
-    return f"{text} = {product.value:.4g} (95%: {low} to {high})"
+    lower, upper = (" and ".join(bounds) for bounds in product.limited_by)
+    ends = {"both ends": lower} if lower == upper else {"the lower end": lower, "the upper end": upper}
+    limits = "".join(f", {end} by the range of {bounds}" for end, bounds in ends.items() if bounds)
+    return f"{text} = {product.value:.4g} (95%: {low} to {high}{limits})"
 
 
 def _interval_limits(fit: Any) -> Iterator[str]:
@@ -256,9 +263,9 @@ def as_json(fit: Any) -> dict[str, Any]:
     "source", name and version of this package; "unknowns", name -> {"value", "stderr", "interval"} (the interval at 95
     %, two numbers, None on a side that is open; stderr None of an unknown that does not act); "says", a list of the
     sentences of the report on noise and limits; "products", a list of dicts with the fields of
-    :class:`.profile.Product` (powers, value, low, high, near); "correlations", a list of rows; "noise", "QUANTITY of
-    RECORD" -> a dict with the fields of :class:`.problem.Noise` (rms, lag, allowed, is_noise); and "sigma", "QUANTITY
-    of RECORD" -> standard deviation of the first point.
+    :class:`.profile.Product` (powers, value, low, high, near, limited_by); "correlations", a list of rows; "noise",
+    "QUANTITY of RECORD" -> a dict with the fields of :class:`.problem.Noise` (rms, lag, allowed, is_noise); and
+    "sigma", "QUANTITY of RECORD" -> standard deviation of the first point.
     """
     fields = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
     sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
