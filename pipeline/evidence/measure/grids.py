@@ -2,7 +2,7 @@
 
     python -m pipeline.evidence.measure.grids [-o FILE]
 
-Reads out/benchmark.csv (make out/benchmark.csv).  pipeline/evidence/document/ puts a sentence of it into README.md.
+Reads out/benchmark.csv (make benchmark).  pipeline/evidence/document/ puts a sentence of it into README.md.
 """
 
 from __future__ import annotations
