@@ -76,6 +76,13 @@ def test_a_window_of_two_decades(seed):
     speeds = first.V / fit.T_ref
     true = moment(vr.Prony(STRENGTHS / E, tau), np.sqrt(E / fit.E), speeds)
     assert close(first.M_fit, true, tol.DMA_WINDOW_MOMENT)
+    changes = (first.M / first.M_fit - 1.0)[[0, speeds.size // 2, -1]]
+    assert f"M: {', '.join(f'{change:+.2%}' for change in changes)}" in str(fit)
+
+
+def test_data_of_less_than_an_octave_tell_of_no_speed():
+    fit = vr.fit_prony(*curve(np.linspace(1.0, 1.9, 5)), misfit=0.1)
+    assert "M: no speed" in str(fit)
 
 
 @settings(max_examples=15, deadline=None)
