@@ -76,6 +76,13 @@ def test_a_window_of_two_decades(seed):
     speeds = first.V / fit.T_ref
     true = moment(vr.Prony(STRENGTHS / E, tau), np.sqrt(E / fit.E), speeds)
     assert close(first.M_fit, true, tol.DMA_WINDOW_MOMENT)
+    changes = (first.M / first.M_fit - 1.0)[[0, speeds.size // 2, -1]]
+    assert f"M: {', '.join(f'{change:+.2%}' for change in changes)}" in str(fit)
+
+
+def test_data_of_less_than_an_octave_tell_of_no_speed():
+    fit = vr.fit_prony(*curve(np.linspace(1.0, 1.9, 5)), misfit=0.1)
+    assert "M: no speed" in str(fit)
 
 
 @settings(max_examples=15, deadline=None)
@@ -396,6 +403,8 @@ def test_what_was_measured_stays_with_the_material():
     data = vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv")
     fit = vr.fit_prony(*data, source="dma.csv")
     assert fit.material(0.5).measured == vr.Measured(data[0].min(), data[0].max(), max(fit.misfit), "dma.csv")
-    poor = vr.Cylinder(R=0.1, m=30.0, material=vr.fit_prony(*data, 1).material(0.5), mu=0.5).validity(0.1).measured
+    with pytest.warns(vr.ModelWarning, match=r"the misfit of 1.00% was not reached \(\d"):
+        rubber = vr.fit_prony(*data, 1).material(0.5)
+    poor = vr.Cylinder(R=0.1, m=30.0, material=rubber, mu=0.5).validity(0.1).measured
     assert not poor.holds
     assert "25 points" in poor.sentence

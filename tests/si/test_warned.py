@@ -65,6 +65,14 @@ def test_a_word_once_a_material_and_none_in_workers(monkeypatch, worker):
     assert [(each.category, each.filename) for each in found] == [(vr.ModelWarning, __file__)] * (not worker)
 
 
+def test_a_temperature_in_kelvin_is_said_once_for_a_line():
+    """A material is made by ``dataclasses.replace``, whose frame is no line of the program."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("default")
+        RUBBER.at(293.15, shift=vr.WLF(T0=20.0))
+    assert [(each.category, each.filename) for each in found] == [(vr.ModelWarning, __file__)]
+
+
 @pytest.mark.parametrize(
     "call",
     [

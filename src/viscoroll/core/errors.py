@@ -19,11 +19,7 @@ import sys
 from collections.abc import Collection, Iterable
 from datetime import date, timedelta
 from enum import IntEnum
-from pathlib import Path
 from typing import Any
-
-#: Folder of the package, by which its frames are told from those of the user's program.
-_PACKAGE = str(Path(__file__).parents[1])
 
 
 class ViscorollError(Exception):
@@ -329,13 +325,18 @@ _MESSAGES = (
 )
 
 
-def caller_level() -> int:
-    """Return the number of frames from the caller up to the first one outside this package, both counted, >= 2.
+#: modules whose frames are no lines of a user's program
+_PASSED_OVER = "viscoroll", "dataclasses"
 
-    It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.  If all frames are
-    those of this package, the outermost one counts.
+
+def caller_level() -> int:
+    """Return the number of frames from the caller up to the first one outside this package, both counted, >= 1.
+
+    It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.  Frames of the
+    module dataclasses, whose ``replace`` calls back, are passed over too.  If all frames are those of this package,
+    the outermost one counts.
     """
-    level, frame = 2, sys._getframe(2)
-    while frame.f_back is not None and _PACKAGE in frame.f_code.co_filename:
+    level, frame = 1, sys._getframe(1)
+    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in _PASSED_OVER:
         level, frame = level + 1, frame.f_back
     return level

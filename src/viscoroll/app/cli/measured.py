@@ -110,7 +110,6 @@ def fit(arguments: Namespace) -> int:
     Returns 1, and writes nothing, if the fit is faulty and force is not given; else 0.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
-    from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.material_toml import material_as_toml
 
     units = arguments.units and tuple(arguments.units.split(","))
@@ -126,16 +125,13 @@ def fit(arguments: Namespace) -> int:
     options = {name: getattr(arguments, name) for name in ("modes", "misfit", "temperature", "reference", "on")}
     result = vr.fit_prony(record, **options, shift=arguments.wlf and _wlf(arguments.wlf))
     print(result)
-    material, path, fault = result.material(arguments.nu, name=arguments.name), arguments.output, ""
-    if not result.reached:
-        fault = f"the misfit of {arguments.misfit:.2%} was not reached ({result.largest_misfit:.2%})"
-    elif result.largest_misfit > MISFIT_LIMIT:
-        fault = f"the misfit of {result.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}"
-    if fault:
+    path, fault = arguments.output, result._fault
+    if fault and not arguments.force:
         refusal = f"; {path} is not written: raise --misfit, or write it with --force" if path else ""
-        print(f"viscoroll: {fault}{'' if arguments.force else refusal}", file=sys.stderr)
-        if not arguments.force:
-            return 1
+        print(f"viscoroll: {fault}{refusal}", file=sys.stderr)
+        return 1
+    material = result.material(arguments.nu, name=arguments.name)
+    if fault:
         measured: Any = material.measured
         material = replace(material, measured=replace(measured, source=f"{measured.source}; forced: {fault}"))
     if path is not None and path.suffix.lower() == ".nc":

@@ -145,7 +145,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stdout = io.StringIO()
     try:
         with warnings.catch_warnings():
-            warnings.showwarning = _print_warning
+            warnings.showwarning = partial(_print_warning, set())
             return _run(sys.argv[1:] if argv is None else argv)
     except (ViscorollError, ImportError) as error:
         return _print_error(error)
@@ -184,14 +184,18 @@ def _run(argv: Sequence[str]) -> int:
     return code
 
 
-def _print_warning(message: Warning | str, *_: Any, **__: Any) -> None:
-    """Print a warning in one line on standard error.
+def _print_warning(printed: set[str], message: Warning | str, *_: Any, **__: Any) -> None:
+    """Print a warning in one line on standard error, unless it was printed.
 
-    Other arguments are not used: the signature is that of ``warnings.showwarning``.
+    Python forgets that it has shown a warning where a filter is set, as imports of SciPy do.  Other arguments are not
+    used: the signature, without the first argument, is that of ``warnings.showwarning``.
 
+    printed: texts of the warnings that were printed; that of the message is added.
     message: the warning.
     """
-    _print_line(f"warning: {message}")
+    if str(message) not in printed:
+        printed.add(str(message))
+        _print_line(f"warning: {message}")
 
 
 def _print_error(error: object) -> int:

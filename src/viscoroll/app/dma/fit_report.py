@@ -59,11 +59,12 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
     yield from _of_relaxation(symbol) if fit.data._fields[0] == "t" else _of_dynamic(fit, symbol)
     yield "outside", _outside(fit)
-    yield "wider", "fits with a wider range of times, two times per decade:"
+    where = "M at the lowest, middle and highest speed inside the measured band"
+    yield "wider", f"fits with a wider range of times, two times per decade; {where}:"
     for other in fit.wider:
         ratios = f"{symbol} changes by a factor of {other.E / fit.E:.4g}, alpha by {other.alpha / prony.alpha:.4g}"
-        change = f"M changes by up to {other.M_change:.2%} at speeds inside the measured band"
-        yield "", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, {change}"
+        change = ", ".join(f"{change:+.2%}" for change in other.M_changes) or "no speed"
+        yield "", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, M: {change}"
     yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
         yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"

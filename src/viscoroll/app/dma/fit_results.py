@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
@@ -10,10 +11,10 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contact_law.contact import contact
-from ...contact_law.validity.assumptions import Assumption, assess_measured_band, transit_frequency
+from ...contact_law.validity.assumptions import MISFIT_LIMIT, Assumption, assess_measured_band, transit_frequency
 from ...core.array_types import Booleans, Floats, Numbers
 from ...core.checks import check_array
-from ...core.errors import described_error
+from ...core.errors import ModelWarning, caller_level, described_error
 from ...core.plots.measurements import series_fit
 from ...core.results import Result
 from ...materials.importers import check_poisson
@@ -117,6 +118,14 @@ class SeriesFit(Result):
         return float(np.max(self.misfit))
 
     @property
+    def _fault(self) -> str:
+        """Words on a misfit that misses the target or is above 5 %; "" where it does neither."""
+        if not self.reached:
+            return f"the misfit of {self.target:.2%} was not reached ({self.largest_misfit:.2%})"
+        above = self.largest_misfit > MISFIT_LIMIT
+        return f"the misfit of {self.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}" if above else ""
+
+    @property
     def alpha(self) -> float:
         """Instantaneous divided by long-time modulus, dimensionless."""
         return self.prony.alpha
@@ -186,6 +195,11 @@ class SeriesFit(Result):
         ParameterError
             A value that is not finite or out of the range of :class:`viscoroll.Material`.
 
+        Warns
+        -----
+        ModelWarning
+            A fit that misses its target, or whose misfit is above 5 %; a ``temperature`` that looks like kelvin.
+
         Examples
         --------
         >>> import viscoroll as vr
@@ -193,6 +207,9 @@ class SeriesFit(Result):
         >>> fit.material(nu=0.49).E == fit.E
         True
         """
+        if self._fault:
+            text = f"{self._fault}: see the points that miss in fit.plot(), and docs/howto/dma.md"
+            warnings.warn(text, ModelWarning, stacklevel=caller_level())
         E, measured = self.E, self.measured
         if self.mode == "shear":
             factor = 2.0 * (1.0 + check_poisson(nu))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections.abc import Mapping
 from itertools import product
@@ -24,6 +25,10 @@ _ROUND_PI = 1e-3
 _ONE_FREQUENCY = 1e-3
 #: ratio of moduli at one frequency and one temperature above which something else was varied
 _REPEATED = 1.25
+#: advice where columns are not understood
+_NAME_THEM = "name the columns by columns={...} (`viscoroll material fit`: --column NAME=HEADING)"
+#: a line with a number in degrees Celsius or kelvin, which is no rate, or with a word for temperature before a number
+_TEMPERATURE = re.compile(r"\d\s*(?:℃|(?:[°º]\s*|deg\s*)?[CK]\b)(?!\s*/)|(?i:temp(?:[eé]rat|\b).*\d)")
 
 
 def read_dma(
@@ -59,9 +64,9 @@ def read_dma(
     DynamicModuli
         ``omega`` in rad/s, ``storage`` and ``loss`` in Pa and ``temperature`` in degrees Celsius or None, (n,) each, in
         the order of the file; ``mode`` is "shear" where the headings say so, else "tension".  ``temperature`` is None
-        where the file has none, and of reduced frequencies at several temperatures, which belong to a reference that
-        the file does not say.  ``print`` shows in three lines what was understood.  It unpacks into three arrays:
-        ``omega, storage, loss = read_dma(path)``.
+        where the file has no column of it, and of reduced frequencies at several temperatures, which belong to a
+        reference that no column says; ``notes`` then quotes lines above the headings that state one.  ``print`` shows
+        in three lines what was understood.  It unpacks into three arrays: ``omega, storage, loss = read_dma(path)``.
 
     Raises
     ------
@@ -96,7 +101,7 @@ def read_dma(
         if len(table.headings) != 3:
             count = len(table.headings)
             problem = f"has {count} columns, and no headings for frequency, storage and loss modulus"
-            raise FileError(path, f"{problem}: name them by columns={{...}}")
+            raise FileError(path, f"{problem}: {_NAME_THEM}")
         named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
     found, others = columns_of(table, named, overruling, defaults)
     check_names("units", overruling, [column.name for column in found], "a quantity of this file")
@@ -132,6 +137,9 @@ def read_dma(
     notes += [f"{column.heading!r} is log10" for column in taken if column.log]
     listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in others.items())
     notes += [f"unused: {listed}"] * bool(others)
+    stated = ", ".join(f"{' '.join(line.split())!r:.60}" for line in table.above if _TEMPERATURE.search(line))
+    if stated and temperature is None:
+        notes.append(f"no temperature is read from lines above the headings, {stated}: give temperature= to fit_prony")
     _warn_of_assumed_units(table, taken)
     record = DynamicModuli(
         omega, storage, loss, temperature and temperature.values, mode,
@@ -231,7 +239,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     headings = ", ".join(map(repr, filter(None, table.headings)))
     raise FileError(
         table.path,
-        f"{problem}{reasons}; headings: {headings}; name the columns by columns={{...}}",
+        f"{problem}{reasons}; headings: {headings}; {_NAME_THEM}",
     )
 
 

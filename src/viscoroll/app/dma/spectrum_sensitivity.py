@@ -45,9 +45,13 @@ class ExtendedGridFit(NamedTuple):
     M_fit: Floats
 
     @property
-    def M_change(self) -> float:
-        """Largest relative change of M at these speeds; NaN where there are none, and NaN or infinite where M is 0."""
-        return float(np.abs(self.M / self.M_fit - 1.0).max()) if self.V.size else float("nan")
+    def M_changes(self) -> Floats:
+        """Relative change of M at the lowest, the middle and the highest of these speeds, (3,); of fewer speeds (n,).
+
+        It is NaN or infinite where M is 0.
+        """
+        n = self.V.size
+        return (self.M / self.M_fit - 1.0)[[*range(n)] if n < 3 else [0, n // 2, -1]]
 
 
 def fit_on_extended_grid(

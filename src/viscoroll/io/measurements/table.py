@@ -37,6 +37,7 @@ class Table:
     parts : number of tables of the file, with the same headings, of which these are the rows.
     without_headings : whether the file has no headings.
     decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
+    above : the lines of the file above the headings of the first table, or above the numbers where there are none.
     """
 
     path: str | PathLike[str]
@@ -46,6 +47,7 @@ class Table:
     parts: int
     without_headings: bool
     decimal: str
+    above: list[str]
 
     def has_numbers(self, column: int) -> bool:
         """Return whether any cell of the column with an index is a number."""
@@ -128,7 +130,8 @@ def read_table(
         )
     rows = [row for *_, rows in parts for row in rows]
     mark = decimal or decimal_mark([cell for row in rows for cell in row.cells], "," if separator == "," else "")
-    return Table(path, names, units, rows, len(parts), lines[heads[0]].number == first.number, mark)
+    head = lines[heads[0]].number
+    return Table(path, names, units, rows, len(parts), head == first.number, mark, text[: head - 1])
 
 
 @dataclass
