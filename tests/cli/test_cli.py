@@ -175,11 +175,12 @@ ROLLER = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
 
 
 def test_material_fit(run, here):
-    """The report, and a file that holds the fit to the bit."""
+    """What was read, the report, and a file that holds the fit to the bit."""
     data = str(ROOT / "src/viscoroll/datasets/dma.csv")
     report = run("material", "fit", data, "--nu", "0.5", "--name", "a rubber", "-o", "a.toml")
-    fit = vr.fit_prony(*vr.read_dma(data), source="dma.csv")
-    assert report == f"{fit}\n"
+    record = vr.read_dma(data)
+    fit = vr.fit_prony(*record, source="dma.csv")
+    assert report == f"{record}\n{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
     assert "Prony series of 4 modes" in run("material", "fit", data, "--modes", "4", "--misfit", "0.05")
     assert f"measured          {fit.measured}" in run("material", "show", "a.toml")
@@ -195,6 +196,7 @@ def test_a_fit_that_misses_writes_no_file(here, capsys):
             told = capsys.readouterr().err
             assert words in told
             assert f"{name} is not written" in told
+            assert "raise --misfit" not in told
             assert not (here / name).exists()
             with warnings.catch_warnings():
                 warnings.simplefilter("default")

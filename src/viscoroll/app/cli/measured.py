@@ -110,6 +110,7 @@ def fit(arguments: Namespace) -> int:
     Returns 1, and writes nothing, if the fit is faulty and force is not given; else 0.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
     """
+    from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.material_toml import material_as_toml
 
     units = arguments.units and tuple(arguments.units.split(","))
@@ -124,10 +125,11 @@ def fit(arguments: Namespace) -> int:
         record = replace(record, mode=arguments.mode)
     options = {name: getattr(arguments, name) for name in ("modes", "misfit", "temperature", "reference", "on")}
     result = vr.fit_prony(record, **options, shift=arguments.wlf and _wlf(arguments.wlf))
-    print(result)
+    print(record, result, sep="\n")
     path, fault = arguments.output, result._fault
     if fault and not arguments.force:
-        refusal = f"; {path} is not written: raise --misfit, or write it with --force" if path else ""
+        advice = "raise --misfit, or " * (result.largest_misfit <= MISFIT_LIMIT)
+        refusal = f"; {path} is not written: {advice}write it with --force" if path else ""
         print(f"viscoroll: {fault}{refusal}", file=sys.stderr)
         return 1
     material = result.material(arguments.nu, name=arguments.name)
