@@ -122,15 +122,18 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
 
 
 def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
-    """Measure the errors of a new map on 100 random motions, the same for every map, against the integrator at rtol
-    1e-12.
+    """Measure the errors of a new map on 100 random motions against the integrator at rtol 1e-12.
+
+    The random numbers are the same for every map; they are scaled to the speeds of the map.
 
     new_map : the :class:`FlowMap`, with all tables.
     octave : the map covers kappa V < 2**octave at the onset of partial slip; the starts lie in the ten octaves below.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     Returns four times the largest relative errors: (of speeds and onset time; of distance and angle; of slip and
-    rolling loss), floats, at least 1e-10, 5e-10, 1e-10, infinite if a number is not finite; relative to what
-    :class:`FlowMap` says. Motions that the map does not contain count as exact.
+    rolling loss), floats, at least 1e-10, 5e-10, 1e-10, infinite if a number is not finite.  Errors of V and omega are
+    divided by the larger of the two, that of the onset time by that time (and the relaxation time there), those of
+    distance and angle by the larger so far, those of losses by the energy at the start.  Motions that the map does not
+    contain count as exact.
     """
     _, kappa, mu, _ = new_map.parameters
     rng = np.random.default_rng(20)

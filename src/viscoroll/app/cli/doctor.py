@@ -106,8 +106,8 @@ def _version(name: str) -> str | None:
 def _fault_of_cache(folder: Path) -> str:
     """Return why the cache of compiled functions is not used or cannot be written, as the end of a line of the report.
 
-    It is not used where others could write into it; it cannot be written where the folder, or if it does not exist the
-    nearest folder above it that does, is not writable.
+    It is not used where others could write into it, or a folder is another user's.  It cannot be written where the
+    folder, or if it does not exist the nearest folder above it that does, is not writable.
 
     folder: folder of the compiled functions, which need not exist.
     Returns a text that begins with ";", or "" if the cache is in order.

@@ -69,8 +69,8 @@ def fit_on_extended_grid(
     grid : (shortest, longest) time of its grid, s.
     decades : number of decades by which the grid becomes wider on either side, > 0; of a :class:`Relaxation` the
         shortest time stays at least half the first time of the data.
-    Returns the :class:`ExtendedGridFit`, with the rolling moment of both fits at speeds of which the data tell, at the
-    same load and radius: kappa of the wider fit is sqrt(its E / E) times that of the fit.
+    Returns the :class:`ExtendedGridFit`, with kappa M of both fits at kappa V within the data, dimensionless, with the
+    kappa of ``prony``, at the same load and radius: kappa of the wider fit is sqrt(its E / E) times that of the fit.
     Raises RuntimeError as :func:`.spectrum.on_times` does, ParameterError for modes that make no :class:`Prony`, as
     more than 64.
     """

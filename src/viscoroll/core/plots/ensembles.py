@@ -162,7 +162,9 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
 
 
 def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
-    """Return the Sobol indices of a quantity at the last time that has any, or those of a quantity without times.
+    """Return the Sobol indices of a quantity at the last time that has them for the first input.
+
+    Of a quantity without times they are its indices.
 
     indices: Sobol indices of a run, a dataset with NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or
         (input,), finite at one time at least (else IndexError), and t with the attribute units.

@@ -75,7 +75,7 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
 
 def load(path: str | PathLike[str]) -> xr.Dataset:
-    """Read a law or a grid, of any version since 0.1.0, into memory, check it and close the file.
+    """Read a law or a grid of the schema 1.x (all versions since 0.1.0) into memory, check it and close the file.
 
     Parameters
     ----------

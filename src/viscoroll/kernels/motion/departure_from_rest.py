@@ -1,7 +1,7 @@
 """Departure from rest: at V = omega = 0 the cylinder stays, rolls off in partial slip, or slides off in full slip.
 
 Rolling off in the direction with V' > 0, d is the root of the right side of the equation of d (:mod:`rhs`) in the limit
-V -> 0, where L = H = 1:
+V -> 0, where L = 1 and H(v) = 1 (:mod:`rhs`):
 
     2 kappa (omega' - V')/mu = d V'      Q = mu sign(d) (2 |d| - d^2)
 

@@ -148,10 +148,10 @@ def _defect_at_start(row, slope_row, initial_slope, nodes):
     """Return the defect of an interpolant at the left end of a step.
 
     It is the slope there by the right-hand side, less the slope of the interpolant extrapolated from nodes 1 ... N,
-    times 2, the length of the step in t.
+    times 2, the length of the step in t, which here is the position on the step, in [-1, 1].
 
     row: int, index in ``nodes`` of the value at node 0 of the row; the values at all nodes are read.
-    slope_row: int, index in ``nodes`` of node 0 of the row in which the slopes of the interpolant in t on [-1, 1] are
+    slope_row: int, index in ``nodes`` of node 0 of the row in which the slopes of the interpolant in t are
     written; its entry of node 0 is set to 0.
     initial_slope: float, slope in t at the left end by the right-hand side, in the unit of the row.
     nodes: Workspace.nodes.

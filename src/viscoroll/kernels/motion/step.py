@@ -104,17 +104,19 @@ def store_rhs(i, rates, nodes):
 def _evaluate_residuals(refactor, step, regime, work):
     """Evaluate the right-hand side and the residuals of both collocation equations at nodes 1 ... N.
 
-    With h half the length of the step and D the differentiation matrix, the residuals are h p' - D p, and h b - weight
-    (D x) for the second unknown x with its weighted rate b.  They are in the units of p and of weight times x.
+    With h half of ``step.h`` and D the differentiation matrix, the residuals are h p' - D p, and h b - weight (D x) for
+    the second unknown x with its weighted rate b.  They are in the units of p and of weight times x.
 
     refactor: bool, whether the derivatives that the Newton matrices consist of are stored too.
     step: Step, the trial step; ``h`` is read.
     regime: Regime, that of the step; all fields are read.
     work: Workspace, with V, the second unknown and the drive at the nodes, and p at node 0.  Entries 1 ... N of
     ROW_P_RESIDUAL, ROW_D_RESIDUAL, ROW_P, ROW_P_RATE, ROW_WEIGHTED_RATE and ROW_SPEED are written; with ``refactor``
-    also those of ROW_DV_DP, ROW_DP_DD, ROW_COUPLING, ROW_WEIGHT, ROW_RELAXATION, ROW_FEEDBACK, ROW_P_DIAGONAL and
-    ROW_D_DIAGONAL.  ROW_P_SLOPE and ROW_D_SLOPE are written whole, with 0 at node 0 (NaN if p or the second unknown is
-    not finite at a node).  ROW_RELAXATION is not finite where V is 0 in partial slip.  Returns nothing.
+    also, in the letters of the module, those of ROW_DV_DP (dV/dp), ROW_DP_DD (p_d), ROW_COUPLING (c/p_V), ROW_WEIGHT
+    (V, or 1 in full slip), ROW_RELAXATION (b_d over that weight), ROW_FEEDBACK (h dp'/dd), ROW_P_DIAGONAL (h p'_V/p_V)
+    and ROW_D_DIAGONAL (h b_d + c p_d/p_V).  ROW_P_SLOPE and ROW_D_SLOPE are written whole, with 0 at node 0 (NaN if p
+    or the second unknown is not finite at a node).  ROW_RELAXATION is not finite where V is 0 in partial slip.
+    Returns nothing.
     """
     values, nodes, half = by_value(work), work.nodes, 0.5 * step.h
     multiply_matrix(DIFFERENTIATION, ROW_OMEGA_OR_D, nodes[ROW_OMEGA_OR_D], nodes, ROW_D_SLOPE, nodes)

@@ -1,8 +1,9 @@
 """Polynomials of 24 coefficients, evaluated by vectors of four numbers.
 
-One function is stored as its coefficients in their order: six vectors, each a polynomial in t^4.  A pair of functions a
-and b is stored as a0 a1 b0 b1, a2 a3 b2 b3, ...: twelve vectors, polynomials in t^2 of the even and odd coefficients.
-So a polynomial over an octave costs no more than one over an eighth of the octave with half as many coefficients.
+One function is stored as its coefficients in their order: six vectors, which are the coefficients of four polynomials
+in t^4, one in each lane: lane n has the coefficients n, n + 4, n + 8 ..., and is multiplied by t^n.  A pair of
+functions a and b is stored as a0 a1 b0 b1, a2 a3 b2 b3, ...: twelve vectors, polynomials in t^2 of the even and odd
+coefficients.  So a polynomial over an octave costs no more than one over an eighth of the octave with half as many coefficients.
 
 All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the argument ``t``, in [-1, 1]
 on the row of the table; outside the polynomial is extrapolated.  A NaN of t gives NaNs.
@@ -152,7 +153,7 @@ def evaluate_single(table, start, t):
 def _join_secant(sums, secants, t, s):
     """Return p(t) and its secant (p(t) - p(s))/(t - s) from the four polynomials in t^4 of which p consists.
 
-    sums : vector of four, the values of the four polynomials at t^4.
+    sums : vector of four, the values of the four polynomials at t^4: lane n is the factor of t^n.
     secants : vector of four, their secants between t^4 and s^4.
     t, s : floats, arguments, dimensionless.
     Returns (p(t), secant), floats; the secant is p'(t) at s = t, since nothing is divided by t - s.

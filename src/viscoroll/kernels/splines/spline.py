@@ -185,7 +185,7 @@ def spline_at(spline, V, delta, alpha):
     V, delta, alpha : float, coordinates in the units of the grid.  Where the field does not depend on one of them, that
         argument is ignored, and any number may be given.
 
-    Returns NaN, the slopes too, if another coordinate is NaN or outside of its axis.  A value beyond the bounds of the
-    field is clipped to them, and its slopes are 0.  The slope over a coordinate that is ignored is 0.
+    Returns NaN, the slopes too, if a coordinate that is not ignored is NaN or outside of its axis.  A value beyond
+    the bounds of the field is clipped to them, and its slopes are 0.  The slope over a coordinate that is ignored is 0.
     """
     return evaluate(spline, V, delta, alpha)
