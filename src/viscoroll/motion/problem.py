@@ -299,8 +299,8 @@ def integrate_motions(
     parameters: (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series in its own unit of
     time.
     starts: V0 and omega0, (n,) each, n >= 1, dimensionless.
-    gamma: P T^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, > 0, (n,) or (1,).
-    t: output times since the start, (times,), >= 0, ascending, common to all, in the material's unit of time T.
+    gamma: P T_ref^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, > 0, (n,) or (1,).
+    t: output times since the start, (times,), >= 0, ascending, common to all, in the material's unit of time.
     threads: number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
     Raises ParameterError for a number of threads that is no whole number >= 1, ValueError for n = 0.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times), dimensionless, NaN at times that

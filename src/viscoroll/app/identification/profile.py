@@ -227,7 +227,7 @@ class Likelihood:
             fit; False: it is a profile.  The products get the same ``near``.
         Returns a list of :class:`Product`, in the order of the family, whose intervals are closed and at most 1 long in
         the combination of coordinates, a factor of e of the product; [] where that of the first is open or longer.  An
-        exponent is the power times d ln(value)/du at the best fit.
+        exponent is the power divided by d ln(value)/du at the best fit; 0 where the value is 0.
         """
         found, values = [], self.problem.values(self.best.u)
         for powers in family:

@@ -161,7 +161,7 @@ def _fast_terms(u, body, law):
 
 @inline_kernel
 def length_and_moment(position, u, law):
-    """Return L = 2 kappa delta_star/mu, M/V and their slopes at u, as :class:`LengthAndMoment`.
+    """Return L = 2 kappa delta_star/mu, dL/du, d2L/du2, M/V and d(u M/V)/du, as :class:`LengthAndMoment`.
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is read for ``d_um`` alone.
@@ -169,7 +169,7 @@ def length_and_moment(position, u, law):
         read.
 
     Returns floats.  ``m`` is M/V itself in the rows, with ``scale`` 1; beyond the last row it is M/V divided by z =
-    lam_fast/(2 u), with ``scale`` z.  At u = 0 L of half-spaces is 1 and M/V has its finite limit; of elastic bodies
+    lam_fast/(2 u), with ``scale`` z.  ``d_um``, d(u M/V)/du, is not divided by ``scale``.  At u = 0 L of half-spaces is 1 and M/V has its finite limit; of elastic bodies
     M/V is 0.  The compiler leaves out the fields that a caller does not read.
     """
     if in_fast_limit(position):

@@ -3,7 +3,8 @@
 One function is stored as its coefficients in their order: six vectors, which are the coefficients of four polynomials
 in t^4, one in each lane: lane n has the coefficients n, n + 4, n + 8 ..., and is multiplied by t^n.  A pair of
 functions a and b is stored as a0 a1 b0 b1, a2 a3 b2 b3, ...: twelve vectors, polynomials in t^2 of the even and odd
-coefficients.  So a polynomial over an octave costs no more than one over an eighth of the octave with half as many coefficients.
+coefficients.  So a polynomial over an octave costs no more than one over an eighth of the octave with half as many
+coefficients.
 
 All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the argument ``t``, in [-1, 1]
 on the row of the table; outside the polynomial is extrapolated.  A NaN of t gives NaNs.

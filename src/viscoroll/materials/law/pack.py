@@ -365,7 +365,9 @@ def pack_axis(records: list[Any], c: Floats) -> AxisRows:
 
 
 def _grouped_terms(terms: Floats, size: int) -> Floats:
-    """Return sums of T_j(s) as sums of T_4g(s) times cubic polynomials in s, which kernels evaluate faster.
+    """Return sums of Chebyshev polynomials T_j(s) as sums of T_4g(s) times cubic polynomials in s.
+
+    Kernels evaluate these faster.
 
     terms: coefficients of T_0 to T_15, (16, ...); not changed.
     size: terms of a group; it must be 4, the only size for which the formulas hold.
