@@ -55,7 +55,7 @@ LABELLED = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"], "day"
 FRAME = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=pd.Index(["x", "y"], name="roller"))
 UNSURE = DMA_ROLLER.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA_SERIES.E), DMA_SERIES.tau))
 MEASURED = vr.Material(
-    2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 1256.0, 0.01, "dma.csv")
+    2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 1884.0, 0.01, "dma.csv")
 )
 BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=MEASURED, mu=0.5)
 SERIES, MANY = vr.Prony([2.0, 6.0], [1.0, 1e-4]), vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])

@@ -9,8 +9,8 @@ from ..core.errors import ParameterError
 from .shift import check_fields
 
 #: Ratio of the highest angular frequency that a contact needs, rad/s, to its transit frequency, 1/s.  Data that end
-#: there leave an error of M of 5 to 10 % (docs/validity.md), as data do that begin at the transit frequency.
-HIGHEST_RATE = 2.0
+#: there leave an error of M of 3 to 8 % (docs/validity.md), as data do that begin at the transit frequency.
+HIGHEST_RATE = 3.0
 
 
 @dataclass(frozen=True)
@@ -61,7 +61,7 @@ class Measured:
         Examples
         --------
         >>> import viscoroll as vr
-        >>> vr.Measured(low=0.1, high=100.0, misfit=0.004).transit_band
+        >>> vr.Measured(low=0.1, high=150.0, misfit=0.004).transit_band
         (0.1, 50.0)
         """
         return self.low, self.high / HIGHEST_RATE

@@ -38,13 +38,15 @@ class Loss:
 
     Attributes
     ----------
-    slip : power lost in slip, (omega - V) Q of a scene, (omega R - V) Q of a Cylinder.
+    slip : power lost in slip, (omega - V) Q of a scene, (omega R - V) Q of a Cylinder.  On a cover it contains
+        delta_0 V Q, the work of the coupling that its law neglects, and may be negative (docs/validity_covers.md).
     half_space, cylinder : power lost in rolling in either body, V M_half_space and omega M_cylinder (of a Cylinder the
         first divided by R); their sum with ``slip`` is the power of force and torque.
     coefficient : coefficient of rolling resistance, dimensionless: all losses divided by P |V|; at rest the limit V ->
         0, |Q delta|/P; infinite for a cylinder that spins at V = 0.
     efficiency : output power divided by input power, dimensionless.  Force V and torque omega are input where they are
-        positive, output where they are negative.  0 without output; NaN without input, as at rest.
+        positive, output where they are negative.  0 without output; NaN without input, as at rest.  Of a
+        driven cover it may exceed 1 by the neglected coupling.
     """
 
     slip: Floats

@@ -2,7 +2,7 @@
 
     record.select_material(law, n)          ``law`` is now that of motion or state n
     position = locate_row(x, law)           row of x = u = kappa |V|, or of x = v = 1/F(eta) = 2 u/(L - D)
-    length_and_moment(position, u, law)     L, M/V and their slopes over u
+    length_and_moment(position, u, law)     L and M/V with their slopes
     H_over_F2(position, v, law)             H/F^2 and its slope over v
 
 ``law`` is a :class:`record.Law` whatever made its rows, so that its readers are compiled once.  The law of one material
@@ -169,8 +169,9 @@ def length_and_moment(position, u, law):
         read.
 
     Returns floats.  ``m`` is M/V itself in the rows, with ``scale`` 1; beyond the last row it is M/V divided by z =
-    lam_fast/(2 u), with ``scale`` z.  ``d_um``, d(u M/V)/du, is not divided by ``scale``.  At u = 0 L of half-spaces is 1 and M/V has its finite limit; of elastic bodies
-    M/V is 0.  The compiler leaves out the fields that a caller does not read.
+    lam_fast/(2 u), with ``scale`` z.  ``d_um``, d(u M/V)/du, is not divided by ``scale``.  At u = 0 L of half-spaces is
+    1 and M/V has its finite limit; of elastic bodies M/V is 0.  The compiler leaves out the fields that a caller does
+    not read.
     """
     if in_fast_limit(position):
         lam = law.rows[LAM_FAST]
