@@ -415,6 +415,8 @@ FMU_TOOL = 1e-4
 #: add up to some tens of its tolerance.
 FMU_NEAR_REST = 1e-3
 # --- callables as polynomials (motion/test_fitted.py) ---
+#: V0/R through the units of a scene and back: two roundings each.
+UNITS = 1e-15
 #: Values taken and pieces made; measured 2,000 to 21,000 and up to 76: the root has no bounds to its slope at 0.
 CALLABLE_VALUES, CALLABLE_PIECES = 25_000, 100
 #: A tenth of rtol, by what was seen in some ten places a node: twice that elsewhere.

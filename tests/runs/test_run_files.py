@@ -204,6 +204,21 @@ def test_nothing_is_uncertain(read):
     assert roller_of(run.path, run.inputs.content) == vr.presets.RUBBER_ROLLER.replace(alpha=3.0)
 
 
+SPREAD = '{ distribution = "uniform", loc = 0.05, scale = 0.1 }'
+
+
+@pytest.mark.parametrize("R", ["0.1", SPREAD])
+def test_a_start_in_pure_rolling(read, R):
+    """omega0 = "rolling" is V0/R of each motion, in a dimensionless file V0; a flow map serves it too."""
+    roller = f"[cylinder]\nR = {R}\nm = 35.5\nmu = 0.3\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n"
+    start = f'[start]\nV0 = {SPREAD}\nomega0 = "rolling"\n[run]\nn = 8\nt = [0.0, 0.5]\n'
+    values, motions = roll_block(read(roller + start), 0)
+    assert close(motions.omega[:, 0], values["V0"] / values.get("R", 0.1), tol.UNITS)
+    run = read(PAPER + start + 'method = "flow"\n')
+    values, motions = roll_block(run, 0)
+    assert (motions.omega[:, 0].tolist(), run.fastest) == (values["V0"].tolist(), run.inputs.largest("V0"))
+
+
 def test_a_drive_that_ends_goes_with_a_rest(read):
     text = FILES["driven"]
     run = read((text[: text.index("slope")] + text[text.index("[run]") :]).replace("n = 12", "n = 4\nrest = 1e-3"))

@@ -7,6 +7,7 @@ so is each file: its columns share the row that is drawn.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -174,12 +175,25 @@ class Inputs:
         return float(np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max())
 
     def filled(self, values: Mapping[str, Any]) -> dict[str, Any]:
-        """Return the sections of the run file with values in place of the inputs.
+        """Return the sections of the run file with values in place of the inputs, and omega0 in that of "rolling".
 
         values: name of an input -> number or (n,), for every input, else KeyError; other names have no effect.
-        Returns name of a section -> content, all of it new but for parts that are neither tables nor lists.
+        Returns name of a section -> content, all of it new but for parts that are neither tables nor lists.  An omega0
+        "rolling" is V0/R, in a dimensionless file V0; it stays where V0 or R is no number, which checks refuse later.
         """
-        return _fill_in(self.content, values)
+        content = _fill_in(self.content, values)
+        if self.rolls:
+            with suppress(TypeError, KeyError, AttributeError), np.errstate(all="ignore"):
+                R = content["cylinder"]["R"] if "cylinder" in content else 1.0
+                omega0 = np.divide(content["start"]["V0"], R)
+                content["start"]["omega0"] = omega0 if omega0.ndim else omega0.item()
+        return content
+
+    @property
+    def rolls(self) -> bool:
+        """Whether the motions start in pure rolling, by omega0 = "rolling" in the file."""
+        start = self.content.get("start")
+        return isinstance(start, dict) and start.get("omega0") == "rolling"
 
 
 def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:

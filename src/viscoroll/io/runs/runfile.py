@@ -65,7 +65,7 @@ Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
 
 
 class StartSection(msgspec.Struct):
-    """[start]: start speeds; one that [drive] prescribes is left out."""
+    """[start]: start speeds; one that [drive] prescribes is left out; an omega0 "rolling" is replaced before."""
 
     V0: float | None = None
     omega0: float | None = None
@@ -191,7 +191,8 @@ class Run:
         The few faster motions are integrated.  Raises KeyError if [start] lacks one of the two.
         """
         R = self.inputs.content["cylinder"]["R"] if self.si else 1.0
-        return max(self.inputs.largest("V0"), R * self.inputs.largest("omega0"))
+        V0 = self.inputs.largest("V0")
+        return V0 if self.inputs.rolls else max(V0, R * self.inputs.largest("omega0"))
 
     @property
     def si(self) -> bool:
@@ -288,6 +289,10 @@ def read_run(path: str | PathLike[str]) -> Run:
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:
             raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
+    for name in START:
+        if name not in content["start"] and name[:-1] not in content.get("drive", {}):
+            advice = ': must be a number, or "rolling" for V0/R' if "V0" in content["start"] else ": must be a number"
+            raise section_error(path, "start", name, f"{name} is missing{advice}")
     materials = parse_materials(path, medians)
     # a material without uncertain numbers is read once
     certain = {name: material for name, material in materials.items() if not inputs_in(inputs.content[name])}
