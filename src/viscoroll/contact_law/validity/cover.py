@@ -62,7 +62,7 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
     sentence = (
         f"h/l0 = {thickness:.3g}: half the contact length is up to {float(np.max(theta, initial=0.0)):.2g} times the "
         f"thickness; up to {np.min(most):.3g} times is allowed, where the contact sticks in front and slips behind; "
-        f"the error of Q is up to {100.0 * error:.1f} % of mu P, and with nu near 1/2 and mu = 0.5 by "
-        f"{100.0 * coupled:.1f} % larger, since the pressure that shear causes is neglected"
+        f"the error of Q is up to {100.0 * error:.1f} % of mu P; with nu near 1/2 a further "
+        f"{100.0 * coupled:.1f} % at mu = 0.5, more at a smaller mu, as the pressure that shear causes is neglected"
     )
     return ContactLengths.of(state["lam"], state["epsilon"], scene.kappa), Assumption(theta <= most, theta, sentence)
