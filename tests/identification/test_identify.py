@@ -118,7 +118,10 @@ def test_a_product_that_a_range_limits_is_told():
     assert ratio.limited_by == fit._likelihood.axes(tol.CHI2_95)[0].limited_by == [["T_ref"], ["T_ref"]]
     said = str(fit)
     assert "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end by the range of T_ref) and" in said
-    assert "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are determined" in said
+    assert (
+        "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are bounded within the ranges"
+        in said
+    )
 
 
 def test_a_product_by_slopes_is_told_to_hold_near_the_values():

@@ -133,7 +133,9 @@ def _products(fit: Any) -> str:
     )
     if not found:
         return "the data determine no product of their powers"
-    text = f"only {sure or near} {'are' if ' and ' in (sure or near) else 'is'} determined"
+    limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
+    verb = "are" if " and " in (sure or near) else "is"
+    text = f"only {sure or near} {verb} {'bounded within the ranges' if limited else 'determined'}"
     more = f"; near these values also {near}, more precisely" if sure else ", near these values"
     return text + f"{more}: {_NEAR}" * bool(near)
 
