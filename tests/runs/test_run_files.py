@@ -219,6 +219,14 @@ def test_a_start_in_pure_rolling(read, R):
     assert (motions.omega[:, 0].tolist(), run.fastest) == (values["V0"].tolist(), run.inputs.largest("V0"))
 
 
+def test_results_state_the_units_of_a_dimensionless_run(read, tmp_path):
+    run = read(PAPER + "[start]\nV0 = 1.5\nomega0 = 0.5\n[run]\nn = 3\nt = 1e-3")
+    run_ensemble(run, tmp_path / "runs", threads=1)
+    text = str(open_run(tmp_path / "runs"))
+    assert text.startswith("Results of a run of 3 motions, dimensionless: speeds in R/T_ref")
+    assert "1 time to 0.001" in text
+
+
 def test_a_drive_that_ends_goes_with_a_rest(read):
     text = FILES["driven"]
     run = read((text[: text.index("slope")] + text[text.index("[run]") :]).replace("n = 12", "n = 4\nrest = 1e-3"))

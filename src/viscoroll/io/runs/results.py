@@ -159,7 +159,7 @@ class RunResults(Result):
         return pd.concat(tables)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return the title, with the number of motions, and the rows that print this result.
+        """Return the title, with the number of motions and units of a dimensionless run, and the rows that print it.
 
         Returns (title; list of :class:`SummaryRow`, in this order: "path", the folder; "drawn by", design and seed of
         the draws; "t", the number of output times and the last one, with its unit; a row for each summarised quantity
@@ -172,7 +172,7 @@ class RunResults(Result):
         rows = [
             SummaryRow("path", str(self.path)),
             SummaryRow("drawn by", f"{about['design']}, seed {about['seed']}"),
-            SummaryRow("t", f"{t.size} times to {float(t[-1]):.6g}", unit_of(t.attrs)),
+            SummaryRow("t", f"{t.size} time{'s' * (t.size != 1)} to {float(t[-1]):.6g}", unit_of(t.attrs)),
         ]
         for name in self.names:
             mean, std = (data[f"{name}_{moment}"] for moment in ("mean", "std"))
@@ -182,7 +182,8 @@ class RunResults(Result):
         ended = zip(data["status"].values, data["ended"].values, strict=True)
         rows += [SummaryRow("ended", f"{count}: {MotionStatus(code).message}") for code, count in ended if count]
         kept = "every motion" if self._motions_folder.is_dir() else "summaries"
-        return f"Results of a run of {len(self)} motions", [*rows, SummaryRow("kept", kept)]
+        units = "" if unit_of(t.attrs) else ", dimensionless: speeds in R/T_ref, lengths in R, times in T_ref"
+        return f"Results of a run of {len(self)} motions{units}", [*rows, SummaryRow("kept", kept)]
 
 
 def open_run(path: str | PathLike[str]) -> RunResults:
