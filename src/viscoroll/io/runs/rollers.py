@@ -78,9 +78,9 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
     """Return the roller of the motions of a block.
 
     path: path of the run file, for errors and the files that it names.
-    content: name of a section -> keys and values, with numbers or arrays (n,) in place of the inputs.  With "cylinder"
-        that section and "material" and "base" are read, each of which may be a :class:`Material` already; without it
-        "scene" and the key "preset".
+    content: name of a section -> keys and values, with numbers or arrays (n,) in place of the uncertain numbers, and
+        the top-level key "preset" -> name, if the file has it.  With "cylinder" that section and "material" and "base"
+        are read (the last two may be a :class:`Material` already); without it "scene" and "preset".
     Returns a :class:`Scene` without a section [cylinder]; :class:`Rollers` if T_epsilon or the materials differ between
     motions; else a :class:`Cylinder`.  The other numbers of all three may be arrays (n,).
     Raises ParameterError for a value out of range or a missing one, shapes that do not broadcast, bodies that do not go

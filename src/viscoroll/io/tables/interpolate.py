@@ -151,8 +151,9 @@ class Interpolant:
         Raises ParameterError for axes that are missing or unknown, for values that are no finite numbers, for shapes
         that do not broadcast and for a unit of another dimension; OutOfTableError for a point outside of an axis, whose
         ends belong to it.
-        Returns (each axis of ``points`` -> coordinates of :meth:`_map_axis`, read-only, in the broadcast shape; that
-        shape, () of numbers).
+        Returns (each axis of ``points`` -> coordinates of the interpolation, read-only, in the broadcast shape; that
+        shape, () of numbers).  Coordinates are ln V, ln alpha and ln kappa_V, s/(1 + sqrt(1 - s)) for s, and delta as
+        it is; where the interpolation is linear all are as given.
         """
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() <= set(self._axes):

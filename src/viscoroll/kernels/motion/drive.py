@@ -260,7 +260,7 @@ def continues_smoothly(segment, drive):
 
     Force, torque, slope of the prescribed speed and torque of the brake are compared; the prescribed speed itself is
     not.  A jump does not count up to _SMOOTH_JUMP times the sum of the moduli of the function's coefficients on both
-    segments; a kink is compared with that sum divided by half the length of the shorter segment.  If the drive is
+    segments; a kink does not count up to that limit divided by half the length of the shorter segment.  If the drive is
     smooth the length of the last step is a good one for the next.
 
     segment: int, index of a segment that another one follows; the last one is not allowed.

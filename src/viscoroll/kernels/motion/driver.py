@@ -267,7 +267,7 @@ def _record_regime(code, new_code, stick_formed, step_state, work):
     code: int, regime in the outputs before; -1 before the first one, which is no change.
     new_code: int, regime in the outputs from now on.
     stick_formed: bool, whether the stick zone has just formed; t = tau/gamma is then written to ONSET_TIME if that is
-    NaN, and if the code changes.
+    NaN, whether or not the code changes.
     step_state: StepState, with the time of the change.
     work: Workspace, of the motion; switches, their numbers and ONSET_TIME are written.
     Returns ``new_code``, an int, also where it equals ``code``.

@@ -9,6 +9,10 @@ alpha = T_epsilon/T_sigma in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_s
 relative, delta_star 4e-16 relative, beta 3e-15, Q 1.1e-13 mu, M 2e-13/kappa; the docstrings say where relative digits
 go.
 
+Letters: kappa = R/l0, mu the coefficient of friction, alpha = T_epsilon/T_sigma; lam, length of the contact over l0,
+epsilon, its shift in half contact lengths; zeta = lam/(2 kappa V), half the transit time in T_epsilon; beta, stick zone
+over contact length; delta, creepage.
+
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a number.
 """
 

@@ -78,8 +78,9 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     cover: one :class:`..cover.Cover`, of a single thickness and Poisson's ratio.
     thickest: thickness divided by l0 that determines the number of rows in place of that of the cover, for several
         covers to have as many; None: that of the cover.  It has no effect for elastic bodies.
-    Returns the polynomials and their limits of fast rolling, as :class:`.pack.CoverRows` (e0, coefficients, creep,
-    limits); of elastic bodies a single row of constants, with epsilon = M = 0.
+    Returns :class:`.pack.CoverRows`: e0, exponent of the end of the first row; coefficients of the law, (rows, 24
+    powers, 7 functions); creep, rows of L = 2 kappa delta_star/mu and of 2 kappa delta_0, (2, rows, 24 powers); limits
+    of the functions for u -> infinity, (8,).  Of elastic bodies it is a single row of constants, with epsilon = M = 0.
     Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses, and where at
     some speed no contact length that carries the load is found.
     """

@@ -248,6 +248,8 @@ def _read_press(rows: Rows, press: Floats, v: Floats, alpha: float, fast: Floats
 def pack_unsteady(table: Floats, e0: int, alpha: float) -> Floats:
     """Return the rows of N of a record, with those of its integral over u, from which kernels take the added mass.
 
+    N is the first-order term of M = M(V) + N(V) V', the rolling moment at slowly changing speed.
+
     The origin of a row is the place where its argument t is 0: u = 0 in the first row, three quarters of the end of the
     octave in the others.  Beyond the last row N is (alpha - 1)/(16 alpha u^2), and the origin is infinity.
     table: coefficients of the functions, N among them, (rows, 24 powers, 7 functions).  Of a cover N is NaN, and so is
