@@ -273,8 +273,9 @@ class Parameters(Roller):
         return several.cylinder if isinstance(several, Bodies) and several.like else several
 
     def in_own_time(self) -> tuple[Any, float]:
-        """Return the one material of the scene in its own unit of time, in which its slow time is near 1.
+        """Return the one material of the scene in its own unit of time, a power of two near its slow time.
 
+        The slow time (:attr:`viscoroll.Prony.slow_time`) is that below whose inverse kappa V counts as slow.
         Curves of a material are kept in that time, so that scenes with one material in two units share them.
 
         Returns

@@ -79,7 +79,8 @@ def load_vectors(context, builder, signature, arguments, count):
     """Return a list of ``count`` instructions that load vectors of four which follow each other in an array.
 
     context, builder, signature, arguments : of numba's lowering of a function (array, start, ...): context of code
-        generation, builder of LLVM, signature and values of LLVM of the call, of which the first two are used.
+        generation, builder of LLVM, signature and values of LLVM of the call, of which the first two are used: a
+        contiguous array of doubles or a pointer to doubles, and the index of the first double, not checked.
     count : number of vectors, an int of Python.
     Returns values of LLVM, each of type :data:`VECTOR`.
     """
