@@ -169,8 +169,9 @@ def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
     uL_slope : float, d(u L)/du, where L = 2 kappa delta_star/mu, dimensionless, > 0.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces, of which no other
         argument is read.
-    Returns :class:`FreeCreep` of floats, dimensionless: delta_0; d(V delta_0)/dV divided by k d(u L)/du, which is
-    added to d = (delta - delta_0)/delta_star in the kinematics; d^2(u delta_0)/du^2 divided by k.  All are -0.0 for half-spaces, which a compiler leaves out of sums.
+    Returns :class:`FreeCreep` of floats, dimensionless: delta_0; d(V delta_0)/dV divided by k d(u L)/du, which is added
+    to d = (delta - delta_0)/delta_star in the kinematics; d^2(u delta_0)/du^2 divided by k.  All are -0.0 for
+    half-spaces, which a compiler leaves out of sums.
     """
     if cover_rows is None:
         return FreeCreep(-0.0, -0.0, -0.0)
