@@ -182,6 +182,18 @@ def locate_error(path: Any, content: Mapping[str, Any], error: ParameterError) -
     return section_error(path, "" if error.name in content else next(sections, default), error.name, str(error))
 
 
+def read_sections(path: str | PathLike[str]) -> dict[str, Any]:
+    """Return name of a section -> content of a file of bodies, unchecked, or of the name of a preset.
+
+    path: TOML file, netCDF file or name of a preset.
+    Returns the sections of TOML; {} of netCDF; {"preset": NAME} of the name of a preset.
+    Raises FileError for a file that cannot be read or is no TOML.
+    """
+    if str(path) in PRESETS:
+        return {"preset": str(path)}
+    return {} if Path(path).suffix.lower() == SUFFIX else read_toml(path)
+
+
 def read_law_source(path: str | PathLike[str]) -> Any:
     """Read the bodies of a file, as an argument of :func:`viscoroll.io.tables.law`.
 
@@ -202,10 +214,8 @@ def read_law_source(path: str | PathLike[str]) -> Any:
         As :func:`read_materials` and :func:`read_roller`, of which the latter reads a file with a preset, [scene] or
         [cylinder]; any other file without [material]; a [base] that does not fit the material.
     """
-    known = PRESETS.get(str(path))
-    content = {} if known or Path(path).suffix.lower() == SUFFIX else read_toml(path)
-    if known or content.keys() & set(SCENES):
-        roller = known or read_roller(path)
+    if read_sections(path).keys() & set(SCENES):
+        roller = PRESETS.get(str(path)) or read_roller(path)
         return roller if isinstance(roller, Cylinder) else roller.alpha if roller.material is None else roller.material
     found = read_materials(path)
     if "material" not in found:

@@ -175,15 +175,11 @@ def fmu(arguments: Namespace) -> None:
     Raises ParameterError for another model or version, FileError for a file that cannot be read or written, and
     MissingDependencyError without fmpy or a C compiler.
     """
-    from ...core.sections import read_toml
-    from ...io.config import SCENES, read_law_source
+    from ...io.config import SCENES, read_law_source, read_sections
     from ...materials.law_file import is_law
 
     path = arguments.file
-    if path in vr.presets.PRESETS:
-        content: dict[str, object] = {"preset": path}
-    else:
-        content = {} if Path(path).suffix.lower() == ".nc" else read_toml(path)
+    content = read_sections(path)
     source = vr.load_law(path) if not content and is_law(path) else read_law_source(path)
     vr.fmu.build(source, arguments.output, arguments.model, arguments.fmi)
     if "cylinder" not in content and content.keys() & set(SCENES):
