@@ -325,18 +325,17 @@ _MESSAGES = (
 )
 
 
-#: modules whose frames are no lines of a user's program
-_PASSED_OVER = "viscoroll", "dataclasses"
-
-
 def caller_level() -> int:
-    """Return the number of frames from the caller up to the first one outside this package, both counted, >= 1.
+    """Return the number of frames from the caller up to the first one outside this package, both counted, >= 2.
 
     It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.  Frames of the
     module dataclasses, whose ``replace`` calls back, are passed over too.  If all frames are those of this package,
     the outermost one counts.
     """
-    level, frame = 1, sys._getframe(1)
-    while frame.f_back is not None and frame.f_globals.get("__name__", "").partition(".")[0] in _PASSED_OVER:
+    level, frame = 2, sys._getframe(2)
+    while frame.f_back is not None:
+        name = frame.f_globals.get("__name__", "")
+        if name != "dataclasses" and f"{name}."[:10] != "viscoroll.":
+            break
         level, frame = level + 1, frame.f_back
     return level

@@ -131,7 +131,7 @@ def steady(
     states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
     reasons = Diagnosis(loads, states, count, maximum, neutral)
     found = pack_result(loads, existing, reasons, scale, labels)
-    warn_of_contact(roller, np.asarray(found.V))
+    warn_of_contact(roller, found.V if labels is None else np.asarray(found.V))
     return found
 
 
