@@ -72,17 +72,3 @@ def test_kernels_import_numpy_and_numba_only():
             elif isinstance(node, ast.ImportFrom) and not node.level:
                 names.add(node.module.split(".")[0])
         assert names <= {"numpy", "numba", "llvmlite", "filelock"} | set(sys.stdlib_module_names), path.name
-
-
-def test_old_names_work_with_a_warning_that_names_the_new_ones():
-    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2)
-    with pytest.warns(DeprecationWarning, match="resistance_extrema"):
-        old = vr.humps(scene)
-    with pytest.warns(DeprecationWarning, match="resistance_extrema"):
-        assert scene.humps().V == old.V
-    with pytest.warns(DeprecationWarning, match="is_maximum"):
-        assert old.top == old.is_maximum
-    steady = vr.presets.PAPER_SECTION_5.validity(1e-4).steady
-    for part in (steady.ten_percent, steady.start):
-        with pytest.warns(DeprecationWarning, match="distance"):
-            assert part.way == part.distance

@@ -36,16 +36,10 @@ def __getattr__(name: str) -> Any:
     """Import a public name of the package at its first use: Python calls this for a name that it does not find.
 
     name: the name that was looked up in the package.
-    Returns the public object, and keeps it under its name.  An old name gives a DeprecationWarning and the object of
-    the new name, and is not kept.
+    Returns the public object, and keeps it under its name.
     Raises AttributeError for a name that is not public, ImportError where a package that its module needs is missing.
     """
     if name not in _MODULES:
-        from .core.renamed import RENAMED, warn_renamed
-
-        if name in RENAMED:
-            warn_renamed(f"viscoroll.{name}", RENAMED[name])
-            return getattr(sys.modules[__name__], RENAMED[name])
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
     if (module := _MODULES[name]) == ".":
         value = import_module(f".{name}", __name__)

@@ -3,13 +3,12 @@
 from __future__ import annotations
 
 from .contact_law.contact import contact
-from .contact_law.equilibria.resistance import ResistanceExtrema, resistance_extrema
+from .contact_law.equilibria.resistance import resistance_extrema
 from .contact_law.equilibria.steady import steady
 from .contact_law.law import law
 from .contact_law.parameters import Parameters, Roller
 from .contact_law.stress import stress
 from .contact_law.validity.validity import validity
-from .core.renamed import warn_renamed
 from .motion.ensemble import ensemble
 from .motion.roll import roll
 
@@ -27,36 +26,6 @@ class Methods(Roller):
     roll = roll
     ensemble = ensemble
     validity = validity
-
-    def humps(self) -> ResistanceExtrema:
-        """Old name of ``resistance_extrema``: gives a DeprecationWarning, and its result.
-
-        Returns
-        -------
-        ResistanceExtrema
-            As of :func:`viscoroll.resistance_extrema`.
-
-        Raises
-        ------
-        ParameterError
-            As of :func:`viscoroll.resistance_extrema`.
-
-        Warns
-        -----
-        DeprecationWarning
-            At each call; it names the new name.
-
-        Examples
-        --------
-        >>> import warnings
-        >>> import viscoroll as vr
-        >>> with warnings.catch_warnings(action="ignore"):
-        ...     found = vr.presets.RUBBER_CYLINDER.humps()
-        >>> found.V.size == vr.presets.RUBBER_CYLINDER.resistance_extrema().V.size
-        True
-        """
-        warn_renamed("humps", "resistance_extrema")
-        return self.resistance_extrema()
 
 
 class Scene(Methods, Parameters):

@@ -18,7 +18,6 @@ import numpy as np
 
 from ...core.array_types import Booleans, Floats, Integers
 from ...core.errors import ParameterError
-from ...core.renamed import warn_renamed
 from ...materials.law.table import LawTable
 from ..contact_table import pure_rolling_fields
 from ..parameters import Roller, refuse_arrays, resolve_model
@@ -63,12 +62,6 @@ class ResistanceExtrema(NamedTuple):
     V: Floats
     M: Floats
     is_maximum: Booleans
-
-    @property
-    def top(self) -> Booleans:
-        """Old name of ``is_maximum``."""
-        warn_renamed("top", "is_maximum")
-        return self.is_maximum
 
 
 @dataclass(frozen=True)

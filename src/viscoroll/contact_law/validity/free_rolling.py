@@ -22,7 +22,6 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ...core.array_types import Floats, Integers
-from ...core.renamed import warn_renamed
 from ...core.scale import Scale
 from ...materials.bodies import total_series
 from ...materials.law.table import law_table
@@ -76,12 +75,6 @@ class Reach(NamedTuple):
     distance: Any
     left: Any
 
-    @property
-    def way(self) -> Any:
-        """Old name of ``distance``."""
-        warn_renamed("way", "distance")
-        return self.distance
-
 
 class Start(NamedTuple):
     """Losses of a start at V after a standstill, compared with a start from steady contact, in the units of the caller.
@@ -94,12 +87,6 @@ class Start(NamedTuple):
 
     speed: Any
     distance: Any
-
-    @property
-    def way(self) -> Any:
-        """Old name of ``distance``."""
-        warn_renamed("way", "distance")
-        return self.distance
 
 
 @dataclass(frozen=True, eq=False)
