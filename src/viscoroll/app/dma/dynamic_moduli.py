@@ -145,9 +145,13 @@ class DynamicModuli(Result):
         if self.temperature is not None:
             low, high = self.temperature.min(), self.temperature.max()
             words.append(f"{low:g} °C" if low == high else f"{low:g} to {high:g} °C")
-        given = (f"{name} {self.columns[name]!r} in {self.units.get(name, '1')}" for name in self.columns)
-        rows = [
-            SummaryRow("columns", "; ".join(given)),
-            SummaryRow("notes", "; ".join(self.notes) or "no unused column"),
-        ]
-        return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows
+        return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows_of(self)
+
+
+def rows_of(record: Any) -> list[SummaryRow]:
+    """Return the rows of the report of a record with ``columns``, ``units`` and ``notes``: columns, and notes."""
+    given = (f"{name} {record.columns[name]!r} in {record.units.get(name, '1')}" for name in record.columns)
+    return [
+        SummaryRow("columns", "; ".join(given)),
+        SummaryRow("notes", "; ".join(record.notes) or "no unused column"),
+    ]

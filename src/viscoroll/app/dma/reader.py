@@ -19,10 +19,12 @@ from .column_quantities import Column, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli
 from .moduli_from_pair import PAIRS, storage_and_loss
 from .table_reader import (
+    ONE_FREQUENCY,
     SOFTEST,
     agreeing_numbers,
     missing,
     quoted,
+    refuse_repeats,
     refuse_unread_temperatures,
     temperatures_of_lines,
     understand,
@@ -30,10 +32,6 @@ from .table_reader import (
 )
 from .vocabulary import UNITS
 
-#: relative difference of frequencies that are one: instruments keep theirs to this
-_ONE_FREQUENCY = 1e-3
-#: ratio of moduli at one frequency and one temperature above which something else was varied
-_REPEATED = 1.25
 #: tan delta that no rubber has at any frequency: that of damping rubbers in their glass transition is below
 _MOST_DAMPED = 3.0
 #: a line with a number in degrees Celsius or kelvin, which is no rate, or with a word for temperature before a number
@@ -101,13 +99,9 @@ def read_dma(
     >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
     table, found, others = source = understand(path, "dma", columns, units, decimal, encoding)
-    notes = [f"{len(table.starts)} tables"] * (len(table.starts) > 1)
     mode, pair, columns_of_quantity = _choose_columns(table, found, others)
-    if not mode:
-        # as rheometers write; instruments of tension name E
-        mode = "shear" if source.shear else "tension"
-        reason = f"{source.shear!r} is beside them" if source.shear else "no heading says E or G"
-        notes.append(f"{mode} is assumed, since {reason}")
+    mode, assumed = source.mode(mode)
+    notes = [f"{len(table.starts)} tables"] * (len(table.starts) > 1) + assumed
     strains = columns_of_quantity.pop("strain", [])
     numbers = {
         quantity: agreeing_numbers(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()
@@ -248,17 +242,11 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     Raises FileError for each of the three; returns nothing.
     """
     omega, n = record.omega, record.omega.size
-    if n > 1 and omega.max() < (1.0 + _ONE_FREQUENCY) * omega.min():
+    if n > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
         problem = f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a frequency sweep"
         raise FileError(table.path, problem)
     if record.temperature is None and len(table.starts) > 1:
         problem = f"has {len(table.starts)} tables, and no column states their temperature"
         raise FileError(table.path, f"{problem}: keep one of them, or write 'Temperature 20 °C' above each")
     if record.isothermal:
-        order = np.argsort(omega, kind="stable")
-        same = np.diff(omega[order]) <= _ONE_FREQUENCY * omega[order][1:]
-        repeats = np.abs(np.diff(np.log(np.abs(record.storage[order])))) <= np.log(_REPEATED)
-        holds = np.ones(n, bool)
-        holds[order[1:]] = repeats | ~same
-        problem = "an earlier row has the same frequency and another modulus"
-        table.require(holds, f"{problem}: rows at several temperatures need a column of temperature; keep one strain")
+        refuse_repeats(table, omega, record.storage)

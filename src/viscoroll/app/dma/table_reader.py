@@ -23,6 +23,10 @@ from .vocabulary import BARE, OF_SHEAR, QUANTITIES, UNITS, meanings
 _ROUND_PI = 1e-3
 #: Pa; moduli that are all below it are not of a rubber in Pa
 SOFTEST = 1e3
+#: relative difference of frequencies that are one: instruments keep theirs to this
+ONE_FREQUENCY = 1e-3
+#: ratio of moduli at one frequency and one temperature above which something else was varied
+_REPEATED = 1.25
 #: advice where columns are not understood
 _NAME_THEM = "name the columns by columns={...} (`viscoroll material fit`: --column NAME=HEADING)"
 #: a number in degrees Celsius or kelvin, which is no rate, and none that a comma in a row of cells may have cut
@@ -52,10 +56,16 @@ class Understood(NamedTuple):
     columns: list[Column]
     others: dict[str, str]
 
-    @property
-    def shear(self) -> str:
-        """First heading that only a test in shear has, as "Torque"; "" without one."""
-        return next((heading for heading in self.table.headings if OF_SHEAR.search(heading)), "")
+    def mode(self, said: str) -> tuple[str, list[str]]:
+        """Return the mode of the moduli, and a note in a list if it is assumed.
+
+        said : "tension", "shear", or "" where the headings of the moduli do not say it: then it is "shear" if another
+            heading is one of a test in shear, as "Torque" of rheometers, else "tension".
+        """
+        beside = next((heading for heading in self.table.headings if OF_SHEAR.search(heading)), "")
+        mode = said or ("shear" if beside else "tension")
+        reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
+        return mode, [f"{mode} is assumed, since {reason}"] * (not said)
 
     def notes(self, taken: list[Column]) -> list[str]:
         """Return the notes on columns of logarithms, columns that are left out, and lines below the rows.
@@ -66,7 +76,7 @@ class Understood(NamedTuple):
         listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in self.others.items())
         notes += [f"unused: {listed}"] * bool(listed)
         below = [text for n, text in self.table.titles.items() if n > self.table.rows[-1].number]
-        return notes + [f"lines below the rows are left out, {quoted(below[:1])} and so on"] * bool(below)
+        return notes + [f"lines below the rows are left out, as {quoted(below[:1])}"] * bool(below)
 
 
 def missing(table: Table, problem: str, others: Mapping[str, str]) -> FileError:
@@ -208,6 +218,20 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
         doubt = f"; moduli of up to {moduli.max():g}: are these logarithms, or in MPa?" * bool(moduli.max() < SOFTEST)
         advice = f"write units into the file, or give units={doubt}"
         warnings.warn(f"{text}: {advice}", ModelWarning, stacklevel=caller_level())
+
+
+def refuse_repeats(table: Table, at: Floats, modulus: Floats) -> None:
+    """Refuse two rows of one frequency or time, to 0.1 %, whose moduli differ by more than a factor of 1.25.
+
+    table : :class:`Table`, whose lines are named in the message.
+    at, modulus : frequency or time, and modulus of each row, > 0, (n,).
+    """
+    order = np.argsort(at, kind="stable")
+    same = np.diff(at[order]) <= ONE_FREQUENCY * at[order][1:]
+    holds = np.ones(at.size, bool)
+    holds[order[1:]] = ~same | (np.abs(np.diff(np.log(modulus[order]))) <= np.log(_REPEATED))
+    problem = "an earlier row has the same frequency or time and another modulus"
+    table.require(holds, f"{problem}: rows at several temperatures need a column of temperature; keep one strain")
 
 
 def temperatures_of_lines(table: Table) -> Floats | None:
