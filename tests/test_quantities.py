@@ -68,8 +68,8 @@ NO_NUMBERS = ("Mapping", "PathLike", "Callable[[", "Iterable[str]", "Reasons", "
 #: left out: values that have a unit where they are used alone (tests of drives), files, mappings by name, results;
 #: ``resolve`` goes with a function of time alone (tests/motion/test_fitted.py)
 LEFT_OUT = {
-    "Schedule", "Feedback", "read_dma", "read_relaxation", "load_law", "identify", "Values", "Steady", "Motion", "Ensemble", "Validity",
-    "Fit", "Law", "DynamicModuli", "RelaxationFit", "RelaxationModulus",
+    "Schedule", "Feedback", "read_dma", "load_law", "identify", "Values", "Steady", "Motion", "Ensemble", "Validity",
+    "Fit", "Law", "DynamicModuli", "RelaxationFit", "RelaxationModulus", "read_relaxation",
 }  # fmt: skip
 #: what has methods that take numbers
 MADE = {

@@ -27,7 +27,7 @@ _CYCLES = re.compile(r"(?i)hz|rpm|cpm|rad|rev|cyc|osc|giri|tours|[ucr]/|upm|u\s*
 #: a heading that begins with G and at most three further letters or digits
 _OF_G = re.compile(r"\W*[Gg][^\W_]{0,3}(?![^\W_])")
 #: a power of ten in a heading
-_POWER_OF_TEN = re.compile(r"\b10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])|\b1[eE][+-]?\d")
+_POWER_OF_TEN = re.compile(r"(?<!\d)10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])|\b1[eE][+-]?\d")
 #: units of angles
 _ANGLE = re.compile(r"(?i)rad|deg|°|º|grad")
 
@@ -116,7 +116,7 @@ def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> 
     if any("angular " + name == each.name for each in known):
         name = "angular " + name
     mode = mode if "Pa" in UNITS[name] else ""
-    ways = [Meaning(name, mode, each.unit, each.log, each.sure) for each in readings(heading, row)]
+    ways = [Meaning(name, mode, each.unit, each.log, each.sure) for each in readings(heading or "column", row)]
     ways.sort(key=lambda each: each.unit in NO_UNIT)
     if name not in overruling and _POWER_OF_TEN.search(heading):
         return [ways[0]._replace(unit=heading)]

@@ -249,4 +249,4 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
         problem = f"has {len(table.starts)} tables, and no column states their temperature"
         raise FileError(table.path, f"{problem}: keep one of them, or write 'Temperature 20 °C' above each")
     if record.isothermal:
-        refuse_repeats(table, omega, record.storage)
+        refuse_repeats(table, "frequency", omega, record.storage)

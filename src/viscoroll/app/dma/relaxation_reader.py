@@ -165,7 +165,7 @@ def read_relaxation(
         holds = (numbers[name] > 0.0) & (numbers[name] < np.inf)
         table.require(holds, f"the {name} is not > 0 and finite: remove the row")
     relaxation = numbers[pair[0]] / numbers.get("strain", 1.0)
-    refuse_repeats(table, numbers["time"], relaxation)
+    refuse_repeats(table, "time", numbers["time"], relaxation)
     temperature = numbers.get("temperature")
     if temperature is not None and np.ptp(temperature) > SAME_TEMPERATURE:
         raise FileError(

@@ -87,7 +87,7 @@ def missing(table: Table, problem: str, others: Mapping[str, str]) -> FileError:
     others : heading -> why the column is left out.
     """
     reasons = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
-    headings = ", ".join(map(repr, filter(None, table.headings)))
+    headings = ", ".join(repr(heading or f"column {n}") for n, heading in enumerate(table.headings))
     advice = f"; {_NAME_THEM}" * ("" in others.values() or not others)
     return FileError(table.path, f"{problem}{reasons}; headings: {headings}{advice}")
 
@@ -220,17 +220,18 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
         warnings.warn(f"{text}: {advice}", ModelWarning, stacklevel=caller_level())
 
 
-def refuse_repeats(table: Table, at: Floats, modulus: Floats) -> None:
+def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None:
     """Refuse two rows of one frequency or time, to 0.1 %, whose moduli differ by more than a factor of 1.25.
 
     table : :class:`Table`, whose lines are named in the message.
+    name : "frequency" or "time".
     at, modulus : frequency or time, and modulus of each row, > 0, (n,).
     """
     order = np.argsort(at, kind="stable")
     same = np.diff(at[order]) <= ONE_FREQUENCY * at[order][1:]
     holds = np.ones(at.size, bool)
     holds[order[1:]] = ~same | (np.abs(np.diff(np.log(modulus[order]))) <= np.log(_REPEATED))
-    problem = "an earlier row has the same frequency or time and another modulus"
+    problem = f"an earlier row has the same {name} and another modulus"
     table.require(holds, f"{problem}: rows at several temperatures need a column of temperature; keep one strain")
 
 

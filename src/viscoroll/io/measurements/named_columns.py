@@ -49,14 +49,14 @@ def find_column(table: Table, name: str) -> int | None:
     Columns whose whole heading is the name are preferred to those with the name and a unit.
 
     table : :class:`Table`, whose headings are searched.
-    name : a heading as the file has it, or without its unit.
+    name : a heading as the file has it, or without its unit; "column 0" and so on of an empty one.
 
     Raises
     ------
     FileError
         Several columns have that name.
     """
-    exact = [n for n, heading in enumerate(table.headings) if heading == name]
+    exact = [n for n, heading in enumerate(table.headings) if (heading or f"column {n}") == name]
     found = exact or [n for n, heading in enumerate(table.headings) if _is_named(heading, name)]
     if len(found) > 1:
         headings = " and ".join(repr(table.headings[n]) for n in found)
