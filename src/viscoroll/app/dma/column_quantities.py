@@ -92,7 +92,10 @@ def columns_of(
             faults = ["no numbers"]
         if "" in faults:
             name, mode, unit, log, _ = found[faults.index("")]
-            unit = overruling.get(name) or ("" if unit in NO_UNIT else unit) or defaults.get(name, "")
+            sign = (
+                "1" if name == "strain" and any(each.unit for each in found) else ""
+            )  # of a ratio, where per cent are as usual
+            unit = overruling.get(name) or (sign if unit in NO_UNIT else unit) or defaults.get(name, "")
             columns.append(Column(index, heading, name, mode, log, unit or ASSUMED[name], bool(unit)))
         elif index in owners:
             raise FileError(table.path, f"column {heading!r}: {faults[0]}")

@@ -13,7 +13,7 @@ import numpy as np
 
 from ...core.array_types import Floats
 from ...core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
-from ...io.measurements import Numbers, Table, conversion, read_table, readings
+from ...io.measurements import NO_UNIT, Numbers, Table, conversion, read_table, readings
 from .column_quantities import Column, columns_of, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE
 from .moduli_from_pair import AVERAGED
@@ -39,7 +39,7 @@ _NAMED = re.compile(
     r"([+-]?\d+(?:[.,]\d+)?)()[\s;,|\"]*$"
 )
 #: a heading of a temperature that is not understood, as "Ts" or "Chamber temp."
-_LIKE_TEMPERATURE = re.compile(r"(?i:temp)|温度|T[^\W_]{0,2}(?![^\W_])")
+_LIKE_TEMPERATURE = re.compile(r".*(?i:temp(?!o\b|s\b|l))|.*温度|T[^\W_]{0,2}(?![^\W_])")
 #: degrees; numbers without a unit above it may be kelvins
 _KELVIN = 200.0
 
@@ -246,11 +246,12 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     Raises FileError for a block above which not exactly one temperature is stated, as also in "20 to 60 °C".
     """
     numbers = np.array([row.number for row in table.rows])
+    in_doubt = table.decimal != "," and "," in table.rows[0].text
     lines: dict[int, dict[str, float]] = {}
     for n, text in table.titles.items():
         found = _IN_DEGREES.findall(text) or _NAMED.findall(text)
         if found and n < numbers[-1]:
-            values = {_celsius(number, unit, table.decimal) for number, unit in found}
+            values = {_celsius(number, unit, in_doubt) for number, unit in found}
             wording = re.sub(r"[\d.,+-]", "", text)
             lines.setdefault(int(np.searchsorted(numbers, n)), {})[wording] = (
                 values.pop() if len(values) == 1 else np.nan
@@ -270,15 +271,15 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     return temperature
 
 
-def _celsius(number: str, unit: str, decimal: str) -> float:
+def _celsius(number: str, unit: str, in_doubt: bool) -> float:
     """Return a temperature in a line in degrees Celsius, NaN where it is in doubt.
 
     number : digits, with a decimal point or comma.
     unit : its unit as the file spells it, "" without, which is degrees Celsius unless the number is above 200.
-    decimal : decimal mark of the table; with a point a comma may part cells.
+    in_doubt : whether a comma may part cells in place of decimals.
     """
     value = float(number.replace(",", "."))
-    if ("," in number and decimal != ",") or (not unit and value > _KELVIN):
+    if ("," in number and in_doubt) or (not unit and value > _KELVIN):
         return np.nan
     factor, offset = conversion(unit or "degC", "degC")
     return factor * value + offset
@@ -296,10 +297,10 @@ def refuse_unread_temperatures(table: Table, others: Mapping[str, str]) -> None:
     """
     for index, heading in enumerate(table.headings):
         if heading in others and table.has_numbers(index):
-            factors = [
-                _kelvins(each.unit) for each in readings(heading, table.units[index]) if each.sure or "°" in each.unit
-            ]
-            factor = max([*factors, 1.0 if _LIKE_TEMPERATURE.match(heading) else 0.0])
+            ways = readings(heading, table.units[index])
+            units = [each.unit for each in ways if each.unit not in NO_UNIT and (each.sure or "°" in each.unit)]
+            hint = _LIKE_TEMPERATURE.match(heading) is not None
+            factor = max(map(_kelvins, units)) if units else float(hint)
             spread = np.inf
             with suppress(FileError):
                 spread = factor * np.ptp(table.numbers(index).values)

@@ -19,6 +19,8 @@ _BRACKETS = re.compile(r"[\[({<]\s*([^\[\](){}<>]*?)\s*[\])}>]|\(\s*([^()]*\([^(
 _BETWEEN = re.compile(r"\s*/\s*|\s+in\s+|[\s_,]+")
 #: a heading of logarithms to base 10 or, of ln, e
 _LOGARITHM = re.compile(r"(?P<kind>(?i:log|lg|ln))(?![a-z]{2})[\s_-]*(?:10(?!\d))?[\s_]*(?P<of>.+)")
+#: the same in brackets behind the name, as in "E' (log)"
+_LOG_BEHIND = re.compile(r"(?i)^(.+?)[\s,_]*[\[(]\s*(log|lg|ln)(?:10)?\s*[\])]")
 #: a text in parentheses, and what follows
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
@@ -66,7 +68,8 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     heading.  Where the heading and the row give different units of one dimension, all have both as unit, as "Hz and
     rad/s", which is no unit.
     """
-    log, heading = 0.0, heading.translate(_WIDE)
+    log = 0.0
+    heading = _LOG_BEHIND.sub(r"\2 \1", heading.translate(_WIDE))
     if found := _LOGARITHM.fullmatch(heading.strip()):
         heading, log = found["of"], math.e if found["kind"].lower() == "ln" else 10.0
         if inner := _PARENTHESES.fullmatch(heading):
