@@ -180,7 +180,7 @@ CASES = {
     ),
     "four columns without headings": (
         "<n; f; S/1e6; L/1e6>\n",
-        "which are called 'column 0', 'column 1'",
+        "they are called 'column 0', 'column 1'",
         give(columns={"frequency": "column 1", "storage": "column 2", "loss": "column 3"}, units=("Hz", "MPa")),
     ),
     "headings that say nothing": (

@@ -46,18 +46,20 @@ def read_dma(
 
     The headings say which column is which, in any order: frequency or angular frequency (reduced ones first), and two
     of storage, loss, tan delta or phase angle, and magnitude of the complex modulus, or the same of compliances.  A
-    third is compared with what the two give.  Units stand after the names or in a row of their own.  Other columns are
-    left out and listed in ``notes``.  Columns are parted by tabs, semicolons, commas or blanks; there may be lines
-    before the headings, and comments that begin with ``#``.
+    third is compared with what the two give.  Units stand after the names or in a row of their own; log and ln before
+    a name are of base 10 and e.  Other columns are left out and listed in ``notes``, as are lines below the last row.
+    Columns are parted by tabs, semicolons, commas or blanks; there may be lines before the headings, and comments that
+    begin with ``#``.  A line above each of several blocks of rows may state their temperature, as "Temperatur 20 °C".
 
     Parameters
     ----------
-    path : a text file in UTF-8, UTF-16 or Latin-1.
+    path : a text file in UTF-8, UTF-16, cp932 or Latin-1.
     columns : meaning -> heading, as ``{"storage": "Module 1"}``, of columns whose names are not understood; meanings
         are frequency, angular frequency, storage, loss, tan delta, phase angle, modulus (the magnitude), storage
-        compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
-        file without headings are called "column 0", "column 1" ...; if there are three, they are taken as angular
-        frequency, storage and loss, in this order.
+        compliance, loss compliance, modulus compliance, strain, temperature, and reduced (angular) frequency.  They
+        replace all columns of the same quantity, as tan delta a phase angle.  The columns of a file without headings
+        are called "column 0", "column 1" ...; if there are three, they are taken as angular frequency, storage and
+        loss, in this order.
     units : units of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning
         -> unit, in place of what the file says.  Columns for which neither gives a unit are taken in Hz (frequencies),
         rad/s (angular frequencies), Pa (moduli), degrees (phase angles) and degrees Celsius, the first three with a
@@ -72,18 +74,19 @@ def read_dma(
         ``omega`` in rad/s, ``storage`` and ``loss`` in Pa and ``temperature`` in degrees Celsius or None, (n,) each, in
         the order of the file; ``mode`` is "shear" where the headings say so, else "tension".  ``temperature`` is None
         where the file has no column of it, and of reduced frequencies at several temperatures, which belong to a
-        reference that no column says; ``notes`` then quotes lines above the headings that state one.  ``print`` shows
-        in three lines what was understood.  It unpacks into three arrays: ``omega, storage, loss = read_dma(path)``.
+        reference that no column says; ``notes`` then quotes lines above the headings that state one.  ``strain``,
+        dimensionless, is None where no column has it with its unit, without gaps.  ``print`` shows in three lines what
+        was understood.  It unpacks into three arrays: ``omega, storage, loss = read_dma(path)``.
 
     Raises
     ------
     FileError
         A file that cannot be read, is no text or has no table; tables with different headings; columns that are
-        missing, ambiguous or contradict each other, units that are missing, unknown or of another dimension, gaps and
-        separators of thousands; a frequency or modulus that is not > 0 and finite, a phase angle of 90 degrees and
-        more, a temperature at or below absolute zero; a modulus from a magnitude and storage or loss that the digits of
-        the file leave uncertain by more than 5 %; all rows at one frequency; several moduli at one frequency, or
-        several tables, without a column of temperatures.
+        missing, ambiguous or contradict each other, columns that seem to be temperatures, units that are missing,
+        unknown or of another dimension, gaps and separators of thousands; a frequency or modulus that is not > 0 and
+        finite, a phase angle of 90 degrees and more, a temperature at or below absolute zero; a modulus from a
+        magnitude and storage or loss that the digits of the file leave uncertain by more than 5 %; all rows at one
+        frequency; several moduli at one frequency, or several tables, without a column of temperatures.
     ParameterError
         Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file,
         also the unit of a quantity of which the file has no column.
@@ -91,7 +94,8 @@ def read_dma(
     Warns
     -----
     ModelWarning
-        Where neither the file nor ``units`` says what a column is in.
+        Where neither the file nor ``units`` says what a column is in; a tan delta above 3 without a unit, as of none of
+        rubber: it may be in per cent.
 
     Examples
     --------

@@ -119,8 +119,9 @@ def understand(
     )  # fmt: skip
     if table.without_headings and not named:
         if len(table.headings) != len(bare):
-            problem = f"has no headings for its {len(table.headings)} columns, which are called"
-            raise FileError(path, f"{problem} {', '.join(map(repr, table.headings))}: {_NAME_THEM}")
+            called = ", ".join(map(repr, table.headings))
+            problem = f"has {len(table.headings)} columns, and no headings for {' and '.join(bare)}"
+            raise FileError(path, f"{problem}; they are called {called}: {_NAME_THEM}")
         named = dict(zip(bare, table.headings, strict=True))
     found, others = columns_of(table, test, named, overruling, defaults)
     check_names("units", overruling, [column.name for column in found], "a quantity of this file")
@@ -139,7 +140,8 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
     """
     by_name = isinstance(units, Mapping)
     known, first = QUANTITIES[test], BARE[test][0]
-    allowed = f"({first}, moduli), as ({'s' if first == 'time' else 'Hz'!r}, 'MPa'), or quantity -> unit"
+    two = "(time, moduli), as ('s', 'MPa')" if first == "time" else "(frequency, moduli), as ('Hz', 'MPa')"
+    allowed = f"{two}, or quantity -> unit"
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
         raise ParameterError("units", f"{units!r:.60}", allowed)
     of_two = zip((UNITS[first], "Pa"), units or (), strict=False)
