@@ -42,7 +42,7 @@ SAMPLES = {
     "rtol": 1e-6, "density": 1e3, "thickness": 0.25, "temperature": 30.0, "reference": 30.0,
     "alpha": 11.0, "kappa": 10.0, "mu": 0.25, "gamma": 1.0, "j": 0.5, "share": 0.5,
     "R": 0.5, "m": 40.0, "E": 2e6, "nu": 0.25, "T_epsilon": 0.5, "T_sigma": 0.125, "T_ref": 0.5, "g": 10.0,
-    "load": 400.0, "pressed": 400.0, "E0": 4e6, "G0": 4e6, "G_inf": 1e6, "bulk": 1e9, "energy": 1e5,
+    "nu_instant": 0.25, "load": 400.0, "pressed": 400.0, "E0": 4e6, "G0": 4e6, "G_inf": 1e6, "bulk": 1e9, "energy": 1e5,
     "T0": 20.0, "C1": 17.0, "C2": 50.0, "low": 0.5, "high": 4.0, "misfit": 0.01, "M": 0.5, "F": 0.5, "Q": 0.5,
     "sigma": 0.5, "t0": 0.125, "quantiles": (0.25, 0.75), "level": 0.5,
 }  # fmt: skip
@@ -69,7 +69,7 @@ NO_NUMBERS = ("Mapping", "PathLike", "Callable[[", "Iterable[str]", "Reasons", "
 #: ``resolve`` goes with a function of time alone (tests/motion/test_fitted.py)
 LEFT_OUT = {
     "Schedule", "Feedback", "read_dma", "load_law", "identify", "Values", "Steady", "Motion", "Ensemble", "Validity",
-    "Fit", "Law", "DynamicModuli", "RelaxationFit",
+    "Fit", "Law", "DynamicModuli", "RelaxationFit", "RelaxationModulus", "read_relaxation",
 }  # fmt: skip
 #: what has methods that take numbers
 MADE = {

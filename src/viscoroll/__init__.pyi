@@ -6,9 +6,11 @@ from .app import fmu as fmu
 from .app.dma import DynamicModuli as DynamicModuli
 from .app.dma import Fit as Fit
 from .app.dma import RelaxationFit as RelaxationFit
+from .app.dma import RelaxationModulus as RelaxationModulus
 from .app.dma import fit_prony as fit_prony
 from .app.dma import fit_relaxation as fit_relaxation
 from .app.dma import read_dma as read_dma
+from .app.dma import read_relaxation as read_relaxation
 from .app.identification import Coastdown as Coastdown
 from .app.identification import Resistance as Resistance
 from .app.identification import Traction as Traction

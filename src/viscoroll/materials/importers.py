@@ -8,6 +8,7 @@ and differ from those of shear, nu changes with time; :func:`plane_strain` keeps
 from __future__ import annotations
 
 import math
+import warnings
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,16 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.array_types import Floats
 from ..core.checks import check_array, check_bool, check_number
-from ..core.errors import ParameterError, check_names, check_one_given, described_error, exactly_one_error, shape_error
+from ..core.errors import (
+    ModelWarning,
+    ParameterError,
+    caller_level,
+    check_names,
+    check_one_given,
+    described_error,
+    exactly_one_error,
+    shape_error,
+)
 from ..core.scale import SI
 from .bodies import Bodies
 from .prony import Prony
@@ -27,7 +37,8 @@ _MATERIAL_KEYWORDS = ("name", "density", "thickness", "measured", "temperature")
 class FromPrograms:
     """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given.
 
-    A ``temperature`` outside -150 to 200 degrees Celsius gives a ModelWarning: it looks like one in kelvin.
+    A ``temperature`` outside -150 to 200 degrees Celsius gives a ModelWarning: it looks like one in kelvin.  So do bulk
+    terms by which Poisson's ratio is negative, at long times or at t = 0: they look like those of another unit.
     """
 
     @classmethod
@@ -248,7 +259,7 @@ class FromPrograms:
         check_one_given(nu=nu, bulk=bulk)
         if bulk is not None:
             bulk = check_number("bulk", bulk, unit=SI, above=0.0)
-            nu = (3.0 * bulk - 2.0 * rest) / (6.0 * bulk + 2.0 * rest)
+            nu = _poisson(rest, bulk)
             terms = np.zeros_like(strengths) if terms is None else terms
         return cls._from_moduli(rest, check_poisson(nu), strengths, times, terms, more, bulk)
 
@@ -282,7 +293,7 @@ class FromPrograms:
         G, K = E / (2.0 * (1.0 + nu)), E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else math.inf
         G, K = (G, K) if long_term else (G * rest, K * rest_of_bulk)
         if nu < 0.5:  # nu of long times
-            nu = (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)
+            nu = _poisson(G, K)
         bulk_terms = others / rest_of_bulk * (K if nu < 0.5 else 1.0)
         return cls._from_moduli(G, nu, values / rest * G, times, bulk_terms, more, K)
 
@@ -306,21 +317,39 @@ class FromPrograms:
         Raises ParameterError for values out of range, too many terms, and an unknown keyword.
         """
         E = 2.0 * (1.0 + nu) * G_inf if E is None else E
-        prony = Prony(G / G_inf, tau)
+        prony, early = Prony(G / G_inf, tau), None
         if K is not None and nu < 0.5:  # an incompressible body has no bulk strain that could relax
             K_inf = E / (3.0 * (1.0 - 2.0 * nu)) if K_inf is None else K_inf
             if not np.array_equal(K * G_inf, G * K_inf):
                 prony = plane_strain(G_inf, G, K_inf, K, tau)
+                early = _poisson(G_inf + math.fsum(G), K_inf + math.fsum(K))
+            _warn_of_negative(nu, early)
         check_names("keyword", more, _MATERIAL_KEYWORDS, "a keyword of this function")
-        return cls(E=E, nu=nu, prony=prony, **more)  # type: ignore[call-arg]
+        return cls(E=E, nu=nu, prony=prony, nu_instant=early, **more)  # type: ignore[call-arg]
 
 
-def check_poisson(nu: Any) -> float:
-    """Return Poisson's ratio ``nu`` as a float in (-1, 0.5]; raises ParameterError for what is no such number."""
-    nu = check_number("nu", nu)
+def check_poisson(nu: Any, name: str = "nu") -> float:
+    """Return Poisson's ratio ``nu`` as a float in (-1, 0.5]; raises ParameterError with ``name`` for other values."""
+    nu = check_number(name, nu)
     if not -1.0 < nu <= 0.5:
-        raise ParameterError("nu", nu, "in (-1, 0.5]")
+        raise ParameterError(name, nu, "in (-1, 0.5]")
     return nu
+
+
+def _poisson(G: float, K: float) -> float:
+    """Return Poisson's ratio (3 K - 2 G)/(6 K + 2 G) of shear and bulk modulus in one unit."""
+    return (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)
+
+
+def _warn_of_negative(late: float, early: float | None) -> None:
+    """Warn where bulk terms make Poisson's ratio negative, at long times or at t = 0: their unit may be another.
+
+    late, early: Poisson's ratio of long times and of t = 0; None: as of long times.
+    """
+    lowest = late if early is None else min(late, early)
+    if lowest < 0.0:
+        text = f"bulk and shear moduli make nu = {lowest:.3g}: give both in one unit, and as moduli or as fractions"
+        warnings.warn(f"{text}, as the program has them", ModelWarning, stacklevel=caller_level())
 
 
 def check_pairs(

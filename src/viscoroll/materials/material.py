@@ -48,6 +48,8 @@ class Material(FromPrograms):
     measured : :class:`Measured` range of frequencies of the data; outside of it functions warn.
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
         Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
+    nu_instant : Poisson's ratio at t = 0, in (-1, 0.5], of a material imported with bulk terms unlike those of shear;
+        None: nu is constant in time.  Only ``instant`` needs it.
 
     Raises
     ------
@@ -75,6 +77,7 @@ class Material(FromPrograms):
     thickness: float | None = None
     measured: Measured | None = None
     temperature: float | None = None
+    nu_instant: float | None = None
 
     def __post_init__(self) -> None:
         """Check the fields, and replace numbers by floats in SI units (``temperature`` in degrees Celsius).
@@ -95,6 +98,8 @@ class Material(FromPrograms):
         else:
             check_fields(self, E=0.0)
         object.__setattr__(self, "nu", check_poisson(self.nu))
+        if self.nu_instant is not None:
+            object.__setattr__(self, "nu_instant", check_poisson(self.nu_instant, "nu_instant"))
         check_text("name", self.name)
         given = [name for name in ("density", "thickness") if getattr(self, name) is not None]
         check_fields(self, SI, **dict.fromkeys(["T_ref", *given], 0.0))
@@ -207,8 +212,13 @@ class Material(FromPrograms):
 
     @property
     def instant(self) -> float:
-        """Instantaneous Young's modulus, Pa."""
-        return self.E * self.prony.alpha
+        """Instantaneous Young's modulus, Pa.
+
+        Of a material with ``nu_instant`` alpha is that of E/(1 - nu^2), so that the modulus is E alpha (1 -
+        nu_instant^2)/(1 - nu^2).
+        """
+        late, early = self.nu, self.nu if self.nu_instant is None else self.nu_instant
+        return self.E * self.prony.alpha * (1.0 - early**2) / (1.0 - late**2)
 
     @property
     def G(self) -> float:
@@ -441,7 +451,7 @@ class Material(FromPrograms):
         times = self.prony.tau * self.T_ref
         values: list[tuple[str, Any, str]] = [
             ("E", self.E, "Pa, of long times"), ("instantaneous", self.instant, "Pa"), ("nu", self.nu, ""),
-            ("modes", times.size, ""), ("T_ref", self.T_ref, "s"),
+            ("instantaneous nu", self.nu_instant, ""), ("modes", times.size, ""), ("T_ref", self.T_ref, "s"),
             ("relaxation times", f"{times[0]:.3g} to {times[-1]:.3g}" if times.size else None, "s"),
             ("density", self.density, "kg m-3"), ("thickness", self.thickness, "m"),
             ("temperature", self.temperature, "degrees Celsius"),

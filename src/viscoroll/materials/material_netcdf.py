@@ -33,7 +33,8 @@ _MEANING = {
     "J": ("strengths of creep divided by the long-time compliance", "1"),
     "T": ("retardation times over T_ref", "1"),
     "E_long": ("long-time Young's modulus; infinite for a rigid body", "Pa"),
-    "nu": ("Poisson's ratio, constant in time", "1"),
+    "nu": ("Poisson's ratio, of long times", "1"),
+    "nu_instant": ("Poisson's ratio at t = 0, where it differs from nu", "1"),
     "T_ref": ("unit of the times tau and T", "s"),
     "alpha": ("instantaneous modulus divided by long-time modulus", "1"),
     "density": ("density", "kg m-3"),
@@ -44,7 +45,7 @@ _MEANING = {
     "measured_misfit": ("root mean square of the relative errors of the fit", "1"),
 }
 #: variables that a file may lack
-_OPTIONAL = ("density", "thickness", "temperature")
+_OPTIONAL = ("density", "thickness", "temperature", "nu_instant")
 #: fields of the measured band, which a file may lack
 _BAND = ("low", "high", "misfit")
 

@@ -71,6 +71,7 @@ class MaterialSection(FileSection, kw_only=True):
     wlf, arrhenius : time-temperature shift.
     temperature : temperature of the material, degrees Celsius.
     reference : temperature at which moduli and times are as given, degrees Celsius; default: where the shift is 1.
+    nu_instant : Poisson's ratio at t = 0, where it differs from nu.
     """
 
     file: None = None  # type: ignore[assignment]
@@ -84,6 +85,7 @@ class MaterialSection(FileSection, kw_only=True):
     name: str = ""
     measured: Measured | None = None
     reference: float | None = None
+    nu_instant: float | None = None
 
 
 def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
@@ -154,10 +156,10 @@ def material_as_toml(material: Material, section: str = "material") -> str:
     material: the :class:`Material`.
     section: name of the section, "material" or "base".
     Returns the text, which ends with a line feed: a header; a line each for name, E, nu and T_ref, and for those of
-    density, thickness, temperature (as ``reference``) and measured that are given; the series.
+    nu_instant, density, thickness, temperature (as ``reference``) and measured that are given; the series.
     """
     band = material.measured
-    values = {name: getattr(material, name) for name in ("E", "nu", "T_ref", "density", "thickness")}
+    values = {name: getattr(material, name) for name in ("E", "nu", "nu_instant", "T_ref", "density", "thickness")}
     values = {"name": _quote(material.name)} | values | {"reference": material.temperature}
     values["measured"] = band and (
         f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = {_quote(band.source)} }}"
@@ -282,7 +284,7 @@ def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
         if not math.isinf(section.E):
             raise section_error(path, name, "", "needs nu")
         nu = Material.rigid().nu
-    more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured")}
+    more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured", "nu_instant")}
     reference = section.reference
     more["temperature"] = reference and check_number("reference", reference, above=ABSOLUTE_ZERO)
     series = parse_series(path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep}))

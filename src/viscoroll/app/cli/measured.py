@@ -60,7 +60,8 @@ def _named_heading(text: str) -> tuple[str, str]:
 @command(
     "material fit",
     option("data", metavar="DATA", help="text file with columns"),
-    option("--units", metavar="F,M", help="units of frequency and moduli, if the file states none; for example Hz,MPa"),
+    option("--units", metavar="F,M", help="units of frequency and moduli, if the file states none, for "
+        "example Hz,MPa; or in place of those of the file NAME=UNIT,..., for example storage=MPa"),
     option(
         "--column", type=_named_heading, metavar="NAME=HEADING", action="append", default=[],
         help="quantity and heading of a column, for example storage=Module 1; may be repeated"
@@ -94,7 +95,7 @@ def fit(arguments: Namespace) -> int:
         data, path of the text file;
         decimal, "." or ",", or None: as the numbers have it;
         encoding, name of an encoding, or None: by the first bytes of the file;
-        units, "F,M", units of frequency and of moduli, or None;
+        units, "F,M", units of frequency and of moduli, or "NAME=UNIT,...", or None;
         column, a list of (quantity, heading), perhaps empty;
         mode, "tension" or "shear" in place of what the headings say, or None: as they say, else tension;
         temperature of all points, degrees Celsius, in place of those of the file, or None;
@@ -113,13 +114,14 @@ def fit(arguments: Namespace) -> int:
     from ...contact_law.validity.assumptions import MISFIT_LIMIT
     from ...materials.material_toml import material_as_toml
 
-    units = arguments.units and tuple(arguments.units.split(","))
+    parts = (arguments.units or "").split(",")
+    units: Any = dict(_named_heading(part) for part in parts) if "=" in parts[0] else tuple(parts)
     record = vr.read_dma(
         arguments.data,
         columns=dict(arguments.column),
         decimal=arguments.decimal,
         encoding=arguments.encoding,
-        units=units,
+        units=units if arguments.units else None,
     )
     if arguments.mode is not None:
         record = replace(record, mode=arguments.mode)

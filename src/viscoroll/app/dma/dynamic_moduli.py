@@ -38,6 +38,8 @@ class DynamicModuli(Result):
     columns : meaning -> heading of the column that was taken for it.
     units : meaning -> unit in which that column was written.
     notes : sentences: what was converted, compared, assumed, and which columns were left aside.
+    strain : amplitude of the strain at each point, dimensionless, (n,); None where the file does not state it with its
+        unit.
 
     Examples
     --------
@@ -56,6 +58,7 @@ class DynamicModuli(Result):
     columns: Mapping[str, str] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     notes: tuple[str, ...] = ()
+    strain: Floats | None = None
 
     @property
     def isothermal(self) -> bool:
@@ -99,8 +102,9 @@ class DynamicModuli(Result):
         Returns
         -------
         xarray.Dataset
-            Variables omega (rad s-1), storage and loss (Pa) and, where ``temperature`` is not None, temperature (degC),
-            each over the dimension ``point``; attributes title, mode, source and notes, one text, parted by "; ".
+            Variables omega (rad s-1), storage and loss (Pa) and, where they are not None, temperature (degC) and
+            strain (dimensionless), each over the dimension ``point``; attributes title, mode, source and notes, one
+            text, parted by "; ".
 
         Examples
         --------
@@ -110,7 +114,7 @@ class DynamicModuli(Result):
         """
         import xarray as xr
 
-        units = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "temperature": "degC"}
+        units = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "temperature": "degC", "strain": "1"}
         columns = {name: values for name in units if (values := getattr(self, name)) is not None}
         data = {name: ("point", values, {"units": units[name]}) for name, values in columns.items()}
         about = {"title": "Dynamic moduli", "mode": self.mode, "source": self.source, "notes": "; ".join(self.notes)}
@@ -141,9 +145,13 @@ class DynamicModuli(Result):
         if self.temperature is not None:
             low, high = self.temperature.min(), self.temperature.max()
             words.append(f"{low:g} °C" if low == high else f"{low:g} to {high:g} °C")
-        given = (f"{name} {self.columns[name]!r} in {self.units.get(name, '1')}" for name in self.columns)
-        rows = [
-            SummaryRow("columns", "; ".join(given)),
-            SummaryRow("notes", "; ".join(self.notes) or "no unused column"),
-        ]
-        return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows
+        return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows_of(self)
+
+
+def rows_of(record: Any) -> list[SummaryRow]:
+    """Return the rows of the report of a record with ``columns``, ``units`` and ``notes``: columns, and notes."""
+    given = (f"{name} {record.columns[name]!r} in {record.units.get(name, '1')}" for name in record.columns)
+    return [
+        SummaryRow("columns", "; ".join(given)),
+        SummaryRow("notes", "; ".join(record.notes) or "no unused column"),
+    ]

@@ -16,6 +16,7 @@ from .dynamic_moduli import DynamicModuli
 from .fit_results import Fit, Misfit, Mode, RelaxationFit
 from .master_curve import master_curve
 from .mode_selection import fewest_modes
+from .relaxation_reader import RelaxationModulus
 from .spectrum import misfits, spectrum_of
 
 #: ratio of the highest to the lowest frequency that a fit may have; times reach a decade beyond on either side
@@ -155,13 +156,13 @@ def fit_prony(
 
 
 def fit_relaxation(
-    t: Numbers,
-    relaxation: Numbers,
+    t: Numbers | RelaxationModulus,
+    relaxation: Numbers | None = None,
     modes: int | None = None,
     *,
     misfit: float = 0.003,
     temperature: float | None = None,
-    mode: Mode = "tension",
+    mode: Mode | None = None,
     source: str = "",
 ) -> RelaxationFit:
     """Fit a Prony series to a relaxation modulus: what a test at constant strain gives.
@@ -173,7 +174,8 @@ def fit_relaxation(
     Parameters
     ----------
     t : times since the strain was applied, s, > 0, (n,), in any order.  Leave out those of the ramp: E(t) is that of a
-        step.
+        step.  Or what :func:`viscoroll.read_relaxation` returns, alone: its modulus, temperature, mode and source are
+        then taken.
     relaxation : relaxation modulus at them, stress over strain, > 0, (n,), in one unit.
     modes : number of modes, an int from 1 to 64; fewer are returned only where the least squares give no more modes a
         strength > 0.  None: as few as ``misfit`` needs or, where no grid reaches it, as few as come within 5 % of the
@@ -217,6 +219,15 @@ def fit_relaxation(
     >>> round(fit.T_ref, 6), fit.material(nu=0.49).measured.high
     (0.5, 100.0)
     """
+    if isinstance(t, RelaxationModulus):
+        if relaxation is not None or mode not in (None, t.mode):
+            allowed = "left out: the result of read_relaxation contains both; write modes=5 for a number of modes"
+            raise described_error("relaxation or mode", "is given", allowed)
+        mode, source = _mode(t.mode), source or t.source
+        temperature = t.temperature if temperature is None else temperature
+        t, relaxation = t
+    elif relaxation is None:
+        raise ParameterError("relaxation", None, "given with t, or replaced by a record of read_relaxation")
     curve = data_of(Relaxation, t, relaxation)
     first, *_, last = curve.relaxation.tolist()
     if last > _RISES * first:
@@ -224,7 +235,9 @@ def fit_relaxation(
         raise described_error("relaxation", found, "a relaxation modulus, which falls (a creep compliance rises)")
     _, fields, errors = _fit_series(curve, modes, misfit)
     temperature = None if temperature is None else check_celsius("temperature", temperature)
-    return RelaxationFit(**fields, misfit=errors[0], mode=_mode(mode), source=source, temperature=temperature)
+    return RelaxationFit(
+        **fields, misfit=errors[0], mode=_mode(mode or "tension"), source=source, temperature=temperature
+    )
 
 
 def _mode(mode: Any) -> Mode:

@@ -51,5 +51,6 @@ def storage_and_loss(table: Table, pair: tuple[str, str], columns: dict[str, Num
     for name in columns.keys() - set(pair):
         values, half = columns[name]
         agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half
-        table.require(agrees, f"{name} contradicts {both}")
+        advice = "give its unit by units=, or remove one of the columns"
+        table.require(agrees, f"{name} contradicts {both}: {advice}")
     return storage, loss

@@ -8,27 +8,34 @@ from collections.abc import Mapping
 from itertools import product
 from os import PathLike
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ...core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
-from ...io.measurements import Numbers, Table, conversion, read_table
-from .column_quantities import Column, columns_of, numbers_of
+from ...core.array_types import Floats
+from ...core.errors import FileError, ModelWarning, caller_level
+from ...io.measurements import Table
+from .column_quantities import Column, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli
-from .moduli_from_pair import AVERAGED, PAIRS, storage_and_loss
-from .vocabulary import OF_SHEAR, UNITS, meanings
+from .moduli_from_pair import PAIRS, storage_and_loss
+from .table_reader import (
+    ONE_FREQUENCY,
+    SOFTEST,
+    agreeing_numbers,
+    missing,
+    quoted,
+    refuse_repeats,
+    refuse_unread_temperatures,
+    temperatures_of_lines,
+    understand,
+    warn_of_assumed_units,
+)
+from .vocabulary import UNITS
 
-#: relative difference of frequencies in Hz and in rad/s that agree: 6.28 in place of 2 pi is off by 5e-4
-_ROUND_PI = 1e-3
-#: relative difference of frequencies that are one: instruments keep theirs to this
-_ONE_FREQUENCY = 1e-3
-#: ratio of moduli at one frequency and one temperature above which something else was varied
-_REPEATED = 1.25
-#: advice where columns are not understood
-_NAME_THEM = "name the columns by columns={...} (`viscoroll material fit`: --column NAME=HEADING)"
+#: tan delta that no rubber has at any frequency: that of damping rubbers in their glass transition is below
+_MOST_DAMPED = 3.0
 #: a line with a number in degrees Celsius or kelvin, which is no rate, or with a word for temperature before a number
-_TEMPERATURE = re.compile(r"\d\s*(?:℃|(?:[°º]\s*|deg\s*)?[CK]\b)(?!\s*/)|(?i:temp(?:[eé]rat|\b).*\d)")
+_TEMPERATURE = re.compile(r"\d\s*(?:℃|(?:[°º]\s*|deg\s*)?[CK]\b)(?!\s*/)|(?i:temp(?:[eé]rat|\b).*\d)|温度.*\d")
 
 
 def read_dma(
@@ -39,18 +46,20 @@ def read_dma(
 
     The headings say which column is which, in any order: frequency or angular frequency (reduced ones first), and two
     of storage, loss, tan delta or phase angle, and magnitude of the complex modulus, or the same of compliances.  A
-    third is compared with what the two give.  Units stand after the names or in a row of their own.  Other columns are
-    left out and listed in ``notes``.  Columns are parted by tabs, semicolons, commas or blanks; there may be lines
-    before the headings, and comments that begin with ``#``.
+    third is compared with what the two give.  Units stand after the names or in a row of their own; log and ln before
+    a name are of base 10 and e.  Other columns are left out and listed in ``notes``, as are lines below the last row.
+    Columns are parted by tabs, semicolons, commas or blanks; there may be lines before the headings, and comments that
+    begin with ``#``.  A line above each of several blocks of rows may state their temperature, as "Temperatur 20 °C".
 
     Parameters
     ----------
-    path : a text file in UTF-8, UTF-16 or Latin-1.
+    path : a text file in UTF-8, UTF-16, cp932 or Latin-1.
     columns : meaning -> heading, as ``{"storage": "Module 1"}``, of columns whose names are not understood; meanings
         are frequency, angular frequency, storage, loss, tan delta, phase angle, modulus (the magnitude), storage
-        compliance, loss compliance, modulus compliance, temperature, and reduced (angular) frequency.  The columns of a
-        file without headings are called "column 0", "column 1" ...; if there are three, they are taken as angular
-        frequency, storage and loss, in this order.
+        compliance, loss compliance, modulus compliance, strain, temperature, and reduced (angular) frequency.  They
+        replace all columns of the same quantity, as tan delta a phase angle.  The columns of a file without headings
+        are called "column 0", "column 1" ...; if there are three, they are taken as angular frequency, storage and
+        loss, in this order.
     units : units of frequency and of moduli, as ("Hz", "MPa"), of columns that the file gives none for; or meaning
         -> unit, in place of what the file says.  Columns for which neither gives a unit are taken in Hz (frequencies),
         rad/s (angular frequencies), Pa (moduli), degrees (phase angles) and degrees Celsius, the first three with a
@@ -65,18 +74,19 @@ def read_dma(
         ``omega`` in rad/s, ``storage`` and ``loss`` in Pa and ``temperature`` in degrees Celsius or None, (n,) each, in
         the order of the file; ``mode`` is "shear" where the headings say so, else "tension".  ``temperature`` is None
         where the file has no column of it, and of reduced frequencies at several temperatures, which belong to a
-        reference that no column says; ``notes`` then quotes lines above the headings that state one.  ``print`` shows
-        in three lines what was understood.  It unpacks into three arrays: ``omega, storage, loss = read_dma(path)``.
+        reference that no column says; ``notes`` then quotes lines above the headings that state one.  ``strain``,
+        dimensionless, is None where no column has it with its unit, without gaps.  ``print`` shows in three lines what
+        was understood.  It unpacks into three arrays: ``omega, storage, loss = read_dma(path)``.
 
     Raises
     ------
     FileError
         A file that cannot be read, is no text or has no table; tables with different headings; columns that are
-        missing, ambiguous or contradict each other, units that are missing, unknown or of another dimension, gaps and
-        separators of thousands; a frequency or modulus that is not > 0 and finite, a phase angle of 90 degrees and
-        more, a temperature at or below absolute zero; a modulus from a magnitude and storage or loss that the digits of
-        the file leave uncertain by more than 5 %; all rows at one frequency; several moduli at one frequency, or
-        several tables, without a column of temperatures.
+        missing, ambiguous or contradict each other, columns that seem to be temperatures, units that are missing,
+        unknown or of another dimension, gaps and separators of thousands; a frequency or modulus that is not > 0 and
+        finite, a phase angle of 90 degrees and more, a temperature at or below absolute zero; a modulus from a
+        magnitude and storage or loss that the digits of the file leave uncertain by more than 5 %; all rows at one
+        frequency; several moduli at one frequency, or several tables, without a column of temperatures.
     ParameterError
         Names or headings in ``columns``, units, a decimal mark or an encoding that are not allowed or not in the file,
         also the unit of a quantity of which the file has no column.
@@ -84,40 +94,29 @@ def read_dma(
     Warns
     -----
     ModelWarning
-        Where neither the file nor ``units`` says what a column is in.
+        Where neither the file nor ``units`` says what a column is in; a tan delta above 3 without a unit, as of none of
+        rubber: it may be in per cent.
 
     Examples
     --------
     >>> import viscoroll as vr
     >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
-    if not isinstance(columns, Mapping | None):
-        raise ParameterError("columns", f"{columns!r:.60}", "quantity -> heading")
-    named = dict(columns or {})
-    check_names("columns", named, UNITS, "a quantity")
-    overruling, defaults = _units(units)
-    table = read_table(path, lambda cells: _is_heading_line(cells, named), decimal=decimal, encoding=encoding)
-    if table.without_headings and not named:
-        if len(table.headings) != 3:
-            count = len(table.headings)
-            problem = f"has {count} columns, and no headings for frequency, storage and loss modulus"
-            raise FileError(path, f"{problem}: {_NAME_THEM}")
-        named = dict(zip(("angular frequency", "storage", "loss"), table.headings, strict=True))
-    found, others = columns_of(table, named, overruling, defaults)
-    check_names("units", overruling, [column.name for column in found], "a quantity of this file")
-    notes = [f"{table.parts} tables"] * (table.parts > 1)
-    # as rheometers write; instruments of tension name E
-    beside = next((heading for heading in others if OF_SHEAR.search(heading)), None)
+    table, found, others = source = understand(path, "dma", columns, units, decimal, encoding)
     mode, pair, columns_of_quantity = _choose_columns(table, found, others)
-    if not mode:
-        mode = "shear" if beside else "tension"
-        reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
-        notes.append(f"{mode} is assumed, since {reason}")
+    mode, assumed = source.mode(mode)
+    notes = [f"{len(table.starts)} tables"] * (len(table.starts) > 1) + assumed
+    strains = columns_of_quantity.pop("strain", [])
     numbers = {
-        quantity: _agreeing_numbers(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()
+        quantity: agreeing_numbers(table, quantity, alike, others) for quantity, alike in columns_of_quantity.items()
     }
-    temperature = numbers.get("temperature")
-    if temperature and "reduced frequency" in numbers and np.ptp(temperature.values) > SAME_TEMPERATURE:
+    temperature = numbers["temperature"].values if "temperature" in numbers else None
+    reduced = "reduced frequency" in numbers
+    if temperature is None and not reduced:
+        refuse_unread_temperatures(table, others)
+        temperature = temperatures_of_lines(table)
+        notes += ["temperatures are those of lines above the rows"] * (temperature is not None)
+    elif temperature is not None and reduced and np.ptp(temperature) > SAME_TEMPERATURE:
         temperature = None
         others[columns_of_quantity.pop("temperature")[0].heading] = "reduced frequencies belong to one temperature"
     omega = numbers[next(name for name in numbers if name.endswith("frequency"))].values
@@ -129,25 +128,59 @@ def read_dma(
         with np.errstate(all="ignore"):  # what is not finite is refused
             square = storage**2 + loss**2
             storage, loss = storage / square, loss / square
+    logs = omega.min() < 0.0 or storage.max() < SOFTEST
+    advice = "are these logarithms? write log before their headings" if logs else "remove the row"
     for name, values in {"frequency": omega, "storage modulus": storage, "loss modulus": loss}.items():
-        table.require((values > 0.0) & (values < np.inf), f"the {name} is not > 0 and finite: remove the row")
+        table.require((values > 0.0) & (values < np.inf), f"the {name} is not > 0 and finite: {advice}")
+    warn_of_assumed_units(table, taken, storage)
     if sources != ["storage", "loss"]:
         notes.append(f"moduli are from {' and '.join(sources)}")
     notes += [f"{name} agrees with them" for name in moduli if name not in pair]
-    notes += [f"{column.heading!r} is log10" for column in taken if column.log]
-    listed = ", ".join(f"{heading!r}" + f" ({why})" * bool(why) for heading, why in others.items())
-    notes += [f"unused: {listed}"] * bool(others)
-    stated = ", ".join(f"{' '.join(line.split())!r:.60}" for line in table.above if _TEMPERATURE.search(line))
-    if stated and temperature is None:
-        notes.append(f"no temperature is read from lines above the headings, {stated}: give temperature= to fit_prony")
-    _warn_of_assumed_units(table, taken)
+    strain = _strain(table, strains, others)
+    taken += strains[:1] if strain is not None else []
+    notes += source.notes(taken)
+    above = [text for n, text in table.titles.items() if n < table.starts[0] and _TEMPERATURE.search(text)]
+    if above and temperature is None:
+        stated = f"lines above the headings, {quoted(above)}"
+        notes.append(f"no temperature is read from {stated}: give temperature= to fit_prony")
+    _warn_of_per_cent(table, taken)
     record = DynamicModuli(
-        omega, storage, loss, temperature and temperature.values, mode,
-        Path(path).name.encode(errors="replace").decode(),
+        omega, storage, loss, temperature, mode, Path(path).name.encode(errors="replace").decode(),
         {column.name: column.heading for column in taken}, {column.name: column.unit for column in taken}, tuple(notes),
+        strain,
     )  # fmt: skip
     _refuse_mixed_sweeps(table, record)
     return record
+
+
+def _strain(table: Table, alike: list[Column], others: dict[str, str]) -> Floats | None:
+    """Return the strain of each point, dimensionless, (n,); None where no column states it clearly.
+
+    table : :class:`Table`, the table that has the columns.
+    alike : list of :class:`Column`, the columns of strain, which may be none.
+    others : heading -> why the column is left out.  It is changed: columns are added that have no unit or gaps, or that
+        contradict each other.
+    """
+    try:
+        return agreeing_numbers(table, "strain", alike, others).values if alike else None
+    except FileError as error:
+        why = str(error).removeprefix(f"{table.path}: ")
+        others |= {column.heading: why if column is alike[0] else "" for column in alike}
+        return None
+
+
+def _warn_of_per_cent(table: Table, taken: list[Column]) -> None:
+    """Warn, by one ModelWarning, of tan delta without a unit that is above 3, as of no rubber: it may be in per cent.
+
+    table : :class:`Table`, the table of the file.
+    taken : list of :class:`Column`, the columns that are read.
+    """
+    for column in taken:
+        if column.name == "tan delta" and not column.stated and not column.log:
+            most = numbers_of(table, column).values.max()
+            if most > _MOST_DAMPED:
+                text = f"{table.path}: tan delta of up to {most:g} is no rubber's: give units={{'tan delta': '%'}}"
+                warnings.warn(f"{text} if it is in per cent, '1' if not", ModelWarning, stacklevel=caller_level())
 
 
 class _Choice(NamedTuple):
@@ -162,42 +195,6 @@ class _Choice(NamedTuple):
     mode: str
     pair: tuple[str, str]
     columns: dict[str, list[Column]]
-
-
-def _units(units: Any) -> tuple[dict[str, str], dict[str, str]]:
-    """Split the argument ``units`` into units that replace those of the file and units for columns that have none.
-
-    units : argument ``units`` of :func:`read_dma`: None; (unit of frequencies, unit of moduli), as ("Hz", "MPa"); or
-        quantity -> unit, with the keys of :data:`.vocabulary.UNITS`.
-    Returns two dicts quantity -> unit: the first replaces what the file says, the second holds where the file gives
-    none. One of them is empty: the first for a pair, the second for quantity -> unit, and both for None.
-    Raises ParameterError for another form, an unknown quantity, a unit that is unknown or of another dimension.
-    """
-    by_name = isinstance(units, Mapping)
-    allowed = "(frequency, moduli), as ('Hz', 'MPa'), or quantity -> unit"
-    if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
-        raise ParameterError("units", f"{units!r:.60}", allowed)
-    of_two = zip(("rad/s", "Pa"), units or (), strict=False)
-    pairs = dict(units) if by_name else {name: unit for kind, unit in of_two for name in UNITS if UNITS[name] == kind}
-    check_names("units", pairs, UNITS, "a quantity")
-    for name, unit in pairs.items():
-        try:
-            conversion(str(unit), UNITS[name])
-        except ParameterError as error:
-            raise ParameterError("units", f"{units!r:.60}", f"{allowed}; {unit!r} is not a unit of {name}") from error
-    return (pairs, {}) if by_name else ({}, pairs)
-
-
-def _is_heading_line(cells: list[str], named: Mapping[str, str]) -> bool:
-    """Return whether a line of the file is the one with the headings, which :func:`.read_table` looks for.
-
-    It is if its cells name at least two different known quantities, or if a cell is a heading that the user gave.
-
-    cells : texts of the cells of the line, with units or without.
-    named : quantity -> heading, the argument ``columns`` of :func:`read_dma`; empty where the user named none.
-    """
-    quantities = {found[0].name for cell in cells if cell and (found := meanings(cell))}
-    return len(quantities) > 1 or not set(named.values()).isdisjoint(filter(None, cells))
 
 
 def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -> _Choice:
@@ -216,9 +213,8 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
     """
     modes = [mode for mode in ("tension", "shear") if any(column.mode == mode for column in found)]
     quantities = {column.quantity for column in found}
-    problem = "no column was found for frequency" + ": this is a sweep of temperature, not of frequency" * (
-        "temperature" in quantities
-    )
+    swept = "temperature" in quantities
+    problem = "no column was found for frequency" + ": this is a sweep of temperature, not of frequency" * swept
     if quantities & {"frequency", "reduced frequency"}:
         problem = "fewer than two columns were found of storage, loss, tan delta and modulus"
         for mode, excluded in product(modes or [""], ("1/Pa", "Pa")):
@@ -235,61 +231,7 @@ def _choose_columns(table: Table, found: list[Column], others: dict[str, str]) -
                 if columns.keys() >= {*pair}:
                     others |= unused
                     return _Choice(mode, pair, columns)
-    reasons = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
-    headings = ", ".join(map(repr, filter(None, table.headings)))
-    raise FileError(
-        table.path,
-        f"{problem}{reasons}; headings: {headings}; {_NAME_THEM}",
-    )
-
-
-def _agreeing_numbers(table: Table, quantity: str, alike: list[Column], others: dict[str, str]) -> Numbers:
-    """Return the numbers of the first of several columns of one quantity, after a check that the others agree with it.
-
-    Frequencies agree to 0.1 %, moduli and tan delta to 1 %, temperatures to 1 K, each beside the rounding of the
-    digits.
-
-    table : :class:`Table`, the table that has the columns.
-    quantity : name of their quantity (:attr:`.column_quantities.Column.quantity`), as "frequency" or "storage".
-    alike : list of :class:`Column`, the columns of this quantity, at least one.
-    others : heading -> why the column is left out.  It is changed: all columns but the first are added.
-    Returns :class:`Numbers` of the first column: values, and half a unit of their last digits, (n,) each, in rad/s, Pa,
-    1/Pa, degrees Celsius or, of tan delta, dimensionless.
-    Raises FileError with the line where two columns contradict each other, or where a cell is no number, and for a unit
-    that is missing and cannot be assumed.
-    """
-    first = numbers_of(table, alike[0])
-    for column in alike[1:]:
-        second = numbers_of(table, column)
-        relative = 0.0 if quantity == "temperature" else _ROUND_PI if quantity.endswith("frequency") else AVERAGED
-        allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (quantity == "temperature")
-        agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
-        same = column.heading == alike[0].heading
-        advice = "rename or remove one in the file" if same else f"choose by columns={{{quantity!r}: ...}}"
-        table.require(agrees, f"{alike[0].heading!r} and {column.heading!r} contradict each other: {advice}")
-        others[column.heading] = f"agrees with {alike[0].heading!r}"
-    return first
-
-
-def _warn_of_assumed_units(table: Table, taken: list[Column]) -> None:
-    """Warn, by one ModelWarning, of frequencies and moduli whose unit neither the file nor the user gives.
-
-    Temperatures, phase angles and compliances are not examined here.  There is no warning where all units are given.
-
-    table : :class:`Table`, the table of the file, for the messages.
-    taken : list of :class:`Column`, the columns that are read.
-    Raises FileError for a modulus without a unit beside one that has it, and for a frequency likewise.
-    """
-    assumed = []
-    for word, unit in {"frequency": "rad/s", "moduli": "Pa"}.items():
-        alike = [column for column in taken if UNITS[column.name] == unit]
-        without = [column for column in alike if not column.stated]
-        if without and len(without) < len(alike):
-            raise FileError(table.path, f"column {without[0].heading!r} has no unit, but others do: give units=")
-        assumed += [f"{column.unit} ({word})" for column in without[:1]]
-    if assumed:
-        text = f"{table.path}: columns without a unit are taken in {' and '.join(assumed)}"
-        warnings.warn(f"{text}: write units into the file, or give units=", ModelWarning, stacklevel=caller_level())
+    raise missing(table, problem, others)
 
 
 def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
@@ -304,18 +246,11 @@ def _refuse_mixed_sweeps(table: Table, record: DynamicModuli) -> None:
     Raises FileError for each of the three; returns nothing.
     """
     omega, n = record.omega, record.omega.size
-    if n > 1 and omega.max() < (1.0 + _ONE_FREQUENCY) * omega.min():
+    if n > 1 and omega.max() < (1.0 + ONE_FREQUENCY) * omega.min():
         problem = f"all {n} rows are of one frequency, {omega[0]:.4g} rad/s: this is not a frequency sweep"
         raise FileError(table.path, problem)
-    if record.temperature is None and table.parts > 1:
-        raise FileError(
-            table.path, f"has {table.parts} tables, and no column states their temperature: keep one of them"
-        )
+    if record.temperature is None and len(table.starts) > 1:
+        problem = f"has {len(table.starts)} tables, and no column states their temperature"
+        raise FileError(table.path, f"{problem}: keep one of them, or write 'Temperature 20 °C' above each")
     if record.isothermal:
-        order = np.argsort(omega, kind="stable")
-        same = np.diff(omega[order]) <= _ONE_FREQUENCY * omega[order][1:]
-        repeats = np.abs(np.diff(np.log(np.abs(record.storage[order])))) <= np.log(_REPEATED)
-        holds = np.ones(n, bool)
-        holds[order[1:]] = repeats | ~same
-        problem = "an earlier row has the same frequency and another modulus"
-        table.require(holds, f"{problem}: rows at several temperatures or strains need a column of temperature")
+        refuse_repeats(table, "frequency", omega, record.storage)

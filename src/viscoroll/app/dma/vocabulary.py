@@ -1,86 +1,49 @@
-"""Names of the columns of a dynamic mechanical analysis in English, German and French, and their quantities."""
+"""Names of the columns of tests of materials in five languages, and their quantities, read from headings.toml."""
 
 from __future__ import annotations
 
 import re
+import tomllib
 import unicodedata
-from typing import NamedTuple
+from importlib.resources import files
+from typing import Any, NamedTuple
 
 from ...io.measurements import readings
 
+#: columns beside moduli without E or G that only a test in shear has
+OF_SHEAR = re.compile(
+    r"(?i)shear|schub|scher|cisaill|taglio|せん断|torque|torsion|drehmoment|viscosity|viskosit|gamma|γ"
+)
+
+
+def _plain(text: str) -> str:
+    """Return a text without accents and in compatible characters, as words of headings are compared."""
+    text = unicodedata.normalize("NFKD", text.replace("\u2033", "''"))
+    return "".join(sign for sign in text if not unicodedata.combining(sign))
+
+
+_DATA: dict[str, Any] = tomllib.loads((files(__package__) / "headings.toml").read_text(encoding="utf-8"))
+#: quantity -> the unit that its numbers are converted to
+UNITS = {name: about["unit"] for name, about in _DATA["quantities"].items()}
+#: quantity -> the unit that is assumed, "" where none can be
+ASSUMED = {name: about["assumed"] for name, about in _DATA["quantities"].items()}
+#: test -> quantities of the columns of a file without headings, in their order
+BARE = _DATA["bare"]
+#: test -> its quantities
+QUANTITIES = {
+    test: [name for name, about in _DATA["quantities"].items() if test in about["of"].split()] for test in BARE
+}
+#: kinds of the words of a name -> quantity
+_NAMED_BY = {frozenset(kinds.split()): name for name, about in _DATA["quantities"].items() for kinds in about["named"]}
 #: word of a name -> the kinds of word that it is; "-": a word that does not tell columns apart
 _KINDS = {
-    word: kinds
-    for line in """
-        frequency: f freq fq frequency frequenz frequence
-        angle: angle angular ang circular radian winkel kreis lag
-        angle frequency: w omega
-        reduced: reduced red shifted reduziert reduzierte verschoben master at
-        storage: storage stor sto speicher elastic elastischer elastique conservation real re single
-        loss: loss verlust viscous viskoser visqueux perte imaginary imag im double
-        whole: complex komplexer komplex complexe absolute abs betrag magnitude star
-        tan: tan tangent tangens tg
-        delta: delta d
-        factor: factor faktor facteur
-        damping: damping dampfung dampfungs amortissement dissipation
-        phase: phase phasen
-        shift: shift
-        compliance: compliance nachgiebigkeit
-        compliance shear: j
-        temperature: temperature temperatur temp T
-        tension: e young youngs tensile tension extension extensional zug axial
-        shear: g shear schub scher torsion torsional
-        -: modulus modul module moduli modulen mod dynamic dynamischer part component teil of the de
-        -: oscillation oscillatory test mess messung pruf measured actual sample probe proben average avg mean
-        -: mechanical mechanischer
-        """.strip().splitlines()
-    for kinds, words in [line.strip().split(": ")]
-    for word in words.split()
-}
-#: a line for each quantity: its name, the unit that its numbers are converted to, the unit that is assumed where
-#: neither the file nor the user gives one, and the sets of kinds of words that name it
-_QUANTITIES = [
-    [cell.strip() for cell in line.split("|")]
-    for line in """
-        frequency                 | rad/s | Hz    | frequency
-        angular frequency         | rad/s | rad/s | angle frequency
-        reduced frequency         | rad/s | Hz    | reduced frequency
-        reduced angular frequency | rad/s | rad/s | reduced angle frequency
-        storage                   | Pa    | Pa    | storage; storage whole
-        loss                      | Pa    | Pa    | loss; loss whole
-        modulus                   | Pa    | Pa    | whole
-        storage compliance        | 1/Pa  |       | compliance storage; compliance storage whole
-        loss compliance           | 1/Pa  |       | compliance loss; compliance loss whole
-        modulus compliance        | 1/Pa  |       | compliance whole
-        tan delta   | 1    | 1    | tan; tan delta; loss factor; loss tan; damping; damping factor; loss factor tan
-        tan delta   | 1    | 1    | loss factor delta; loss factor tan delta; damping factor tan delta; loss tan delta
-        tan delta   | 1    | 1    | damping tan delta; damping tan
-        phase angle | rad  | deg  | delta; phase; phase angle; phase delta; phase angle delta; loss angle; phase shift
-        phase angle | rad  | deg  | loss angle delta; phase shift delta
-        temperature | degC | degC | temperature
-        """.strip().splitlines()
-]
-#: quantity -> the unit that its numbers are converted to
-UNITS = {name: unit for name, unit, *_ in _QUANTITIES}
-#: quantity -> the unit that is assumed, "" where none can be
-ASSUMED = {name: unit for name, _, unit, _ in _QUANTITIES}
-#: kinds of the words of a name -> quantity
-_NAMED_BY = {frozenset(kinds.split()): name for name, *_, sets in _QUANTITIES for kinds in sets.split(";")}
-#: columns beside moduli without E or G that only a test in shear has
-OF_SHEAR = re.compile(r"(?i)shear|schub|scher|torque|torsion|drehmoment|viscosity|viskosit|gamma|γ")
-_LONG = sorted((word for word in _KINDS if len(word) > 2), key=len, reverse=True)
+    _plain(word): kinds
+    for language in _DATA["words"].values() for kinds, words in language.items() for word in words.split()
+}  # fmt: skip
+_LONG = sorted((word for word in _KINDS if len(word) > 2 or not word.isascii()), key=len, reverse=True)
 #: words written together, as "storagemodulus", "Estor", "Phasenwinkel"
 _COMPOUND = re.compile(rf"([eg](?=sto|loss))?((?:{'|'.join(_LONG)})+)")
 _WORD = re.compile("|".join(_LONG))
-#: sign -> words, in this order
-_SIGNS = [(re.compile(pattern), words) for pattern, words in (
-    (r"[\u2019\u2018\u02b9\u00b4`\u2032]", "'"), (r"[\u2033\u02ba\u201c\u201d\"]", "''"), (r"[$^{}\\]", ""),
-    (r"(?i)double[\s_-]*prime|dprime", "''"), (r"(?i)prime", "'"), (r"(?<=[a-z]{3})'s\b", "s"),
-    (r"δ|Δ", " delta "), (r"ω|Ω", " omega "), (r"φ|ϕ|ψ", " phase "),
-    (r"\|\s*([EGJegj])\s*\*?\s*\|", r" \1 star "), (r"\b([EGJDegjd])\s?\*", r" \1 star "),
-    (r"(?<![A-Za-z])[Dd][\s_]*(?='|\s*star)", " compliance tension "),
-    (r"''", " double "), (r"'", " single "), (r"[^\w]|_", " "), (r"\bT\b", " temperature "), (r"\bt\b", " time "),
-)]  # fmt: skip
 
 
 class Meaning(NamedTuple):
@@ -89,13 +52,15 @@ class Meaning(NamedTuple):
     name : name of the quantity, a key of :data:`UNITS`.
     mode : mode of the modulus, "tension", "shear", or "" where the heading does not say.
     unit : unit in the heading or in the row of units, "" without.
-    log : whether the numbers are logarithms to base 10.
+    log : base of the logarithms of which the column is, 0 of numbers.
+    sure : whether the unit stands in brackets, behind a slash or in the row of units, where nothing else stands.
     """
 
     name: str
     mode: str
     unit: str
-    log: bool
+    log: float
+    sure: bool
 
 
 def meanings(heading: str, row: str = "") -> list[Meaning]:
@@ -106,8 +71,8 @@ def meanings(heading: str, row: str = "") -> list[Meaning]:
     Returns a list of :class:`Meaning`, one for each way to part the heading into name and unit whose name is
     understood, in the order of :func:`.readings`: the name without a unit first; an empty list where no name is.
     """
-    found = [(_quantity(name), unit, log) for name, unit, log in readings(heading, row)]
-    return [Meaning(*quantity, unit, log) for quantity, unit, log in found if quantity]
+    found = [(_quantity(each.name), each) for each in readings(heading, row)]
+    return [Meaning(*quantity, each.unit, each.log, each.sure) for quantity, each in found if quantity]
 
 
 def _quantity(name: str) -> tuple[str, str] | None:
@@ -115,22 +80,26 @@ def _quantity(name: str) -> tuple[str, str] | None:
 
     name : words of the heading, in any case, with signs such as ' or the Greek letters; of single letters T is a
         temperature, and t a time, which is no quantity here.
-    Returns (quantity, mode): a key of :data:`UNITS`; and "tension", "shear", or "" where the name does not say it.
+    Returns (quantity, mode): a key of :data:`UNITS`; and "tension", "shear", or "" where the name does not say it or
+    the quantity is no modulus, compliance or stress.
     None if a word is not in the vocabulary, the words together name no quantity, both modes are named, or the text has
     a sign of a unit, % or °.
     """
     if re.search("[%°º]", name):  # of a unit
         return None
-    text = unicodedata.normalize("NFKD", name.replace("\u2033", "''"))
-    for pattern, words in _SIGNS:
-        text = pattern.sub(words, "".join(sign for sign in text if not unicodedata.combining(sign)))
+    text = _plain(name)
+    for pattern, words in _DATA["signs"]["replaced"]:
+        text = re.sub(pattern, words, text)
     parts = [part for word in re.findall(r"[^\W\d_]+|\d+", text) for part in _parts(word.lower())]
     if not all(part in _KINDS for part in parts):
         return None
     kinds = {kind for part in parts for kind in _KINDS[part].split()}
     modes = kinds & {"tension", "shear"}
-    quantity = _NAMED_BY.get(frozenset(kinds - modes - {"-"}))
-    return (quantity, " ".join(modes)) if quantity and len(modes) < 2 else None
+    named = frozenset(kinds - modes - {"-"})
+    quantity = _NAMED_BY.get(named) or _NAMED_BY.get(named - {"modulus"})
+    if quantity is None or len(modes) > 1:
+        return None
+    return quantity, " ".join(modes) if "Pa" in UNITS[quantity] else ""
 
 
 def _parts(word: str) -> list[str]:

@@ -1,8 +1,11 @@
-"""A heading of a column: its name, its unit, and whether it is of logarithms."""
+"""A heading of a column: its name, its unit, and the base of its logarithms."""
 
 from __future__ import annotations
 
+import math
 import re
+import tomllib
+from importlib.resources import files
 from typing import NamedTuple
 
 from ...core.errors import ParameterError
@@ -14,8 +17,10 @@ NO_UNIT = ("", "1", "-", "--", "–", "—", "/", "none")
 _BRACKETS = re.compile(r"[\[({<]\s*([^\[\](){}<>]*?)\s*[\])}>]|\(\s*([^()]*\([^()]*\)[^()]*?)\s*\)")
 #: separators of a name and a unit without brackets, the slash of DIN 1313 first
 _BETWEEN = re.compile(r"\s*/\s*|\s+in\s+|[\s_,]+")
-#: a heading of logarithms to base 10
-_LOGARITHM = re.compile(r"(?i)(?:log|lg)(?![a-z])[\s_]*(?:10(?!\d))?[\s_]*(?P<of>.+)")
+#: a heading of logarithms to base 10 or, of ln, e
+_LOGARITHM = re.compile(r"(?P<kind>(?i:log|lg|ln))(?![a-z]{2})[\s_-]*(?:10(?!\d))?[\s_]*(?P<of>.+)")
+#: the same in brackets behind the name, as in "E' (log)"
+_LOG_BEHIND = re.compile(r"(?i)^(.+?)[\s,_]*[\[(]\s*(log|lg|ln)(?:10)?\s*[\])]")
 #: a text in parentheses, and what follows
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
@@ -24,21 +29,14 @@ _POWERS = re.compile(r"(?<=[A-Za-z%°µμ)])\s*(?:\^|\*\*)?\s*[({]?[-+−]?\d(?!
 _ROUNDING = 1e-9
 #: longest text that may be a unit
 _LONGEST = 24
-#: unit in small letters and without blanks, degrees and points -> unit of pint
+#: unit in small letters and without blanks, degrees and points -> unit of pint, read from units.toml
 _SPELLINGS = {
     spelling: unit
-    for line in """
-        rpm: rpm u/min r/min rev/min umdr/min upm umin-1
-        degC: c celsius degc degcelsius gradc gradcelsius
-        degF: f fahrenheit degf degfahrenheit
-        Hz: hz; kHz: khz; Pa: pa; kPa: kpa; MPa: mpa; GPa: gpa; psi: psi
-        rad/s: rad/s rad/sec; 1/s: 1/s 1/sec; N m: Nm; N m/m: Nm/m; deg: deg degree degrees grad
-        """.replace(";", "\n")
-    .strip()
-    .splitlines()
-    for unit, spellings in [line.strip().split(": ")]
+    for unit, spellings in tomllib.loads((files(__package__) / "units.toml").read_text(encoding="utf-8")).items()
     for spelling in spellings.split()
 }
+#: brackets and slash of Japanese keyboards
+_WIDE = str.maketrans("（）［］【】／", "()[][]/")
 
 
 class Reading(NamedTuple):
@@ -46,12 +44,15 @@ class Reading(NamedTuple):
 
     name : the heading without unit and without the word for a logarithm.
     unit : unit in the heading, else in the row of units, as the file spells it; "" without.
-    log : whether the column is of logarithms to base 10.
+    log : base of the logarithms of which the column is, 10 or e; 0 of numbers.
+    sure : whether the unit stands in brackets, behind a slash or "in", or in the row of units, where a unit is stated
+        even if it is not understood.
     """
 
     name: str
     unit: str
-    log: bool = False
+    log: float = 0.0
+    sure: bool = False
 
 
 def readings(heading: str, row: str = "") -> list[Reading]:
@@ -63,25 +64,30 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     row : the cell of a row of units for this column, "" without; a way of reading without a unit in the heading takes
         this one, without brackets around it.
     Returns a list of :class:`Reading`, of "Frequency/Hz" ("Frequency/Hz", "") and ("Frequency", "Hz").  Each has
-    ``log`` set if the heading begins with log, lg or log10, which its name leaves out.  The list is [] for an empty
+    ``log`` set if the heading begins with log, lg, log10 or ln, which its name leaves out.  The list is [] for an empty
     heading.  Where the heading and the row give different units of one dimension, all have both as unit, as "Hz and
     rad/s", which is no unit.
     """
-    log = False
+    log = 0.0
+    heading = _LOG_BEHIND.sub(r"\2 \1", heading.translate(_WIDE))
     if found := _LOGARITHM.fullmatch(heading.strip()):
-        heading, log = found["of"], True
+        heading, log = found["of"], math.e if found["kind"].lower() == "ln" else 10.0
         if inner := _PARENTHESES.fullmatch(heading):
             heading = f"{inner[1]} {inner[2]}".rstrip()
-    ways = [(heading, "")]
+    ways = [(heading, "", False)]
     for group in reversed([*_BRACKETS.finditer(heading)]):
-        ways.append((heading[: group.start()].rstrip(" /") + " " + heading[group.end() :], group[1] or group[2] or ""))
+        name = heading[: group.start()].rstrip(" /") + " " + heading[group.end() :]
+        ways.append((name, group[1] or group[2] or "", True))
     for gap in _BETWEEN.finditer(heading):
         unit = heading[gap.end() :]
         if unit in NO_UNIT[1:] or (may_be_unit(unit) and not re.search(r"[\[\](){}]", unit)):
-            ways.append((heading[: gap.start()], unit))
+            ways.append((heading[: gap.start()], unit, bool(gap[0].strip(" _,"))))
     row = (row[1:-1] if row[:1] in ("[", "(") and row.count("(") <= 1 else row).strip()
-    differing = next((f"{unit} and {row}" for _, unit in ways if _differ(unit, row)), "")
-    return [Reading(" ".join(name.split()), differing or unit or row, log) for name, unit in ways if name]
+    differing = next((f"{unit} and {row}" for _, unit, _ in ways if _differ(unit, row)), "")
+    return [
+        Reading(" ".join(name.split()), differing or unit or row, log, sure or (not unit and bool(row)))
+        for name, unit, sure in ways if name
+    ]  # fmt: skip
 
 
 def _differ(unit: str, row: str) -> bool:

@@ -24,6 +24,10 @@ _SAMPLE = 2000
 _ENCODINGS = {rb"\xff\xfe|\xfe\xff": "utf-16", rb"(?s).\0": "utf-16-le", rb"\0": "utf-16-be"}
 #: encodings that are tried without such bytes: that of today, that of Windows, and one that has all bytes
 _USUAL = ("utf-8-sig", "cp1252", "latin-1")
+#: encoding of Windows in Japan, and what shows it: three characters in a row of two bytes each, of which the first is a
+#: sign of typography in cp1252
+_JAPANESE = ("utf-8-sig", "cp932")
+_KANJI = re.compile(rb"(?:[\x81-\x9f][\x40-\x7e\x80-\xfc]){3}")
 #: first bytes of Excel's workbooks, of today and of before 2007
 _WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
 
@@ -52,7 +56,8 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
 
     path : path of the file.
     encoding : name of the encoding, as Python calls it; None or "": UTF-16 by the first bytes (a byte order mark, or a
-        null among the first two), else the first of UTF-8, cp1252 and Latin-1 that fits.
+        null among the first two), else the first of UTF-8, cp932 (where characters of Japanese show it), cp1252 and
+        Latin-1 that fits.
     Returns a list of texts, [""] of an empty file; lines may end by CR LF, CR or LF, and the text after the last end is
     a line too.
     Raises FileError for a file that cannot be read or decoded, for workbooks and archives, and for a text with null
@@ -64,7 +69,8 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
         raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
     shown = next((name for first, name in _ENCODINGS.items() if re.match(first, raw)), None)
     given = encoding or shown
-    for name in (given,) if given else _USUAL:
+    usual = _JAPANESE + _USUAL[1:] if _KANJI.search(raw) else _USUAL
+    for name in (given,) if given else usual:
         try:
             text = raw.decode(name).removeprefix("\ufeff").replace("\u2212", "-")
         except (LookupError, TypeError):

@@ -49,14 +49,14 @@ def find_column(table: Table, name: str) -> int | None:
     Columns whose whole heading is the name are preferred to those with the name and a unit.
 
     table : :class:`Table`, whose headings are searched.
-    name : a heading as the file has it, or without its unit.
+    name : a heading as the file has it, or without its unit; "column 0" and so on of an empty one.
 
     Raises
     ------
     FileError
         Several columns have that name.
     """
-    exact = [n for n, heading in enumerate(table.headings) if heading == name]
+    exact = [n for n, heading in enumerate(table.headings) if (heading or f"column {n}") == name]
     found = exact or [n for n, heading in enumerate(table.headings) if _is_named(heading, name)]
     if len(found) > 1:
         headings = " and ".join(repr(table.headings[n]) for n in found)
@@ -91,7 +91,7 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     Returns
     -------
     array of shape (n,)
-        The numbers, in the unit ``wanted``, float64; those of a heading of logarithms to base 10 are raised to powers.
+        The numbers, in the unit ``wanted``, float64; of a heading of logarithms the numbers of which they are.
 
     Raises
     ------
@@ -104,11 +104,12 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     index = find_column(table, name)
     if index is None:
         raise missing_column(table, name)
-    if table.parts > 1:
-        raise FileError(table.path, f"has {table.parts} tables: keep one of them")
+    if len(table.starts) > 1:
+        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them")
     found = readings(table.headings[index], table.units[index])
     named = [each for each in found if each.name == name]
     unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
     factor, offset = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
     values = table.numbers(index).values
-    return factor * (10.0**values if any(each.log for each in found) else values) + offset
+    base = found[0].log if found else 0.0
+    return factor * (base**values if base else values) + offset

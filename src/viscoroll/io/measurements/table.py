@@ -22,6 +22,8 @@ _PHRASE = re.compile(
     r"(?i)\s+(?=[\[(])|(?<=\bstorage)\s+|(?<=\bloss)\s+|(?<=\bangular)\s+|(?<=\bcomplex)\s+|(?<=\btan)\s+(?=d)"
     r"|(?<=\bphase)\s+|(?<=\breduced)\s+|(?<=\belastic)\s+|(?<=\bviscous)\s+|(?<=\bpoint)\s+(?=no)"
 )
+#: least number of numbers of a row
+_FEWEST = 2
 #: characters of a line that a message quotes
 _QUOTED = 60
 
@@ -34,20 +36,21 @@ class Table:
     headings : one a column; "column 0" and so on where the file has none.
     units : the cell of a row of units below each heading, "" without; one a column.
     rows : the lines of numbers, :class:`Line` each, of which all cells beyond the headings are empty.
-    parts : number of tables of the file, with the same headings, of which these are the rows.
+    starts : numbers of the first lines of rows of the tables of the file, with the same headings, of which these are
+        the rows.
     without_headings : whether the file has no headings.
     decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
-    above : the lines of the file above the headings of the first table, or above the numbers where there are none.
+    titles : number -> text of the lines that are neither rows nor headings, nor blank.
     """
 
     path: str | PathLike[str]
     headings: list[str]
     units: list[str]
     rows: list[Line]
-    parts: int
+    starts: list[int]
     without_headings: bool
     decimal: str
-    above: list[str]
+    titles: dict[int, str]
 
     def has_numbers(self, column: int) -> bool:
         """Return whether any cell of the column with an index is a number."""
@@ -81,14 +84,15 @@ class Table:
 
 
 def read_table(
-    path: str | PathLike[str], is_heading_line: Callable[[list[str]], bool], *,
-    decimal: str | None = None, encoding: str | None = None,
+    path: str | PathLike[str], is_heading_line: Callable[[list[str]], bool], *, decimal: str | None = None,
+    encoding: str | None = None, is_title: Callable[[str], bool] = lambda text: False,
 ) -> Table:  # fmt: skip
     """Read the table of a text file, which may have a preamble, comments, and several tables with the same headings.
 
     The separator is that by which most lines are rows of numbers.  Headings are the last line above the numbers that
-    ``is_heading_line`` accepts; if it accepts none, the last line above the first row of numbers that is neither a
-    comment nor a row of numbers; if there is none either, columns are named "column 0", "column 1" and so on.
+    ``is_heading_line`` accepts; if it accepts none, the last line above the first row of numbers that has no number, is
+    no comment and no row of units; if there is none either, columns are named "column 0", "column 1" and so on.  Lines
+    below the last row, as the footers of instruments, are titles.
 
     Parameters
     ----------
@@ -96,13 +100,14 @@ def read_table(
     is_heading_line : a function of the cells of a line, a list of texts, that returns whether they are headings.
     decimal : "." or ","; None: the mark that is there.  Where a mark may be a separator of thousands too, the table is
         returned with ``decimal`` "", and :meth:`Table.numbers` refuses numbers with a mark.
-    encoding : name of the encoding, as Python calls it; None: UTF-16 by the first bytes, else the first of UTF-8,
-        cp1252 and Latin-1 that fits.
+    encoding : name of the encoding, as Python calls it; None: as of :func:`.lines.read_lines`.
+    is_title : a function of the text of a line that returns whether the line may stand between rows, as one that states
+        the temperature of those below; lines with two numbers and more in cells of their own are rows all the same.
 
     Returns
     -------
     Table
-        The rows of all tables of the file, one after the other; ``parts`` is the number of these tables.
+        The rows of all tables of the file, one after the other.
 
     Raises
     ------
@@ -118,20 +123,23 @@ def read_table(
         raise ParameterError("decimal", f"{decimal!r:.20}", "'.' or ','")
     text = read_lines(path, encoding)
     separator = separator_of(text, decimal)
-    lines = cut_lines(text, separator)
-    layout = _Layout(path, lines, separator, is_heading_line)
+    lines = [
+        line._replace(numeric=line.numeric and not (sum(map(is_number, line.cells)) < _FEWEST and is_title(line.text)))
+        for line in cut_lines(text, separator)
+    ]
+    layout = _Layout(path, lines, separator, is_heading_line, is_title)
     heads = layout.heads()
     parts = [layout.part(*ends) for ends in zip(heads, [*heads[1:], len(lines)], strict=True)]
     names, units, (first, *_) = parts[0]
+    starts = [rows[0].number for *_, rows in parts]
     if any(part[:2] != (names, units) for part in parts):
-        starts = ", ".join(str(rows[0].number) for *_, rows in parts)
-        raise FileError(
-            path, f"has {len(parts)} tables with different headings (from lines {starts}): keep one of them"
-        )
+        found = ", ".join(map(str, starts))
+        raise FileError(path, f"has {len(parts)} tables with different headings (from lines {found}): keep one of them")
     rows = [row for *_, rows in parts for row in rows]
     mark = decimal or decimal_mark([cell for row in rows for cell in row.cells], "," if separator == "," else "")
-    head = lines[heads[0]].number
-    return Table(path, names, units, rows, len(parts), head == first.number, mark, text[: head - 1])
+    known = {line.number for line in (*rows, *(lines[head] for head in heads))}
+    titles = {n: line for n, line in enumerate(text, 1) if n not in known and line.strip()}
+    return Table(path, names, units, rows, starts, lines[heads[0]].number == first.number, mark, titles)
 
 
 @dataclass
@@ -141,7 +149,7 @@ class _Layout:
     path : path of the file.
     lines : lines of the file with their cells.
     separator : separator of the cells, a key of ``SEPARATORS``.
-    is_heading_line : as of :func:`read_table`.
+    is_heading_line, is_title : as of :func:`read_table`.
     width : most frequent number of cells of rows of numbers.
     cut : words on the separator, for messages.
     """
@@ -150,6 +158,7 @@ class _Layout:
     lines: list[Line]
     separator: str
     is_heading_line: Callable[[list[str]], bool]
+    is_title: Callable[[str], bool]
 
     def __post_init__(self) -> None:
         """Set ``width``, the most frequent number of cells of rows of numbers, and ``cut``, the words on the separator.
@@ -179,8 +188,9 @@ class _Layout:
         """Return the index, in ``lines``, of the line of headings of each table of the file, ascending, at least one.
 
         Lines that ``is_heading_line`` accepts and that have numbers below them begin a table each.  If there is none,
-        the last line above the numbers that is no comment is taken for headings.  If there is none either, ``lines`` is
-        changed: a new line "column 0", "column 1" and so on replaces all lines above the numbers, and [0] is returned.
+        the last line above the numbers that has none and is no comment is taken for headings, or the line before if it
+        is a row of units.  If there is none either, ``lines`` is changed: a new line "column 0", "column 1" and so on
+        replaces all lines above the numbers, and [0] is returned.
 
         Raises FileError for rows of numbers above the headings, and for a comment with names of columns whose
         separators are not those of the numbers.
@@ -193,12 +203,16 @@ class _Layout:
         if heads:
             for line in lines[: heads[0]]:
                 if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
-                    raise self.fault(line, "has numbers above the headings: keep one table of the file")
+                    if all(line.cells):
+                        raise self.fault(line, "has numbers above the headings: keep one table of the file")
+                    raise self.fault(line, "is a second row of headings: keep it and the columns of one of its numbers")
             return heads
         first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
-        above = [n for n, line in enumerate(lines[:first]) if not (line.comment or line.numeric)]
+        above = [n for n, line in enumerate(lines[:first]) if not (line.comment or any(map(is_number, line.cells)))]
         if above:
-            return above[-1:]
+            *others, last = above
+            is_units = others and self.units_of(self.headings(lines[last]))
+            return [last - 1] if is_units and len(lines[last - 1].cells) == len(lines[last].cells) else [last]
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
                 raise self.fault(line, f"contains column names, but does not have {width} columns, {self.cut}")
@@ -214,19 +228,20 @@ class _Layout:
         Returns (headings, without empty ones at the end; units as the file spells them, "" where none is given, as many
         as headings; rows, a list of :class:`Line` without comments, of which lines before the next headings that are no
         rows, as a title, are left out).
-        Raises FileError for a line among the rows that is none, for rows with fewer cells than headings or with texts
-        beyond the last heading, and for a line above them that is neither units nor numbers.
+        Raises FileError for a line among the rows that is none and no title, for rows with fewer cells than headings or
+        with texts beyond the last heading, and for a line above them that is neither units nor numbers.
         """
         line, *body = self.lines[head:end]
         names, first = self.headings(line), [each.numeric for each in body].index(True)
         while not names[-1]:
             names.pop()
-        rows = [row for row in body[first:] if not row.comment]
-        while end < len(self.lines) and not self.is_row(rows[-1]):  # titles of the next table
+        rows = [row for row in body[first:] if row.numeric or not (row.comment or self.is_title(row.text))]
+        while len(rows) > 1 and not self.is_row(rows[-1]):  # titles of the next table, or a footer
             rows.pop()
         for row in rows:
             if not row.numeric:
-                raise self.fault(row, "is not a row of numbers: remove it or begin it with #")
+                advice = "remove it or begin it with #; a temperature of the rows below is written 'Temperature 20 °C'"
+                raise self.fault(row, f"is not a row of numbers: {advice}")
             if any(row.cells[len(names) :]) or len(row.cells) < len(names):
                 problem = f"has {len(row.cells)} columns, but line {line.number} has {len(names)}, {self.cut}"
                 raise self.fault(row, problem)
@@ -259,11 +274,15 @@ class _Layout:
         found = [""] * width
         for line in between:
             cells = self.headings(line)
-            texts = [cell.strip("[](){}<> ") for cell in cells if cell]
-            units = [text for text in texts if text in NO_UNIT or (may_be_unit(text) and is_unit(text))]
             fits = len(cells) == width or (self.separator != " " and not any(cells[width:]))
-            if fits and 2 * len(units) >= len(texts) and not any(found):
+            if fits and self.units_of(cells) and not any(found):
                 found = (cells + found)[:width]
-            elif not line.comment:
-                raise self.fault(line, f"is neither units nor numbers, {self.cut}")
+            elif not (line.comment or self.is_title(line.text)):
+                raise self.fault(line, f"is neither units nor numbers, {self.cut}: remove it or begin it with #")
         return found
+
+    def units_of(self, cells: list[str]) -> bool:
+        """Return whether ``cells`` are a row of units: at least half of those that are not empty are."""
+        texts = [cell.strip("[](){}<> ") for cell in cells if cell]
+        units = [text for text in texts if text in NO_UNIT or (may_be_unit(text) and is_unit(text))]
+        return 2 * len(units) >= len(texts)

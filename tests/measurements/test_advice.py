@@ -1,0 +1,333 @@
+"""The advice of every refusal of a file, followed, leads to a right result or to another refusal."""
+
+import ast
+import re
+import warnings
+
+import numpy as np
+import pytest
+import rubbers
+import tolerances as tol
+from closeness import close
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+
+import viscoroll as vr
+
+THOUSANDS = rubbers.filled("f [Hz];E' [kPa];E'' [kPa]\n<f; S/1e3; L/1e3>\n", {"sep": ";", "format": "%.9g"})
+THOUSANDS = THOUSANDS.replace(";3617", ";3,617")
+RIGHT = "f [Hz];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6>\n"
+
+
+def change(old, new, count=-1):
+    """The advice is to change the file: a function of its text."""
+    return lambda text, _, options: (text.replace(old, new, count), options)
+
+
+def without(pattern):
+    """The advice is to remove lines that begin with a pattern."""
+    return lambda text, _, options: (re.sub(rf"(?m)^(?:{pattern}).*\n", "", text), options)
+
+
+def give(**more):
+    """The advice is to give an option whose value the message leaves to the user."""
+    return lambda text, _, options: (text, options | more)
+
+
+def quoted(which):
+    """The advice is one of the options that the message writes out, as columns={...}."""
+
+    def follow(text, message, options):
+        name, value = re.findall(r"(columns|units)=(\{.*?\})", message)[which]
+        return text, options | {name: options.get(name, {}) | ast.literal_eval(value)}
+
+    return follow
+
+
+#: title -> the file, words of its refusal, and what its advice is; a refusal follows where words of it are given
+CASES = {
+    "a workbook": (
+        "PK\u0003\u0004",
+        "save its sheet as CSV",
+        lambda text, *_: (rubbers.filled(RIGHT, {"sep": ";"}), {}),
+    ),
+    "a gap": (RIGHT + "200;nan;2\n", "remove its row", without("200;nan")),
+    "a frequency of 0": (RIGHT + "0;3;2\n", "remove the row", without("0;3")),
+    "a negative loss modulus": (RIGHT + "200;9;-2\n", "remove the row", without("200;9")),
+    "thousands": (THOUSANDS, "write only decimal marks", change(",", "")),
+    "words among the rows": (RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n", "remove it", without("sample")),
+    "words among the rows, in a comment": (
+        RIGHT + "slipped\n<f; S/1e6; L/1e6>\n",
+        "begin it with #",
+        change("slipped", "# s"),
+    ),
+    "words above the rows": (
+        "f [Hz];E' [MPa];E'' [MPa]\nmade;by;me\n<f; S/1e6; L/1e6>\n",
+        "remove it",
+        without("made"),
+    ),
+    "numbers above the headings": ("1;2;3\n" + RIGHT, "keep one table", without("1;2")),
+    "two rows of headings": (
+        "f [Hz];20;;30;\n;E' [MPa];E'' [MPa];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6; S/2e6; L/2e6>\n",
+        "no column was found for frequency",
+        give(columns={"frequency": "column 0"}),
+        "rename or remove one in the file",
+    ),
+    "two rows of headings, numbers above": (
+        ",20,,30,\nw,Gp,Gpp,Gp,Gpp\n<w; S; L; S/2; L/2>\n",
+        "keep it and the columns of one of its numbers",
+        lambda text, *_: ("".join(",".join(line.split(",")[:3]) + "\n" for line in text.split("\n")), {}),
+    ),
+    "different headings": (
+        RIGHT + "f [Hz];E' [kPa];E'' [kPa]\n<f; S/1e3; L/1e3>\n",
+        "keep one of them",
+        lambda text, *_: (text[: text.rindex("f [Hz]")], {}),
+    ),
+    "two tables": (RIGHT + RIGHT, "keep one of them", lambda text, *_: (text[: text.rindex("f [Hz]")], {})),
+    "two tables, with temperatures": (
+        RIGHT + RIGHT,
+        "write 'Temperature 20 °C' above each",
+        change("f [Hz]", "Temperature 20 °C\nf [Hz]"),
+    ),
+    "temperatures that are not understood": (
+        "Ts [°C];f [Hz];E' [MPa];E'' [MPa]\n<20+n; f; S/1e6; L/1e6>\n",
+        "looks like temperatures",
+        quoted(0),
+    ),
+    "temperatures that are not of the sample": (
+        "Ts;f [Hz];E' [MPa];E'' [MPa]\n<20+n; f; S/1e6; L/1e6>\n",
+        "or remove it",
+        lambda text, *_: (re.sub(r"(?m)^[^;]*;", "", text), {}),
+    ),
+    "a temperature without a unit": (
+        "T;f [Hz];E' [MPa];E'' [MPa]\n<293*one; f; S/1e6; L/1e6>\n",
+        "give units=",
+        give(units={"temperature": "K"}),
+    ),
+    "a unit that is not known": (
+        "f [Schlag/min];E' [MPa];E'' [MPa]\n<60*f; S/1e6; L/1e6>\n",
+        "is not a unit of frequency: give units=",
+        give(units={"frequency": "rpm"}),
+    ),
+    "a unit of another dimension, named": (
+        "f [Hz];S1 [N/mm];S2 [N/mm]\n<f; S/1e6; L/1e6>\n",
+        "'N/mm' is not a unit of storage: give units=",
+        give(units={"storage": "MPa", "loss": "MPa"}),
+        {"storage": "S1 [N/mm]", "loss": "S2 [N/mm]"},
+    ),
+    "a power of ten, named": (
+        "f [Hz];E' x10^6 [Pa];E'' x10^6 [Pa]\n<f; S/1e6; L/1e6>\n",
+        "is not a unit of storage: give units=",
+        give(units={"storage": "MPa", "loss": "MPa"}),
+        {"storage": "E' x10^6 [Pa]", "loss": "E'' x10^6 [Pa]"},
+    ),
+    "a modulus without a unit": (
+        "f [Hz];E' [MPa];E''\n<f; S/1e6; L/1e6>\n",
+        "give units={'loss'",
+        give(units={"loss": "MPa"}),
+    ),
+    "an angular frequency in Hz": (
+        "Angular frequency [Hz];E' [MPa];E'' [MPa]\n<w; S/1e6; L/1e6>\n",
+        "or give units=",
+        give(units={"angular frequency": "rad/s"}),
+    ),
+    "an angular frequency in Hz, renamed": (
+        "Angular frequency [Hz];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6>\n",
+        "rename it 'frequency'",
+        change("Angular ", ""),
+    ),
+    "frequencies that contradict, the first": (
+        "Angular frequency [1/s];Frequency [Hz];E' [MPa];E'' [MPa]\n<w; w; S/1e6; L/1e6>\n",
+        "choose by",
+        quoted(0),
+    ),
+    "frequencies that contradict, the second": (
+        "Angular frequency [1/s];Frequency [Hz];E' [MPa];E'' [MPa]\n<f; f; S/1e6; L/1e6>\n",
+        "choose by",
+        quoted(1),
+    ),
+    "tan delta and a phase angle": (
+        "f [Hz];Phase [rad];E' [MPa];E'' [MPa];tan_delta\n<f; 0.9*tan; S/1e6; L/1e6; tan>\n",
+        "choose by",
+        quoted(1),
+    ),
+    "a phase angle that is wrong": (
+        "f [Hz];Phase [rad];E' [MPa];E'' [MPa];tan_delta\n<f; 0.9*tan; S/1e6; L/1e6; tan>\n",
+        "choose by",
+        quoted(0),
+        "tan delta contradicts storage and loss",
+    ),
+    "a tan delta in per cent beside moduli": (
+        "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 100*tan>\n",
+        "give its unit by units=",
+        give(units={"tan delta": "%"}),
+    ),
+    "a tan delta that is wrong": (
+        "f [Hz];E' [MPa];E'' [MPa];tan delta\n<f; S/1e6; L/1e6; 2*tan>\n",
+        "or remove one of the columns",
+        lambda text, *_: (re.sub(r"(?m);[^;]*$", "", text), {}),
+    ),
+    "a magnitude of few digits": (
+        "f [Hz];E' [MPa];|E*| [MPa]\n1;3.0;3.0\n10;4.0;4.1\n",
+        "give tan delta too",
+        change("f [Hz]", "f [Hz]"),
+        "do not determine",
+    ),
+    "logarithms": (
+        "f,Storage,Loss\n<log(f); log(S); log(L)>\n",
+        "write log before their headings",
+        change("f,Storage,Loss", "log f (Hz),log Storage (Pa),log Loss (Pa)"),
+    ),
+    "four columns without headings": (
+        "<n; f; S/1e6; L/1e6>\n",
+        "they are called 'column 0', 'column 1'",
+        give(columns={"frequency": "column 1", "storage": "column 2", "loss": "column 3"}, units=("Hz", "MPa")),
+    ),
+    "headings that say nothing": (
+        "a [Hz];b [MPa];c [MPa]\n<f; S/1e6; L/1e6>\n",
+        "name the columns by columns=",
+        give(columns={"frequency": "a [Hz]", "storage": "b [MPa]", "loss": "c [MPa]"}),
+    ),
+    "a sweep of temperature": (
+        "T [°C];E' [MPa];E'' [MPa]\n<20+n; S/1e6; L/1e6>\n",
+        "a sweep of temperature",
+        give(columns={"frequency": "T [°C]"}),
+        "is not a unit of frequency",
+    ),
+    "headings and rows of other separators": ("f E' E''\n<f; S; L>\n", "columns", change("f E' E''", "f;E';E''")),
+}
+
+
+def read(path, options):
+    """What is read and whether it is of the rubber; None and the message of a refusal."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", vr.ModelWarning)
+        try:
+            found = vr.read_dma(path, **options)
+        except vr.ViscorollError as error:
+            return None, str(error)
+    storage, loss = rubbers.moduli(found.omega)
+    return all(close(*pair, tol.DMA_DIGITS) for pair in ((found.storage, storage), (found.loss, loss))), ""
+
+
+@pytest.mark.parametrize("title", CASES)
+def test_advice_helps(title, tmp_path):
+    """``close`` raises where what is read is not the rubber."""
+    text, words, follow, *rest = CASES[title]
+    options = {"columns": rest[0]} if rest and isinstance(rest[0], dict) else {}
+    sep = "," if text.startswith((",", "f,")) else ";"
+    text = rubbers.filled(text, {"sep": sep, "format": "%.9g"})
+    path = tmp_path / "dma.csv"
+    path.write_text(text, encoding="utf-8")
+    good, message = read(path, options)
+    assert good is None, "not refused"
+    assert words in message
+    changed, options = follow(text, message, options)
+    path.write_text(rubbers.filled(changed, {"sep": sep, "format": "%.9g"}), encoding="utf-8")
+    good, message = read(path, options)
+    assert good or (rest and isinstance(rest[0], str) and re.search(rest[0], message)), message
+
+
+def test_a_column_of_temperature_helps(tmp_path):
+    """Two sweeps in one file are refused, and read where the column is written that the message asks for."""
+    path = tmp_path / "dma.csv"
+    both = "f [Hz];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6>\n<f; S/2e6; L/2e6>\n"
+    path.write_text(rubbers.filled(both, {"sep": ";"}))
+    with pytest.raises(vr.FileError, match="need a column of temperature"):
+        vr.read_dma(path)
+    rows = both.replace("f [Hz]", "T [°C];f [Hz]").replace("<f; S/1e6", "<20*one; f; S/1e6")
+    path.write_text(rubbers.filled(rows.replace("<f; S/2e6", "<40*one; f; S/2e6"), {"sep": ";"}), encoding="utf-8")
+    assert np.array_equal(vr.read_dma(path).temperature, np.repeat([20.0, 40.0], 12))
+
+
+#: columns of a test: quantity, numbers in an SI unit, headings that are known or not, and unit in the file -> (the
+#: same as units= has it, how many of it are the SI unit); "!" begins a unit that no reader can know
+FREQUENCY = {
+    "Hz": ("Hz", 1.0), "cpm": ("rpm", 60.0), "r/min": ("rpm", 60.0), "1/min": ("rpm", 60.0), "tr/min": ("rpm", 60.0),
+    "kHz": ("kHz", 1e-3), "cps": ("Hz", 1.0), "!Schlag/s": ("Hz", 1.0), "!N/mm": ("Hz", 1.0), "!10^3 Hz": ("kHz", 1e-3),
+}  # fmt: skip
+MODULUS = {
+    "Pa": ("Pa", 1.0), "MPa": ("MPa", 1e-6), "kgf/cm²": ("kgf/cm^2", 1.0 / 98066.5), "N/mm²": ("MPa", 1e-6),
+    "kp/cm2": ("kgf/cm^2", 1.0 / 98066.5), "daN/cm²": ("bar", 1e-5), "!10^6 Pa": ("MPa", 1e-6), "!dNm": ("kPa", 1e-3),
+    "!kPa rel.": ("kPa", 1e-3), "!Einheiten": ("MPa", 1e-6),
+}  # fmt: skip
+TAN = {"": ("1", 1.0), "-": ("1", 1.0), "%": ("%", 100.0), "!Teile": ("1", 1.0)}
+CELSIUS = {"°C": ("degC", 1.0), "K": ("K", 1.0), "C": ("degC", 1.0)}
+COLUMNS = {
+    "frequency": (rubbers.FREQUENCY, FREQUENCY, ["f", "Frequenza", "Fréquence", "周波数", "Prüffrequenz", "Kanal 1"]),
+    "storage": (
+        rubbers.STORAGE, MODULUS,
+        ["E'", "Modulo conservativo", "Module de conservation", "貯蔵弾性率", "Ep", "Modul 1", "E stor. x"],
+    ),
+    "loss": (
+        rubbers.LOSS, MODULUS,
+        ["E''", "Modulo dissipativo", "Module de perte", "損失弾性率", "Epp", "Modul 2", "E loss x"],
+    ),
+    "tan delta": (
+        rubbers.LOSS / rubbers.STORAGE, TAN,
+        ["tan δ", "Fattore di perdita", "Facteur de perte", "損失正接", "Verhältnis"],
+    ),
+    "temperature": (np.full(12, 21.0), CELSIUS, ["T", "Temperatura", "温度", "Ts", "Kammer"]),
+}  # fmt: skip
+
+
+@st.composite
+def stated(draw):
+    """A text of a file with units, perhaps logarithms, and the truth: quantity -> heading, and quantity -> unit."""
+    names = draw(
+        st.sampled_from(
+            [("storage", "loss"), ("storage", "tan delta"), ("loss", "tan delta"), ("storage", "loss", "tan delta")]
+        )
+    )
+    warm = draw(st.sampled_from([(), ("temperature",)]))
+    cells, headings, units = {}, {}, {}
+    way = draw(st.sampled_from(["{} [{}]", "{} ({})", "{} / {}"]))
+    for name in ["frequency", *names, *warm]:
+        values, known, words = COLUMNS[name]
+        unit = draw(st.sampled_from([*known]))
+        units[name], factor = known[unit]
+        numbers = values * factor + 273.15 * (unit == "K")
+        written = unit.removeprefix("!")
+        heading = way.format(draw(st.sampled_from(words)), written) if written else draw(st.sampled_from(words))
+        log = draw(st.sampled_from([None] * 8 + ["log ", "ln "])) if name in ("frequency", "storage", "loss") else None
+        if log:
+            heading = log + heading
+            numbers = (np.log10 if log == "log " else np.log)(numbers)
+        headings[name], cells[name] = heading, [f"{number:.10g}" for number in numbers]
+    order = draw(st.permutations([*cells]))
+    below = draw(st.sampled_from(["", "\nEnd of test\n", "Fine della prova: 12.03.2024\n"]))
+    rows = zip(*(cells[name] for name in order), strict=True)
+    text = "\n".join([";".join(headings[name] for name in order), *map(";".join, rows)])
+    return f"{text}\n{below}", headings, units
+
+
+@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(stated())
+def test_units_and_names_given_as_advised_are_right(tmp_path, file):
+    """A file is read right, or refused until the advice that its message gives is followed."""
+    text, headings, units = file
+    path = tmp_path / "dma.csv"
+    path.write_text(text, encoding="utf-8")
+    options, given_before = {}, None
+    while options != given_before:
+        given_before = dict(options)
+        with warnings.catch_warnings(record=True) as said:
+            warnings.simplefilter("always")
+            try:
+                found = vr.read_dma(path, **options)
+            except vr.ViscorollError as error:
+                message = str(error)
+            else:
+                message = "".join(str(each.message) for each in said)
+                if not message:
+                    assert close(found.omega, rubbers.OMEGA, tol.DMA_DIGITS)
+                    assert close(found.storage, rubbers.STORAGE, tol.DMA_DIGITS)
+                    assert close(found.loss, rubbers.LOSS, tol.DMA_DIGITS)
+                    return
+        for name in re.findall(r"units=\{'([a-z ]*)': (?:\.\.\.|'%')\}", message):
+            options["units"] = options.get("units", {}) | {name: units[name]}
+        if "name the columns by columns=" in message:
+            options["columns"] = headings
+        for name, heading in re.findall(r"columns=\{'([a-z ]*)': '([^']*)'\}", message):
+            options["columns"] = options.get("columns", {}) | {name: headings.get(name, heading)}
+    pytest.fail(message)
