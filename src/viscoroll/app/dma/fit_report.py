@@ -87,11 +87,11 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
     symbol : "E" or "G".
     """
     yield f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol)
-    if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
+    if (shifts := fit.shifts) is None or len(shifts.temperature) < 2:
         return
     factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
     yield "shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"
-    count = shifts.temperature.size
+    count = len(shifts.temperature)
     if shifts.distinct > count:
         yield "", f"{shifts.distinct} temperatures, within 0.5 K of one another, were combined into {count}"
     if np.isfinite(shifts.mismatch).any():

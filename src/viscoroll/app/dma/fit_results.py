@@ -21,6 +21,7 @@ from ...materials.importers import check_poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
+from ...materials.shift import WLF
 from .curve import UNITS, Curve, KramersKronig, Relaxation
 from .fit_report import summarize_fit, symbol_of
 from .master_curve import Shifts
@@ -344,6 +345,43 @@ class Fit(SeriesFit):
     def data(self) -> Curve:
         """The data that were fitted, as a :class:`.curve.Curve`."""
         return Curve(self.omega, self.storage, self.loss)
+
+    def wlf(self) -> WLF:
+        """Fit the law of Williams, Landel and Ferry to the shift factors of the fit.
+
+        It is :meth:`viscoroll.ShiftFactors.wlf` of ``shifts``, which has ``arrhenius()`` too, and is itself a shift for
+        :meth:`Material.at` between the temperatures of the curves.
+
+        Returns
+        -------
+        WLF
+            A shift for any temperature, with a_T = 1 at the reference of the fit.
+
+        Raises
+        ------
+        ParameterError
+            A fit of fewer than three temperatures; factors that rise with temperature.
+
+        Warns
+        -----
+        ModelWarning
+            Where the law misses a factor by more than 0.1 decades.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(2e6, 0.5, vr.Prony([1.0, 2.0, 8.0], [1.0, 1e-2, 1e-4]), temperature=20.0)
+        >>> shift, omega = vr.WLF(C1=8.86, C2=101.6, T0=20.0), np.geomspace(0.1, 100.0, 20)
+        >>> curves = [rubber.at(T, shift) for T in (10.0, 20.0, 30.0)]
+        >>> moduli = [m.storage(omega) for m in curves], [m.loss(omega) for m in curves]
+        >>> fit = vr.fit_prony([omega] * 3, *moduli, temperature=[10.0, 20.0, 30.0])
+        >>> bool(abs(fit.wlf()(0.0) / shift(0.0) - 1.0) < 0.05)
+        True
+        """
+        if self.shifts is None:
+            raise described_error("temperature", "was not given to the fit", "given, one for each curve")
+        return self.shifts.wlf()
 
     def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
         """Return storage and loss modulus of the fit in the unit of the data.

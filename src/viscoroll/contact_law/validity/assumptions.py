@@ -327,4 +327,5 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
         low, high = data.transit_band
         holds = holds & (low <= frequency) & (frequency <= high) & (data.misfit <= MISFIT_LIMIT)
         sentence += f"; {body} was measured from {data}"
+        sentence += f", above {MISFIT_LIMIT:.0%}: the fit misses its data" * (data.misfit > MISFIT_LIMIT)
     return Assumption(holds, frequency, sentence)
