@@ -170,7 +170,7 @@ def test_the_reference_that_a_shift_means():
         fit = vr.fit_prony(*curves, temperature=TEMPERATURES, shift=shift)
         assert fit.shifts.reference == reference
         assert np.isnan(fit.shifts.mismatch).all() == (shift is not None)
-        assert close(np.interp(reference, TEMPERATURES, fit.shifts.a_T), 1.0, tol.DMA_SHIFTED_TIMES)
+        assert close(fit.shifts(reference), 1.0, tol.DMA_SHIFTED_TIMES)
     assert vr.fit_prony(*curves, temperature=TEMPERATURES, reference=-5.0).shifts.a_T[3] > 1.0
     for shift in (wlf, wlf(TEMPERATURES), vr.WLF(C1=8.86, C2=101.6, T0=0.0)):
         given = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0, shift=shift)
@@ -235,6 +235,64 @@ def test_shifts_by_storage_alone():
     flat = [np.full(21, 1e5)] * TEMPERATURES.size
     fit = vr.fit_prony(omega, storage, flat, temperature=TEMPERATURES, reference=0.0, on="storage", misfit=0.5)
     assert close(np.log10(fit.shifts.a_T), np.log10(wlf(TEMPERATURES)), tol.DMA_SHIFT, scale=1.0)
+
+
+@pytest.mark.filterwarnings("ignore:E' and E''")
+@pytest.mark.parametrize("part", [lambda f: f, lambda f: f**0.5, lambda f: 1.0 / (800.0 * f), lambda f: 1.0])
+def test_a_part_of_the_loss_that_does_not_shift_leaves_the_shift_to_the_storage(part):
+    """A low-loss material, a decade for 5 K, with a part of E'' of the instrument as large as its own."""
+    f, temperatures, rng = np.geomspace(0.1, 80.0, 15), np.arange(20.0, 45.0, 5.0), np.random.default_rng(3)
+    x = np.log10(f) - np.arange(5.0)[:, None]
+    storage = 1.0 + 0.025 * x + 0.0015 * x * np.abs(x)
+    loss = 0.5 * np.pi * (0.025 + 0.003 * np.abs(x)) / np.log(10.0) + 0.02 * part(f / 80.0)
+    noisy = [y * (1.0 + s * rng.standard_normal(y.shape)) for y, s in ((storage, 1e-3), (loss, 1e-2))]
+    fit = vr.fit_prony([f] * 5, *(list(y) for y in noisy), temperature=temperatures, reference=20.0)
+    assert close(np.log10(fit.shifts.a_T), -np.arange(5.0), tol.DMA_SHIFT_LOW_LOSS, scale=1.0)
+
+
+def test_moduli_that_disagree_on_the_shift_and_factors_that_rise_are_named():
+    omega, storage, loss = isotherms(21, 0.0)
+    loss = [E * (1.0 + 0.1 * np.log(f)) for f, E in zip(omega, loss, strict=True)]
+    with pytest.warns(vr.ModelWarning, match="E' and E'' overlap best at different shifts from -30 to -20 C"):
+        vr.fit_prony(omega, storage, loss, temperature=TEMPERATURES, misfit=1.0)
+    factors = wlf(TEMPERATURES)
+    factors[2] = 2.0 * factors[1]
+    with pytest.warns(vr.ModelWarning, match=r"a_T rises with temperature from -30 to -20 C \(by a factor of 2\)"):
+        vr.fit_prony(*isotherms(21, 0.0), temperature=TEMPERATURES, shift=factors, misfit=1.0)
+
+
+@pytest.mark.parametrize("decades", [2.4, 2.59, 3.0, 3.5])
+def test_curves_too_far_apart_are_refused(decades):
+    """Of 2.7 decades each: less than 15 % of overlap is not enough to find a shift, and is not taken for the best."""
+    omega = 2.0 * np.pi * np.geomspace(0.1, 50.0, 15)
+    curves = [curve(omega * a)[1:] for a in (10.0**decades, 1.0)]
+    with pytest.raises(vr.ParameterError, match=r"at 0 and 20 °C (agree best with the least|do not agree)"):
+        vr.fit_prony([omega] * 2, *map(list, zip(*curves, strict=True)), temperature=[0.0, 20.0])
+
+
+def test_found_factors_are_a_shift_and_give_a_law():
+    """Between the curves by interpolation, beyond them by WLF; of two or more by Arrhenius; what is none is refused."""
+    fit = vr.fit_prony(*isotherms(21, 0.0), temperature=TEMPERATURES, reference=0.0)
+    law, inside, beyond = fit.wlf(), TEMPERATURES[:-1] + 5.0, np.array([-40.0, 60.0])
+    assert close([fit.shifts(T) for T in inside], wlf(inside), tol.DMA_SHIFT_BETWEEN)
+    assert close([law(T) for T in (*inside, *beyond)], wlf(np.append(inside, beyond)), tol.DMA_SHIFT_LAW)
+    rubber = fit.material(0.49)
+    moved = rubber.at(-25.0, fit.shifts)
+    assert close(moved.T_ref, rubber.T_ref * wlf(-25.0), tol.DMA_SHIFT_BETWEEN)
+    assert (moved.temperature, hash(fit.shifts)) == (-25.0, hash(fit.shifts))
+    with pytest.raises(vr.ParameterError, match=r"temperature = 60.0: must be within \[-40, 40\]"):
+        rubber.at(60.0, fit.shifts)
+    shift = vr.Arrhenius(energy=8e4, T0=10.0)
+    found = vr.ShiftFactors(temperature=(0.0, 10.0), a_T=(shift(0.0), 1.0), T0=10.0)
+    assert close(found.arrhenius().energy, 8e4, tol.DMA_SHIFTED_TIMES)
+    with pytest.raises(vr.ParameterError, match="at least 3"):
+        found.wlf()
+    with pytest.raises(vr.ParameterError, match="factors that fall with temperature"):
+        vr.ShiftFactors(temperature=(0.0, 10.0), a_T=(1.0, 2.0), T0=0.0).arrhenius()
+    with pytest.warns(vr.ModelWarning, match="misses the factor found at"):
+        vr.ShiftFactors(temperature=(0.0, 10.0, 20.0), a_T=(100.0, 99.0, 1.0), T0=0.0).wlf()
+    with pytest.raises(vr.ParameterError, match="temperature was not given"):
+        vr.fit_prony(*curve(WHOLE)).wlf()
 
 
 # --- shear, records, many points, relaxation ---

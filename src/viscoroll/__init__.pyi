@@ -46,6 +46,7 @@ from .materials.measured import Measured as Measured
 from .materials.prony import Prony as Prony
 from .materials.shift import WLF as WLF
 from .materials.shift import Arrhenius as Arrhenius
+from .materials.shift import ShiftFactors as ShiftFactors
 from .motion.ensemble import ensemble as ensemble
 from .motion.ensemble_result import Ensemble as Ensemble
 from .motion.motion_result import Motion as Motion

@@ -60,4 +60,12 @@ def test_a_files_temperature_is_where_its_shift_is_one(folder):
 
 def test_columns_that_are_left_aside_are_told(tmp_path):
     with pytest.warns(vr.ModelWarning, match=r"drum.csv: unused columns: 'T \[°C\]'"):
-        names_in(tmp_path)["data"]("V,M,T [°C]\n0.1,0.2,20\n0.2,0.3,20\n")
+        names_in(tmp_path)["data"]("V [m/s],M [N m/m],T [°C]\n0.1,0.2,20\n0.2,0.3,20\n")
+
+
+def test_columns_without_units_are_told_and_the_advice_leads_to_the_right_speed(tmp_path):
+    """A drum in km/h: without units a word for each column; with the heading as advised none, and speeds in m/s."""
+    data = names_in(tmp_path)["data"]
+    assert data("V [km/h],M [N m m-1]\n0.36,0.2\n0.72,0.3\n").V.tolist() == [0.1, 0.2]
+    with pytest.warns(vr.ModelWarning, match=r"column 'V' has no unit, and is taken in m s-1.*'V \[m s-1\]'"):
+        data("V,M [N m m-1]\n0.1,0.2\n0.2,0.3\n")

@@ -16,9 +16,10 @@ from ..core.labels import strip_labels
 from ..core.results import Values
 from ..core.scale import DIMENSIONS
 from ..materials.cover import Cover
-from .contact_fields import field_names
+from .contact_fields import ACCURACY, field_names
 from .contact_table import evaluate_contact
 from .parameters import Roller, resolve_model
+from .validity.assumptions import moment_error, transit_frequency
 from .validity.model_warnings import warn_of_contact
 
 
@@ -89,7 +90,9 @@ def contact(
         M/(P R), the coefficient of rolling resistance; a layer adds ``delta_0``, the creepage at which Q = 0, caused by
         the strain under the pressure.  If the body beside a layer relaxes too, only lam, length, zeta, epsilon,
         delta_star, delta, M, C_rr and dM_dV are known, and the default fields are reduced to these.
-        Fields by name alone: ``grip``, the friction reserve 1 - |Q|/(mu P) without loss of digits, 0 in full slip;
+        Fields by name alone: of a Cylinder ``M_error``, the accuracy of M by the data of its materials as +-, relative,
+        infinite outside their band, NaN where not known (:meth:`viscoroll.Measured.moment_error`);
+        ``grip``, the friction reserve 1 - |Q|/(mu P) without loss of digits, 0 in full slip;
         ``N``, the added mass of slow speed changes, in which the moment is M(V) + N dV/dt (P T_ref^2 or N s^2/m), not
         known of layers and of arrays of materials; and each slope below.
     slopes : whether ``dQ_dV``, ``dQ_ddelta``, ``dQ_domega`` and ``dM_dV`` are computed in addition, and of bodies that
@@ -171,5 +174,8 @@ def contact(
         creep = divide_by_unit(creep_name, creep, scale[creep_name])
     found = evaluate_contact(scene, speed, creep, delta is None, names, method)
     if scale.si:
+        if ACCURACY in found:
+            frequency = transit_frequency(given["V"], found[ACCURACY] * scale["length"])
+            found[ACCURACY] = moment_error(frequency, roller.body_data.records)[()]
         found = {name: value * scale[name] if name in DIMENSIONS else value for name, value in found.items()}
     return Values(found, given, si=scale.si, labels=labels, about=about)

@@ -35,12 +35,14 @@ UNSTEADY = "N"
 GRIP = "grip"
 #: Creepage of free rolling by the strain that the pressure causes in a cover; 0 for half-spaces.
 FREE_CREEP = "delta_0"
-#: Field -> the field of which it is a multiple: the length is lam times l0, C_rr is M/(P R).
-_MULTIPLES = {"length": "lam", "C_rr": "M"}
+#: Accuracy of M by the data of the materials, of a cylinder in SI units alone.
+ACCURACY = "M_error"
+#: Field -> the field of which it is a multiple, or from which it follows: the length is lam times l0, C_rr is M/(P R).
+_MULTIPLES = {"length": "lam", "C_rr": "M", ACCURACY: "lam"}
 #: Field of like bodies -> the field of which it is half.
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 #: Fields that are known if both bodies relax and one of them is a layer.
-_BEFORE_THE_SPLIT = ("lam", "length", "zeta", "epsilon", "delta_star", "delta", "M", "C_rr", "dM_dV")
+_BEFORE_THE_SPLIT = ("lam", "length", "zeta", "epsilon", "delta_star", "delta", "M", "C_rr", "dM_dV", ACCURACY)
 #: All fields.
 _KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES)
 
@@ -81,7 +83,7 @@ def field_names(
     """
     check_choice("method", method, "table", "direct")
     if fields is not None:
-        names = check_names("fields", fields, _KNOWN, "a field")
+        names = check_names("fields", fields, _KNOWN if si else [x for x in _KNOWN if x != ACCURACY], "a field")
     elif si:
         names = ("lam", "length", *FIELDS[1:], "C_rr", *OF_BODIES)
     else:
@@ -147,7 +149,8 @@ def complete(
     shape: shape of the call, whose product is the number of states; () for one state.
     Returns a dict from each of ``names``, in their order, to an array of ``shape``, for shape () a float; ``full_slip``
     is a boolean array, for shape () a bool.  Arrays that are a row of ``rows`` are views of it.  ``length`` and
-    ``C_rr`` have the values of lam and M, which the caller of a Cylinder multiplies by their units; parts of M that
+    ``C_rr`` have the values of lam and M, which the caller of a Cylinder multiplies by their units, as it makes
+    ``M_error`` of lam; parts of M that
     were not computed are half of M, their slopes half of dM_dV.
     """
     found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))

@@ -42,12 +42,16 @@ _MEANING = {
     "temperature": ("temperature of moduli and times", "degC"),
     "measured_low": ("first angular frequency of the data", "rad s-1"),
     "measured_high": ("last angular frequency of the data", "rad s-1"),
+    "measured_rate": ("transit frequencies at which the accuracy of M is known", "s-1"),
+    "measured_M_error": ("accuracy of M by the data as +-, relative", "1"),
     "measured_misfit": ("root mean square of the relative errors of the fit", "1"),
 }
 #: variables that a file may lack
 _OPTIONAL = ("density", "thickness", "temperature", "nu_instant")
 #: fields of the measured band, which a file may lack
 _BAND = ("low", "high", "misfit")
+#: transit frequencies and accuracies of M, which a file may lack
+_ERRORS = ("measured_rate", "measured_M_error")
 
 
 def material_as_dataset(material: Any) -> xr.Dataset:
@@ -57,7 +61,8 @@ def material_as_dataset(material: Any) -> xr.Dataset:
     Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, of length 0 if elastic:
     strengths over the long-time modulus or compliance, times in units of T_ref; and the constants in SI units: E_long,
     nu, T_ref, alpha, and those of density, thickness, temperature (degrees Celsius) and the measured band
-    (measured_low, measured_high, measured_misfit) that are given.  Each variable has the attributes ``long_name`` and
+    (measured_low, measured_high, measured_misfit, and over "rate" measured_rate, 1/s, and measured_M_error) that are
+    given.  Each variable has the attributes ``long_name`` and
     ``units``.  The attribute ``given`` of the dataset names the form from which the material is read, "relaxation" or
     "creep"; ``name`` and ``measured`` are the name and the source of the data, "" without; the others are
     ``Conventions``, ``schema``, ``title``, ``law`` (the formulas of E(t) and J(t)) and ``source`` (this version).
@@ -68,9 +73,14 @@ def material_as_dataset(material: Any) -> xr.Dataset:
     held = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
     held |= {name: getattr(material, name) for name in _OPTIONAL}
     held |= {f"measured_{name}": getattr(band, name, None) for name in _BAND}
+    if band is not None and band.M_error:
+        held |= dict(zip(_ERRORS, np.transpose(band.M_error), strict=True))
     held |= {name: getattr(series, name) for names in _FORMS.values() for name in names}
     data = {
-        name: (("mode",) * np.ndim(value), value, dict(zip(("long_name", "units"), _MEANING[name], strict=True)))
+        name: (
+            ("rate" if name in _ERRORS else "mode",) * np.ndim(value), value,
+            dict(zip(("long_name", "units"), _MEANING[name], strict=True)),
+        )
         for name, value in held.items() if value is not None
     }  # fmt: skip
     return xr.Dataset(
@@ -112,7 +122,8 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
         found: dict[str, Any] = {name: numbers[name] for name in ("nu", "T_ref", *_OPTIONAL) if name in numbers}
         if "measured_low" in numbers:
             band = {name: numbers[f"measured_{name}"] for name in _BAND}
-            found["measured"] = Measured(**band, source=about["measured"])
+            pairs = zip(*(numbers[name].tolist() for name in _ERRORS if name in numbers), strict=True)
+            found["measured"] = Measured(**band, source=about["measured"], M_error=tuple(pairs))
         return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
     except (ParameterError, KeyError, ValueError, OSError) as error:
         raise FileError(path, f"is not a material file ({' '.join(str(error).split()):.200})") from error

@@ -162,7 +162,8 @@ def material_as_toml(material: Material, section: str = "material") -> str:
     values = {name: getattr(material, name) for name in ("E", "nu", "nu_instant", "T_ref", "density", "thickness")}
     values = {"name": _quote(material.name)} | values | {"reference": material.temperature}
     values["measured"] = band and (
-        f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = {_quote(band.source)} }}"
+        f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = {_quote(band.source)}"
+        f"{f', M_error = {[list(pair) for pair in band.M_error]}' * bool(band.M_error)} }}"
     )
     lines = [f"{name} = {value}" for name, value in values.items() if value is not None]
     return "\n".join([f"[{section}]", *lines, series_as_toml(material.prony), ""])

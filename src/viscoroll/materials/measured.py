@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import Any
 
-from ..core.checks import check_number, check_text
-from ..core.errors import ParameterError
+import numpy as np
+
+from ..core.checks import check_array, check_number, check_text
+from ..core.errors import ParameterError, described_error
 from .shift import check_fields
 
 #: Ratio of the highest angular frequency that a contact needs, rad/s, to its transit frequency, 1/s.  Data that end
@@ -23,11 +26,13 @@ class Measured:
     misfit : root mean square of the relative errors of storage or loss modulus, whichever is larger, dimensionless, >=
         0.
     source : text that names the source of the data.
+    M_error : accuracy of the rolling moment by the data: pairs (transit frequency of a contact, 1/s, ascending;
+        relative error of M as +-, dimensionless); fits give it, (): not known.
 
     Raises
     ------
     ParameterError
-        A value that is not finite or out of range, low above high.
+        A value that is not finite or out of range, low above high, frequencies of ``M_error`` that do not ascend.
 
     Examples
     --------
@@ -41,6 +46,7 @@ class Measured:
     high: float
     misfit: float
     source: str = ""
+    M_error: tuple[tuple[float, float], ...] = ()
 
     def __post_init__(self) -> None:
         """Check the fields, and replace the numbers by floats in rad/s; a value with a unit is converted.
@@ -52,6 +58,10 @@ class Measured:
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")
         check_text("source", self.source)
+        pairs = check_array("M_error", self.M_error, low=0.0).reshape(-1, 2)
+        if not (np.diff(pairs[:, 0]) > 0.0).all():
+            raise described_error("M_error", "has frequencies that do not ascend", "pairs (transit frequency, +-)")
+        object.__setattr__(self, "M_error", tuple(map(tuple, pairs.tolist())))
 
     @property
     def transit_band(self) -> tuple[float, float]:
@@ -66,6 +76,39 @@ class Measured:
         """
         return self.low, self.high / HIGHEST_RATE
 
+    def moment_error(self, rate: Any) -> Any:
+        """Return the accuracy of the rolling moment at transit frequencies, by the data alone.
+
+        It is the largest change of M by any spectrum that meets the data as well as the fit does
+        (:attr:`viscoroll.Fit.admissible`), interpolated in ln(rate).
+
+        Parameters
+        ----------
+        rate : transit frequency |V|/length of a contact, 1/s, >= 0, of any shape, not checked: the ``value`` of
+            ``validity(V).measured``.
+
+        Returns
+        -------
+        array
+            Relative error of M as +-, dimensionless, in that shape: infinite outside :attr:`transit_band`, NaN where
+            ``M_error`` is not known.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> band = vr.Measured(low=0.1, high=300.0, misfit=0.004, M_error=((0.1, 0.1), (100.0, 0.04)))
+        >>> band.moment_error([0.1, 100.0, 200.0])
+        array([0.1 , 0.04,  inf])
+        """
+        low, high = self.transit_band
+        rates = np.asarray(rate, np.float64)
+        if not self.M_error:
+            return np.full(rates.shape, np.nan)
+        at, error = np.transpose(self.M_error)
+        inside = (rates >= low) & (rates <= high)
+        found = np.interp(np.log(np.where(inside, rates, low)), np.log(at), error)
+        return np.where(inside, found, np.inf)
+
     def shifted(self, a_T: float) -> Measured:
         """Return the measured band at another temperature.
 
@@ -76,7 +119,7 @@ class Measured:
         Returns
         -------
         Measured
-            A new one, whose frequencies are divided by ``a_T``; misfit and source stay.
+            A new one, whose frequencies are divided by ``a_T``; misfit, source and errors stay.
 
         Raises
         ------
@@ -91,7 +134,8 @@ class Measured:
         >>> vr.Measured(low=0.1, high=100.0, misfit=0.004).shifted(10.0).high
         10.0
         """
-        return replace(self, low=self.low / a_T, high=self.high / a_T)
+        moved = tuple((rate / a_T, error) for rate, error in self.M_error)
+        return replace(self, low=self.low / a_T, high=self.high / a_T, M_error=moved)
 
     def __str__(self) -> str:
         source = f" ({self.source})" if self.source else ""

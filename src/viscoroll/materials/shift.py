@@ -1,4 +1,5 @@
-"""Time-temperature shifts: :class:`WLF` and :class:`Arrhenius`, functions of the temperature in degrees Celsius.
+"""Time-temperature shifts: :class:`WLF`, :class:`Arrhenius` and :class:`ShiftFactors`, functions of the temperature
+in degrees Celsius.
 
 Their value a_T is the factor of all times of a material, which is 1 at the reference temperature T0.
 """
@@ -9,7 +10,9 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeVar
+
+import numpy as np
 
 from ..core.checks import check_number
 from ..core.errors import ModelWarning, ParameterError, caller_level
@@ -23,6 +26,13 @@ ABSOLUTE_ZERO = -273.15
 #: kelvin, lies above; room temperature converted twice, 27 - 273 = -246, lies below; 200 K is below the glass
 #: transition of nearly every rubber, so that a number above 200 is more likely in kelvin than in degrees Celsius
 USUAL_RANGE = -150.0, 200.0
+#: K; distance from the temperatures of found factors up to which they are used: that within which sweeps are one
+NEAR = 0.5
+#: decades by which a fitted law may miss a found factor before it warns: a speed is then off by a quarter
+_FAR_OFF = 0.1
+#: K; bounds of C2 - (T0 - lowest temperature) of a fitted WLF: at the lower one the pole is beside the data, at the
+#: upper one log a_T is a straight line
+_GAP = 1.0, 1e4
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -118,6 +128,168 @@ class Arrhenius:
         """
         kelvin = check_celsius("temperature", temperature) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
+
+
+_Law = TypeVar("_Law", WLF, Arrhenius)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShiftFactors:
+    """Factors a_T found at some temperatures, as a function between them.
+
+    ln a_T is interpolated in the temperature, by a monotone piecewise cubic (PCHIP).
+
+    Parameters
+    ----------
+    temperature : temperatures, ascending, degrees Celsius, (n,).
+    a_T : factor of all times at each of them, dimensionless, > 0, (n,).
+    T0 : reference temperature, degrees Celsius, at which a_T = 1.
+
+    Raises
+    ------
+    ParameterError
+        When called, a temperature that is more than 0.5 K outside of the found ones.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.ShiftFactors(temperature=(0.0, 20.0, 40.0), a_T=(100.0, 1.0, 0.05), T0=20.0)
+    >>> round(found(20.0), 12), 1.0 < found(10.0) < 100.0
+    (1.0, True)
+
+    Factors that follow a WLF law are within 3 % of it half way between temperatures 10 K apart
+    (``tests/test_dma.py``).
+    """
+
+    temperature: tuple[float, ...]
+    a_T: tuple[float, ...]
+    T0: float
+
+    def __call__(self, temperature: float) -> float:
+        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
+
+        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is converted.
+        Raises ParameterError and warns as the class states.
+        """
+        from scipy.interpolate import PchipInterpolator
+
+        found = check_celsius("temperature", temperature)
+        low, high = self.temperature[0], self.temperature[-1]
+        if not low - NEAR <= found <= high + NEAR:
+            allowed = f"within [{low:g}, {high:g}], where factors were found; beyond them use wlf() or arrhenius()"
+            raise ParameterError("temperature", temperature, allowed)
+        if low == high:
+            return self.a_T[0]
+        return math.exp(PchipInterpolator(self.temperature, np.log(self.a_T))(found))
+
+    def wlf(self) -> WLF:
+        """Fit the law of Williams, Landel and Ferry to the factors, so that other temperatures need no new fit.
+
+        The least squares are those of log10 a_T, which is 0 at T0.
+
+        Returns
+        -------
+        WLF
+            With the T0 of the factors.
+
+        Raises
+        ------
+        ParameterError
+            Fewer than three temperatures; factors that rise with temperature.
+
+        Warns
+        -----
+        ModelWarning
+            Where the law misses a factor by more than 0.1 decades.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+        >>> at = 0.0, 10.0, 20.0, 30.0
+        >>> law = vr.ShiftFactors(temperature=at, a_T=tuple(map(shift, at)), T0=20.0).wlf()
+        >>> round(law.C1, 4), round(law.C2, 3)
+        (8.86, 101.6)
+        """
+        from scipy.optimize import least_squares
+
+        above, logs = self._points(3)
+        gap = max(0.0, float(-above.min()))
+
+        def constants(free: Any) -> Any:
+            """Return (C1, C2) from [ln(C1/C2), ln(C2 - gap)]."""
+            C2 = gap + np.exp(free[1])
+            return C2 * np.exp(free[0]), C2
+
+        def errors(free: Any) -> Any:
+            """Return the errors of log10 a_T, (n,)."""
+            C1, C2 = constants(free)
+            return -C1 * above / (C2 + above) - logs
+
+        low, high = np.log(_GAP)
+        start = math.log((logs[0] - logs[-1]) / (above[-1] - above[0])), 0.5 * (low + high)
+        found = least_squares(errors, start, bounds=([-np.inf, low], [np.inf, high]), xtol=1e-12, ftol=1e-12)
+        C1, C2 = constants(found.x)
+        return self._told(WLF(C1=float(C1), C2=float(C2), T0=self.T0))
+
+    def arrhenius(self) -> Arrhenius:
+        """Fit the law of Arrhenius to the factors, as :meth:`wlf` does its own.
+
+        Returns
+        -------
+        Arrhenius
+            With the T0 of the factors.
+
+        Raises
+        ------
+        ParameterError
+            Fewer than two temperatures; factors that rise with temperature.
+
+        Warns
+        -----
+        ModelWarning
+            Where the law misses a factor by more than 0.1 decades.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+        >>> found = vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(shift(0.0), 1.0), T0=20.0)
+        >>> round(found.arrhenius().energy, 3)
+        50000.0
+        """
+        above, logs = self._points(2)
+        kelvin = self.T0 - ABSOLUTE_ZERO
+        slower = 1.0 / (kelvin + above) - 1.0 / kelvin
+        energy = GAS_CONSTANT * math.log(10.0) * (slower @ logs) / (slower @ slower)
+        return self._told(Arrhenius(energy=float(energy), T0=self.T0))
+
+    def _points(self, fewest: int) -> tuple[Any, Any]:
+        """Return (temperature - T0, K; log10 a_T), (n,) each, of factors to which a law can be fitted.
+
+        fewest: least number of temperatures.
+        Raises ParameterError for fewer temperatures, and for factors that do not fall from the first to the last.
+        """
+        if len(self.a_T) < fewest:
+            raise ParameterError("temperature", f"{len(self.a_T)} temperatures", f"at least {fewest} for this law")
+        if not self.a_T[-1] < self.a_T[0]:
+            found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
+            raise ParameterError("a_T", found, "factors that fall with temperature")
+        return np.subtract(self.temperature, self.T0), np.log10(self.a_T)
+
+    def _told(self, law: _Law) -> _Law:
+        """Return a fitted law, and warn where it misses a factor by more than :data:`_FAR_OFF`, 0.1 decades."""
+        errors = [math.log10(law(T) / a_T) for T, a_T in zip(self.temperature, self.a_T, strict=True)]
+        worst = int(np.argmax(np.abs(errors)))
+        if abs(errors[worst]) > _FAR_OFF:
+            text = f"{law} misses the factor found at {self.temperature[worst]:g} °C by {errors[worst]:+.2f} decades"
+            warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        return law
 
 
 def check_celsius(name: str, temperature: Any) -> float:

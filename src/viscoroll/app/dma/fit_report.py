@@ -24,7 +24,7 @@ def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     Returns (title, a sentence with the number of modes and of measured points and the range of omega or t; the lines
-    below, a list of :class:`SummaryRow` in order).  The first call computes ``fit.wider``.
+    below, a list of :class:`SummaryRow` in order).  The first call computes ``fit.admissible``.
     """
     low, high = fit.band
     of_time = fit.data._fields[0] == "t"
@@ -37,8 +37,8 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     """Yield the lines of the report below its title, each as (name, text).
 
     They are: constants (with the factor to Young's modulus where the data are of shear, and the temperature where it is
-    known), thinning where points were thinned, misfit, the lines of this kind of fit, modes outside the data, fits on
-    wider grids, and the table of modes with strengths divided by the long-time modulus and times in s.
+    known), thinning where points were thinned, misfit, the lines of this kind of fit, modes outside the data, accuracy
+    of M, and the table of modes with strengths divided by the long-time modulus and times in s.
 
     fit : a :class:`viscoroll.app.dma.fit_results.SeriesFit`.
     Yields pairs (name, text); name is "" of a line that continues the one before.
@@ -59,12 +59,16 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
     yield from _of_relaxation(symbol) if fit.data._fields[0] == "t" else _of_dynamic(fit, symbol)
     yield "outside", _outside(fit)
-    where = "M at the lowest, middle and highest speed inside the measured band"
-    yield "wider", f"fits with a wider range of times, two times per decade; {where}:"
-    for other in fit.wider:
-        ratios = f"{symbol} changes by a factor of {other.E / fit.E:.4g}, alpha by {other.alpha / prony.alpha:.4g}"
-        change = ", ".join(f"{change:+.2%}" for change in other.M_changes) or "no speed"
-        yield "", f"by {other.decades:g} decade{'s' * (other.decades != 1)}: {ratios}, M: {change}"
+    found = fit.admissible
+    ends = ", ".join(f"+-{found.error[n]:.2%}" for n in ((0, found.rate.size // 2, -1) if found.rate.size else ()))
+    where = "at the lowest, middle and highest speed inside the measured band"
+    yield "accuracy", f"M: {ends or 'no speed'}, {where}, by all spectra that meet the data as well"
+    if found.rate.size:
+        (low, high), (least, most) = ((part.min(), part.max()) for part in (found.E / fit.E, found.alpha / prony.alpha))
+        yield (
+            "",
+            f"among them {symbol} changes by factors of {low:.3g} to {high:.3g}, alpha of {least:.3g} to {most:.3g}",
+        )
     yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
     for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
         yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"
@@ -87,11 +91,11 @@ def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
     symbol : "E" or "G".
     """
     yield f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol)
-    if (shifts := fit.shifts) is None or shifts.temperature.size < 2:
+    if (shifts := fit.shifts) is None or len(shifts.temperature) < 2:
         return
     factors = ", ".join(f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True))
     yield "shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"
-    count = shifts.temperature.size
+    count = len(shifts.temperature)
     if shifts.distinct > count:
         yield "", f"{shifts.distinct} temperatures, within 0.5 K of one another, were combined into {count}"
     if np.isfinite(shifts.mismatch).any():

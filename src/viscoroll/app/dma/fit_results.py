@@ -21,6 +21,7 @@ from ...materials.importers import check_poisson
 from ...materials.material import Material
 from ...materials.measured import Measured
 from ...materials.prony import Prony
+from ...materials.shift import WLF
 from .curve import UNITS, Curve, KramersKronig, Relaxation
 from .fit_report import summarize_fit, symbol_of
 from .master_curve import Shifts
@@ -136,39 +137,36 @@ class SeriesFit(Result):
         return has_plateau(self.data, self.E)
 
     @cached_property
-    def wider(self) -> tuple[Any, ...]:
-        """Two fits on wider grids of times, to compare with this one: a property that they change is not determined by
-        the data.
+    def admissible(self) -> Any:
+        """Spectra that meet the data as well as this fit, with the smallest and the largest M at each speed.
 
-        It is of type tuple[ExtendedGridFit, ...]: two :class:`.spectrum_sensitivity.ExtendedGridFit`, on grids that are
-        one and two decades wider on either side.  No mode is left out of them to save modes.  Their fields are:
+        They show what the data leave open: a property in which they differ is not determined.  It is of type
+        :class:`.spectrum_sensitivity.AdmissibleSpectra`, with n speeds, about two a decade, and the fields:
 
-        - ``decades``: 1 or 2;
-        - ``E``: long-time modulus of the wider fit, in the unit of the data;
-        - ``alpha``: its instantaneous divided by its long-time modulus, dimensionless;
-        - ``prony``: its :class:`viscoroll.Prony`, strengths divided by its E, times in units of T_ref of this fit;
-        - ``V``: kappa V, dimensionless, (n,), at speeds whose transit frequency lies in
-          :attr:`viscoroll.Measured.transit_band`; n may be 0;
-        - ``M``: kappa M of the wider fit at these speeds, dimensionless, (n,);
-        - ``M_fit``: kappa M of this fit at the same speeds and the same load, dimensionless, (n,).
+        - ``rate``: transit frequencies of the contact, 1/s, (n,), over :attr:`viscoroll.Measured.transit_band`;
+        - ``error``: accuracy of M at them as +-, relative, (n,): the largest of ``M_changes``;
+        - ``M_changes``: relative change of M by each spectrum, (2 n, n);
+        - ``V``, ``M``: kappa V and kappa M of this fit, dimensionless, (n,);
+        - ``E``, ``alpha``: long-time modulus of each spectrum, in the unit of the data, and its instantaneous divided
+          by its long-time modulus, (2 n,).
 
-        They are computed at the first access.
+        They are computed at the first access, in some tenths of a second; n is 0 where the data span less than a factor
+        of three, or nothing relaxes.
         """
-        from .spectrum_sensitivity import fit_on_extended_grid
+        from .spectrum_sensitivity import admissible_spectra
 
-        return tuple(
-            fit_on_extended_grid(self.data, self.prony, self.E, self.T_ref, self.grid, decades) for decades in (1, 2)
-        )
+        return admissible_spectra(self.data, spectrum_of(self.prony, self.E, self.T_ref))
 
     @property
     def measured(self) -> Measured:
         """What a material keeps of the data, a :class:`Measured`.
 
-        It has the lowest and the highest frequency, rad/s, the misfit (of storage and loss the larger one), and the
-        source; where there is none, the number of points, as "25 points".
+        It has the lowest and the highest frequency, rad/s, the misfit (of storage and loss the larger one), the
+        source, or where there is none the number of points, as "25 points", and the accuracy of M (:attr:`admissible`).
         """
         source = self.source or f"{self.points} points"
-        return Measured(*self.band, self.largest_misfit, source)
+        errors = zip(self.admissible.rate.tolist(), self.admissible.error.tolist(), strict=True)
+        return Measured(*self.band, self.largest_misfit, source, tuple(errors))
 
     def material(
         self, nu: float = 0.49, *, name: str = "", density: float | None = None, thickness: float | None = None
@@ -344,6 +342,43 @@ class Fit(SeriesFit):
     def data(self) -> Curve:
         """The data that were fitted, as a :class:`.curve.Curve`."""
         return Curve(self.omega, self.storage, self.loss)
+
+    def wlf(self) -> WLF:
+        """Fit the law of Williams, Landel and Ferry to the shift factors of the fit.
+
+        It is :meth:`viscoroll.ShiftFactors.wlf` of ``shifts``, which has ``arrhenius()`` too, and is itself a shift for
+        :meth:`Material.at` between the temperatures of the curves.
+
+        Returns
+        -------
+        WLF
+            A shift for any temperature, with a_T = 1 at the reference of the fit.
+
+        Raises
+        ------
+        ParameterError
+            A fit of fewer than three temperatures; factors that rise with temperature.
+
+        Warns
+        -----
+        ModelWarning
+            Where the law misses a factor by more than 0.1 decades.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(2e6, 0.5, vr.Prony([1.0, 2.0, 8.0], [1.0, 1e-2, 1e-4]), temperature=20.0)
+        >>> shift, omega = vr.WLF(C1=8.86, C2=101.6, T0=20.0), np.geomspace(0.1, 100.0, 20)
+        >>> curves = [rubber.at(T, shift) for T in (10.0, 20.0, 30.0)]
+        >>> moduli = [m.storage(omega) for m in curves], [m.loss(omega) for m in curves]
+        >>> fit = vr.fit_prony([omega] * 3, *moduli, temperature=[10.0, 20.0, 30.0])
+        >>> bool(abs(fit.wlf()(0.0) / shift(0.0) - 1.0) < 0.05)
+        True
+        """
+        if self.shifts is None:
+            raise described_error("temperature", "was not given to the fit", "given, one for each curve")
+        return self.shifts.wlf()
 
     def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
         """Return storage and loss modulus of the fit in the unit of the data.

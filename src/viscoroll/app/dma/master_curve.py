@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Literal, NamedTuple
 
@@ -14,7 +15,7 @@ from numpy.typing import ArrayLike
 from ...core.array_types import Floats
 from ...core.checks import check_array
 from ...core.errors import ModelWarning, ParameterError, caller_level, described_error
-from ...materials.shift import USUAL_RANGE, check_celsius, relative_shift
+from ...materials.shift import USUAL_RANGE, ShiftFactors, check_celsius, relative_shift
 from .curve import Curve, data_of, thinned
 from .temperature_sets import default_reference, listed_factors, nearest, points_of, sets_of
 
@@ -24,10 +25,12 @@ _POINTS = 3
 _OVERLAP = 0.15
 #: step in ln a_T of the search: within it the mismatch has one minimum
 _STEP = 0.05
+#: rms mismatch of a modulus below which it counts as no better: the accuracy of the best DMA
+_FLOOR = 2e-3
 #: rms mismatch of ln E' and ln E'' above which curves do not overlap: a third of the moduli
 _LARGEST_MISMATCH = 0.3
-#: mean square mismatch that stands for no overlap at all
-_NONE = 1e6
+#: ratio of the rms mismatch of one modulus to its least above which the moduli disagree on the shift
+_DISAGREES = 1.5
 #: difference of rms mismatches up to which two shifts are equally good: the accuracy of usual DMA
 _EQUALLY_GOOD = 0.01
 #: decades over which all shifts are equally good above which a plateau leaves the shift open: a factor of three either
@@ -35,27 +38,30 @@ _EQUALLY_GOOD = 0.01
 LARGEST_FREEDOM = 1.0
 
 
-class Shifts(NamedTuple):
-    """Shift factors that lay the curves of several temperatures on one.
+@dataclass(frozen=True, kw_only=True)
+class Shifts(ShiftFactors):
+    """Shift factors that lay the curves of several temperatures on one; as a function a_T at any temperature between.
 
     temperature : temperature of each curve, ascending, degrees Celsius, (curves,); the median of those of its points.
     a_T : ratio of times at this temperature to those at the reference, by which frequencies are multiplied, (curves,).
-    reference : temperature of the master curve, degrees Celsius, at which a_T is 1; it need not be one of
+    T0, reference : temperature of the master curve, degrees Celsius, at which a_T is 1; it need not be one of
         ``temperature``.
     mismatch : between each curve and its warmer neighbour, root mean square of the differences of ln E' and ln E''
         after the shift, (curves - 1,); NaN where the factors were given.
-    freedom : between the same, decades over which the shift may be moved before the mismatch rises by 0.01 (1 % of the
-        moduli), (curves - 1,): large where the curves are flat (a plateau fixes no shift); NaN where the factors were
-        given.
+    freedom : between the same, decades over which the shift may be moved before the mismatch of E' or of E'' rises by
+        0.01 (1 % of the modulus), (curves - 1,): large where the curves are flat (a plateau fixes no shift); NaN where
+        the factors were given.
     distinct : number of different temperatures that were given.
     """
 
-    temperature: Floats
-    a_T: Floats
-    reference: float
-    mismatch: Floats
-    freedom: Floats
+    mismatch: Floats = field(compare=False)
+    freedom: Floats = field(compare=False)
     distinct: int
+
+    @property
+    def reference(self) -> float:
+        """Temperature of the master curve, degrees Celsius."""
+        return self.T0
 
 
 def master_curve(
@@ -78,7 +84,7 @@ def master_curve(
         temperature of the middle curve, of an even number the warmer one.
     shift : factors a_T > 0, dimensionless, in the order of the curves, (curves,); a function of the temperature in
         degrees Celsius that returns a_T; or None: found by the overlap of neighbouring curves, and interpolated to the
-        reference, ln a_T linearly in the temperature.  All are divided by that of the reference.
+        reference (:class:`viscoroll.ShiftFactors`).  All are divided by that of the reference.
     on : "both" or "storage": the moduli by whose overlap shifts are found; not used where shifts are given.
 
     Returns
@@ -94,14 +100,15 @@ def master_curve(
         Moduli or frequencies that are not > 0 and finite, or fewer than 3 points; temperatures of another number than
         points or curves; temperatures that drift, so that sweeps cannot be told apart; a reference more than 0.5 K
         outside of the temperatures where the overlap gives the shifts, or with listed factors at none of them; a curve
-        of a single frequency, where the overlap gives the shifts; neighbouring curves that do not overlap; shift
-        factors of another number than the curves, not > 0, or larger at the highest temperature than at the lowest,
-        also those that the overlap determines.
+        of a single frequency, where the overlap gives the shifts; neighbouring curves that do not overlap, or whose
+        best shift is the last that leaves an overlap; shift factors of another number than the curves, not > 0, or
+        larger at the highest temperature than at the lowest, also those that the overlap determines.
 
     Warns
     -----
     ModelWarning
-        Curves so flat that their overlap leaves more than a decade for the shift; temperatures that look like kelvin.
+        Curves so flat that their overlap leaves more than a decade for the shift; E' and E'' that overlap best at
+        different shifts; a factor that rises with temperature; temperatures that look like kelvin.
     """
     point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
     whole = [check_array(name, column, above=0.0) for name, column in zip(Curve._fields, columns, strict=True)]
@@ -121,16 +128,28 @@ def master_curve(
         parts = (Curve(*(column[sets.of_point == n] for column in whole)) for n in range(temperatures.size))
         curves = (thinned(data_of(Curve, *part, fewest=2)) for part in parts)
         logs, mismatch, freedom = _shifts_by_overlap([_LogCurve(curve, on) for curve in curves], temperatures)
-        factor = np.exp(logs - np.interp(base, temperatures, logs))
-    shifts = Shifts(temperatures, factor, base, mismatch, freedom, np.unique(point_temperatures).size)
+        found = ShiftFactors(temperature=tuple(temperatures.tolist()), a_T=tuple(np.exp(logs).tolist()), T0=base)
+        factor = np.exp(logs) / found(base)
+    shifts = Shifts(
+        temperature=tuple(temperatures.tolist()), a_T=tuple(factor.tolist()), T0=base, mismatch=mismatch,
+        freedom=freedom, distinct=np.unique(point_temperatures).size,
+    )  # fmt: skip
     open_shifts = undetermined_shifts(shifts)
+    rises = [
+        f"from {cold:g} to {warm:g} C (by a factor of {ratio:.3g})"
+        for cold, warm, ratio in zip(temperatures, temperatures[1:], factor[1:] / factor[:-1])
+        if ratio > 1.0
+    ]
     if factor[-1] > factor[0] and not open_shifts:
         ends = f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at {temperatures[-1]:g} C"
         allowed = (
             "shift factors a_T (time divided by time at the reference), which decrease with "
-            "temperature, in the order of the curves"
+            f"temperature, in the order of the curves; a_T rises {', '.join(rises)}"
         )
         raise ParameterError("shift" if shift is not None else "shift by the overlap", ends, allowed)
+    if rises:
+        text = f"a_T rises with temperature {'; '.join(rises)}: check these curves, or give shift="
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
     if open_shifts:
         text = (
             f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the curves are flat: give shift="
@@ -163,14 +182,28 @@ def _shifts_by_overlap(curves: list[_LogCurve], temperatures: Floats) -> tuple[F
     Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; root mean square difference of the
     logarithms of the moduli of each pair of neighbours, (curves - 1,); decades by which the shift of each pair may
     vary, (curves - 1,)); of a single curve the last two are empty.
-    Raises ParameterError for neighbours that do not overlap, or differ by more than 0.3 in ln E' and ln E''.
+    Raises ParameterError for neighbours that do not overlap, differ by more than 0.3 in ln E' and ln E'', or agree best
+    at the end of the search where the curves are not flat.  Warns with ModelWarning of neighbours whose moduli disagree
+    on the shift.
     """
     found = [_align(*pair) for pair in pairwise(curves)]
     for alignment, pair in zip(found, pairwise(temperatures), strict=True):
+        name = "moduli at {:g} and {:g} °C".format(*pair)
         if not alignment.mismatch <= _LARGEST_MISMATCH:
-            name = "moduli at {:g} and {:g} °C".format(*pair)
             raise described_error(name, "do not agree after any shift", "curves that overlap with their neighbours")
-    steps, mismatch, freedom = np.reshape(found, (-1, 3)).T
+        if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
+            problem = f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve"
+            allowed = "curves that overlap more: measure between these temperatures, or give shift="
+            raise described_error(name, problem, allowed)
+    torn = [
+        f"from {cold:g} to {warm:g} C"
+        for alignment, (cold, warm) in zip(found, pairwise(temperatures), strict=True)
+        if alignment.disagree
+    ]
+    if torn:
+        text = f"E' and E'' overlap best at different shifts {', '.join(torn)}; the one that overlaps better decides"
+        warnings.warn(text + ': compare with on="storage"', ModelWarning, stacklevel=caller_level())
+    steps, mismatch, freedom, *_ = np.reshape(found, (-1, len(_Alignment._fields))).T
     return np.append(0.0, np.cumsum(steps)), mismatch, freedom
 
 
@@ -204,62 +237,84 @@ class _LogCurve:
 
 
 class _Alignment(NamedTuple):
-    """The shift that lays the warm curve on the cold one; all three are NaN where no shift leaves an overlap.
+    """The shift that lays the warm curve on the cold one; the numbers are NaN where no shift leaves an overlap.
 
     step : what is added to ln omega of the warm curve, signed; a factor a_T below 1 gives a step below 0.
     mismatch : root mean square difference of ln E' (and of ln E'', if it is kept) after the shift, dimensionless.
-    freedom : decades over which the shift may be moved before the mismatch rises by :data:`_EQUALLY_GOOD`.
+    freedom : decades over which the shift may be moved before the mismatch of a modulus rises by
+        :data:`_EQUALLY_GOOD`.
+    at_end : whether the shift is the first or last that leaves an overlap.
+    disagree : whether one modulus by itself overlaps much better at another shift.
     """
 
     step: float
     mismatch: float
     freedom: float
+    at_end: bool
+    disagree: bool
 
 
 def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
     """Find the shift of a pair of curves: by a search in steps over all shifts that leave an overlap, then by Brent's
     method.
 
+    The product of the mismatches of E' and E'' is least at the shift: that is the most likely one where both have
+    normal errors of unknown size, so that each counts by how well it overlaps there, and a part of E'' that does not
+    shift leaves the shift to E'.  Mismatches below :data:`_FLOOR` count as equal.
+
     cold, warm : :class:`_LogCurve`, curve of the lower and of the higher temperature.
-    Returns the :class:`_Alignment`, of three NaN where no shift leaves enough overlap (:func:`_mismatch`).  Of equal
+    Returns the :class:`_Alignment`, of NaN where no shift leaves enough overlap (:func:`_mismatch`).  Of equal
     mismatches in the search the most negative shift is refined.  ``freedom`` is measured in the steps of the search, at
-    most 0.05 in ln omega, between the nearest steps on either side whose mismatch is more than 0.01 above the least, or
-    the ends of the search.
+    most 0.05 in ln omega, between the nearest steps on either side at which the mismatch of a modulus is more than 0.01
+    above that at the best one, or the ends of the search.
     """
     from scipy.optimize import minimize_scalar
 
+    def cost(squares: Floats) -> Floats:
+        """Return the logarithm of the product of mismatches, from mean squares of the moduli, (..., moduli)."""
+        return np.log(squares + _FLOOR**2).sum(axis=-1)
+
     low, high = cold.x[0] - warm.x[-1], cold.x[-1] - warm.x[0]
     steps = np.linspace(low, high, 2 + int((high - low) / _STEP))
-    errors = np.array([_mismatch(step, cold, warm) for step in steps])
-    best = int(np.argmin(errors))
-    if errors[best] >= _NONE:
-        return _Alignment(math.nan, math.nan, math.nan)
+    squares = np.array([_mismatch(step, cold, warm) for step in steps])
+    inside = ~np.isnan(squares[:, 0])
+    steps, squares = steps[inside], squares[inside]
+    if not steps.size:
+        return _Alignment(math.nan, math.nan, math.nan, False, False)
+    best = int(np.argmin(cost(squares)))
     around = steps[max(best - 1, 0)], steps[min(best + 1, steps.size - 1)]
-    done = minimize_scalar(_mismatch, bounds=around, args=(cold, warm), method="bounded", options={"xatol": 1e-9})
-    error, step = min((done.fun, done.x), (errors[best], steps[best]))
-    worse = np.flatnonzero(np.sqrt(errors) > math.sqrt(error) + _EQUALLY_GOOD)
+    step = minimize_scalar(
+        lambda step: cost(_mismatch(step, cold, warm)), bounds=around, method="bounded", options={"xatol": 1e-9}
+    ).x
+    if not cost(found := _mismatch(step, cold, warm)) < cost(squares[best]):
+        step, found = steps[best], squares[best]
+    rms, least = np.sqrt(squares), np.sqrt(found)
+    worse = np.flatnonzero((rms > least + _EQUALLY_GOOD).any(axis=1))
     before, behind = worse[worse < best], worse[worse > best]
     ends = before[-1] if before.size else 0, behind[0] if behind.size else steps.size - 1
-    return _Alignment(float(step), math.sqrt(error), (steps[ends[1]] - steps[ends[0]]) / math.log(10.0))
+    own = rms.min(axis=0)
+    return _Alignment(
+        float(step), math.sqrt(np.mean(found)), (steps[ends[1]] - steps[ends[0]]) / math.log(10.0),
+        best in (0, steps.size - 1), bool((least > np.maximum(_DISAGREES * own, own + _EQUALLY_GOOD)).any()),
+    )  # fmt: skip
 
 
-def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> float:
+def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> Floats:
     """Return the mean square difference of two curves where they overlap, each at its points against the other's
     interpolant.
 
     step : what is added to ln omega of the warm curve, signed.
     cold, warm : :class:`_LogCurve`, curve of the lower and of the higher temperature, both with the same moduli.
-    Returns the mean of the squared differences of ln E' (and of ln E'', if it is kept), dimensionless; :data:`_NONE`,
-    1e6, where they overlap by less than 15 % of the shorter range in ln omega, or with fewer than three points of both
+    Returns the mean of the squared differences of ln E' (and of ln E'', if it is kept), dimensionless, (moduli,); NaN
+    where they overlap by less than 15 % of the shorter range in ln omega, or with fewer than three points of both
     together.
     """
     low, high = max(cold.x[0], warm.x[0] + step), min(cold.x[-1], warm.x[-1] + step)
-    if high - low < _OVERLAP * min(cold.x[-1] - cold.x[0], warm.x[-1] - warm.x[0]):
-        return _NONE
     of_warm, of_cold = (warm.x + step >= low) & (warm.x + step <= high), (cold.x >= low) & (cold.x <= high)
-    if of_warm.sum() + of_cold.sum() < _POINTS:
-        return _NONE
+    short = high - low < _OVERLAP * min(cold.x[-1] - cold.x[0], warm.x[-1] - warm.x[0])
+    if short or of_warm.sum() + of_cold.sum() < _POINTS:
+        return np.full(cold.y.shape[1], math.nan)
     at_warm = warm.y[of_warm] - cold.interpolate(warm.x[of_warm] + step)
     at_cold = cold.y[of_cold] - warm.interpolate(cold.x[of_cold] - step)
     difference = np.concatenate([at_warm, at_cold])
-    return float(np.mean(difference * difference))
+    return np.mean(difference * difference, axis=0)

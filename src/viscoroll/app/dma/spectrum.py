@@ -93,6 +93,63 @@ def misfits(data: Data, spectrum: Spectrum) -> tuple[float, ...]:
     return tuple(np.sqrt(np.mean(errors * errors, axis=1)).tolist())
 
 
+class LeastSquares:
+    """Least squares of the relative errors of data by non-negative strengths on fixed times.
+
+    The unknowns are the excess of the long-time modulus over the least one that is allowed, :data:`FLOOR` of the lowest
+    storage or relaxation modulus, and the strengths, each times the norm of its column: (1 + modes,), dimensionless.
+
+    tau : times of the modes, s, (modes,), in the order given.
+    floor : least long-time modulus, in the unit of the data.
+    size : norm of the column of each unknown, in the inverse of that unit, (1 + modes,).
+    left, right : matrix, (residuals, 1 + modes), and right-hand side, (residuals,), dimensionless.
+    """
+
+    def __init__(self, data: Data, tau: Floats) -> None:
+        """Compute the matrix for ``data``, a :class:`Curve` or a :class:`Relaxation`, and times ``tau`` > 0, s."""
+        columns = _relative_columns(data, 1.0, data.responses(tau))
+        self.data, self.tau, self.floor = data, tau, _least_modulus(data)
+        self.size = np.sqrt((columns * columns).sum(axis=0))
+        self.left, self.right = columns / self.size, 1.0 - self.floor * columns[:, 0]
+
+    def solve(self, row: Floats | None = None, value: float = 0.0) -> Floats:
+        """Return the unknowns, (1 + modes,), with the least sum of squares, of all rows and perhaps one more.
+
+        row, value : coefficients, (1 + modes,), and right-hand side of a further residual; None: there is none.
+        Raises RuntimeError, from SciPy, where the iteration does not end in 100 (1 + modes) steps.
+        """
+        from scipy.optimize import nnls
+
+        left, right = self.left, self.right
+        if row is not None:
+            left, right = np.vstack([left, row]), np.append(right, value)
+        found: Floats = nnls(left, right, maxiter=100 * self.size.size)[0]
+        return found
+
+    def cost(self, unknowns: Floats) -> float:
+        """Return the sum of the squared residuals, dimensionless, without that of a further row."""
+        errors = self.left @ unknowns - self.right
+        return float(errors @ errors)
+
+    def sum_of_squares(self, spectrum: Spectrum) -> float:
+        """Return the sum of the squared residuals of any :class:`Spectrum`, dimensionless."""
+        errors = spectrum.modulus(self.data) / np.array(self.data[1:]) - 1.0
+        return float((errors * errors).sum())
+
+    def spectrum(self, unknowns: Floats, most: int) -> Spectrum:
+        """Return the :class:`Spectrum` of unknowns, (1 + modes,): of its modes those with a strength, times descending.
+
+        most : largest number of modes; the weakest ones beyond are left out.
+        """
+        order = np.argsort(-self.tau, kind="stable")
+        part = unknowns[1:][order]
+        order = order[
+            (part > _NOTHING * np.sqrt(self.tau.size)) & (part >= np.sort(part)[::-1][:most].min(initial=0.0))
+        ]
+        found = unknowns / self.size
+        return Spectrum(self.floor + float(found[0]), found[1:][order], self.tau[order])
+
+
 def on_times(data: Data, tau: Floats) -> Spectrum:
     """Solve the least squares with non-negative strengths on fixed times; modes without strength are left out.
 
@@ -103,15 +160,8 @@ def on_times(data: Data, tau: Floats) -> Spectrum:
     ``tau``, down to 0.
     Raises RuntimeError, from SciPy, where the non-negative least squares do not end in 100 (1 + modes) iterations.
     """
-    from scipy.optimize import nnls
-
-    columns, floor = _relative_columns(data, 1.0, data.responses(tau)), _least_modulus(data)
-    size = np.sqrt((columns * columns).sum(axis=0))
-    found, _ = nnls(columns / size, 1.0 - floor * columns[:, 0], maxiter=100 * size.size)
-    order = np.argsort(-tau, kind="stable")
-    order = order[found[1:][order] > _NOTHING * np.sqrt(tau.size)]
-    found = found / size
-    return Spectrum(floor + float(found[0]), found[1:][order], tau[order])
+    problem = LeastSquares(data, tau)
+    return problem.spectrum(problem.solve(), tau.size)
 
 
 def has_plateau(data: Data, E: float) -> bool:

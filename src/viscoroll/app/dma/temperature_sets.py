@@ -11,11 +11,12 @@ from ...core.array_types import Floats, Integers
 from ...core.checks import check_array
 from ...core.errors import ParameterError, described_error, shape_error
 from ...core.quantities import to_unit
+from ...materials.shift import NEAR
 from .curve import UNITS, Curve
 from .dynamic_moduli import SAME_TEMPERATURE
 
 #: K; least distance of the temperatures of two sets: sweeps are made 5 or 10 K apart
-LEAST_DISTANCE = 0.5
+LEAST_DISTANCE = NEAR
 #: distance from 1 up to which a factor counts as 1: rounding of factors in files
 _ONE = 1e-9
 

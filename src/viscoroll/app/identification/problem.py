@@ -85,6 +85,14 @@ class Noise(NamedTuple):
     allowed: float
     is_noise: bool
 
+    @property
+    def repeats(self) -> float:
+        """Points that count as one, by the lag-1 correlation of an autoregressive noise: (1 + lag)/(1 - lag).
+
+        It is 1 where lag rms^2 is at most ``allowed``.
+        """
+        return (1.0 + self.lag) / (1.0 - self.lag) if self.lag * self.rms**2 > self.allowed else 1.0
+
 
 class Minimum(NamedTuple):
     """A minimum of chi2: coordinates u of the unknowns, shape (unknowns,), and chi2 there, dimensionless."""

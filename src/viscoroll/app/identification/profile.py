@@ -101,7 +101,8 @@ class Likelihood:
 
     problem : :class:`.problem.Problem`, the least squares.
     best : :class:`.problem.Minimum`, the best minimum.
-    cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns).
+    cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns, unknowns); where
+        residuals are autocorrelated that of the effective number of points.
     sd : standard deviations of the coordinates, shape (unknowns,); of an unknown that does not act nearly that of a
         uniform distribution over its range.
     correlations : correlations of the coordinates, shape (unknowns, unknowns), 1 on the diagonal.
@@ -119,14 +120,19 @@ class Likelihood:
 
         To the inverse covariance of the data, J^T J of the weighted slopes, the inverse variance 12/(high - low)^2 of a
         uniform distribution over the range of each coordinate is added: it bounds the standard deviation of what the
-        data leave open.
+        data leave open.  Where the residuals of a column are autocorrelated, :attr:`.problem.Noise.repeats` of its
+        points count as one: ``cov`` is then that of the same estimate with so much larger variances.
 
         problem : :class:`Problem`, the least squares.
         found : list of :class:`Minimum`, the best first, at least one.
         """
         self.problem, self.best, (u, _) = problem, found[0], found[0]
-        J = problem.weighted(u)[1]
-        self.cov = np.linalg.inv(J.T @ J + np.diag(12.0 / (problem.high - problem.low) ** 2))
+        J, noise, repeats = problem.weighted(u)[1], problem.noise(u), np.ones(problem.points)
+        for column in problem.columns:
+            repeats[column.at] = noise[str(column)].repeats
+        within = np.diag(12.0 / (problem.high - problem.low) ** 2)
+        self._cov = np.linalg.inv(J.T @ J + within)
+        self.cov = self._cov @ ((J.T * repeats) @ J + within) @ self._cov
         self.sd = np.sqrt(np.diag(self.cov))
         self.correlations = self.cov / np.outer(self.sd, self.sd)
         self.others = [v for v in (*(minimum.u for minimum in found[1:]), problem.start) if np.abs(v - u).max() > _SAME]
@@ -148,10 +154,12 @@ class Likelihood:
 
         powers : powers of the coordinates, shape (unknowns,), at least one of them not 0; those of unknowns that do not
             act are 0.
-        delta_chi2 : the bound: chi2 at an end of the interval minus chi2 of the best minimum, dimensionless, > 0.
+        delta_chi2 : the bound: chi2 at an end of the interval minus chi2 of the best minimum, dimensionless, > 0; where
+            residuals are autocorrelated it is multiplied by the rise of the variance of the combination.
         Returns the :class:`Profile`.
         """
-        return self._profiles(delta_chi2, *powers.tolist())
+        rise = float((powers @ self.cov @ powers) / (powers @ self._cov @ powers))
+        return self._profiles(delta_chi2 * rise, *powers.tolist())
 
     def axes(self, delta_chi2: float) -> dict[int, Profile]:
         """Return the profile of each active unknown by itself.

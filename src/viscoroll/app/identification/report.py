@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 
 #: points of full slip in a motion below which the report says that mu rests on few
 _FEW = 5
+#: what residuals that are no noise may mean
+_INADEQUATE = "the model is inadequate, and the intervals are meaningless"
 #: correlation from which on the report names it
 _CLOSE = 0.9
 #: where a product by slopes holds
@@ -74,19 +76,24 @@ def _heading(fit: Any) -> str:
 def _noise(fit: Any) -> Iterator[str]:
     """Yield a sentence for each quantity of a record whose residuals are no noise, as ``fit.misfit`` names them.
 
-    A sentence has the lag-1 correlation, its limit, and the rms of the residuals in units of sigma, of a robust fit as
-    found by their median; none is yielded where all are noise.
+    A sentence has the rms of the residuals in units of sigma, of a robust fit as found by their median, and where they
+    are autocorrelated the lag-1 correlation, its limit and the effective number of points; none is yielded where all
+    are noise.
 
     fit : a :class:`viscoroll.app.identification.Identification`, of which misfit, noise and ``_problem.robust`` are
         read.
     """
     for name in fit.misfit:
-        rms, lag, allowed, _ = fit.noise[name]
-        size = f"{rms:.2f} sigma" + " by their median" * fit._problem.robust
+        rms, lag, allowed, _ = noise = fit.noise[name]
+        size = f"rms {rms:.2f} sigma" + " by their median" * fit._problem.robust
+        if noise.repeats == 1.0:
+            yield f"the residuals of {name} are larger than noise ({size}): sigma is too small, or {_INADEQUATE}"
+            continue
+        points = 9.0 / allowed**2
         yield (
-            f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most {allowed:.2f} "
-            f"for noise; rms {size}): "
-            "the model is inadequate, and the intervals are meaningless"
+            f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most {allowed:.2f} for noise; "
+            f"{size}): {points / noise.repeats:.0f} of {points:.0f} points count, and intervals are widened by that; or "
+            f"{_INADEQUATE}"
         )
 
 

@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ...core.array_types import Floats
 from ...core.results import SummaryRow, as_html, as_text
 from ...materials.law.evaluate import evaluate_by_modes
 from ...materials.measured import HIGHEST_RATE, Measured
@@ -198,18 +199,17 @@ def transit_frequency(V: Any, length: Any) -> Any:
     return np.abs(V) / length
 
 
-def transit_speeds(series: Prony, low: float, high: float) -> tuple[float, float]:
-    """Return kappa V at which the transit frequency has two given values, for half-spaces.
+def transit_speeds(series: Prony, rates: Floats) -> Floats:
+    """Return kappa V at which the transit frequency has given values, for half-spaces.
 
     It follows from the transit time 2 zeta by Eq. (6) of the paper, without a root.
     series: :class:`Prony` series of the material, of both bodies together; it may be elastic.
-    low, high: the two transit frequencies, in any order, multiplied by T_ref of the series, dimensionless, > 0.
-    Returns (kappa V at ``low``, kappa V at ``high``), dimensionless.
+    rates: transit frequencies, multiplied by T_ref of the series, dimensionless, > 0, (n,).
+    Returns kappa V at them, dimensionless, (n,).
     """
-    rates = np.array([low, high])
     h_over_zeta = evaluate_by_modes(series, 0.5 / rates).values[1]
-    low, high = (rates / np.sqrt(1.0 + 2.0 * h_over_zeta)).tolist()  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
-    return low, high
+    found: Floats = rates / np.sqrt(1.0 + 2.0 * h_over_zeta)  # 1/lam^2 = 1 + 2 h/zeta, Eq. (6)
+    return found
 
 
 def _largest(values: Any) -> float:
@@ -323,8 +323,23 @@ def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Ass
     ends = np.min(frequency, initial=np.inf), HIGHEST_RATE * np.max(frequency, initial=0.0)
     sentence = "the contact needs the moduli from {:.2g} to {:.2g} rad/s".format(*ends)
     holds = np.full(np.shape(frequency), True)[()]
+    error = moment_error(frequency, records)
     for body, data in records.items():
         low, high = data.transit_band
         holds = holds & (low <= frequency) & (frequency <= high) & (data.misfit <= MISFIT_LIMIT)
         sentence += f"; {body} was measured from {data}"
+        sentence += f", above {MISFIT_LIMIT:.0%}: the fit misses its data" * (data.misfit > MISFIT_LIMIT)
+    if (known := error[np.isfinite(error)]).size:
+        sentence += f"; inside that band the data determine M to +-{known.max():.2g} (relative)"
     return Assumption(holds, frequency, sentence)
+
+
+def moment_error(frequency: Any, records: Mapping[str, Measured]) -> Any:
+    """Return the accuracy of M by the data of the bodies: the largest of their :meth:`viscoroll.Measured.moment_error`.
+
+    frequency: transit frequency, 1/s, >= 0, any shape.
+    records: name of a body -> :class:`Measured`, of the bodies that have data.
+    Returns it as +-, relative, in that shape: infinite outside the band of a body, NaN where it is not known of any.
+    """
+    errors = [data.moment_error(frequency) for data in records.values()]
+    return np.fmax.reduce([np.full(np.shape(frequency), np.nan), *errors])

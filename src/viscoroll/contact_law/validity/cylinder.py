@@ -111,7 +111,7 @@ class BodyData:
             (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
             low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
         else:
-            low, high = transit_speeds(series, low, high)
+            low, high = transit_speeds(series, np.array([low, high])).tolist()
         return low / self.T_ref, high / self.T_ref
 
     @cached_property

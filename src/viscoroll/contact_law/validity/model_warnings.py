@@ -25,8 +25,8 @@ from ...materials.cover import Cover
 from ...materials.measured import Measured
 from ...materials.prony import Prony
 from ..parameters import PARAMETERS, Parameters, Roller
-from .assumptions import LEAST_KAPPA, NOT_SMALL, WAVE_LIMIT, assess_measured_band, transit_frequency
-from .cylinder import NO_SPEEDS, BodyData, extent_of, is_outside
+from .assumptions import LEAST_KAPPA, MISFIT_LIMIT, NOT_SMALL, WAVE_LIMIT, assess_measured_band, transit_frequency
+from .cylinder import BodyData, extent_of, is_outside
 from .free_rolling import FreeRolling
 from .free_rolling_curve import curve_of
 from .steadiness import STEADY_LIMIT
@@ -116,7 +116,7 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
     """Warn of transit frequencies outside the measured band, once for each material in a process; workers do not warn.
 
     The warning may still be left out: each speed is compared with the band of its own cylinder, while the caller
-    compares the extremes of all of them.  A fit that misses its data gives it at every speed.
+    compares the extremes of all of them.  A fit that misses its data gives it at every speed, with that cause.
     data: data of the bodies of a cylinder, of which at least one was measured.
     V: speeds, m/s, any sign; a number, or (n, ...) where ``data`` has n cylinders.
     With a warning the measurements of the bodies are entered into :data:`_warned_records`.
@@ -128,15 +128,21 @@ def _warn_of_band(data: BodyData, V: Any) -> None:
     # The extreme speeds and the extreme l0 may belong to different cylinders.
     l0 = np.reshape(data.l0, np.shape(data.l0) + (1,) * (np.ndim(V) - np.ndim(data.l0)))
     rates = extent_of(np.abs(V) / l0)
-    if data.measured_speeds != NO_SPEEDS and not is_outside(rates, data.measured_rates):
-        return
-    _warned_records.update(records)
-    ends = np.array(rates)
-    sentence = assess_measured_band(transit_frequency(ends, data.relative_length(ends)), data.records).sentence
-    _warn(
-        f"M and the contact length are extrapolated beyond the measurements: {sentence}; validity(V).measured reports "
-        "which speeds are inside"
-    )
+    causes = [
+        f"the fit of {body} misses its data by more than {MISFIT_LIMIT:.0%}, so M is uncertain at every speed: {record}"
+        for body, record in data.records.items()
+        if record.misfit > MISFIT_LIMIT
+    ]
+    if is_outside(rates, data.measured_rates):
+        ends = np.array(rates)
+        sentence = assess_measured_band(transit_frequency(ends, data.relative_length(ends)), data.records).sentence
+        causes.append(
+            f"M and the contact length are extrapolated beyond the measurements: {sentence}; validity(V).measured "
+            "reports which speeds are inside"
+        )
+    if causes:
+        _warned_records.update(records)
+        _warn("; ".join(causes))
 
 
 def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from collections.abc import Collection
 from os import PathLike
 
 from ...core.array_types import Floats
-from ...core.errors import FileError
+from ...core.errors import FileError, ModelWarning, caller_level
 from ...core.sections import suggestion
 from .headings import NO_UNIT, conversion, readings
 from .table import Table, read_table
@@ -86,7 +87,8 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     name : name of the column, with its unit or without.
     wanted : unit of the result in pint's spelling, "1" of a ratio.
     unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the heading or of the
-        row of units.  Where none is given, or it is a sign as "-" or "1", the numbers are taken to be in ``wanted``.
+        row of units.  Where none is given, or it is a sign as "-" or "1", the numbers are taken to be in ``wanted``,
+        with a warning unless that is "1" or "" itself.
 
     Returns
     -------
@@ -100,6 +102,11 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
         marks that may be separators of thousands (:meth:`Table.numbers`).
     ParameterError
         A unit that is unknown or of another dimension.
+
+    Warns
+    -----
+    ModelWarning
+        A column without a unit, whose numbers are taken to be in ``wanted``.
     """
     index = find_column(table, name)
     if index is None:
@@ -109,6 +116,11 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     found = readings(table.headings[index], table.units[index])
     named = [each for each in found if each.name == name]
     unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
+    if unit in NO_UNIT and wanted not in ("", "1"):
+        heading = table.headings[index]
+        advice = f"write its unit in the heading, as in '{heading} [{wanted}]'"
+        text = f"{table.path}: column {heading!r} has no unit, and is taken in {wanted}: {advice}"
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
     factor, offset = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
     values = table.numbers(index).values
     base = found[0].log if found else 0.0

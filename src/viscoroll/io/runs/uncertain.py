@@ -16,7 +16,7 @@ from ...core.scale import si_unit
 from ...core.sections import check_keys, section_error, suggestion
 from ...materials.material_toml import SECTIONS
 from ..config import SCHEMA
-from ..measurements import column_in_unit, named_table
+from ..measurements import NO_UNIT, column_in_unit, conversion, named_table
 from .inputs import Distribution, Input, Inputs
 
 #: Section -> first letters of the names of its inputs; those of the other sections have none.
@@ -182,7 +182,8 @@ class _Reader:
 
         In SI units the numbers of a CSV are converted to the unit of the key.  Strengths and times of a series and
         corners of a load, which stand in tables within a section, must be dimensionless there, as must all columns
-        where the run is not in SI units.  Numbers of a .nc or .parquet are taken as they are, in the unit of the key.
+        where the run is not in SI units.  Numbers of a .parquet are taken as they are, in the unit of the key, as are
+        those of a .nc without the attribute ``units``.
         ``joint[FILE][number.name]`` becomes the column, float64, (rows,), with FILE the first spelling of the file.
 
         number: the uncertain number, whose name the column gets in ``joint``.
@@ -219,8 +220,8 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
     path: path of a .csv, .nc (netCDF-4) or .parquet file.
     column: name of the column or variable.
-    unit: unit in pint's spelling, "1" of a ratio, to which the numbers of a CSV are converted if it states another.
-        Other files are not converted, and a unit that they state is not read.
+    unit: unit in pint's spelling, "1" of a ratio, to which the numbers of a CSV, and of a .nc with the attribute
+        ``units``, are converted if it states another.
     Returns float64, (n,), n >= 1, contiguous.
     Raises FileError for a CSV that cannot be read, has no such column or several, or cells in it that are no numbers;
     ParameterError for its unit, if that is unknown or has another dimension; ValueError, OSError or KeyError for other
@@ -238,7 +239,9 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
         import xarray as xr
 
         with xr.open_dataset(path, engine="h5netcdf") as dataset:
-            values = dataset[column].values
+            values, given = dataset[column].values, str(dataset[column].attrs.get("units", ""))
+        factor, offset = (1.0, 0.0) if given in NO_UNIT else conversion(given, unit)
+        values = factor * values + offset
     else:
         raise ValueError("a sample must be .csv, .nc or .parquet")
     if values.ndim != 1 or values.size == 0 or values.dtype.kind not in "iuf" or not np.isfinite(values).all():
