@@ -74,7 +74,7 @@ TREAD = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0, 11.0], [1.0, 1e-3, 1e-7]), 
 HARD = vr.Material(1e6, 0.5, vr.Prony([4.0, 1.0], [1.0, 1e-2]), T_ref=2.0)
 OTHER_GRID = xr.Dataset(
     {
-        "Q": (("V", "delta"), np.tile([-1.0, 0.0, 1.0], (3, 1)), {"units": "kN/m"}),
+        "Q": (("V", "delta"), np.tile([0.0, 0.0, 1.0], (3, 1)), {"units": "kN/m"}),
         "M": ("V", np.ones(3), {"units": "N mm/m"}),
     },
     {"V": ("V", np.arange(1.0, 4.0), {"units": "mm/s"}), "delta": ("delta", [-0.01, 0.0, 0.01], {"units": "1"})},
