@@ -73,7 +73,10 @@ HEAVY, RUBBER = replace(STEEL, density=7850.0), vr.Material(2.3e5, 0.5, SERIES, 
 TREAD = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0, 11.0], [1.0, 1e-3, 1e-7]), 0.3, "rubber", 1100.0)
 HARD = vr.Material(1e6, 0.5, vr.Prony([4.0, 1.0], [1.0, 1e-2]), T_ref=2.0)
 OTHER_GRID = xr.Dataset(
-    {"Q": (("V", "delta"), np.ones((3, 3)), {"units": "kN/m"}), "M": ("V", np.ones(3), {"units": "N mm/m"})},
+    {
+        "Q": (("V", "delta"), np.tile([0.0, 0.0, 1.0], (3, 1)), {"units": "kN/m"}),
+        "M": ("V", np.ones(3), {"units": "N mm/m"}),
+    },
     {"V": ("V", np.arange(1.0, 4.0), {"units": "mm/s"}), "delta": ("delta", [-0.01, 0.0, 0.01], {"units": "1"})},
     {"R": 0.1, "load": 1e3},
 )

@@ -54,7 +54,7 @@ def built(tmp_path_factory):
 class Instance:
     """An instance of an FMU, in model exchange or co-simulation; names in place of references."""
 
-    def __init__(self, path, kind="ModelExchange", **given):
+    def __init__(self, path, kind="ModelExchange", ready=True, **given):
         self.about = fmpy.read_model_description(path)
         self.said = []
         self.references = {v.name: v.valueReference for v in self.about.modelVariables}
@@ -62,10 +62,16 @@ class Instance:
         self.fmu = fmpy.instantiate_fmu(self.folder, self.about, kind, logger=self._note)
         self.two = self.about.fmiVersion == "2.0"
         self.set(**given)
+        if ready:
+            self.begin()
+            self.fmu.exitInitializationMode()
+
+    def begin(self, stop=None):
+        """Enter initialization; an end of the experiment is announced where one is given."""
         if self.two:
-            self.fmu.setupExperiment()
-        self.fmu.enterInitializationMode()
-        self.fmu.exitInitializationMode()
+            self.fmu.setupExperiment(stopTime=stop)
+            return self.fmu.enterInitializationMode()
+        return self.fmu.enterInitializationMode(stopTime=stop)
 
     def _note(self, *said):
         self.said.append(str(said))
@@ -97,8 +103,8 @@ class Instance:
 
 
 @contextmanager
-def opened(path, kind="ModelExchange", **given):
-    one = Instance(path, kind, **given)
+def opened(path, kind="ModelExchange", ready=True, **given):
+    one = Instance(path, kind, ready, **given)
     try:
         yield one
     finally:
@@ -303,8 +309,117 @@ def test_steps_that_are_none_are_refused_in_words(built, version):
         roller.step(0.05 + 1e-12, 0.05)  # times of tools are sums
 
 
+# --- modes ---
+
+#: call -> modes in which version 2 allows it; version 3 allows "get" in every mode
+ALLOWED = {
+    "begin": {"instantiated"},
+    "exitInitializationMode": {"initialization"},
+    "enterEventMode": {"continuous"},
+    "enterContinuousTimeMode": {"event"},
+    "discrete": {"event"},
+    "completedIntegratorStep": {"continuous"},
+    "setTime": {"event", "continuous"},
+    "states": {"continuous"},
+    "step": {"step"},
+    "terminate": {"event", "continuous", "step"},
+    "reset": {"instantiated", "initialization", "event", "continuous", "step", "terminated"},
+    "get": {"initialization", "event", "continuous", "step", "terminated"},
+    "slopes": {"initialization", "event", "continuous", "step", "terminated"},
+    "drive_force": {"instantiated", "initialization", "event", "continuous", "step"},
+    "mu": {"instantiated", "initialization", "event", "step"},
+    "v0": {"instantiated", "initialization"},
+}
+#: mode -> calls that lead to it
+WAYS = {
+    "instantiated": (),
+    "initialization": ("begin",),
+    "event": ("begin", "exitInitializationMode"),
+    "continuous": ("begin", "exitInitializationMode", "enterContinuousTimeMode"),
+    "step": ("begin", "exitInitializationMode"),
+    "terminated": ("begin", "exitInitializationMode", "terminate"),
+}
+
+
+def call_of(one, name):
+    """A call of an instance by its name in ALLOWED; None where FMPy has none for the interface."""
+
+    def change():
+        name_in_c = f"fmi{2 if one.two else 3}{name[0].upper()}{name[1:]}"
+        if status := getattr(one.fmu.dll, name_in_c)(ctypes.c_void_p(one.fmu.component)):
+            raise fmpy.fmi1.FMICallException(name_in_c, status)
+
+    if "Mode" in name:
+        return change
+    steps = type(one.fmu).__name__.endswith("Slave")
+    if name in ("setTime", "states", "discrete", "completedIntegratorStep") if steps else name == "step":
+        return None
+    return {
+        "begin": one.begin,
+        "discrete": getattr(one.fmu, "newDiscreteStates" if one.two else "updateDiscreteStates", None),
+        "setTime": lambda: one.fmu.setTime(0.0),
+        "states": lambda: one.fmu.setContinuousStates(*_pointer(np.array([1.0, 0.0, 0.0]))),
+        "step": lambda: one.step(0.0, 0.1),
+        "get": lambda: one.get("v"),
+        "slopes": lambda: one.slopes(["der_v"], ["v"]),
+        **{given: lambda given=given: one.set(**{given: 0.5}) for given in ("drive_force", "mu", "v0")},
+    }.get(name) or getattr(one.fmu, name)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+@pytest.mark.parametrize(
+    ("kind", "mode"),
+    [("ModelExchange", mode) for mode in WAYS if mode != "step"]
+    + [("CoSimulation", mode) for mode in WAYS if mode not in ("event", "continuous")],
+)
+def test_what_a_mode_allows(built, kind, mode, version):
+    """Every call in every mode: allowed as the standard says, or an error in words that leaves the mode as it was."""
+    with opened(built("alike", "Roller", version), kind, ready=False, v0=1.0) as one:
+        for name, modes in ALLOWED.items():
+            one.fmu.reset()
+            for way in WAYS[mode]:
+                call_of(one, way)()
+            call = call_of(one, name)
+            if mode in modes or (name == "get" and version == 3):
+                call()
+            elif call is not None:
+                with pytest.raises(fmpy.fmi1.FMICallException):
+                    call()
+                assert f"mode is {mode}" in one.said[-1], name
+                if mode != "terminated":
+                    call_of(one, "drive_force")()  # goes on
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_an_announced_end_is_kept(built, version):
+    with opened(built("alike", "Roller", version), "CoSimulation", ready=False, v0=1.0) as one:
+        one.begin(stop=0.3)
+        one.fmu.exitInitializationMode()
+        one.step(0.0, 0.1)
+        one.step(0.1, 0.1 + 1e-12)  # times of tools are sums
+        then = one.get("v", "x")
+        one.refuses("end of the step = 0.4: must be at most stopTime = 0.3", one.step, 0.2, 0.2)
+        assert np.array_equal(one.get("v", "x"), then)
+        one.step(0.2, 0.1)
+
+
+@pytest.mark.parametrize("version", [2, 3])
+def test_a_state_has_its_mode_and_initialization_has_the_speeds_of_the_start(built, version):
+    with opened(built("alike", "Roller", version), "CoSimulation", ready=False, v0=1.0, omega0=4.0) as one:
+        one.begin()
+        assert close(one.get("v", "omega"), [1.0, 4.0], tol.FMU_ROUNDED)
+        one.fmu.exitInitializationMode()
+        state = one.fmu.getFMUState()
+        one.fmu.terminate()
+        one.refuses("doStep: mode is terminated: must be step", one.step, 0.0, 0.1)
+        one.fmu.setFMUState(state)
+        one.step(0.0, 0.1)
+        one.fmu.freeFMUState(state)
+
+
 def test_a_state_that_is_no_number_is_refused_in_words(built):
     with opened(built("alike", "Roller", 2), v0=1.0) as roller:
+        roller.fmu.enterContinuousTimeMode()
         roller.fmu.setContinuousStates(*_pointer(np.array([1.0, np.nan, 0.0])))
         roller.refuses("slip = nan: must be finite", roller.get, "der_v")
 
@@ -314,6 +429,7 @@ def test_slopes_of_the_roller_are_those_of_its_rates(built):
     unknowns = ("der_v", "der_slip", "der_x", "v", "slip", "x", "omega")
     with opened(built("alike", "Roller", 2), v0=1.0, omega0=0.999 / cylinder.R, drive_force=3.0) as roller:
         slopes = roller.slopes(unknowns, knowns)
+        roller.fmu.enterContinuousTimeMode()
         h, start = 1e-6, roller.get("v", "slip", "x")
 
         def around(column, by):

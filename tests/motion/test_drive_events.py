@@ -124,3 +124,32 @@ def test_a_prescribed_V_turns_where_it_leaves_0_the_other_way(values, turns, rto
     V = vr.Schedule(np.arange(len(values)), values)
     m = vr.roll(vr.Scene(11.0, 10.0, 0.05, 1.0, 0.5), None, -2.0, V.times[-1], rtol=rtol, V=V, torque=-0.051)
     assert m.reversals.tolist() == turns
+
+
+@pytest.mark.parametrize("slope", np.linspace(0.002, 0.28, 40))
+def test_a_brake_that_just_holds_a_slope(slope):
+    """Both sides of the equality are rounded, each in its way: equality is rest."""
+    roller = vr.presets.RUBBER_CYLINDER
+    held = roller.roll(0.0, 0.0, [0.5, 1.0], slope=slope, brake=roller.load * np.sin(slope) * roller.R)
+    assert held.status == 0
+    assert not held.V.any()
+    assert (held.regime == 4).all()
+
+
+@pytest.mark.parametrize("share", [0.3, 1.0, 1.7])
+def test_a_force_or_torque_above_the_brake_by_rounding_is_held_and_beyond_it_creeps(share):
+    scene = vr.Scene(material=vr.Prony([2.0, 6.0], [1.0, 0.01]), kappa=10.0, mu=0.3, gamma=0.5)
+    brake = 0.15
+    for ulps in (-1, 0, 1, 2, 100, 1e6):
+        pull = brake * (1.0 + ulps * 2.0**-52)
+        moved = vr.roll(scene, 0.0, 0.0, [1.0], force=share * brake, torque=pull - share * brake, brake=brake)
+        assert moved.status == 0
+        assert moved.V[0] == 0.0 if ulps < 10 else 0.0 < moved.V[0] < 2.0 * ulps * 2.0**-52
+
+
+def test_a_free_start_on_a_cover_at_the_least_speeds():
+    """The equations are linear there, so that V over V0 depends on V0 no more."""
+    layer = vr.Cover(vr.Prony([2.0, 6.0], [1.0, 0.01]), nu=0.5, thickness=0.5, on="base")
+    cover = vr.Scene(material=layer, kappa=10.0, mu=0.3, gamma=0.5)
+    left = [vr.roll(cover, V0, 0.0, [1.0], rtol=1e-10).V[0] / V0 for V0 in (1e-50, 1e-149, 1e-151, 1e-200)]
+    assert close(np.array(left[1:]), left[0], BOUND * 1e-10)

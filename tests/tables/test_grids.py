@@ -235,6 +235,57 @@ def test_a_grid_that_is_refused_leaves_no_file(alphas, tmp_path):
     assert not [*tmp_path.iterdir()]
 
 
+# --- nodes that no contact has ---
+
+FILL = 9.969209968386869e36
+#: field, its nodes, what they become, words of the refusal
+WRONG = [
+    ("Q", np.s_[7, 5], lambda Q: FILL, "Q = 9.969209968386869e+36 at V[7], delta[5]: must be given"),
+    ("Q", np.s_[7, 5], lambda Q: -9999.0, "V[7], delta[5]"),
+    ("Q", np.s_[0, 0], lambda Q: 1e20, "V[0], delta[0]"),
+    ("M", np.s_[20], lambda M: -9999.0, "M = -9999.0 at V[20]"),
+    ("M", np.s_[3], lambda M: -M, "at V[3]: must be >= 0"),
+    ("M", np.s_[3], lambda M: np.nan, "M = nan at V[3]: must be finite"),
+    ("Q", np.s_[:], lambda Q: -Q, "of the sign of delta"),
+    ("Q", np.s_[4], lambda Q: -Q, "V[4], delta[0]: must be of the sign of delta"),
+    ("Q", np.s_[2, 30], lambda Q: 0.0, "V[2], delta[30]: must be at least"),
+    ("Q", np.s_[6, 32], lambda Q: 1.001 * Q, "V[6], delta[32]: must be within +-mu P"),
+]
+
+
+@pytest.mark.parametrize(("field", "nodes", "change", "words"), WRONG)
+def test_a_node_that_no_contact_has_is_refused_with_its_place(field, nodes, change, words, tmp_path):
+    table = built("cylinder")
+    values = table[field].values
+    values[nodes] = change(values[nodes])
+    path = tmp_path / "edited.nc"
+    table.to_netcdf(path, engine="h5netcdf", encoding={key: {"_FillValue": None} for key in table.variables})
+    refused(partial(vr.tables.load, path), words, error=vr.FileError)
+    other = table[["Q", "M"]]
+    other.attrs = {key: table.attrs[key] for key in ("mu", "load", "R")}
+    other.to_netcdf(path, engine="h5netcdf", encoding={key: {"_FillValue": None} for key in other.variables})
+    refused(partial(vr.load_law, path), words, error=vr.FileError)
+
+
+@pytest.mark.parametrize("beta", [1.001, -0.01])
+def test_a_stick_zone_that_no_contact_has_is_refused(beta, tmp_path):
+    table = built("scene")
+    table.beta[3, 4] = beta
+    words = f"beta = {beta} at V[3], delta[4]: must be in [0, 1]"
+    refused(partial(vr.tables.save, table, tmp_path / "b.nc"), words, error=vr.FileError)
+
+
+def test_a_declared_fill_value_is_refused_and_six_digits_are_read(tmp_path):
+    other = built("cylinder")[["Q", "M"]].assign_attrs(mu=0.3, load=1.0, R=0.1)
+    other["Q"] = (other.Q / np.abs(other.Q).max() * 0.3).round(6).assign_attrs(units="N/m")
+    path = tmp_path / "other.nc"
+    other.to_netcdf(path, engine="h5netcdf")
+    assert vr.load_law(path).slips
+    other.Q[1, 2] = np.nan
+    other.to_netcdf(path, engine="h5netcdf", encoding={"Q": {"_FillValue": -7.5}})
+    refused(partial(vr.load_law, path), "Q = nan at V[1], delta[2]", error=vr.FileError)
+
+
 # --- formats of other programs ---
 
 

@@ -29,8 +29,6 @@ from .variables import MODELS, Variable
 
 #: Options of the C compiler.  -ffp-contract=off keeps the bits independent of the machine's fused multiply-add.
 _FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC")
-#: Functions of the standard that change modes only.  These models have one mode, so that they return OK.
-_MODE_CHANGE = re.compile(r"(Enter|Exit)\w*Mode|Terminate|SetDebugLogging|EvaluateDiscreteStates")
 
 
 def build(given: Any, path: str | PathLike[str], model: str = "Roller", version: int = 2) -> None:
@@ -176,8 +174,8 @@ def _write_sources(folder: Path, headers: Path, model: str, version: int, consta
 def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> str:
     """Return the C text of the variables: their references, names, kinds and start values; reference 0 is time.
 
-    A kind is 0 (the variable cannot be set) of time and where ``start`` is None; else 2 (finite numbers above 0)
-    where ``positive`` is True, and 1 (any finite number) where it is False.
+    A kind is 0 (the variable cannot be set) of time and where ``start`` is None; else 1 of an input, 2 of a parameter
+    above 0, which is tunable, and 3 of another parameter, which is fixed.
 
     variables: :class:`.variables.Variable` of the model, in the order of their references, which start with 1; only
         name, start and positive are read.
@@ -186,7 +184,10 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
     of COUNT elements each, in the order of the references, the first for time.
     """
     rows = [("time", 0, 0.0)]
-    rows += [(v.name, 0 if v.start is None else 1 + v.positive, starts.get(v.name, 0.0)) for v in variables]
+    rows += [
+        (v.name, 0 if v.start is None else 1 if v.causality == "input" else 3 - v.positive, starts.get(v.name, 0.0))
+        for v in variables
+    ]
     names, kinds, values = zip(*rows, strict=True)
     quoted = ", ".join(f'"{name}"' for name in names)
     return (
@@ -200,7 +201,7 @@ def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> 
 def _stubs(source: str, header: str, version: int) -> str:
     """Return C definitions of the functions of the standard that fmu.c leaves out, which an FMU must have all the same.
 
-    A change of mode returns OK; a function that gets or sets values returns OK for none and an error for some; every
+    A function that gets or sets values returns OK for none and an error for some; every
     other one returns an error, or NULL where it returns no status; void functions do nothing.
 
     source: text of fmu.c.
@@ -215,7 +216,7 @@ def _stubs(source: str, header: str, version: int) -> str:
             continue
         parameters = " ".join(arguments.replace("Byte[]", "Byte bytes[]").split())
         ok, error, count = f"fmi{version}OK", f"fmi{version}Error", re.search(r"size_t (n\w+)", parameters)
-        status = ok if _MODE_CHANGE.search(name) else f"{count[1]} ? {error} : {ok}" if count else error
+        status = f"{count[1]} ? {error} : {ok}" if count else error
         body = "" if kind == "void" else f" return {status if kind.endswith('Status') else 'NULL'}; "
         lines.append(f"{kind} {name}({parameters}) {{{body}}}\n")
     return "".join(lines)

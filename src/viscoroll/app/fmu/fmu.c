@@ -23,6 +23,13 @@ typedef fmi2CallbackLogger logger;
 #endif
 
 enum { OK = 0, ERROR = 3 }; /* as in both versions */
+/* Modes of an instance, as in both versions; model exchange has the third and the fourth, co-simulation the fifth. */
+enum { INSTANTIATED = 1, INITIALIZATION = 2, EVENT = 4, CONTINUOUS = 8, STEP = 16, TERMINATED = 32 };
+enum { RUNNING = EVENT | CONTINUOUS | STEP, INITIALIZED = INITIALIZATION | RUNNING | TERMINATED };
+/* in which values may be read: of version 3 in every mode */
+enum { GETTING = FMI_VERSION == 3 ? INSTANTIATED | INITIALIZED : INITIALIZED };
+/* kinds of variables: computed, input, parameter above 0 that may change between steps, parameter of the start alone */
+enum { COMPUTED, INPUT, TUNABLE, FIXED };
 #if ROLLER
 enum { STATES = 3, FIRST_STATE = n_v, FIRST_RATE = n_der_v };
 #else
@@ -32,13 +39,17 @@ enum { STATES = 0, FIRST_STATE = 0, FIRST_RATE = 0 };
 typedef struct {
   double x[COUNT], d[4][3]; /* slopes of the rates, or of force, torque and moments */
   double step;              /* trial length of the next step of vr_roll, in T_ref; 0: none yet */
+  double stop;              /* end of the experiment that the tool has announced, in s; infinite for none */
   int exchange, stale;      /* whether the tool integrates; whether x has changed since the last evaluate() */
+  int mode;
   char name[128];
   void *environment;
   logger log;
 } instance;
 
-static void reset(instance *m) { memcpy(m->x, START, sizeof START), m->step = 0.0, m->stale = 1; }
+static void reset(instance *m) {
+  memcpy(m->x, START, sizeof START), m->step = 0.0, m->stale = 1, m->stop = HUGE_VAL, m->mode = INSTANTIATED;
+}
 
 static instance *create(const char *name, const char *token, void *environment, logger log, int exchange) {
   instance *m = strcmp(token, TOKEN) ? NULL : (instance *)calloc(1, sizeof *m);
@@ -49,9 +60,7 @@ static instance *create(const char *name, const char *token, void *environment, 
   return m;
 }
 
-static int refuse(const instance *m, const char *what, double value, const char *allowed) {
-  char text[200];
-  snprintf(text, sizeof text, "%s = %g: must be %s", what, value, allowed);
+static int tell(const instance *m, const char *text) {
 #if FMI_VERSION == 3
   if (m->log) m->log(m->environment, fmi3Error, "logStatusError", text);
 #else
@@ -60,13 +69,38 @@ static int refuse(const instance *m, const char *what, double value, const char 
   return ERROR;
 }
 
+static int refuse(const instance *m, const char *what, double value, const char *allowed) {
+  char text[200];
+  snprintf(text, sizeof text, "%s = %g: must be %s", what, value, allowed);
+  return tell(m, text);
+}
+
+/* OK if the mode is one of the allowed ones, else ERROR, which names both. */
+static int in_mode(const instance *m, int allowed, const char *call) {
+  static const char *const names[] = {"instantiated", "initialization", "event", "continuous-time", "step",
+                                      "terminated"};
+  char text[200];
+  if (m->mode & allowed) return OK;
+  int n = snprintf(text, sizeof text, "%s: mode is", call);
+  for (int k = 0; k < 6; k++)
+    if (m->mode == 1 << k) n += snprintf(text + n, sizeof text - n, " %s: must be", names[k]);
+  for (int k = 0, first = 1; k < 6; k++)
+    if (allowed & 1 << k) n += snprintf(text + n, sizeof text - n, first ? " %s" : " or %s", names[k]), first = 0;
+  return tell(m, text);
+}
+
+/* Change the mode from one of the allowed ones. */
+static int change_mode(instance *m, int allowed, int mode, const char *call) {
+  return in_mode(m, allowed, call) ? ERROR : (m->mode = mode, OK);
+}
+
 /* R/l0, Eq. (4) */
 static double kappa_of(const double *x) { return sqrt(x[n_E_prime] * x[n_R] * x[n_width] / (32.0 * x[n_load])); }
 
 static int in_range(const instance *m) {
   for (int n = 1; n < COUNT; n++) {
     if (KINDS[n] && !isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
-    if (KINDS[n] == 2 && !(m->x[n] > 0.0)) return refuse(m, NAMES[n], m->x[n], "> 0");
+    if (KINDS[n] == TUNABLE && !(m->x[n] > 0.0)) return refuse(m, NAMES[n], m->x[n], "> 0");
   }
   for (int n = FIRST_STATE; n < FIRST_STATE + STATES; n++)
     if (!isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
@@ -186,22 +220,30 @@ static int advance(instance *m, double h) { return ERROR; } /* not for co-simula
 static double nominal(const instance *m, size_t state) { return 1.0; }
 #endif
 
-static int update(instance *m) {
+static int update(instance *m, const char *call) {
+  if (in_mode(m, GETTING, call)) return ERROR;
+  if (m->stale && m->mode == INITIALIZATION && start(m)) return ERROR; /* the states are those of the start */
   if (m->stale && (in_range(m) || evaluate(m))) return ERROR;
   m->stale = 0;
   return OK;
 }
 
 static int set(instance *m, const unsigned r[], size_t n, const double y[]) {
+  static const int modes[] = {[INPUT] = INSTANTIATED | INITIALIZATION | RUNNING,
+                              [TUNABLE] = INSTANTIATED | INITIALIZATION | EVENT | STEP,
+                              [FIXED] = INSTANTIATED | INITIALIZATION};
   for (size_t i = 0; i < n; i++) {
     if (r[i] >= COUNT || !KINDS[r[i]]) return refuse(m, "value reference", r[i], "that of an input or a parameter");
+    if (in_mode(m, modes[(int)KINDS[r[i]]], NAMES[r[i]])) return ERROR;
+  }
+  for (size_t i = 0; i < n; i++) {
     m->x[r[i]] = y[i], m->stale = 1;
   }
   return OK;
 }
 
 static int get(instance *m, const unsigned r[], size_t n, double y[]) {
-  if (update(m)) return ERROR;
+  if (update(m, "get values")) return ERROR;
   for (size_t i = 0; i < n; i++) {
     if (r[i] >= COUNT) return refuse(m, "value reference", r[i], "that of a variable");
     y[i] = m->x[r[i]];
@@ -212,7 +254,7 @@ static int get(instance *m, const unsigned r[], size_t n, double y[]) {
 /* Product of the derivatives of the unknowns u by the knowns k with a seed; adjoint: of the transpose. */
 static int slopes(instance *m, const unsigned u[], size_t nu, const unsigned k[], size_t nk, const double seed[],
     double s[], int adjoint) {
-  if (update(m)) return ERROR;
+  if (in_mode(m, INITIALIZED, "get derivatives") || update(m, "get derivatives")) return ERROR;
   memset(s, 0, (adjoint ? nk : nu) * sizeof *s);
   for (size_t i = 0; i < nu; i++)
     for (size_t j = 0; j < nk; j++) {
@@ -223,46 +265,70 @@ static int slopes(instance *m, const unsigned u[], size_t nu, const unsigned k[]
   return OK;
 }
 
-static int states(const instance *m, double y[], size_t n) { return memcpy(y, m->x + FIRST_STATE, n * sizeof *y), OK; }
+static int states(instance *m, double y[], size_t n) {
+  if (in_mode(m, INITIALIZED & ~STEP, "get states")) return ERROR;
+  if (m->stale && m->mode == INITIALIZATION && start(m)) return ERROR;
+  return memcpy(y, m->x + FIRST_STATE, n * sizeof *y), OK;
+}
 static int set_states(instance *m, const double y[], size_t n) {
+  if (in_mode(m, CONTINUOUS, "set states")) return ERROR;
   return memcpy(m->x + FIRST_STATE, y, n * sizeof *y), m->stale = 1, OK;
 }
 static int rates(instance *m, double y[], size_t n) {
-  return update(m) ? ERROR : (memcpy(y, m->x + FIRST_RATE, n * sizeof *y), OK);
+  if (in_mode(m, INITIALIZED & ~STEP, "get rates") || update(m, "get rates")) return ERROR;
+  return memcpy(y, m->x + FIRST_RATE, n * sizeof *y), OK;
 }
 static int nominals(const instance *m, double y[], size_t n) {
   for (size_t i = 0; i < n; i++) y[i] = nominal(m, i);
   return OK;
 }
 static int at(instance *m, double t) { return m->x[n_time] = t, OK; }
+/* The experiment begins at t and, where the tool has said so, ends at stop. */
+static int plan(instance *m, double t, int ends, double stop) {
+  if (in_mode(m, INSTANTIATED, "start of the experiment")) return ERROR;
+  if (ends && !(stop >= t)) return refuse(m, "stopTime", stop, "at or after the start");
+  return m->stop = ends ? stop : HUGE_VAL, at(m, t);
+}
+static int set_time(instance *m, double t) { return in_mode(m, EVENT | CONTINUOUS, "set time") ? ERROR : at(m, t); }
+static int leave_initialization(instance *m) {
+  if (in_mode(m, INITIALIZATION, "leave initialization") || start(m)) return ERROR;
+  return m->mode = m->exchange ? EVENT : STEP, OK;
+}
 /* Take a communication step of length h from t.  t must be the end of the last step, to 1e-3 of h and the rounding of
  * the tool's sums. */
 static int step(instance *m, double t, double h) {
   const double now = m->x[n_time], part = 1e-3 * h + 1e-9 * fmax(fabs(t), fabs(now));
   char text[80];
+  if (in_mode(m, STEP, "doStep")) return ERROR;
   if (!(h >= 0.0 && h < HUGE_VAL)) return refuse(m, "communicationStepSize", h, "finite and >= 0");
   snprintf(text, sizeof text, "%g, the end of the last step", now);
   if (!(fabs(t - now) <= part)) return refuse(m, "currentCommunicationPoint", t, text);
+  snprintf(text, sizeof text, "at most stopTime = %g", m->stop);
+  if (t + h > m->stop + part) return refuse(m, "end of the step", t + h, text);
   return advance(m, h) ? ERROR : at(m, t + h);
 }
 
-/* The complete state of an instance: time, parameters, inputs, states and the trial step.  token: of the FMU, so that
+/* The complete state of an instance: time, parameters, inputs, states, the trial step and the mode.  token: of the FMU, so that
  * the state of another FMU is refused. */
 typedef struct {
   char token[64];
   double x[COUNT], step;
+  int mode;
 } snapshot;
 
 static int save(instance *m, void **state) {
   snapshot *s = *state ? (snapshot *)*state : (snapshot *)calloc(1, sizeof *s);
   if (!s) return refuse(m, "memory for a state, in bytes", sizeof *s, "there");
   snprintf(s->token, sizeof s->token, "%s", TOKEN);
-  memcpy(s->x, m->x, sizeof s->x), s->step = m->step, *state = s;
+  memcpy(s->x, m->x, sizeof s->x), s->step = m->step, s->mode = m->mode, *state = s;
   return OK;
 }
 static int restore(instance *m, const void *state) {
-  if (!state) return refuse(m, "FMU state", 0.0, "one that was taken or deserialized");
-  memcpy(m->x, ((const snapshot *)state)->x, sizeof m->x), m->step = ((const snapshot *)state)->step, m->stale = 1;
+  const snapshot *s = (const snapshot *)state;
+  if (!s) return refuse(m, "FMU state", 0.0, "one that was taken or deserialized");
+  if (s->mode & (m->exchange ? STEP : EVENT | CONTINUOUS))
+    return tell(m, "FMU state: is that of another interface: must be of model exchange or co-simulation as this one");
+  memcpy(m->x, s->x, sizeof m->x), m->step = s->step, m->mode = s->mode, m->stale = 1;
   return OK;
 }
 static int release(void **state) {
@@ -281,7 +347,7 @@ static int deserialize(instance *m, const char bytes[], size_t size, void **stat
   return memcpy(s, bytes, sizeof *s), *state = s, OK;
 }
 
-#include "stubs.h" /* the other functions of the standard: changes of mode, and refusals */
+#include "stubs.h" /* the other functions of the standard, which refuse */
 #if FMI_VERSION == 3
 typedef fmi3ValueReference ref;
 const char *fmi3GetVersion(void) { return "3.0"; }
@@ -295,8 +361,19 @@ fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3
 void fmi3FreeInstance(fmi3Instance c) { free(c); }
 fmi3Status fmi3Reset(fmi3Instance c) { return reset(c), fmi3OK; }
 fmi3Status fmi3EnterInitializationMode(fmi3Instance c, fmi3Boolean has, fmi3Float64 tolerance, fmi3Float64 t0,
-    fmi3Boolean ends, fmi3Float64 t1) { return at(c, t0); }
-fmi3Status fmi3ExitInitializationMode(fmi3Instance c) { return start(c); }
+    fmi3Boolean ends, fmi3Float64 t1) {
+  return plan(c, t0, ends, t1) ? ERROR : change_mode(c, INSTANTIATED, INITIALIZATION, "enter initialization");
+}
+fmi3Status fmi3ExitInitializationMode(fmi3Instance c) { return leave_initialization(c); }
+fmi3Status fmi3EnterEventMode(fmi3Instance c) { return change_mode(c, CONTINUOUS, EVENT, "enter event mode"); }
+fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance c) {
+  return change_mode(c, EVENT, CONTINUOUS, "enter continuous-time mode");
+}
+fmi3Status fmi3Terminate(fmi3Instance c) { return change_mode(c, RUNNING, TERMINATED, "terminate"); }
+fmi3Status fmi3SetDebugLogging(fmi3Instance c, fmi3Boolean on, size_t n, const fmi3String names[]) { return fmi3OK; }
+fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance c) {
+  return in_mode(c, INITIALIZATION | EVENT, "evaluate discrete states");
+}
 fmi3Status fmi3SetFloat64(fmi3Instance c, const ref r[], size_t n, const fmi3Float64 y[], size_t ny) {
   return n == ny ? set(c, r, n, y) : fmi3Error;
 }
@@ -317,13 +394,13 @@ fmi3Status fmi3GetContinuousStates(fmi3Instance c, fmi3Float64 y[], size_t n) { 
 fmi3Status fmi3SetContinuousStates(fmi3Instance c, const fmi3Float64 y[], size_t n) { return set_states(c, y, n); }
 fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance c, fmi3Float64 y[], size_t n) { return rates(c, y, n); }
 fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance c, fmi3Float64 y[], size_t n) { return nominals(c, y, n); }
-fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) { return at(c, t); }
+fmi3Status fmi3SetTime(fmi3Instance c, fmi3Float64 t) { return set_time(c, t); }
 fmi3Status fmi3UpdateDiscreteStates(fmi3Instance c, fmi3Boolean *again, fmi3Boolean *ends, fmi3Boolean *nominals,
     fmi3Boolean *values, fmi3Boolean *timed, fmi3Float64 *t) {
-  return *again = *ends = *nominals = *values = *timed = 0, fmi3OK;
+  return *again = *ends = *nominals = *values = *timed = 0, in_mode(c, EVENT, "update discrete states");
 }
 fmi3Status fmi3CompletedIntegratorStep(fmi3Instance c, fmi3Boolean no_state, fmi3Boolean *event, fmi3Boolean *ends) {
-  return *event = *ends = 0, fmi3OK;
+  return *event = *ends = 0, in_mode(c, CONTINUOUS, "completed integrator step");
 }
 fmi3Status fmi3DoStep(fmi3Instance c, fmi3Float64 t, fmi3Float64 h, fmi3Boolean no_state, fmi3Boolean *event,
     fmi3Boolean *ends, fmi3Boolean *early, fmi3Float64 *last) {
@@ -352,8 +429,17 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String token, 
 void fmi2FreeInstance(fmi2Component c) { free(c); }
 fmi2Status fmi2Reset(fmi2Component c) { return reset(c), fmi2OK; }
 fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has, fmi2Real tolerance, fmi2Real t0, fmi2Boolean ends,
-    fmi2Real t1) { return at(c, t0); }
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return start(c); }
+    fmi2Real t1) { return plan(c, t0, ends, t1); }
+fmi2Status fmi2EnterInitializationMode(fmi2Component c) {
+  return change_mode(c, INSTANTIATED, INITIALIZATION, "enter initialization");
+}
+fmi2Status fmi2ExitInitializationMode(fmi2Component c) { return leave_initialization(c); }
+fmi2Status fmi2EnterEventMode(fmi2Component c) { return change_mode(c, CONTINUOUS, EVENT, "enter event mode"); }
+fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c) {
+  return change_mode(c, EVENT, CONTINUOUS, "enter continuous-time mode");
+}
+fmi2Status fmi2Terminate(fmi2Component c) { return change_mode(c, RUNNING, TERMINATED, "terminate"); }
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String names[]) { return fmi2OK; }
 fmi2Status fmi2SetReal(fmi2Component c, const ref r[], size_t n, const fmi2Real y[]) { return set(c, r, n, y); }
 fmi2Status fmi2GetReal(fmi2Component c, const ref r[], size_t n, fmi2Real y[]) { return get(c, r, n, y); }
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const ref u[], size_t nu, const ref k[], size_t nk,
@@ -362,10 +448,12 @@ fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real y[], size_t n) { re
 fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real y[], size_t n) { return set_states(c, y, n); }
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real y[], size_t n) { return rates(c, y, n); }
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real y[], size_t n) { return nominals(c, y, n); }
-fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) { return at(c, t); }
-fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *e) { return memset(e, 0, sizeof *e), fmi2OK; }
+fmi2Status fmi2SetTime(fmi2Component c, fmi2Real t) { return set_time(c, t); }
+fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *e) {
+  return memset(e, 0, sizeof *e), in_mode(c, EVENT, "new discrete states");
+}
 fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_state, fmi2Boolean *event, fmi2Boolean *ends) {
-  return *event = *ends = 0, fmi2OK;
+  return *event = *ends = 0, in_mode(c, CONTINUOUS, "completed integrator step");
 }
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean no_state) { return step(c, t, h); }
 fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *s) { return save(c, s); }

@@ -17,6 +17,7 @@ import numpy as np
 from ... import __version__
 from ...core.errors import FileError
 from ...core.symbols import PAPER, SYMBOLS, attributes
+from ...materials.law.grid import check_nodes, refuse_filled
 from ...materials.law_file import KINDS as LAW_KINDS
 
 if TYPE_CHECKING:
@@ -113,7 +114,8 @@ def global_attributes(title: str, grid: str, command: str | None) -> dict[str, s
 def check(table: Any, path: Any) -> None:
     """Check kind, version, variables, dimensions, axes and values of a grid; nothing is returned or changed.
 
-    Each axis and field must have float64 values, all finite; each axis at least one, strictly increasing; dimensions
+    Each axis and field must have float64 values, all finite and none a fill value, and fields those of a contact
+    (:func:`.grid.check_nodes`); each axis at least one, strictly increasing; dimensions
     must be axes of the grid, in their order, and units those that :func:`variable` writes.  beta and Q are required, of
     the fields over V (:data:`PLANE`) none, of an atlas all fields; other variables are not examined.
 
@@ -126,6 +128,8 @@ def check(table: Any, path: Any) -> None:
     ------
     FileError
         With ``path`` and the first thing that is wrong.
+    ParameterError
+        A mu, or a load beside it, that is no finite number > 0.
     """
     if not hasattr(table, "attrs"):
         raise FileError(path, f"needs a dataset, not {table!r:.60}: read a file by vr.tables.load")
@@ -150,7 +154,9 @@ def check(table: Any, path: Any) -> None:
         if unit != written:
             allowed = f"{written!r} (a grid in SI units has the attribute load: the force per length, N/m)"
             raise FileError(path, f"variable {name!r} is in {unit!r:.40}: must be in {allowed}")
-        if values.dtype != np.float64 or not np.isfinite(values).all():
-            raise FileError(path, f"variable {name!r} must hold finite 64-bit floats")
+        if values.dtype != np.float64:
+            raise FileError(path, f"variable {name!r} must hold 64-bit floats")
+        refuse_filled(table[name], path)
         if name in axes and (not values.size or (np.diff(values) <= 0.0).any()):
             raise FileError(path, f"coordinate {name!r} must increase strictly")
+    check_nodes(table, path)

@@ -51,8 +51,8 @@ _D_TOLERANCE = 1e-16
 #: The drive is evaluated later by this fraction of the time to the end of its segment, if nothing moves the cylinder at
 #: the start of the segment: its slope then decides.
 _LOOKAHEAD = 1e-6
-#: Rounding error of the holding margin, divided by the largest force that holds the cylinder: some units of rounding,
-#: so that a brake that rises from 0 takes hold.
+#: Rounding error of the forces at rest, divided by the limits of friction and brake: some units of rounding.  A force
+#: that equals its limit to within it is held, and a brake that rises from 0 takes hold.
 _HOLDING_ROUNDING = 4e-15
 #: Number of intervals of a segment in which the holding margin, which consists of polynomials of up to 14 terms, is
 #: searched for a sign change; two sign changes in one interval are not found.
@@ -207,7 +207,9 @@ def solve_d_at_departure(load, spin_sign, scene):
 def holding_margin(load, mu):
     """Return the margin by which friction and brake hold the cylinder at V = omega = 0; below 0 where it moves.
 
-    A traction within +-mu must leave V constant, and omega too, which a brake may help with:
+    Both limits are taken 4e-15 of themselves larger, so that equality holds the cylinder however its terms were
+    rounded, and a cylinder that the margin moves departs.  A traction within +-mu must leave V constant, and omega too,
+    which a brake may help with:
 
     - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force + torque|, which
       counts as 0 up to 1e-75.  Without a brake the margin is at most 0, and 0 only where this modulus counts as 0;
@@ -223,12 +225,14 @@ def holding_margin(load, mu):
     """
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
         return -1.0
+    mu *= 1.0 + _HOLDING_ROUNDING
+    brake = load.brake * (1.0 + _HOLDING_ROUNDING)
     if load.inverse_mass == 0.0:
-        return mu + load.brake - abs(load.torque)
+        return mu + brake - abs(load.torque)
     if load.inverse_inertia == 0.0:
         return mu - abs(load.force)
     force = abs(load.force + load.torque)
-    return min(mu - abs(load.force), load.brake - (force if force > _NEGLIGIBLE_FORCE else 0.0))
+    return min(mu - abs(load.force), brake - (force if force > _NEGLIGIBLE_FORCE else 0.0))
 
 
 @kernel

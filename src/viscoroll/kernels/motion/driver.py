@@ -348,8 +348,8 @@ def integrate_motion(V0, omega0, record):
     output time.
 
     Where something drives or will, two speeds below 1e-75 count as 0; where nothing does, two speeds below 1e-150 are
-    both replaced by (V0 + j omega0)/(1 + j).  V0 counts as 0 up to 1e-150 of |omega0|.  From V = omega = 0 the cylinder
-    stays at rest until the drive moves it.
+    both replaced by those of free rolling with the same V0 + j omega0.  V0 counts as 0 up to 1e-150 of |omega0|.  From
+    V = omega = 0 the cylinder stays at rest until the drive moves it.
 
     V0, omega0: float, initial speeds of either sign, dimensionless.
     record: Workspace, by value; ``nodes`` are 0 on entry, but for the row of ones, and the matrices are 0.  Outputs,

@@ -23,7 +23,7 @@ import numpy as np
 from ..compile.jit import kernel
 from .collocation import row_range
 from .drive import current_load, has_brake, is_undriven, prescribed_speed
-from .law import critical_creepage, excess_slip
+from .law import critical_creepage, excess_slip, rest_limits
 from .records import (
     AT_REST,
     FULL_SLIP,
@@ -276,8 +276,8 @@ def initial_regime(V, omega, step_state, work):
     |V| in modulus, Eq. (9), full slip where it is above.  Where both differ by rounding, up to 2e-14 of the larger
     speed, it is partial slip with d = +-1 if |d| would fall from there, else full slip.  From V = 0 it is full slip.
 
-    If nothing drives and both speeds are below 1e-150, both are first replaced by (V + j omega)/(1 + j), to which
-    sliding brings them at once.
+    If nothing drives and both speeds are below 1e-150, both are first replaced by those of free rolling with the same V
+    + j omega, to which sliding brings them at once.
 
     V, omega: float, initial speeds of either sign, dimensionless.
     step_state: StepState, at the start.
@@ -289,7 +289,9 @@ def initial_regime(V, omega, step_state, work):
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
         # Sliding ends within a time of that order, at constant V + j omega.
-        V = omega = (V + work.scene.j * omega) / (1.0 + work.scene.j)
+        omega_over_V = 1.0 + rest_limits(work.scene)[1]
+        V = (V + work.scene.j * omega) / (1.0 + work.scene.j * omega_over_V)
+        omega = V * omega_over_V
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega
     slip, limit = excess_slip(omega - V, V, work.scene), critical_creepage(V, work.scene) * V

@@ -7,6 +7,8 @@ over the load, M over load times radius, delta = (omega R - V)/V in both.
 from __future__ import annotations
 
 import io
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from os import PathLike
 from typing import TYPE_CHECKING, Any
@@ -27,8 +29,17 @@ if TYPE_CHECKING:
 UNITS = {"V": "m/s", "delta": "1", "Q": "N/m", "M": "N", "M_half_space": "N", "M_cylinder": "N"}
 #: methods to interpolate to an alpha between the nodes, by the number of nodes less 1
 _METHODS = ("nearest", "linear", "quadratic", "cubic")
-#: fraction of the largest |Q| from which on the ends of delta count as full slip: files may have six digits only
-_FULL_SLIP = 1.0 - 1e-5
+#: error of a value relative to the largest of its variable: files may have six digits only
+_ROUNDING = 1e-5
+#: fraction of the largest |Q| by which Q may fall where delta grows: other programs iterate to about this
+_NOISE = 1e-3
+#: what programs write where they have no value: the defaults of netCDF of single and of double precision, and habits
+_FILL_VALUES = np.array([
+    9.969209968386869e36, 1e20, np.float32(1e20), 1e30, 1e35, -1e20, -1e30, -1e34, -1e35,
+    -999.0, -9999.0, -99999.0, -999999.0, 9999.0, 99999.0, 999999.0,
+])  # fmt: skip
+#: field -> lowest and highest value that a contact has
+_BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(("lam", "delta_star", "M", "M_half_space", "M_cylinder"), (0.0, np.inf))
 #: largest file that is read, bytes
 _MOST_BYTES = 1 << 31
 
@@ -110,8 +121,9 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     ------
     FileError
         A file that cannot be read or differs from its seal; a variable that is missing or empty, is not of real
-        numbers, has other dimensions or other units, is not finite or does not increase; an R, mu or load that is no
-        finite number > 0; beside speeds with a unit no R, or a mu without load.
+        numbers, has other dimensions or other units, is not finite or does not increase; a node with a fill value or of
+        no contact (:func:`refuse_filled`, :func:`check_nodes`); an R, mu or load that is no finite number > 0; beside
+        speeds with a unit no R, or a mu without load.
     ParameterError
         An alpha outside the grid, or none for a grid with that axis; an alpha for a grid without it.
     """
@@ -131,18 +143,85 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
         if not (table[name].size and table[name].dtype.kind in "iuf"):
             problem = f"is not a grid of a law: {name} = {describe_value(table[name].values)}"
             raise FileError(path, f"{problem}: must be real numbers, at least one")
-        if (bad := ~np.isfinite(table[name].values)).any():
-            first = np.argwhere(bad)[0]
-            place = ", ".join(f"{dim}[{n}]" for dim, n in zip(table[name].dims, first, strict=True))
-            problem = f"is not a grid of a law: {name} = {table[name].values[tuple(first)]} at {place or name}"
-            raise FileError(path, f"{problem}: must be finite")
+        refuse_filled(table[name], path)
         if name in ("V", "delta") and (table[name].size < 2 or (np.diff(table[name].values) <= 0.0).any()):
             raise FileError(path, f"is not a grid of a law: {name} must increase strictly, over at least two nodes")
+    with _told_of(path):
+        table = _in_si(table)
+        check_nodes(table, path)
     table = _at_alpha(table, path, alpha)
+    with _told_of(path):
+        return _law_of(table)
+
+
+@contextmanager
+def _told_of(path: Any) -> Iterator[None]:
+    """Raise errors of a grid as FileError of its ``path``: of a missing variable, of scipy, of an attribute."""
     try:
-        return _law_of(_in_si(table))
-    except (KeyError, ValueError, TypeError) as error:  # of a variable that is missing, of scipy, of an attribute
+        yield
+    except (KeyError, ValueError, TypeError) as error:
         raise FileError(path, f"is not a grid of a law: {' '.join(str(error).split()):.120}") from error
+
+
+def _refuse_nodes(variable: xr.DataArray, bad: Any, path: Any, allowed: str) -> None:
+    """Raise FileError for the first bad node of a variable, with its value and its place; none if no node is bad.
+
+    variable: variable of a grid.
+    bad: truth values of its shape.
+    path: path of the file, for the message.
+    allowed: words that follow "must be".
+    """
+    if bad.any():
+        first = np.argwhere(bad)[0]
+        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first, strict=True))
+        found = f"{variable.name} = {describe_value(variable.values[tuple(first)].item())} at {place or variable.name}"
+        raise FileError(path, f"is not a grid of a law: {found}: must be {allowed}")
+
+
+def refuse_filled(variable: xr.DataArray, path: Any) -> None:
+    """Raise FileError for a node of a grid that has no value: not finite, or a fill value, declared or customary.
+
+    variable: variable of a grid, of real numbers, in the unit of the file; of an axis, which users choose, customary
+        fill values are numbers as any other.
+    path: path of the file, for the message.
+    """
+    values = variable.values
+    customary = () if variable.name in variable.dims else _FILL_VALUES
+    declared = [np.ravel(variable.attrs.get(name, np.nan)) for name in ("_FillValue", "missing_value")]
+    filled = np.isin(values, np.concatenate([customary, *declared]).astype(values.dtype))
+    _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
+    _refuse_nodes(variable, filled, path, "given: this number stands for a missing value")
+
+
+def check_nodes(table: xr.Dataset, path: Any) -> None:
+    """Raise FileError for a node of a grid whose field no contact has, with its value and place.
+
+    Allowed are |Q| <= mu P, Eq. (15), a Q that does not fall where delta grows and that has the sign of delta (of delta
+    - delta_0 where the grid has delta_0) at both ends of its axis, 0 <= beta <= 1, and values >= 0 of M and its parts,
+    lam and delta_star; all to the digits of a file, 1e-5 of the largest value.  Missing values are not sought:
+    :func:`refuse_filled`.
+
+    table: dataset of a grid, in SI units or dimensionless, whose values are finite.
+    path: path of its file, for messages.
+    Raises ParameterError for a mu or load that is no finite number > 0.
+    """
+    limit = friction_limit(table.attrs)
+    for name, (low, high) in _BOUNDS.items():
+        if name in table.variables:
+            values = table[name].values
+            rounding = _ROUNDING * np.abs(values).max()
+            bad = (values < low - rounding) | (values > high + _ROUNDING)
+            _refuse_nodes(table[name], bad, path, f"in [{low:g}, {high:g}]" if high < np.inf else f">= {low:g}")
+    if "Q" in table.variables:
+        Q = table["Q"].transpose(..., "delta")
+        _refuse_nodes(Q, np.abs(Q.values) > limit * (1.0 + _ROUNDING), path, f"within +-mu P = {limit:.6g}")
+        noise = _NOISE * np.abs(Q.values).max()
+        creep = (table["delta"] - table.get("delta_0", 0.0) + 0.0 * Q).transpose(*Q.dims).values
+        against = Q.values * np.sign(creep) < -noise
+        against[..., 1:-1] = False  # of a layer without delta_0 the sign changes beside delta = 0
+        _refuse_nodes(Q, against, path, "of the sign of delta: a wheel that spins faster than it rolls is driven")
+        falls = np.diff(Q.values, prepend=-np.inf) < -noise
+        _refuse_nodes(Q, falls, path, "at least that at the node of delta before, as Q does not fall with delta")
 
 
 def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
@@ -180,7 +259,8 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
         ``units``; "1" is no unit.
     Returns a dataset with doubles in the units of :data:`UNITS`; if the unit of V is "1" all must be dimensionless, and
     the attributes R and load are 1.
-    Raises ParameterError for a unit that is missing or of another dimension.
+    Raises ParameterError for a unit that is missing or of another dimension, and in SI units for a missing attribute R
+    or, beside mu, load.
     """
     names = [name for name in UNITS if name in table.variables]
     given = {name: str(table[name].attrs.get("units", "missing")) for name in names}
@@ -192,7 +272,12 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
             allowed = "1, since V has no unit" if wanted == "1" else f"a unit of {wanted}, since V has a unit"
             raise ParameterError(f"unit of {name}", unit, allowed) from error
         table = table.assign({name: table[name].astype(np.float64) * by})
-    return table.assign_attrs(R=1.0, load=1.0) if given["V"] == "1" else table
+    if given["V"] == "1":
+        return table.assign_attrs(R=1.0, load=1.0)
+    for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
+        if name not in table.attrs:
+            raise described_error(f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit")
+    return table
 
 
 def _law_of(table: xr.Dataset) -> LawGrid:
@@ -209,9 +294,6 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     """
     V, delta = check_array("V", table["V"].values, above=0.0), table["delta"].values
     axes, splines = {"V": np.log(V), "delta": delta}, {}
-    for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
-        if name not in table.attrs:
-            raise described_error(f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit")
     most = friction_limit(table.attrs)
     for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
         field = table[name] if name in table else 0.5 * table["M"]
@@ -219,7 +301,7 @@ def _law_of(table: xr.Dataset) -> LawGrid:
         splines[name] = pack_spline(found, over, ("V",), (-most, most) if name == "Q" else (-np.inf, np.inf))
     return LawGrid(
         splines, V=(V[0], V[-1]), delta=(delta[0], delta[-1]),
-        slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= _FULL_SLIP * most).all()),
+        slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= (1.0 - _ROUNDING) * most).all()),
         R=check_number("R", table.attrs["R"], above=0.0),
         title=str(table.attrs.get("title", "of another program")),
     )  # fmt: skip
