@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,7 @@ from ..core.scale import SI
 from .importers import FromPrograms, check_poisson
 from .measured import Measured
 from .prony import Prony
-from .shift import check_celsius, check_fields, relative_shift
+from .shift import check_celsius, check_fields, relative_shift, vertical_factor
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -48,15 +48,20 @@ class Material(FromPrograms):
     measured : :class:`Measured` range of frequencies of the data; outside of it functions warn.
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
         Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
+    shift : :class:`WLF`, :class:`Arrhenius`, or a function of the temperature in degrees Celsius that returns a_T; it is
+        the default of :meth:`at`, and what :meth:`Cylinder.temperature` needs.  Default: none.
+    vertical_shift : b_T, by which all moduli are multiplied: "entropic", the absolute temperature, or a function of the
+        temperature in degrees Celsius, dimensionless, > 0.  It needs a ``temperature``.  Default: moduli stay.
 
     Raises
     ------
     ParameterError
-        A value that is not finite or out of range, a rigid body that relaxes, a name with NUL or surrogates.
+        A value that is not finite or out of range, a rigid body that relaxes, a name with NUL or surrogates, a shift
+        that is no function.
 
     Notes
     -----
-    Immutable, hashable, equal where all fields are.
+    Immutable, hashable, equal where all fields but the shifts are.
 
     Examples
     --------
@@ -75,6 +80,8 @@ class Material(FromPrograms):
     thickness: float | None = None
     measured: Measured | None = None
     temperature: float | None = None
+    shift: Callable[[float], float] | None = field(default=None, compare=False)
+    vertical_shift: Callable[[float], float] | Literal["entropic"] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         """Check the fields, and replace numbers by floats in SI units (``temperature`` in degrees Celsius).
@@ -102,6 +109,10 @@ class Material(FromPrograms):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
         if self.temperature is not None:
             object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
+        if self.shift is not None:
+            _refuse_no_shift("shift", self.shift, "a WLF, an Arrhenius or a function of the temperature")
+        if self.vertical_shift not in (None, "entropic"):
+            _refuse_no_shift("vertical_shift", self.vertical_shift, "'entropic' or a function of the temperature")
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
@@ -215,10 +226,10 @@ class Material(FromPrograms):
         """Long-time shear modulus E/(2 (1 + nu)), Pa."""
         return self.E / (2.0 * (1.0 + self.nu))
 
-    def at(self, temperature: float, shift: Callable[[float], float]) -> Material:
+    def at(self, temperature: float, shift: Callable[[float], float] | None = None) -> Material:
         """Return the material at another temperature: T_ref, and with it all times, is multiplied by a_T.
 
-        The measured band moves with it.  The moduli, and all other fields, stay.
+        The measured band moves with it.  E is multiplied by b_T of ``vertical_shift``, or stays; all other fields stay.
 
         Parameters
         ----------
@@ -227,12 +238,12 @@ class Material(FromPrograms):
             a_T, dimensionless, > 0, as a number.  Where the material has a ``temperature``, times are multiplied by
             a_T(temperature)/a_T(its own), so that constants that refer to another temperature (T0 of the glass
             transition, say) are converted; where it has none, it is taken to be at the temperature where the shift is
-            1.
+            1.  Default: the material's own ``shift``.
 
         Returns
         -------
         Material
-            With the new ``temperature``.
+            With the new ``temperature``, and this shift.
 
         Raises
         ------
@@ -253,8 +264,9 @@ class Material(FromPrograms):
         >>> rubber.at(20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=-10.0)) == rubber
         True
         """
-        if not callable(shift) or isinstance(shift, type):
-            raise ParameterError("shift", f"{shift!r:.60}", "a WLF, an Arrhenius or a function of the temperature")
+        shift = self.shift if shift is None else shift
+        _refuse_no_shift("shift", shift, "a WLF, an Arrhenius or a function of the temperature")
+        assert shift is not None
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
             sentence = (
@@ -266,7 +278,9 @@ class Material(FromPrograms):
         temperature = check_celsius("temperature", float(given))
         factor = relative_shift(shift, temperature, self.temperature)
         measured = None if self.measured is None else self.measured.shifted(factor)
-        return replace(self, T_ref=self.T_ref * factor, measured=measured, temperature=temperature)
+        E = self.E * vertical_factor(self.vertical_shift, temperature, self.temperature)
+        T_ref = self.T_ref * factor
+        return replace(self, E=E, T_ref=T_ref, measured=measured, temperature=temperature, shift=shift)
 
     def storage(self, omega: ArrayLike) -> Any:
         """Return the storage modulus E' in tension, which rises from E at omega = 0 to the instantaneous modulus.
@@ -542,6 +556,12 @@ class Material(FromPrograms):
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
+
+
+def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
+    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in words ``allowed``."""
+    if not callable(shift) or isinstance(shift, type):
+        raise ParameterError(name, f"{shift!r:.60}", allowed)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:

@@ -23,6 +23,7 @@ class Measured:
     misfit : root mean square of the relative errors of storage or loss modulus, whichever is larger, dimensionless, >=
         0.
     source : text that names the source of the data.
+    strain : amplitude of engineering strain of the test, dimensionless, > 0 (0.001 is 0.1 %); None: it is not known.
 
     Raises
     ------
@@ -41,6 +42,7 @@ class Measured:
     high: float
     misfit: float
     source: str = ""
+    strain: float | None = None
 
     def __post_init__(self) -> None:
         """Check the fields, and replace the numbers by floats in rad/s; a value with a unit is converted.
@@ -52,6 +54,8 @@ class Measured:
         if self.low > self.high:
             raise ParameterError("high", self.high, f">= low = {self.low:g}")
         check_text("source", self.source)
+        if self.strain is not None:
+            check_fields(self, "1", strain=0.0)
 
     @property
     def transit_band(self) -> tuple[float, float]:
