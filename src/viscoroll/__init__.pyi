@@ -33,6 +33,8 @@ from .core.errors import ParameterError as ParameterError
 from .core.errors import ViscorollError as ViscorollError
 from .core.results import Values as Values
 from .cylinder import Cylinder as Cylinder
+from .heat.temperature import Temperatures as Temperatures
+from .heat.temperature import temperature as temperature
 from .io import runs as runs
 from .io import sampling as sampling
 from .io import tables as tables

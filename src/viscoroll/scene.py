@@ -10,6 +10,7 @@ from .contact_law.parameters import Parameters, Roller
 from .contact_law.stress import stress
 from .contact_law.validity.validity import validity
 from .core.renamed import warn_renamed
+from .heat.temperature import temperature
 from .motion.ensemble import ensemble
 from .motion.roll import roll
 
@@ -27,6 +28,7 @@ class Methods(Roller):
     roll = roll
     ensemble = ensemble
     validity = validity
+    temperature = temperature
 
     def humps(self) -> ResistanceExtrema:
         """Old name of ``resistance_extrema``: gives a DeprecationWarning, and its result.

@@ -93,6 +93,10 @@ class WLF:
         with np.errstate(divide="ignore"):
             return self.T0 - self.C2 + math.log(10.0) * self.C1 * self.C2 / above_least
 
+    def slope(self, temperature: Floats) -> Floats:
+        """Return d ln a_T/d temperature, 1/K, at temperatures in degrees Celsius, any shape."""
+        return -math.log(10.0) * self.C1 * self.C2 / (self.C2 + temperature - self.T0) ** 2
+
 
 @dataclass(frozen=True, kw_only=True)
 class Arrhenius:
@@ -152,6 +156,10 @@ class Arrhenius:
         inverse = np.maximum(log * GAS_CONSTANT / self.energy + 1.0 / (self.T0 - ABSOLUTE_ZERO), 0.0)
         with np.errstate(divide="ignore"):
             return ABSOLUTE_ZERO + 1.0 / inverse
+
+    def slope(self, temperature: Floats) -> Floats:
+        """Return d ln a_T/d temperature, 1/K, at temperatures in degrees Celsius, any shape."""
+        return -self.energy / GAS_CONSTANT / (temperature - ABSOLUTE_ZERO) ** 2
 
 
 def check_celsius(name: str, temperature: Any) -> float:
