@@ -10,7 +10,9 @@ from .contact_law.parameters import Parameters, Roller
 from .contact_law.stress import stress
 from .contact_law.validity.validity import validity
 from .core.renamed import warn_renamed
+from .heat.limits import heat_limit, turning_points
 from .heat.temperature import temperature
+from .heat.warming import warming
 from .motion.ensemble import ensemble
 from .motion.roll import roll
 
@@ -29,6 +31,9 @@ class Methods(Roller):
     ensemble = ensemble
     validity = validity
     temperature = temperature
+    warming = warming
+    heat_limit = heat_limit
+    turning_points = turning_points
 
     def humps(self) -> ResistanceExtrema:
         """Old name of ``resistance_extrema``: gives a DeprecationWarning, and its result.

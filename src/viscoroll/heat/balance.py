@@ -1,13 +1,13 @@
 """The balance of heat of a body that rolls: its parameters, and the zeros of loss less heat given off.
 
 One temperature a body, W per m of length: capacity dtheta/dt = w(V, theta) - conductance (theta - ambient).  By
-time-temperature superposition w(V, theta) = P V C(kappa V a_T)/kappa, with one curve C for all loads and radii.  With x
-= log2(kappa V a_T), in units of the scene, the zeros over temperature are zeros over x of
+time-temperature superposition w(V, theta) = P V C(kappa V a_T)/kappa, with one curve C for all loads and radii.
+With x = log2(kappa V a_T), in units of the scene, the zeros over temperature are zeros over x of
 
     F(x) = power C(x) - conductance (theta(x - x_0) - ambient),     x_0 = log2(kappa V), power = P V/kappa
 
-where theta falls as x rises.  Under given loads the speed follows from the temperature, kappa V a_T is that of the load
-at the reference, and w = w_0/a_T: the same equation with C = 2^-x and x_0 = 0.
+where theta falls as x rises.  Under given loads the speed follows from the temperature, kappa V a_T is that of the
+load at the reference, and w = w_0/a_T: the same equation with C = 2^-x and x_0 = 0.
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class Balance:
         """Return F, dF/dx and the temperatures at x for states by their indices, (m,) each."""
         theta = self.shift.temperature_of(x - self.x_0[n])
         C, slope = self.curve.values(n, x)
-        loss = self.power[n] / self.shift.root_b(theta)
+        loss = self.power[n] if self.shift.exact else self.power[n] / self.shift.root_b(theta)
         F = loss * C - self.conductance[n] * (theta - self.ambient[n])
         return F, loss * slope - self.conductance[n] / self.shift.slope(theta), theta
 
@@ -176,8 +176,8 @@ def zeros_of(balance: Balance) -> Zeros:
 def _brackets(balance: Balance, start: int, stop: int) -> tuple[Integers, Floats, Floats, Booleans]:
     """Find intervals of x in which F of the states ``start`` to ``stop`` - 1 changes its sign.
 
-    Returns (indices of the states; lower and upper ends; whether F > 0 at the upper end, the colder one, so that F falls
-    with temperature), (m,) each.
+    Returns (indices of the states; lower and upper ends; whether F > 0 at the upper end, the colder one, so that F
+    falls with temperature), (m,) each.
     """
     part = slice(start, stop)
     shift = balance.shift
@@ -206,32 +206,32 @@ def _brackets(balance: Balance, start: int, stop: int) -> tuple[Integers, Floats
     n, k = np.nonzero(minimum & np.isfinite(size[:, :-2]) & np.isfinite(size[:, 2:]))
     if not n.size:
         return crossing
-    sign = np.where(positive[n, k + 1], 1.0, -1.0)
-    extremum, crosses = _extremum(balance, start + n, x[k], x[k + 2], sign)
-    n, k, extremum, sign = (each[crosses] for each in (start + n, k, extremum, sign))
-    pairs = (n, x[k], extremum, sign < 0.0), (n, extremum, x[k + 2], sign > 0.0)
+    up = positive[n, k + 1]
+    sign = np.where(up, 1.0, -1.0)
+    extremum, least = minimum_of(lambda at: sign * balance.heat(start + n, at)[0], x[k], x[k + 2])
+    n, k, up, extremum = start + n[least < 0.0], k[least < 0.0], up[least < 0.0], extremum[least < 0.0]
+    pairs = (n, x[k], extremum, ~up), (n, extremum, x[k + 2], up)
     return tuple(map(np.concatenate, zip(crossing, *pairs, strict=True)))  # type: ignore[return-value]
 
 
-def _extremum(
-    balance: Balance, n: Integers, low: Floats, high: Floats, sign: Floats
-) -> tuple[Floats, Booleans]:
-    """Return the minima of sign F within intervals of x, by golden sections, and whether sign F is below 0 there.
+def minimum_of(function: Callable[[Floats], Floats], low: Floats, high: Floats) -> tuple[Floats, Floats]:
+    """Return places and values of the minima of functions of one variable, by golden sections, (m,) each.
 
-    n: indices of the states; low, high: ends of the intervals; sign: 1.0 or -1.0, (m,) each.
+    function: takes places (m,), one for each function, and returns values there.
+    low, high: ends of the intervals, in each of which a function has one minimum, (m,).
     """
     part = 0.5 * (3.0 - np.sqrt(5.0))
     inner = [low + part * (high - low), high - part * (high - low)]
-    values = [sign * balance.heat(n, x)[0] for x in inner]
+    values = [function(x) for x in inner]
     for _ in range(_SECTIONS):
         left = values[0] < values[1]  # the minimum is left of the upper of the inner points
         low, high = np.where(left, low, inner[0]), np.where(left, inner[1], high)
         new = np.where(left, low + part * (high - low), high - part * (high - low))
-        value = sign * balance.heat(n, new)[0]
+        value = function(new)
         inner = [np.where(left, new, inner[1]), np.where(left, inner[0], new)]
         values = [np.where(left, value, values[1]), np.where(left, values[0], value)]
     first = values[0] < values[1]
-    return np.where(first, inner[0], inner[1]), np.where(first, values[0], values[1]) < 0.0
+    return np.where(first, inner[0], inner[1]), np.where(first, *values)
 
 
 def _refine(balance: Balance, n: Integers, low: Floats, high: Floats, rising: Booleans) -> Floats:
@@ -240,19 +240,19 @@ def _refine(balance: Balance, n: Integers, low: Floats, high: Floats, rising: Bo
     n: indices of the states; low, high: ends of the brackets; rising: whether F > 0 at the upper end, (m,) each.
     """
     x, last = 0.5 * (low + high), high - low
-    for _ in range(_STEPS if n.size else 0):
-        F, slope, _ = balance.heat(n, x)
-        beyond = (F > 0.0) == rising
-        low, high = np.where(beyond, low, x), np.where(beyond, x, high)
-        with np.errstate(all="ignore"):
+    with np.errstate(all="ignore"):
+        for _ in range(_STEPS if n.size else 0):
+            F, slope, _ = balance.heat(n, x)
+            beyond = (F > 0.0) == rising
+            low, high = np.where(beyond, low, x), np.where(beyond, x, high)
             new = x - F / slope
-            new = np.where((new > low) & (new < high), new, 0.5 * (low + high))
-            new = np.where(F == 0.0, x, new)
+            outside = ~((new > low) & (new < high)) & (F != 0.0)
+            new[outside] = 0.5 * (low + high)[outside]
             step = np.abs(new - x)
             left = step * np.minimum(step / last, 1.0) ** 2  # what a quadratic method leaves
-        x, last = new, step
-        if (left <= 1e-15 * np.maximum(np.abs(x), 1.0)).all():
-            break
+            x, last = new, step
+            if (left <= 1e-15 * np.maximum(np.abs(x), 1.0)).all():
+                break
     return balance.shift.temperature_of(x - balance.x_0[n])
 
 

@@ -1,8 +1,8 @@
 """The shift of a material over temperature, for arrays: :class:`ShiftCurve`, the factor of speed and its inverse.
 
 Time-temperature superposition makes the law at a temperature that of the reference at the speed V a_T.  A vertical
-shift b_T multiplies all moduli, so that kappa, with the contact length at rest, has the factor sqrt(b_T): of half-spaces
-the law at a temperature is that of the reference at kappa V a_T sqrt(b_T), divided by kappa.
+shift b_T multiplies all moduli, so that kappa, with the contact length at rest, has the factor sqrt(b_T): of
+half-spaces the law at a temperature is that of the reference at kappa V a_T sqrt(b_T), divided by kappa.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ def shift_curve(material: Material) -> ShiftCurve:
     found: Any = material.__dict__.get("_shift_curve")
     if found is None:
         found = material.__dict__["_shift_curve"] = _make_curve(material, material.shift, material.vertical_shift)
-    return found  # type: ignore[no-any-return]
+    return found
 
 
 def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
@@ -86,7 +86,7 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
         raise ParameterError("shift", None, allowed)
     reference = material.temperature
     if isinstance(shift, WLF | Arrhenius) and vertical is None:
-        own = 0.0 if reference is None else float(shift.log(np.float64(reference)))
+        own = 0.0 if reference is None else float(shift.log(np.asarray(reference)))
         low, high = _range_of(shift, (shift.T0 - shift.C2 if isinstance(shift, WLF) else -273.15, math.inf))
         return ShiftCurve(
             lambda theta: (shift.log(theta) - own) / math.log(2.0),

@@ -39,8 +39,8 @@ _STEP = 1e-6
 class Temperatures(Values):
     """Equilibria of heat of a roller, the result of :func:`viscoroll.temperature`, in SI units per m of its length.
 
-    The last axis counts the equilibria of a state by rising temperature; shorter lists are padded with NaN (``stable``:
-    False).  The axes before it are those of the states; of one state there are none.
+    The last axis counts the equilibria of a state by rising temperature; shorter lists are padded with NaN
+    (``stable``: False).  The axes before it are those of the states; of one state there are none.
 
     Attributes
     ----------
@@ -71,8 +71,8 @@ class Temperatures(Values):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return (title; rows): of one state the fields of each equilibrium, of several their number and ranges."""
         if np.ndim(self.count):
-            rows = [SummaryRow("equilibria", f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} stable")]
-            shown = ("V", "temperature", "C_rr")
+            rows = [SummaryRow("equilibria", f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())}
+            stable")] shown = ("V", "temperature", "C_rr")
             rows += [
                 SummaryRow(name, format_value(np.asarray(self[name])), unit_of(self._attributes(name)))
                 for name in shown
@@ -108,8 +108,8 @@ class Temperatures(Values):
         found = {name: np.asarray(self[name]) for name in self.keys() if name != "count"}
         dims, coords = dataset_axes(self._labels, np.shape(self.count), (*found, "count", "equilibrium"))
         data: dict[str, Any] = {
-            name: ((*dims, "equilibrium"), each.astype(np.int8) if each.dtype == bool else each, self._attributes(name))
-            for name, each in found.items()
+            name: ((*dims, "equilibrium"), each.astype(np.int8) if each.dtype == bool else each,
+            self._attributes(name)) for name, each in found.items()
         }
         data["count"] = dims, np.asarray(self.count), self._attributes("count")
         return xr.Dataset(data, coords, attrs={"title": "Equilibria of heat of a viscoelastic cylinder"})
@@ -127,11 +127,11 @@ def temperature(
 
     Parameters
     ----------
-    roller : a :class:`Cylinder` whose material has a ``shift``.  One body relaxes, or both are of one material; of such
-        each loses half of M, and both have one temperature.
-    V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, without loss in slip; with one of force and
-        torque (or a slope, which counts as the force) the loss in slip heats too.  None: the speed follows from the load
-        at each temperature, as of :func:`steady`.
+    roller : a :class:`Cylinder` whose material has a ``shift``.  One body relaxes, or both are of one material; of
+        such each loses half of M, and both have one temperature.
+    V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, without loss in slip; with one of
+        force and torque (or a slope, which counts as the force) the loss in slip heats too.  None: the speed
+        follows from the load at each temperature, as of :func:`steady`.
     ambient : temperature of the surroundings, degrees Celsius.
     conductance : heat that the body gives off per kelvin, W/(m K), > 0 (:func:`viscoroll.conductance`).
     force, torque, slope : loads as of :func:`steady`, numbers or arrays.
@@ -141,15 +141,15 @@ def temperature(
     -------
     Temperatures
         Of one state ``temperature``, ``stable``, ``V``, ``C_rr``, ``M``, ``loss`` and the other fields as arrays of
-        exactly its equilibria by rising temperature.  Arrays of states have that axis after their own, padded with NaN,
-        and the ``count`` of equilibria.
+        exactly its equilibria by rising temperature.  Arrays of states have that axis after their own, padded with
+        NaN, and the ``count`` of equilibria.
 
     Raises
     ------
     ParameterError
         A conductance <= 0, an ambient outside the range of the shift, a roller without material, shift or relaxation,
-        a shift that does not fall with temperature, two bodies of different materials that relax, a vertical shift of a
-        cover, beside an elastic body, or under a given load, neither V nor a load; and as :func:`steady`.
+        a shift that does not fall with temperature, two bodies of different materials that relax, a vertical shift
+        of a cover, beside an elastic body, or under a given load, neither V nor a load; and as :func:`steady`.
 
     Warns
     -----
@@ -167,9 +167,9 @@ def temperature(
 
     Notes
     -----
-    At a given speed the number of equilibria is odd, and they are alternately stable and unstable; two whose kappa V a_T
-    differ by less than rounding may be missed.  The balance holds to 1e-10 (``tests/test_heat.py``).  One temperature
-    for the body is right where its Biot number is small (:func:`viscoroll.biot`).
+    At a given speed the number of equilibria is odd, and they are alternately stable and unstable; two whose kappa
+    V a_T differ by less than rounding may be missed.  The balance holds to 1e-10 (``tests/test_heat.py``).  One
+    temperature for the body is right where its Biot number is small (:func:`viscoroll.uniform_temperature`).
     """
     level, (roller, scene, scale) = roller, resolve_model(roller, "temperature", slope=slope)
     loads = {"force": force, "torque": torque, "slope": slope}
@@ -187,7 +187,6 @@ def temperature(
     result = _pack(states, zeros, rows, labels)
     warn_of_contact(roller, rows["V"] * rows.pop("a_T"))
     return result
-
 
 
 def _at_speed(states: HeatStates, driven: dict[str, Any] | None) -> tuple[dict[str, Floats], Zeros]:
@@ -208,21 +207,21 @@ def _at_speed(states: HeatStates, driven: dict[str, Any] | None) -> tuple[dict[s
     zeros = zeros_of(balance)
     resting = np.flatnonzero(V == 0.0)
     if resting.size:
-        zeros = Zeros(*map(np.append, zeros, (resting, states.ambient[resting], resting >= 0)))
+        more = Zeros(resting, states.ambient[resting], resting >= 0)
+        zeros = Zeros(*(np.append(*pair) for pair in zip(zeros, more, strict=True)))  # type: ignore[arg-type]
     rows = rolling_rows(states, zeros.state, V[zeros.state], zeros.theta)
     return rows if driven is None else rows | _slip_rows(states, loads, zeros.state, rows), zeros
 
 
 def balance_of(states: HeatStates) -> Balance:
-    """Return the balance of freely rolling states at given speeds; of a speed of 0, which has no balance, x_0 is -inf,
-    and no zero is found.
+    """Return the balance of freely rolling states at given speeds; of a speed of 0, which has no balance, x_0 is
+    -inf, and no zero is found.
     """
     assert states.V is not None
     speed = np.abs(states.V)
-    unit = np.broadcast_to(states.roller.scale["V"], states.shape).ravel()
     power = states.body.part * states.load * speed / states.kappa
     with np.errstate(divide="ignore"):
-        x_0 = np.log2(states.kappa * (speed / unit))
+        x_0 = np.log2(states.kappa * (speed / states.unit))
     hottest = states.ambient + power * peak_of(states.law) / states.conductance
     curve = rolling_curve(states.law, states.materials)
     return Balance(curve, states.curve, x_0, power, states.conductance, states.ambient, hottest)
@@ -232,8 +231,8 @@ def rolling_rows(states: HeatStates, n: Integers, V: Floats, theta: Floats) -> d
     """Return the fields of free rolling of states, by their indices, at speeds and temperatures.
 
     V: m/s, any sign; theta: degrees Celsius, (m,).
-    Returns name -> values, (m,), in SI units: V, temperature, C_rr, M and its parts, loss, loss_slip (0) and a_T, which
-    is NaN, as are the fields of the contact, outside the range of the shift.
+    Returns name -> values, (m,), in SI units: V, temperature, C_rr, M and its parts, loss, loss_slip (0) and a_T,
+    which is NaN, as are the fields of the contact, outside the range of the shift.
     """
     a_T, root_b = states.curve.factors(theta)
     cylinder, law = states.roller, states.law
@@ -294,7 +293,7 @@ def _slip_rows(states: HeatStates, loads: Loads, n: Integers, rows: dict[str, Fl
     n: indices of the states; rows: as of :func:`rolling_rows`.
     """
     V, a_T = rows["V"], np.where(np.isfinite(rows["a_T"]), rows["a_T"], 1.0)
-    speed = np.abs(V) * a_T / np.broadcast_to(states.roller.scale["V"], states.shape).ravel()[n]
+    speed = np.abs(V) * a_T / states.unit[n]
     moving = np.flatnonzero(speed)
     slip = np.zeros(n.size)
     found = states_at(states.law, loads, n[moving], np.sign(V[moving]), speed[moving]).rows
@@ -330,8 +329,7 @@ def _under_load(level: Any, states: HeatStates, driven: dict[str, Any]) -> tuple
     )  # fmt: skip
     zeros = zeros_of(balance)
     k, n, a_T = zeros.state, n[zeros.state], states.curve.factors(zeros.theta)[0]
-    unit = np.broadcast_to(states.roller.scale["V"], states.shape).ravel()[n]
-    speed = V[np.nonzero(np.nan_to_num(V))][k] / unit * (states.R[n] / (states.roller.T_ref * a_T))
+    speed = V[np.nonzero(np.nan_to_num(V))][k] / states.unit[n] * (states.R[n] / (states.roller.T_ref * a_T))
     rows = {name: each[k] for name, each in flat.items()}
     rows |= {"V": speed, "temperature": zeros.theta, "a_T": a_T, "C_rr": rows["M"] / (states.load[n] * states.R[n])}
     rows |= {"loss": (slip + half_space + cylinder)[k] / a_T, "loss_slip": slip[k] / a_T}
@@ -387,14 +385,17 @@ def _reasons(states: HeatStates, zeros: Zeros, known: Any, inside: Any, rows: di
         own = np.flatnonzero(zeros.state == n)
         at = own[np.argmin(zeros.theta[own])] if own.size else None
         if at is None:
-            found[n] = f"no temperature up to {HOTTEST:g} degrees Celsius balances: it runs away, or no speed is steady"
+            found[n] = f"no temperature up to {HOTTEST:g} degrees Celsius balances: it runs away, or no speed is
+            steady"
         elif not np.isfinite(rows["a_T"][at]):
-            found[n] = f"only {zeros.theta[at]:.5g} degrees Celsius balances, beyond the shift's {states.curve.high:g}"
+            found[n] = f"only {zeros.theta[at]:.5g} degrees Celsius balances, beyond the shift's
+            {states.curve.high:g}"
         elif not known[at]:
-            found[n] = f"the friction does not suffice at {zeros.theta[at]:.5g} degrees Celsius, at which heat balances"
+            found[n] = f"the friction does not suffice at {zeros.theta[at]:.5g} degrees Celsius, at which heat
+            balances"
         else:
             found[n] = (
-                f"only {zeros.theta[at]:.5g} degrees Celsius balances, where the rates of the contact lie outside the "
-                "measured band"
+                f"only {zeros.theta[at]:.5g} degrees Celsius balances, where the rates of the contact lie outside
+                the " "measured band"
             )
     return found

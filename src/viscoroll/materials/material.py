@@ -31,8 +31,9 @@ class Material(FromPrograms):
     """An isotropic linear viscoelastic material, in SI units.
 
     E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.  A material that was imported
-    with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of E/(1 - nu^2) in plane strain in place
-    of that of E: its methods then give E times this series as the moduli, and the compliance that belongs to it.
+    with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of E/(1 - nu^2) in plane strain in
+    place of that of E: its methods then give E times this series as the moduli, and the compliance that belongs to
+    it.
 
     Parameters
     ----------
@@ -48,10 +49,10 @@ class Material(FromPrograms):
     measured : :class:`Measured` range of frequencies of the data; outside of it functions warn.
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
         Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
-    shift : :class:`WLF`, :class:`Arrhenius`, or a function of the temperature in degrees Celsius that returns a_T; it is
-        the default of :meth:`at`, and what :meth:`Cylinder.temperature` needs.  Default: none.
-    vertical_shift : b_T, by which all moduli are multiplied: "entropic", the absolute temperature, or a function of the
-        temperature in degrees Celsius, dimensionless, > 0.  It needs a ``temperature``.  Default: moduli stay.
+    shift : :class:`WLF`, :class:`Arrhenius`, or a function of the temperature in degrees Celsius that returns a_T;
+        it is the default of :meth:`at`, and what :meth:`Cylinder.temperature` needs.  Default: none.
+    vertical_shift : b_T, by which all moduli are multiplied: "entropic", the absolute temperature, or a function of
+        the temperature in degrees Celsius, dimensionless, > 0.  It needs a ``temperature``.  Default: moduli stay.
 
     Raises
     ------
@@ -86,8 +87,8 @@ class Material(FromPrograms):
     def __post_init__(self) -> None:
         """Check the fields, and replace numbers by floats in SI units (``temperature`` in degrees Celsius).
 
-        A value with a unit is converted.  E (unless infinite), T_ref, density and thickness must be finite and > 0, nu
-        in (-1, 0.5]; ``prony`` must be one series; a rigid body must neither relax nor have a thickness.
+        A value with a unit is converted.  E (unless infinite), T_ref, density and thickness must be finite and > 0,
+        nu in (-1, 0.5]; ``prony`` must be one series; a rigid body must neither relax nor have a thickness.
         Raises ParameterError for the first field that is not allowed.  A temperature outside -150 to 200 warns with
         ModelWarning, as it looks like kelvin (:func:`.shift.check_celsius`).
         """
@@ -229,7 +230,8 @@ class Material(FromPrograms):
     def at(self, temperature: float, shift: Callable[[float], float] | None = None) -> Material:
         """Return the material at another temperature: T_ref, and with it all times, is multiplied by a_T.
 
-        The measured band moves with it.  E is multiplied by b_T of ``vertical_shift``, or stays; all other fields stay.
+        The measured band moves with it.  E is multiplied by b_T of ``vertical_shift``, or stays; all other fields
+        stay.
 
         Parameters
         ----------
@@ -397,8 +399,8 @@ class Material(FromPrograms):
         """Return the creep compliance in tension times E, 1 - sum J_j exp(-t/(T_j T_ref)), with the creep form of
         ``prony``.
 
-        It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of shear it is that of
-        (1 - nu^2)/E, divided by its long-time value.
+        It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of shear it is that
+        of (1 - nu^2)/E, divided by its long-time value.
 
         Parameters
         ----------
@@ -429,10 +431,10 @@ class Material(FromPrograms):
         Returns
         -------
         xarray.Dataset
-            E, tau, J, T over "mode" (of length 0 if elastic), slowest first, strengths dimensionless and times in units
-            of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of density (kg/m^3), thickness (m), temperature (degrees
-            Celsius) and the measured band (measured_low and measured_high in rad/s, measured_misfit) those that are
-            given.  Its attributes are those of :func:`.material_netcdf.material_as_dataset`.
+            E, tau, J, T over "mode" (of length 0 if elastic), slowest first, strengths dimensionless and times in
+            units of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of density (kg/m^3), thickness (m), temperature
+            (degrees Celsius) and the measured band (measured_low and measured_high in rad/s, measured_misfit) those
+            that are given.  Its attributes are those of :func:`.material_netcdf.material_as_dataset`.
 
         Examples
         --------
@@ -447,10 +449,11 @@ class Material(FromPrograms):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return what the HTML of a notebook shows: a title, and a line for each property.
 
-        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value and unit as texts,
-        numbers to six digits): E, instantaneous modulus, nu, number of modes, T_ref, relaxation times in s, density,
-        thickness, temperature, measured band.  Properties that are None are left out, as are the relaxation times of an
-        elastic material; of these the longest and the shortest are shown, in this order, to three digits.
+        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value and unit as
+        texts, numbers to six digits): E, instantaneous modulus, nu, number of modes, T_ref, relaxation times in s,
+        density, thickness, temperature, measured band.  Properties that are None are left out, as are the
+        relaxation times of an elastic material; of these the longest and the shortest are shown, in this order, to
+        three digits.
         """
         times = self.prony.tau * self.T_ref
         values: list[tuple[str, Any, str]] = [
@@ -531,7 +534,8 @@ class Material(FromPrograms):
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Return storage and loss modulus divided by E.
 
-        omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation time that overflows
+        omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation time that
+        overflows
             is taken as infinite.
         Returns (E'/E, E''/E), dimensionless, each a number or an array of that shape; (1, 0) of an elastic and of a
         rigid body.
@@ -550,8 +554,8 @@ class Material(FromPrograms):
 
         t: s, >= 0, of any shape.
         times: relaxation or retardation times in units of T_ref, > 0, (times,); may be empty.
-        Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite where the quotient
-        overflows.
+        Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite where the
+        quotient overflows.
         Raises ParameterError for a time t that is negative, NaN, infinite or no number, or of another dimension.
         """
         with np.errstate(over="ignore"):
@@ -559,15 +563,16 @@ class Material(FromPrograms):
 
 
 def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
-    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in words ``allowed``."""
-    if not callable(shift) or isinstance(shift, type):
+    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in words
+    ``allowed``.""" if not callable(shift) or isinstance(shift, type):
         raise ParameterError(name, f"{shift!r:.60}", allowed)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
     """Raise ParameterError where T_epsilon < T_sigma, as no material has it; equal times are allowed.
 
-    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast; nothing else is
+    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast; nothing else
+    is
         checked, and NaN is no fault.
     The error states, of the elements at fault, the T_epsilon and T_sigma of that with the longest T_sigma (of equal
     ones the first).

@@ -56,12 +56,13 @@ def material_as_dataset(material: Any) -> xr.Dataset:
 
     material: a :class:`viscoroll.Material`.
     Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, of length 0 if elastic:
-    strengths over the long-time modulus or compliance, times in units of T_ref; and the constants in SI units: E_long,
-    nu, T_ref, alpha, and those of density, thickness, temperature (degrees Celsius) and the measured band
+    strengths over the long-time modulus or compliance, times in units of T_ref; and the constants in SI units:
+    E_long, nu, T_ref, alpha, and those of density, thickness, temperature (degrees Celsius) and the measured band
     (measured_low, measured_high, measured_misfit) that are given.  Each variable has the attributes ``long_name`` and
-    ``units``.  The attribute ``shifts`` has the time-temperature shifts as lines of TOML; the attribute ``given`` of the dataset names the form from which the material is read, "relaxation" or
-    "creep"; ``name`` and ``measured`` are the name and the source of the data, "" without; the others are
-    ``Conventions``, ``schema``, ``title``, ``law`` (the formulas of E(t) and J(t)) and ``source`` (this version).
+    ``units``.  The attribute ``shifts`` has the time-temperature shifts as lines of TOML; the attribute ``given``
+    of the dataset names the form from which the material is read, "relaxation" or "creep"; ``name`` and
+    ``measured`` are the name and the source of the data, "" without; the others are ``Conventions``, ``schema``,
+    ``title``, ``law`` (the formulas of E(t) and J(t)) and ``source`` (this version).
     """
     import xarray as xr
 
@@ -114,7 +115,7 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
         series = Prony(*form) if about["given"] == "relaxation" else Prony.creep(*form, alpha=numbers["alpha"])
         found: dict[str, Any] = {name: numbers[name] for name in ("nu", "T_ref", *_OPTIONAL) if name in numbers}
         if "measured_low" in numbers:
-            band = {name: numbers.get(f"measured_{name}") for name in _BAND}
+            band: dict[str, Any] = {name: numbers.get(f"measured_{name}") for name in _BAND}
             found["measured"] = Measured(**band, source=about["measured"])
         found |= shifts_of_toml(about.get("shifts", ""))
         return make(E=numbers["E_long"], prony=series, name=about["name"], **found)

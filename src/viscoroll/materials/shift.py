@@ -222,9 +222,7 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
     return check_number("a_T", factor / unit, above=0.0)
 
 
-def vertical_factor(
-    shift: Callable[[float], float] | str | None, temperature: float, reference: float | None
-) -> float:
+def vertical_factor(shift: Callable[[float], float] | str | None, temperature: float, reference: float | None) -> float:
     """Return the ratio of moduli at a temperature to those at a reference, b_T(temperature)/b_T(reference).
 
     Parameters
