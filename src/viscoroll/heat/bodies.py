@@ -92,8 +92,8 @@ def heated_bodies(roller: Roller, call: str, slip_share: float) -> list[Heated]:
     if pair is None:
         allowed = "a Material with a shift=, in place of E, nu, T_epsilon and T_sigma"
         raise described_error("material", f"of {call} is given as numbers", allowed)
-    found = [Heated("cylinder", pair.cylinder, 1.0, slip_share), Heated("base", pair.half_space, 1.0, 1.0 -
-    slip_share)] found = [body for body in found if body.material.prony.alpha > 1.0]
+    found = [Heated("cylinder", pair.cylinder, 1.0, slip_share), Heated("base", pair.half_space, 1.0, 1.0 - slip_share)]
+    found = [body for body in found if body.material.prony.alpha > 1.0]
     if not found:
         raise described_error("material", "does not relax, and rolls without loss", "one that relaxes")
     if pair.like:
@@ -125,8 +125,8 @@ def heat_states(
     check_ambient(arrays["ambient"], curve)
     pair = roller.body_data.pair
     if body.material.vertical_shift is not None and (pair.covered or pair.share not in (0.0, 0.5, 1.0)):
-        allowed = "left out for a cover, and beside an elastic body: the shape of the law changes with temperature
-        then" raise described_error("vertical_shift", "is given", allowed)
+        allowed = "left out for a cover, and beside an elastic body: the shape of the law changes with temperature"
+        raise described_error("vertical_shift", "is given", allowed)
     cylinder: Any = roller
     arrays |= {"R": np.asarray(cylinder.R), "load": np.asarray(cylinder.load)}
     arrays |= {"kappa": np.asarray(scene.kappa), "mu": np.asarray(scene.mu)}

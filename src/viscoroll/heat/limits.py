@@ -152,8 +152,8 @@ def _for_each_load(roller: Any, allowed: float, load: Floats, plain: dict[str, A
     shape = broadcast_shape(**given)
     rows = zip(*(np.broadcast_to(each, shape).ravel().tolist() for each in given.values()), strict=True)
     parts = [heat_limit(roller, allowed, load=P, ambient=at, conductance=G) for P, at, G in rows]
-    found = {name: np.array([part[name] for part in parts]).reshape(shape) for name in ("V", "temperature",
-    "runaway")} return Values(found, given, si=True, title="Limits by heat", labels=labels)
+    found = {name: np.array([part[name] for part in parts]).reshape(shape) for name in ("V", "temperature", "runaway")}
+    return Values(found, given, si=True, title="Limits by heat", labels=labels)
 
 
 def _ln_limit(states: HeatStates, name: str, rise: Floats) -> Floats:
@@ -233,8 +233,9 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     hottest = np.float64(min(HOTTEST, states.curve.high))
     ends = states.curve.log2_of(np.array([hottest, given["ambient"]]))
     # from the hottest to ambient; nearer to it than two steps V only rises with the temperature
-    y = np.linspace(ends[0] + 2.0 * _HALF_STEP, ends[1] - 2.0 * _HALF_STEP, 2 + math.ceil(NODES * (ends[1] -
-    ends[0]))) flat = find_zeros(lambda at: ln_V(at + _HALF_STEP) - ln_V(at - _HALF_STEP), y)[::-1]
+    ends += [2.0 * _HALF_STEP, -2.0 * _HALF_STEP]
+    y = np.linspace(*ends, 2 + math.ceil(NODES * (ends[1] - ends[0])))
+    flat = find_zeros(lambda at: ln_V(at + _HALF_STEP) - ln_V(at - _HALF_STEP), y)[::-1]
     V = ln_V(flat)
     flat, V = flat[V < math.log(FASTEST)], V[V < math.log(FASTEST)]
     bends = ln_V(flat + _BEND) + ln_V(flat - _BEND) - 2.0 * V
@@ -331,6 +332,6 @@ def uniform_temperature(film: float, thickness: float, conductivity: float) -> A
     above = 100.0 * ((1.0 + 0.5 * biot) / (1.0 + biot / 3.0) - 1.0)
     return Assumption(
         biot <= BIOT_LIMIT, biot,
-        f"the Biot number is {biot:.2g}: the hottest point is {above:.2g} % of the rise above the mean temperature;
-        up " f"to {BIOT_LIMIT} (10 %) one temperature stands for the body",
+        f"the Biot number is {biot:.2g}: the hottest point is {above:.2g} % of the rise above the mean temperature; "
+        f"up to {BIOT_LIMIT} (10 %) one temperature stands for the body",
     )  # fmt: skip

@@ -71,8 +71,9 @@ class Temperatures(Values):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return (title; rows): of one state the fields of each equilibrium, of several their number and ranges."""
         if np.ndim(self.count):
-            rows = [SummaryRow("equilibria", f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())}
-            stable")] shown = ("V", "temperature", "C_rr")
+            stable = int(np.asarray(self.stable).sum())
+            rows = [SummaryRow("equilibria", f"{int(np.sum(self.count))}, {stable} stable")]
+            shown = ("V", "temperature", "C_rr")
             rows += [
                 SummaryRow(name, format_value(np.asarray(self[name])), unit_of(self._attributes(name)))
                 for name in shown
@@ -108,8 +109,8 @@ class Temperatures(Values):
         found = {name: np.asarray(self[name]) for name in self.keys() if name != "count"}
         dims, coords = dataset_axes(self._labels, np.shape(self.count), (*found, "count", "equilibrium"))
         data: dict[str, Any] = {
-            name: ((*dims, "equilibrium"), each.astype(np.int8) if each.dtype == bool else each,
-            self._attributes(name)) for name, each in found.items()
+            name: ((*dims, "equilibrium"), each.astype(np.int8) if each.dtype == bool else each, self._attributes(name))
+            for name, each in found.items()
         }
         data["count"] = dims, np.asarray(self.count), self._attributes("count")
         return xr.Dataset(data, coords, attrs={"title": "Equilibria of heat of a viscoelastic cylinder"})
@@ -385,17 +386,14 @@ def _reasons(states: HeatStates, zeros: Zeros, known: Any, inside: Any, rows: di
         own = np.flatnonzero(zeros.state == n)
         at = own[np.argmin(zeros.theta[own])] if own.size else None
         if at is None:
-            found[n] = f"no temperature up to {HOTTEST:g} degrees Celsius balances: it runs away, or no speed is
-            steady"
+            found[n] = f"no temperature up to {HOTTEST:g} degrees Celsius balances: it runs away, or none is steady"
         elif not np.isfinite(rows["a_T"][at]):
-            found[n] = f"only {zeros.theta[at]:.5g} degrees Celsius balances, beyond the shift's
-            {states.curve.high:g}"
+            found[n] = f"only {zeros.theta[at]:.5g} degrees Celsius balances, beyond the shift's {states.curve.high:g}"
         elif not known[at]:
-            found[n] = f"the friction does not suffice at {zeros.theta[at]:.5g} degrees Celsius, at which heat
-            balances"
+            found[n] = f"the friction does not suffice at {zeros.theta[at]:.5g} degrees Celsius, which balances"
         else:
             found[n] = (
-                f"only {zeros.theta[at]:.5g} degrees Celsius balances, where the rates of the contact lie outside
-                the " "measured band"
+                f"only {zeros.theta[at]:.5g} degrees Celsius balances, where the rates of the contact lie outside "
+                "the measured band"
             )
     return found

@@ -563,8 +563,8 @@ class Material(FromPrograms):
 
 
 def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
-    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in words
-    ``allowed``.""" if not callable(shift) or isinstance(shift, type):
+    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in words ``allowed``."""
+    if not callable(shift) or isinstance(shift, type):
         raise ParameterError(name, f"{shift!r:.60}", allowed)
 
 
