@@ -233,8 +233,8 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     hottest = np.float64(min(HOTTEST, states.curve.high))
     ends = states.curve.log2_of(np.array([hottest, given["ambient"]]))
     # from the hottest to ambient; nearer to it than two steps V only rises with the temperature
-    ends += [2.0 * _HALF_STEP, -2.0 * _HALF_STEP]
-    y = np.linspace(*ends, 2 + math.ceil(NODES * (ends[1] - ends[0])))
+    low, high = float(ends[0]) + 2.0 * _HALF_STEP, float(ends[1]) - 2.0 * _HALF_STEP
+    y = np.linspace(low, high, 2 + math.ceil(NODES * (high - low)))
     flat = find_zeros(lambda at: ln_V(at + _HALF_STEP) - ln_V(at - _HALF_STEP), y)[::-1]
     V = ln_V(flat)
     flat, V = flat[V < math.log(FASTEST)], V[V < math.log(FASTEST)]

@@ -209,7 +209,7 @@ def _at_speed(states: HeatStates, driven: dict[str, Any] | None) -> tuple[dict[s
     resting = np.flatnonzero(V == 0.0)
     if resting.size:
         more = Zeros(resting, states.ambient[resting], resting >= 0)
-        zeros = Zeros(*(np.append(*pair) for pair in zip(zeros, more, strict=True)))  # type: ignore[arg-type]
+        zeros = Zeros(*(np.append(*pair) for pair in zip(zeros, more, strict=True)))
     rows = rolling_rows(states, zeros.state, V[zeros.state], zeros.theta)
     return rows if driven is None else rows | _slip_rows(states, loads, zeros.state, rows), zeros
 

@@ -1,8 +1,8 @@
 """The strain of a contact, beside that of the data of its materials: :func:`assess_strain`.
 
 Under an elliptic pressure p_0 sqrt(1 - (x/a)^2) on a half-space the largest shear stress at the axis is 0.300 p_0, at
-the depth 0.786 a (K. L. Johnson, Contact Mechanics, 1985, Sect. 4.2), with p_0 = E* a/(2 R).  In a layer it follows from
-the field of the layer under such a pressure of the same load.
+the depth 0.786 a (K. L. Johnson, Contact Mechanics, 1985, Sect. 4.2), with p_0 = E* a/(2 R).  In a layer it follows
+from the field of the layer under such a pressure of the same load.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
 
 
 def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
-    """Return name of a deformable body -> amplitude of its shear strain, in the shape of V, as :func:`assess_strain`."""
+    """Return name of a deformable body -> amplitude of its shear strain, in the shape of V; as :func:`assess_strain`."""
     pair, slenderness = data.pair, 0.25 * length / data.R
     if pair is None:  # both of the paper's material
         return {"the material": 0.5 * SHEAR * slenderness * _modulus_over_shear(data.nu, data.plane)}
