@@ -21,10 +21,12 @@ from ..materials.material import Material
 from ..materials.shift import WLF, Arrhenius, relative_shift, vertical_factor
 
 #: temperatures, degrees Celsius, between which a function without a ``range`` is sampled: from the coldest at which
-#: rubbers are measured to beyond the hottest at which one lasts
-_SAMPLED_RANGE = -150.0, 350.0
-#: samples of such a function; a step is then 0.1 K, over which ln a_T is straight to 1e-4
+#: rubbers are measured to far beyond the hottest at which one lasts
+_SAMPLED_RANGE = -150.0, 1000.0
+#: samples of such a function; a step is then 0.23 K, over which ln a_T is straight to 1e-3
 _SAMPLES = 5001
+#: slope, 1/K, that makes a constant shift invertible; equilibria are refined with the shift itself
+_TILT = 1e-9
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,9 +99,10 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
     theta, a_T = _sampled(shift, *_range_of(shift, _SAMPLED_RANGE), reference)
     moduli = [vertical_factor(vertical, at, reference) for at in theta.tolist()]
     log2 = np.log2(a_T) + 0.5 * np.log2(moduli)
-    if not (np.diff(log2) < 0.0).all():
-        at = theta[np.flatnonzero(np.diff(log2) >= 0.0)[0]]
-        raise described_error("shift", f"does not fall at {at:.4g} degrees Celsius", "a function that falls throughout")
+    if (rises := np.flatnonzero(np.diff(log2) > 0.0)).size:
+        found = f"rises at {theta[rises[0]]:.4g} degrees Celsius"
+        raise described_error("shift", found, "a function that does not rise with temperature")
+    log2 = log2 - _TILT * (theta - theta[0])
     # one step beyond each end with the slope there extrapolates
     step = np.array([-1e4, 1e4])
     ends = log2[[0, -1]] + step * (np.diff(log2)[[0, -1]] / np.diff(theta)[[0, -1]])

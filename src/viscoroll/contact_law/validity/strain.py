@@ -50,7 +50,7 @@ def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
 
 
 def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
-    """Return name of a deformable body -> amplitude of its shear strain, in the shape of V; as :func:`assess_strain`."""
+    """Return name of a deformable body -> amplitude of its shear strain, in the shape of V; arguments as there."""
     pair, slenderness = data.pair, 0.25 * length / data.R
     if pair is None:  # both of the paper's material
         return {"the material": 0.5 * SHEAR * slenderness * _modulus_over_shear(data.nu, data.plane)}
