@@ -85,17 +85,17 @@ def test_found_factors_and_arrays():
 
 
 def test_heat_of_slip_and_given_loads():
-    """A torque adds its slip to the heat; a slope gives the speed too, at which the balance is the same."""
+    """A torque adds its slip to the heat; a force gives the speed too, at which the balance is the same."""
     driven = ROLLER.temperature(3.0, ambient=20.0, conductance=6.0, torque=500.0, slip_share=1.0)
     assert driven.loss_slip[0] > 0.0
     assert close(6.0 * (driven.temperature - 20.0), driven.loss, tol.HEAT_BALANCE)
-    found = ROLLER.temperature(slope=0.004, **COLD)
+    found = ROLLER.temperature(force=80.0, **COLD)
     heat = found.loss - 0.5 * found.loss_slip
     assert close(6.0 * (found.temperature + 30.0), heat, tol.HEAT_BALANCE, scale=6e-3)
-    assert close(found.C_rr, np.tan(0.004), 1e-3)  # the axis needs the slope, less its slip
+    assert close(found.C_rr, 80.0 / 2e4, tol.HEAT_BALANCE)
     for V, theta in zip(found.V, found.temperature, strict=True):
-        at_speed = ROLLER.temperature(V, slope=0.004, **COLD).temperature
-        assert np.abs(at_speed - theta).min() < 1e-6
+        at_speed = ROLLER.temperature(V, torque=0.0, **COLD).temperature
+        assert np.abs(at_speed - theta).min() < 1e-7
 
 
 def test_vertical_shift_scales_the_moduli():

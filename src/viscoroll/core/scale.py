@@ -50,7 +50,7 @@ _TABLE = (
     Dimension("P T/m R", "s-1", ", divided by gamma/T_epsilon", "rate_fast rate_slow"),
     Dimension(
         "m R2/T2", "J m-1", ", divided by m (R/T_epsilon)^2",
-        "work_force work_torque brake_loss slip_loss rolling_loss",
+        "work_force work_torque brake_loss slip_loss rolling_loss heat given_off",
     ),
     Dimension("theta", "degC", "", "temperature T0 ambient base_temperature base_ambient start allowed"),
     Dimension("delta theta", "K", "", "C2"),

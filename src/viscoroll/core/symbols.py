@@ -54,6 +54,8 @@ _MEANINGS = {
     "temperature": "temperature of the material",
     "base_temperature": "temperature of the base",
     "ambient": "temperature of the surroundings",
+    "heat": "heat that the losses gave the body since t = 0",
+    "given_off": "heat that the body gave off since t = 0",
     "conductance": "heat given off per kelvin and length of the cylinder",
     "capacity": "heat stored per kelvin and length of the cylinder",
     "measured": "1 where the material was measured at the rates of the contact, else 0",

@@ -273,8 +273,9 @@ def _driven_curve(states: HeatStates, loads: Loads) -> Curve:
     def loss(n: Integers, x: Floats) -> Floats:
         V = np.exp2(x) / loads.kappa[n]
         rows = states_at(law, loads, n, sign[n], V).rows
-        rolling = np.abs(rows[Field.M_HALF_SPACE] + rows[Field.M_CYLINDER])
-        slip = np.nan_to_num(np.abs(rows[Field.DELTA] * rows[Field.Q]))
+        delta = np.nan_to_num(rows[Field.DELTA])
+        rolling = np.abs(rows[Field.M_HALF_SPACE] + (1.0 + delta) * rows[Field.M_CYLINDER])
+        slip = np.abs(delta * rows[Field.Q])
         return loads.kappa[n] * (states.body.part * rolling + states.body.slip * slip)
 
     def values(n: Integers, x: Floats) -> tuple[Floats, Floats]:
@@ -296,10 +297,12 @@ def _slip_rows(states: HeatStates, loads: Loads, n: Integers, rows: dict[str, Fl
     V, a_T = rows["V"], np.where(np.isfinite(rows["a_T"]), rows["a_T"], 1.0)
     speed = np.abs(V) * a_T / states.unit[n]
     moving = np.flatnonzero(speed)
-    slip = np.zeros(n.size)
+    slip, spin = np.zeros((2, n.size))
     found = states_at(states.law, loads, n[moving], np.sign(V[moving]), speed[moving]).rows
-    slip[moving] = np.abs(found[Field.DELTA] * found[Field.Q] * V[moving]) * states.load[n[moving]]
-    return {"loss": rows["loss"] + slip, "loss_slip": slip}
+    power = found[Field.DELTA] * V[moving] * states.load[n[moving]]
+    slip[moving] = np.abs(found[Field.Q] * power)
+    spin[moving] = found[Field.M_CYLINDER] * power  # the cylinder turns at omega = V (1 + delta)/R
+    return {"loss": rows["loss"] + spin + slip, "loss_slip": slip}
 
 
 def _under_load(level: Any, states: HeatStates, driven: dict[str, Any]) -> tuple[dict[str, Floats], Zeros]:

@@ -14,6 +14,7 @@ from ..core.drive import Schedule
 from ..core.errors import ParameterError, described_error, shape_error
 from ..core.labels import strip_labels
 from ..core.results import Values
+from .balance import Curve, rolling_curve
 from .bodies import HeatStates, check_ambient, heat_states
 from .temperature import rolling_rows
 
@@ -86,12 +87,13 @@ def warming(
         raise described_error("t", "does not ascend", "in ascending order")
     rtol = check_number("rtol", rtol, low=1e-12, high=1e-3)
     speed, corners = _speed_of(V, scale)
+    curve = rolling_curve(states.law, states.materials)
 
     def rates(time: float, y: Floats) -> Floats:
         """Return dtheta/dt of each state, then the heat per time and the heat given off, W/m."""
         theta = y[: start.size]
         off = states.conductance * (theta - states.ambient)
-        heat = states.body.part * _loss(states, speed(time), theta)
+        heat = states.body.part * _loss(states, curve, speed(time), theta)
         return np.concatenate([(heat - off) / capacity, heat, off])
 
     y, found, time = np.concatenate([start, np.zeros(2 * start.size)]), [], 0.0
@@ -122,11 +124,16 @@ def _spread(states: HeatStates, array: Floats) -> Floats:
     return np.broadcast_to(array, states.shape or (1,)).ravel()
 
 
-def _loss(states: HeatStates, V: float, theta: Floats) -> Floats:
+def _loss(states: HeatStates, curve: Curve, V: float, theta: Floats) -> Floats:
     """Return the loss in rolling of both bodies, W/m, of each state at one speed and its temperature, (n,)."""
     if V == 0.0:
         return np.zeros(theta.size)
-    return rolling_rows(states, np.arange(theta.size), np.full(theta.size, V), theta)["loss"]
+    factor, root_b = np.exp2(states.curve.log2_of(theta)), states.curve.root_b(theta)
+    if not states.curve.exact:
+        a_T, root_b = states.curve.factors(theta)
+        factor = a_T * root_b
+    C, _ = curve.values(np.arange(theta.size), np.log2(states.kappa * abs(V) / states.unit * factor))
+    return states.load * abs(V) / (states.kappa * root_b) * C
 
 
 def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
