@@ -75,7 +75,7 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",
     "ignore_pattern": r"__init__\.py",
     "subsection_order": ExplicitOrder(
-        [f"examples/gallery/{name}" for name in ("contact", "materials", "motion", "drive", "uncertain")]
+        [f"examples/gallery/{name}" for name in ("contact", "materials", "motion", "drive", "heat", "uncertain")]
     ),
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": "gallery_images.shown",

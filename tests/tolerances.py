@@ -521,3 +521,15 @@ COVER_EACH, COVER_EACH_MOTION = 1e-10, 1e-9
 COVER_REST = 1e-9
 #: Steel of 2e11 Pa beside rubber of 2e6 Pa takes 1e-5 of the compliance.
 COVER_ON_STEEL = 1e-3
+
+# --- heat/ (test_heat.py) ---
+#: Loss against heat given off, over the loss: roundings of x = log2(kappa V a_T), near 40, times the slope of the loss.
+HEAT_BALANCE = 1e-10
+#: Closed forms of a constant shift: roundings, after the balance was refined with the shift itself.
+HEAT_CLOSED = 1e-12
+#: A warming against closed forms and its end, at rtol 1e-9 a step.
+WARMING = 1e-7
+#: Turning points: the equilibria on either side of that relative distance differ in number.
+TURNING = 1e-8
+#: Largest shear stress at the axis of a thick layer against the half-space: 1.1 a/h at a/h = 0.01.
+THICK_STRAIN = 0.02

@@ -35,6 +35,13 @@ from .core.errors import ParameterError as ParameterError
 from .core.errors import ViscorollError as ViscorollError
 from .core.results import Values as Values
 from .cylinder import Cylinder as Cylinder
+from .heat.limits import conductance as conductance
+from .heat.limits import heat_limit as heat_limit
+from .heat.limits import turning_points as turning_points
+from .heat.limits import uniform_temperature as uniform_temperature
+from .heat.temperature import Temperatures as Temperatures
+from .heat.temperature import temperature as temperature
+from .heat.warming import warming as warming
 from .io import runs as runs
 from .io import sampling as sampling
 from .io import tables as tables

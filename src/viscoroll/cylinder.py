@@ -376,7 +376,7 @@ class Cylinder(Methods):
     def body_data(self) -> BodyData:
         """Data of the bodies in SI units, from which validity and warnings are computed, a :class:`.BodyData`."""
         pair, G = (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
-        return BodyData(pair, G, self.R, self.l0, self.T_ref, self.plane, self._scene)
+        return BodyData(pair, G, self.R, self.l0, self.T_ref, self.plane, self._scene, self.nu, self.load)
 
     @cached_property
     def about(self) -> dict[str, Any]:  # type: ignore[override]

@@ -9,6 +9,9 @@ from .contact_law.law import law
 from .contact_law.parameters import Parameters, Roller
 from .contact_law.stress import stress
 from .contact_law.validity.validity import validity
+from .heat.limits import heat_limit, turning_points
+from .heat.temperature import temperature
+from .heat.warming import warming
 from .motion.ensemble import ensemble
 from .motion.roll import roll
 
@@ -26,6 +29,10 @@ class Methods(Roller):
     roll = roll
     ensemble = ensemble
     validity = validity
+    temperature = temperature
+    warming = warming
+    heat_limit = heat_limit
+    turning_points = turning_points
 
 
 class Scene(Methods, Parameters):

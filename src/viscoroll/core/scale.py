@@ -46,14 +46,17 @@ _TABLE = (
     Dimension("P T/R", "N s m-2", ", divided by P T_epsilon/R", "dQ_dV"),
     Dimension("P T2", "N s2 m-1", ", divided by P T_epsilon^2", "N"),
     Dimension("P R T", "N m s m-1", ", divided by P R T_epsilon", "drag"),
-    Dimension("P R/T", "W m-1", ", divided by P R/T_epsilon", "loss_slip loss_half_space loss_cylinder"),
+    Dimension("P R/T", "W m-1", ", divided by P R/T_epsilon", "loss loss_slip loss_half_space loss_cylinder"),
     Dimension("P T/m R", "s-1", ", divided by gamma/T_epsilon", "rate_fast rate_slow"),
     Dimension(
         "m R2/T2", "J m-1", ", divided by m (R/T_epsilon)^2",
-        "work_force work_torque brake_loss slip_loss rolling_loss",
+        "work_force work_torque brake_loss slip_loss rolling_loss heat given_off",
     ),
-    Dimension("theta", "degC", "", "temperature T0"),
+    Dimension("theta", "degC", "", "temperature T0 ambient base_temperature base_ambient start allowed"),
     Dimension("delta theta", "K", "", "C2"),
+    Dimension("heat", "W m-1 K-1", "", "conductance base_conductance conductivity"),
+    Dimension("stored heat", "J m-1 K-1", "", "capacity"),
+    Dimension("heat of a surface", "W m-2 K-1", "", "film"),
     Dimension("molar energy", "J mol-1", "", "energy"),
 )  # fmt: skip
 #: Quantity -> its dimension.  A quantity that is not here is a ratio.

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -19,7 +19,7 @@ from ..core.scale import SI
 from .importers import FromPrograms, check_poisson
 from .measured import Measured
 from .prony import Prony
-from .shift import check_celsius, check_fields, relative_shift
+from .shift import check_celsius, check_fields, relative_shift, vertical_factor
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,8 +31,9 @@ class Material(FromPrograms):
     """An isotropic linear viscoelastic material, in SI units.
 
     E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.  A material that was imported
-    with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of E/(1 - nu^2) in plane strain in place
-    of that of E: its methods then give E times this series as the moduli, and the compliance that belongs to it.
+    with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of E/(1 - nu^2) in plane strain in
+    place of that of E: its methods then give E times this series as the moduli, and the compliance that belongs to
+    it.
 
     Parameters
     ----------
@@ -50,15 +51,20 @@ class Material(FromPrograms):
         Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
     nu_instant : Poisson's ratio at t = 0, in (-1, 0.5], of a material imported with bulk terms unlike those of shear;
         None: nu is constant in time.  Only ``instant`` needs it.
+    shift : :class:`WLF`, :class:`Arrhenius`, or a function of the temperature in degrees Celsius that returns a_T;
+        it is the default of :meth:`at`, and what :meth:`Cylinder.temperature` needs.  Default: none.
+    vertical_shift : b_T, by which all moduli are multiplied: "entropic", the absolute temperature, or a function of
+        the temperature in degrees Celsius, dimensionless, > 0.  It needs a ``temperature``.  Default: moduli stay.
 
     Raises
     ------
     ParameterError
-        A value that is not finite or out of range, a rigid body that relaxes, a name with NUL or surrogates.
+        A value that is not finite or out of range, a rigid body that relaxes, a name with NUL or surrogates, a shift
+        that is no function.
 
     Notes
     -----
-    Immutable, hashable, equal where all fields are.
+    Immutable, hashable, equal where all fields but the shifts are.
 
     Examples
     --------
@@ -78,12 +84,14 @@ class Material(FromPrograms):
     measured: Measured | None = None
     temperature: float | None = None
     nu_instant: float | None = None
+    shift: Callable[[float], float] | None = field(default=None, compare=False)
+    vertical_shift: Callable[[float], float] | Literal["entropic"] | None = field(default=None, compare=False)
 
     def __post_init__(self) -> None:
         """Check the fields, and replace numbers by floats in SI units (``temperature`` in degrees Celsius).
 
-        A value with a unit is converted.  E (unless infinite), T_ref, density and thickness must be finite and > 0, nu
-        in (-1, 0.5]; ``prony`` must be one series; a rigid body must neither relax nor have a thickness.
+        A value with a unit is converted.  E (unless infinite), T_ref, density and thickness must be finite and > 0,
+        nu in (-1, 0.5]; ``prony`` must be one series; a rigid body must neither relax nor have a thickness.
         Raises ParameterError for the first field that is not allowed.  A temperature outside -150 to 200 warns with
         ModelWarning, as it looks like kelvin (:func:`.shift.check_celsius`).
         """
@@ -107,6 +115,10 @@ class Material(FromPrograms):
             raise ParameterError("measured", f"{self.measured!r:.60}", "a Measured")
         if self.temperature is not None:
             object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
+        if self.shift is not None:
+            _refuse_no_shift("shift", self.shift, "a WLF, an Arrhenius or a function of the temperature")
+        if self.vertical_shift not in (None, "entropic"):
+            _refuse_no_shift("vertical_shift", self.vertical_shift, "'entropic' or a function of the temperature")
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
@@ -225,10 +237,11 @@ class Material(FromPrograms):
         """Long-time shear modulus E/(2 (1 + nu)), Pa."""
         return self.E / (2.0 * (1.0 + self.nu))
 
-    def at(self, temperature: float, shift: Callable[[float], float]) -> Material:
+    def at(self, temperature: float, shift: Callable[[float], float] | None = None) -> Material:
         """Return the material at another temperature: T_ref, and with it all times, is multiplied by a_T.
 
-        The measured band moves with it.  The moduli, and all other fields, stay.
+        The measured band moves with it.  E is multiplied by b_T of ``vertical_shift``, or stays; all other fields
+        stay.
 
         Parameters
         ----------
@@ -237,12 +250,12 @@ class Material(FromPrograms):
             a_T, dimensionless, > 0, as a number.  Where the material has a ``temperature``, times are multiplied by
             a_T(temperature)/a_T(its own), so that constants that refer to another temperature (T0 of the glass
             transition, say) are converted; where it has none, it is taken to be at the temperature where the shift is
-            1.
+            1.  Default: the material's own ``shift``.
 
         Returns
         -------
         Material
-            With the new ``temperature``.
+            With the new ``temperature``, and this shift.
 
         Raises
         ------
@@ -263,8 +276,9 @@ class Material(FromPrograms):
         >>> rubber.at(20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=-10.0)) == rubber
         True
         """
-        if not callable(shift) or isinstance(shift, type):
-            raise ParameterError("shift", f"{shift!r:.60}", "a WLF, an Arrhenius or a function of the temperature")
+        shift = self.shift if shift is None else shift
+        _refuse_no_shift("shift", shift, "a WLF, an Arrhenius or a function of the temperature")
+        assert shift is not None
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
             sentence = (
@@ -276,7 +290,9 @@ class Material(FromPrograms):
         temperature = check_celsius("temperature", float(given))
         factor = relative_shift(shift, temperature, self.temperature)
         measured = None if self.measured is None else self.measured.shifted(factor)
-        return replace(self, T_ref=self.T_ref * factor, measured=measured, temperature=temperature)
+        E = self.E * vertical_factor(self.vertical_shift, temperature, self.temperature)
+        T_ref = self.T_ref * factor
+        return replace(self, E=E, T_ref=T_ref, measured=measured, temperature=temperature, shift=shift)
 
     def storage(self, omega: ArrayLike) -> Any:
         """Return the storage modulus E' in tension, which rises from E at omega = 0 to the instantaneous modulus.
@@ -393,8 +409,8 @@ class Material(FromPrograms):
         """Return the creep compliance in tension times E, 1 - sum J_j exp(-t/(T_j T_ref)), with the creep form of
         ``prony``.
 
-        It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of shear it is that of
-        (1 - nu^2)/E, divided by its long-time value.
+        It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of shear it is that
+        of (1 - nu^2)/E, divided by its long-time value.
 
         Parameters
         ----------
@@ -425,10 +441,10 @@ class Material(FromPrograms):
         Returns
         -------
         xarray.Dataset
-            E, tau, J, T over "mode" (of length 0 if elastic), slowest first, strengths dimensionless and times in units
-            of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of density (kg/m^3), thickness (m), temperature (degrees
-            Celsius) and the measured band (measured_low and measured_high in rad/s, measured_misfit) those that are
-            given.  Its attributes are those of :func:`.material_netcdf.material_as_dataset`.
+            E, tau, J, T over "mode" (of length 0 if elastic), slowest first, strengths dimensionless and times in
+            units of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of density (kg/m^3), thickness (m), temperature
+            (degrees Celsius) and the measured band (measured_low and measured_high in rad/s, measured_misfit) those
+            that are given.  Its attributes are those of :func:`.material_netcdf.material_as_dataset`.
 
         Examples
         --------
@@ -443,10 +459,11 @@ class Material(FromPrograms):
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return what the HTML of a notebook shows: a title, and a line for each property.
 
-        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value and unit as texts,
-        numbers to six digits): E, instantaneous modulus, nu, number of modes, T_ref, relaxation times in s, density,
-        thickness, temperature, measured band.  Properties that are None are left out, as are the relaxation times of an
-        elastic material; of these the longest and the shortest are shown, in this order, to three digits.
+        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value and unit as
+        texts, numbers to six digits): E, instantaneous modulus, nu, number of modes, T_ref, relaxation times in s,
+        density, thickness, temperature, measured band.  Properties that are None are left out, as are the
+        relaxation times of an elastic material; of these the longest and the shortest are shown, in this order, to
+        three digits.
         """
         times = self.prony.tau * self.T_ref
         values: list[tuple[str, Any, str]] = [
@@ -527,7 +544,8 @@ class Material(FromPrograms):
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Return storage and loss modulus divided by E.
 
-        omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation time that overflows
+        omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation time that
+        overflows
             is taken as infinite.
         Returns (E'/E, E''/E), dimensionless, each a number or an array of that shape; (1, 0) of an elastic and of a
         rigid body.
@@ -546,18 +564,25 @@ class Material(FromPrograms):
 
         t: s, >= 0, of any shape.
         times: relaxation or retardation times in units of T_ref, > 0, (times,); may be empty.
-        Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite where the quotient
-        overflows.
+        Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite where the
+        quotient overflows.
         Raises ParameterError for a time t that is negative, NaN, infinite or no number, or of another dimension.
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
+def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
+    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in words ``allowed``."""
+    if not callable(shift) or isinstance(shift, type):
+        raise ParameterError(name, f"{shift!r:.60}", allowed)
+
+
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
     """Raise ParameterError where T_epsilon < T_sigma, as no material has it; equal times are allowed.
 
-    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast; nothing else is
+    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast; nothing else
+    is
         checked, and NaN is no fault.
     The error states, of the elements at fault, the T_epsilon and T_sigma of that with the longest T_sigma (of equal
     ones the first).

@@ -15,6 +15,7 @@ from ..core.files import seal_matches
 from .law_file import KIND, KINDS, read_content
 from .measured import Measured
 from .prony import Prony
+from .shift import shifts_as_toml, shifts_of_toml
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -45,11 +46,12 @@ _MEANING = {
     "measured_rate": ("transit frequencies at which the accuracy of M is known", "s-1"),
     "measured_M_error": ("accuracy of M by the data as +-, relative", "1"),
     "measured_misfit": ("root mean square of the relative errors of the fit", "1"),
+    "measured_strain": ("amplitude of engineering strain of the test", "1"),
 }
 #: variables that a file may lack
 _OPTIONAL = ("density", "thickness", "temperature", "nu_instant")
 #: fields of the measured band, which a file may lack
-_BAND = ("low", "high", "misfit")
+_BAND = ("low", "high", "misfit", "strain")
 #: transit frequencies and accuracies of M, which a file may lack
 _ERRORS = ("measured_rate", "measured_M_error")
 
@@ -61,15 +63,17 @@ def material_as_dataset(material: Any) -> xr.Dataset:
     Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, of length 0 if elastic:
     strengths over the long-time modulus or compliance, times in units of T_ref; and the constants in SI units: E_long,
     nu, T_ref, alpha, and those of density, thickness, temperature (degrees Celsius) and the measured band
-    (measured_low, measured_high, measured_misfit, and over "rate" measured_rate, 1/s, and measured_M_error) that are
-    given.  Each variable has the attributes ``long_name`` and
-    ``units``.  The attribute ``given`` of the dataset names the form from which the material is read, "relaxation" or
-    "creep"; ``name`` and ``measured`` are the name and the source of the data, "" without; the others are
-    ``Conventions``, ``schema``, ``title``, ``law`` (the formulas of E(t) and J(t)) and ``source`` (this version).
+    (measured_low, measured_high, measured_misfit, measured_strain, and over "rate" measured_rate, 1/s, and
+    measured_M_error) that are given.  Each variable has the attributes ``long_name`` and ``units``.  The attribute
+    ``shifts`` has the time-temperature shifts as lines of TOML; the attribute ``given`` of the dataset names the form
+    from which the material is read, "relaxation" or "creep"; ``name`` and ``measured`` are the name and the source of
+    the data, "" without; the others are ``Conventions``, ``schema``, ``title``, ``law`` (the formulas of E(t) and J(t))
+    and ``source`` (this version).
     """
     import xarray as xr
 
     series, band = material.prony, material.measured
+    shifts = shifts_as_toml(material.shift, material.vertical_shift)
     held = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
     held |= {name: getattr(material, name) for name in _OPTIONAL}
     held |= {f"measured_{name}": getattr(band, name, None) for name in _BAND}
@@ -90,6 +94,7 @@ def material_as_dataset(material: Any) -> xr.Dataset:
             "name": material.name, "given": "creep" if series.by_creep else "relaxation",
             "law": "E(t) = E_long (1 + sum E exp(-t/(tau T_ref))), J(t) = (1 - sum J exp(-t/(T T_ref)))/E_long",
             "source": f"viscoroll {__version__}", "measured": getattr(band, "source", ""),
+            "shifts": "\n".join(f"{key} = {value}" for key, value in shifts.items()),
         },
     )  # fmt: skip
 
@@ -121,9 +126,10 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
         series = Prony(*form) if about["given"] == "relaxation" else Prony.creep(*form, alpha=numbers["alpha"])
         found: dict[str, Any] = {name: numbers[name] for name in ("nu", "T_ref", *_OPTIONAL) if name in numbers}
         if "measured_low" in numbers:
-            band = {name: numbers[f"measured_{name}"] for name in _BAND}
+            band: dict[str, Any] = {name: numbers.get(f"measured_{name}") for name in _BAND}
             pairs = zip(*(numbers[name].tolist() for name in _ERRORS if name in numbers), strict=True)
             found["measured"] = Measured(**band, source=about["measured"], M_error=tuple(pairs))
+        found |= shifts_of_toml(about.get("shifts", ""))
         return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
     except (ParameterError, KeyError, ValueError, OSError) as error:
         raise FileError(path, f"is not a material file ({' '.join(str(error).split()):.200})") from error

@@ -10,7 +10,7 @@ from dataclasses import replace
 from functools import partial
 from os import PathLike
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 import msgspec
 import numpy as np
@@ -23,7 +23,7 @@ from .material import Material
 from .material_netcdf import SUFFIX
 from .measured import Measured
 from .prony import Prony
-from .shift import ABSOLUTE_ZERO, WLF, Arrhenius, relative_shift
+from .shift import ABSOLUTE_ZERO, WLF, Arrhenius, relative_shift, shifts_as_toml
 
 #: sections of a file that describe a body
 SECTIONS = ("material", "base")
@@ -50,7 +50,7 @@ class FileSection(msgspec.Struct, kw_only=True):
     """Section [material] or [base] that names a netCDF or TOML file.
 
     thickness, density : as of :class:`MaterialSection`; they replace those of the file.
-    wlf, arrhenius, temperature : as of :class:`MaterialSection`; they shift the material of the file.
+    wlf, arrhenius, temperature, vertical_shift : as of :class:`MaterialSection`; they shift the material of the file.
     """
 
     file: str
@@ -58,6 +58,7 @@ class FileSection(msgspec.Struct, kw_only=True):
     density: float | None = None
     wlf: WLF | None = None
     arrhenius: Arrhenius | None = None
+    vertical_shift: Literal["entropic"] | None = None
     temperature: float | None = None
 
 
@@ -69,6 +70,7 @@ class MaterialSection(FileSection, kw_only=True):
     T_sigma : relaxation time of a standard linear solid, s, in place of a series.
     creep : instead of ``prony``, strengths and times of creep, and optionally alpha.
     wlf, arrhenius : time-temperature shift.
+    vertical_shift : "entropic": moduli are multiplied by the absolute temperature over that of ``reference``.
     temperature : temperature of the material, degrees Celsius.
     reference : temperature at which moduli and times are as given, degrees Celsius; default: where the shift is 1.
     nu_instant : Poisson's ratio at t = 0, where it differs from nu.
@@ -156,15 +158,18 @@ def material_as_toml(material: Material, section: str = "material") -> str:
     material: the :class:`Material`.
     section: name of the section, "material" or "base".
     Returns the text, which ends with a line feed: a header; a line each for name, E, nu and T_ref, and for those of
-    nu_instant, density, thickness, temperature (as ``reference``) and measured that are given; the series.
+    nu_instant, density, thickness, temperature (as ``reference``), shifts and measured that are given; the series.  A
+    shift that is a function other than WLF and Arrhenius is left out.
     """
     band = material.measured
     values = {name: getattr(material, name) for name in ("E", "nu", "nu_instant", "T_ref", "density", "thickness")}
     values = {"name": _quote(material.name)} | values | {"reference": material.temperature}
+    strain = "" if band is None or band.strain is None else f", strain = {band.strain}"
     values["measured"] = band and (
-        f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = {_quote(band.source)}"
+        f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = {_quote(band.source)}{strain}"
         f"{f', M_error = {[list(pair) for pair in band.M_error]}' * bool(band.M_error)} }}"
     )
+    values |= shifts_as_toml(material.shift, material.vertical_shift)
     lines = [f"{name} = {value}" for name, value in values.items() if value is not None]
     return "\n".join([f"[{section}]", *lines, series_as_toml(material.prony), ""])
 
@@ -221,12 +226,14 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
             values = {"thickness": section.thickness, "density": section.density}
             material = replace(material, **{key: value for key, value in values.items() if value is not None})
         shift, temperature = _shift_of(path, name, section), section.temperature
+        vertical = section.vertical_shift or material.vertical_shift
+        material = replace(material, shift=shift or material.shift, vertical_shift=vertical)
         if temperature is None:
             return material
-        if shift is None:
+        if material.shift is None:
             problem = f"temperature = {temperature:g}: wlf or arrhenius is needed too"
             raise section_error(path, name, "temperature", problem)
-        return material.at(temperature, shift)
+        return material.at(temperature)
 
 
 def _read_other_file(path: Any, name: str, other: Path) -> Material:

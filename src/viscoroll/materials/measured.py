@@ -28,6 +28,7 @@ class Measured:
     source : text that names the source of the data.
     M_error : accuracy of the rolling moment by the data: pairs (transit frequency of a contact, 1/s, ascending;
         relative error of M as +-, dimensionless); fits give it, (): not known.
+    strain : amplitude of engineering strain of the test, dimensionless, > 0 (0.001 is 0.1 %); None: it is not known.
 
     Raises
     ------
@@ -47,6 +48,7 @@ class Measured:
     misfit: float
     source: str = ""
     M_error: tuple[tuple[float, float], ...] = ()
+    strain: float | None = None
 
     def __post_init__(self) -> None:
         """Check the fields, and replace the numbers by floats in rad/s; a value with a unit is converted.
@@ -62,6 +64,8 @@ class Measured:
         if not (np.diff(pairs[:, 0]) > 0.0).all():
             raise described_error("M_error", "has frequencies that do not ascend", "pairs (transit frequency, +-)")
         object.__setattr__(self, "M_error", tuple(map(tuple, pairs.tolist())))
+        if self.strain is not None:
+            check_fields(self, "1", strain=0.0)
 
     @property
     def transit_band(self) -> tuple[float, float]:

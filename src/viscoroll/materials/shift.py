@@ -7,6 +7,7 @@ Their value a_T is the factor of all times of a material, which is 1 at the refe
 from __future__ import annotations
 
 import math
+import tomllib
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -14,6 +15,9 @@ from typing import Any, TypeVar
 
 import numpy as np
 
+import numpy as np
+
+from ..core.array_types import Floats
 from ..core.checks import check_number
 from ..core.errors import ModelWarning, ParameterError, caller_level
 from ..core.scale import SI, Units
@@ -84,6 +88,25 @@ class WLF:
             raise ParameterError("temperature", temperature, allowed)
         return _shift(temperature, -math.log(10.0) * self.C1 * above / (self.C2 + above))
 
+    def log(self, temperature: Floats) -> Floats:
+        """Return ln a_T, dimensionless, at temperatures in degrees Celsius, any shape; +inf at and below the pole."""
+        above = np.maximum(self.C2 + temperature - self.T0, 0.0)
+        with np.errstate(divide="ignore"):
+            return math.log(10.0) * self.C1 * (self.C2 / above - 1.0)
+
+    def temperature_of(self, log: Floats) -> Floats:
+        """Return the temperatures, degrees Celsius, at which ln a_T has given values, any shape; +inf where none has.
+
+        a_T stays above 10^-C1 at any temperature.
+        """
+        above_least = np.maximum(math.log(10.0) * self.C1 + log, 0.0)
+        with np.errstate(divide="ignore"):
+            return self.T0 - self.C2 + math.log(10.0) * self.C1 * self.C2 / above_least
+
+    def slope(self, temperature: Floats) -> Floats:
+        """Return d ln a_T/d temperature, 1/K, at temperatures in degrees Celsius, any shape."""
+        return -math.log(10.0) * self.C1 * self.C2 / (self.C2 + temperature - self.T0) ** 2
+
 
 @dataclass(frozen=True, kw_only=True)
 class Arrhenius:
@@ -128,6 +151,25 @@ class Arrhenius:
         """
         kelvin = check_celsius("temperature", temperature) - ABSOLUTE_ZERO
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
+
+    def log(self, temperature: Floats) -> Floats:
+        """Return ln a_T, dimensionless, at temperatures in degrees Celsius, any shape; +inf at absolute zero."""
+        kelvin = np.maximum(temperature - ABSOLUTE_ZERO, 0.0)
+        with np.errstate(divide="ignore"):
+            return self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO))
+
+    def temperature_of(self, log: Floats) -> Floats:
+        """Return the temperatures, degrees Celsius, at which ln a_T has given values, any shape; +inf where none has.
+
+        a_T stays above exp(-energy/(R_gas T0)) at any temperature.
+        """
+        inverse = np.maximum(log * GAS_CONSTANT / self.energy + 1.0 / (self.T0 - ABSOLUTE_ZERO), 0.0)
+        with np.errstate(divide="ignore"):
+            return ABSOLUTE_ZERO + 1.0 / inverse
+
+    def slope(self, temperature: Floats) -> Floats:
+        """Return d ln a_T/d temperature, 1/K, at temperatures in degrees Celsius, any shape."""
+        return -self.energy / GAS_CONSTANT / (temperature - ABSOLUTE_ZERO) ** 2
 
 
 _Law = TypeVar("_Law", WLF, Arrhenius)
@@ -350,6 +392,56 @@ def relative_shift(shift: Callable[[float], float], temperature: float, referenc
     """
     factor, unit = (1.0 if at is None else check_number("a_T", shift(at), above=0.0) for at in (temperature, reference))
     return check_number("a_T", factor / unit, above=0.0)
+
+
+def vertical_factor(shift: Callable[[float], float] | str | None, temperature: float, reference: float | None) -> float:
+    """Return the ratio of moduli at a temperature to those at a reference, b_T(temperature)/b_T(reference).
+
+    Parameters
+    ----------
+    shift : a function of a temperature in degrees Celsius that returns b_T, a number, dimensionless, > 0; "entropic":
+        b_T is the absolute temperature, as of an ideal network; None: moduli do not depend on the temperature.
+    temperature, reference : degrees Celsius; a reference of None is allowed only without a vertical shift.
+
+    Returns
+    -------
+    float
+        The ratio, dimensionless, > 0; 1.0 for None.
+
+    Raises
+    ------
+    ParameterError
+        A reference of None, or a shift that returns no finite positive number.
+    """
+    if shift is None:
+        return 1.0
+    if reference is None:
+        allowed = "given beside vertical_shift: moduli are multiplied by b_T(temperature)/b_T(its own)"
+        raise ParameterError("temperature", None, allowed)
+    b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
+    factor, unit = (check_number("b_T", b_T(at), above=0.0) for at in (temperature, reference))  # type: ignore[operator]
+    return factor / unit
+
+
+def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
+    """Return the shifts of a material that files hold as key -> value in TOML: wlf or arrhenius, vertical_shift.
+
+    shift, vertical_shift: as of :class:`.material.Material`; a function is left out.
+    """
+    found = {} if vertical_shift != "entropic" else {"vertical_shift": '"entropic"'}
+    if isinstance(shift, WLF | Arrhenius):
+        numbers = ", ".join(f"{name} = {value!r}" for name, value in vars(shift).items())
+        found[type(shift).__name__.lower()] = f"{{ {numbers} }}"
+    return found
+
+
+def shifts_of_toml(text: str) -> dict[str, Any]:
+    """Return ``shift`` and ``vertical_shift``, as parameters of a material, of lines as :func:`shifts_as_toml` has."""
+    found: dict[str, Any] = tomllib.loads(text)
+    for name, kind in (("wlf", WLF), ("arrhenius", Arrhenius)):
+        if name in found:
+            found["shift"] = kind(**found.pop(name))
+    return found
 
 
 def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:

@@ -36,6 +36,15 @@ Options are written as the numbers of `viscoroll contact`: single numbers, or li
 
 example:
   viscoroll steady paper-section-5-rounded --slope 0:0.1:6""",
+    "heat": """\
+Find the temperatures at which a cylinder runs.
+
+Each equilibrium of loss and heat given off is a row; unstable ones lie between two stable ones.
+The [material] needs wlf or arrhenius.  Options are written as the numbers of `viscoroll contact`.
+
+example:
+  viscoroll samples
+  viscoroll heat samples/rubber.toml --V 0.5:4:8 --ambient 20 --conductance 2.5""",
     "validity": """\
 Check the assumptions of the model at one speed.
 

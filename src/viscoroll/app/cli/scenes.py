@@ -176,6 +176,35 @@ def steady(arguments: Namespace) -> None:
 
 
 @command(
+    "heat", SCENE,
+    option("--V", type=numbers, help="speed in m/s; without it the speed follows from a load"),
+    option("--ambient", type=numbers, required=True, help="temperature of the surroundings in degrees Celsius"),
+    option("--conductance", type=numbers, required=True, help="heat given off per kelvin, W/(m K)"),
+    option("--force", type=numbers, help="force on the axis along V, N/m"),
+    option("--torque", type=numbers, help="torque on the cylinder along omega, N m/m"),
+    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill"),
+    TABLE,
+)  # fmt: skip
+def heat(arguments: Namespace) -> None:
+    """Print or write the temperatures at which a cylinder runs, and why a state has none.
+
+    arguments: parsed command line with scene, path of a TOML file with [cylinder] and a [material] that has a shift;
+        V, ambient, conductance, force, torque, slope, numbers or (n,), or None; output and format as of ``steady``.
+    Returns None.  The table has a row for each equilibrium, with the fields of :func:`viscoroll.temperature`.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read or written.
+    """
+    import numpy as np
+
+    names = ("V", "ambient", "conductance", "force", "torque", "slope")
+    given = {name: np.atleast_1d(value) for name in names if (value := getattr(arguments, name)) is not None}
+    found = roller_of_argument(arguments.scene).temperature(**given)
+    for n, reason in enumerate(found.reason[:_MOST_LINES]):
+        if reason:
+            warnings.warn(f"state {n}: {reason}", vr.ModelWarning, stacklevel=2)
+    show(arguments, found)
+
+
+@command(
     "validity", SCENE,
     option("--V", type=float, required=True, help=_V_HELP),
     option("--omega", type=float, help="angular velocity; without it the assumption on creepage is not checked"),

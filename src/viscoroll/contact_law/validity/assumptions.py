@@ -121,6 +121,8 @@ class Validity(NamedTuple):
     thick : for a layer of known thickness; value: half the contact length divided by the thickness.  Up to its limit
         one stick zone in front with slip behind is right.
     plane : plane strain or plane stress, which V does not decide.
+    strain : of a Cylinder; value: amplitude of engineering shear strain at the axis, of the softest body, compared with
+        the strain of the data, of which a third to three times is allowed.  ``holds`` is None without the latter.
 
     Examples
     --------
@@ -140,6 +142,7 @@ class Validity(NamedTuple):
     measured: Assumption
     thick: Assumption
     plane: Assumption
+    strain: Assumption
 
     @property
     def failed(self) -> tuple[str, ...]:
@@ -170,6 +173,7 @@ UNKNOWN = Validity(*(Assumption(None, None, sentence) for sentence in (
     "no thickness is given: the law is that of a half-space.  It applies to a layer if the contact is at most "
     f"{THICK_LIMIT:.2g} times as long as the layer is thick (contact length within 5 %)",
     "the state must be plane strain (a long cylinder, or one between walls) or plane stress (a thin disc)",
+    "the strain of the contact is not compared with that of the data: a scene does not state the materials",
 )))  # fmt: skip
 
 #: The assumption ``steady`` of a cover.
@@ -212,7 +216,7 @@ def transit_speeds(series: Prony, rates: Floats) -> Floats:
     return found
 
 
-def _largest(values: Any) -> float:
+def largest(values: Any) -> float:
     """Return the largest of ``values``, any shape, as a float; 0.0 if there are none, or all are negative."""
     return float(np.max(values, initial=0.0))
 
@@ -224,7 +228,7 @@ def assess_small_contact(reach: Any) -> Assumption:
         which may be empty.
     Returns the assumption ``small_contact``, whose value is ``reach``; it holds where that is at most 0.2.
     """
-    far = _largest(reach)
+    far = largest(reach)
     return Assumption(
         reach <= REACH_LIMIT, reach,
         f"the contact reaches {far:.2g} R from the axis, where the parabola in place of the circle has an error of "
@@ -240,7 +244,7 @@ def assess_position(epsilon: Any) -> Assumption:
         which may be empty.
     Returns the assumption ``under_axis``, whose value is ``epsilon``; it holds where that is at most 1.
     """
-    ahead = _largest(epsilon)
+    ahead = largest(epsilon)
     where = (
         "the whole contact lies ahead of the axis, which is allowed" if ahead > 1.0 else "the axis is above the contact"
     )
@@ -280,7 +284,7 @@ def assess_inertia(wave_ratio: Any, unknown: Sequence[str] = (), decides: bool =
         return UNKNOWN.quasistatic._replace(sentence=UNKNOWN.quasistatic.sentence + missing)
     return Assumption(
         wave_ratio <= WAVE_LIMIT, wave_ratio,
-        f"the speed is {100.0 * _largest(wave_ratio):.3g} % of the shear wave speed; up to "
+        f"the speed is {100.0 * largest(wave_ratio):.3g} % of the shear wave speed; up to "
         f"{100.0 * WAVE_LIMIT:g} % is allowed, where the load is within 10 % of the static one"
         + missing,
     )  # fmt: skip

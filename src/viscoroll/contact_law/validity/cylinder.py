@@ -28,6 +28,7 @@ from .assumptions import (
     transit_frequency,
     transit_speeds,
 )  # fmt: skip
+from .strain import assess_strain
 
 #: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness matter.
 _LEAST_SHARE = 0.01
@@ -64,6 +65,8 @@ class BodyData:
     T_ref : unit of time of the scene, s.
     plane : "strain" or "stress".
     scene : the dimensionless scene.
+    nu : Poisson's ratio of the paper's material; None with a pair.
+    load : N/m, a number or (n,).
     """
 
     pair: Pair | None
@@ -73,6 +76,8 @@ class BodyData:
     T_ref: float
     plane: str
     scene: Parameters
+    nu: Any
+    load: Any
 
     @cached_property
     def records(self) -> dict[str, Measured]:
@@ -219,6 +224,7 @@ class BodyData:
             bodies=assess_coupling(*(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like),
             measured=assess_measured_band(transit_frequency(V, length), self.records),
             plane=Assumption(None, None, f"the state is taken as {kind}"),
+            strain=assess_strain(self, V, length, self.load),
         )
 
 

@@ -12,9 +12,11 @@ import numpy as np
 from ...core.array_types import Floats
 from ...core.checks import check_array
 from ...core.drive import Schedule
-from ...core.errors import ParameterError
+from ...core.errors import ParameterError, described_error
 from ...core.scale import Scale
 from ...cylinder import Cylinder, scene_of
+from ...heat.shift_curve import shift_curve
+from ...heat.temperature import temperature
 from ...materials.material import Material
 from ...materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
 from ...materials.measured import Measured
@@ -93,8 +95,41 @@ def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
         content["cylinder"],
         {name: _body(path, name, content[name]) for name in SECTIONS if name in content},
     )
+    if "heat" in content:
+        bodies = _warm_bodies(content, numbers, bodies)
     differ = np.ndim(numbers.get("T_epsilon", 0.0)) or any(isinstance(body, Solid) for body in bodies.values())
     return (Rollers if differ else Cylinder)(**numbers, **bodies)
+
+
+def _warm_bodies(content: Mapping[str, Any], numbers: Mapping[str, Any], bodies: dict[str, Any]) -> dict[str, Any]:
+    """Return the bodies of all motions at the temperatures at which their cylinders roll.
+
+    content: sections as of :func:`roller_of`, of which [heat] and [start] are read.
+    numbers: [cylinder], numbers or arrays (n,); bodies: "material" and "base", those that the file has.
+    Returns the bodies, of which those that relax are at the coldest equilibrium: a :class:`Material` of one
+    temperature, a :class:`Solid` of several.
+    Raises ParameterError for a material that is uncertain itself, and as :func:`.heat.temperature.temperature`.
+    """
+    heat = content["heat"]
+    speed = heat.get("speed", content["start"].get("V0"))
+    if speed is None:
+        raise ParameterError("speed", None, "given in [heat] where [start] has no V0")
+    for name, body in bodies.items():
+        if isinstance(body, Solid):
+            allowed = "certain beside [heat]: its temperature follows from the law of one material"
+            raise described_error(name, "has uncertain numbers", allowed)
+    given = {name: heat[name] for name in ("ambient", "conductance")}
+    found = temperature(Cylinder(**numbers, **bodies), speed, **given).temperature
+    if not found.size or np.isnan(found[..., 0]).any():
+        raise described_error("ambient", "leads to no temperature within the range of the shift", "another")
+    theta, warm = found[..., 0], dict(bodies)
+    for name, body in bodies.items():
+        if body.prony.alpha > 1.0 and not theta.ndim:
+            warm[name] = body.at(float(theta))
+        elif body.prony.alpha > 1.0:
+            a_T, root_b = shift_curve(body).factors(theta)
+            warm[name] = Solid(body.E * root_b**2, body.nu, body.prony.slower(a_T), body.T_ref, body.thickness)
+    return warm
 
 
 def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
@@ -187,6 +222,8 @@ def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tup
     Raises FileError as :func:`_first_material`, ParameterError for a temperature that the shift does not allow.
     """
     bands: dict[Measured, Any] = {}
+    if "heat" in content:  # the temperatures are known when the rollers are made, which warns
+        return bands
     for name in SECTIONS:
         section = content.get(name)
         if section is None or (record := _first_material(path, name, section).measured) is None:

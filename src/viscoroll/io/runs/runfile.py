@@ -90,6 +90,19 @@ class DriveSection(msgspec.Struct):
     omega: float | ScheduleSection | None = None
 
 
+class HeatSection(msgspec.Struct):
+    """[heat]: the material of a motion is at the temperature at which its cylinder, from cold, rolls at a speed.
+
+    ambient : temperature of the surroundings, degrees Celsius.
+    conductance : heat given off per kelvin, W/(m K).
+    speed : m/s; default: V0 of the motion.
+    """
+
+    ambient: float
+    conductance: float
+    speed: float | None = None
+
+
 class TimesSection(msgspec.Struct):
     """{ low, high, count, spacing }: equally spaced output times, or logarithms of these."""
 
@@ -284,7 +297,13 @@ def read_run(path: str | PathLike[str]) -> Run:
     content, path = read_toml(path), Path(path)
     inputs = inputs_of(path, content)
     medians = inputs.filled(inputs.medians)
-    sections = {"start": StartSection, "drive": DriveSection, "run": RunSection, "correlation": None}
+    sections = {
+        "start": StartSection,
+        "drive": DriveSection,
+        "run": RunSection,
+        "correlation": None,
+        "heat": HeatSection,
+    }
     check_sections(path, medians, sections)
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:

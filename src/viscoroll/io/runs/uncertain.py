@@ -22,7 +22,7 @@ from .inputs import Distribution, Input, Inputs
 #: Section -> first letters of the names of its inputs; those of the other sections have none.
 PREFIXES = {"base": "base_", "drive": "drive_"}
 #: Sections that may have uncertain numbers.
-_SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive")
+_SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive", "heat")
 #: Key -> the word for it in the name of an input, if that is another; "" is left out.
 _WORDS = {"prony": "", "creep": "", "values": "", "times": "time"}
 #: Keys of a material that may be uncertain.

@@ -1,0 +1,337 @@
+"""Limits that heat sets: :func:`heat_limit`, :func:`turning_points`, and the conductance of a body.
+
+At a temperature theta the balance w = conductance (theta - ambient) determines the speed of a given load, or the
+load of a given speed.  With u = kappa V a_T T_ref/R and C(u) = kappa M, w = part P V C/kappa, and kappa is
+proportional to P^(-1/2), so that with the u_0 of the load P_0
+
+    C(u) u = conductance (theta - ambient) a_T kappa^2/(part P) T_ref/R            at a given load
+    C(u)/u^3 = conductance (theta - ambient) kappa_0/(part P_0 V u_0^3)            at a given speed, P = P_0 (u_0/u)^2
+
+Both left sides are monotone, as d ln C/d ln u lies between -1 and 1 for every material.  A roller that starts cold
+reaches theta at the largest of these loads or speeds over the temperatures up to theta.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+
+from ..contact_law.contact_table import pure_rolling_fields
+from ..contact_law.equilibria.resistance import find_zeros
+from ..contact_law.parameters import Roller, resolve_model
+from ..contact_law.validity.assumptions import Assumption
+from ..core.array_types import Booleans, Floats, Numbers
+from ..core.checks import broadcast_shape, check_array, check_choice, check_number
+from ..core.errors import ParameterError, check_one_given, described_error, shape_error
+from ..core.labels import strip_labels
+from ..core.results import Values
+from ..core.scale import SI
+from .balance import NODES, minimum_of
+from .bodies import HeatStates, check_ambient, heat_states
+from .temperature import HOTTEST
+
+#: Film coefficient of a turning roller in still to moving air, W/(m2 K): the range of forced convection and radiation
+#: at surface speeds of 0.5 to 10 m/s; the default is near its geometric mean.
+FILM_RANGE = 10.0, 50.0
+DEFAULT_FILM = 20.0
+#: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab with an insulated
+#: side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
+BIOT_LIMIT = 0.75
+#: Temperatures between ambient and the allowed one at which the limit is computed before it is refined.
+_TEMPERATURES = 65
+#: log2 of u between which it is sought, and bisections from there to rounding.
+_FARTHEST, _BISECTIONS = 900.0, 62
+#: Half the step of the difference quotient of ln V, in log2 a_T: its zero is displaced by the square of it.
+_HALF_STEP = 1e-3
+#: Speed up to which turning points are returned, m/s: beyond it no roller runs, and the loss of a cold rubber no longer
+#: depends on the speed to rounding.
+FASTEST = 1e4
+#: Step that tells a maximum of ln V from a minimum.
+_BEND = 1e-2
+
+
+class TurningPoints(NamedTuple):
+    """The speeds at which two equilibria of heat meet, by rising temperature.
+
+    V : speeds, m/s, (n,).
+    temperature : degrees Celsius, (n,).
+    is_runaway : whether the colder branch ends there as the speed rises; else the hotter one ends as it falls, (n,).
+    """
+
+    V: Floats
+    temperature: Floats
+    is_runaway: Booleans
+
+
+def heat_limit(
+    roller: Roller, allowed: float, *, V: Numbers | None = None, load: Numbers | None = None, ambient: Numbers,
+    conductance: Numbers,
+) -> Values:  # fmt: skip
+    """Find the largest load at each speed, or the largest speed at each load, at which a roller stays cool enough.
+
+    It starts at ambient temperature, rolls freely, and must not pass the allowed temperature at any time.
+
+    Parameters
+    ----------
+    roller : a :class:`Cylinder` as of :func:`temperature`, of which the load is replaced.
+    allowed : temperature of the body that is allowed, degrees Celsius.
+    V : speeds, m/s, other than 0, of which the loads are found.
+    load : loads, N/m, > 0, of which the speeds are found; exactly one of the two is given.
+    ambient, conductance : as of :func:`temperature`.
+
+    Returns
+    -------
+    Values
+        ``load`` (N/m) of given V, or ``V`` (m/s, > 0; infinite where no speed is too fast) of given loads;
+        ``temperature``, from which a larger one leads beyond the allowed temperature: the allowed one, or below it
+        the one at which the cold branch ends; ``runaway``, whether that is so.
+
+    Raises
+    ------
+    ParameterError
+        As of :func:`temperature`; both or neither of V and load, V = 0, V of a cover, an allowed temperature that
+        is not above ambient or beyond the range of the shift, a load of a cover that is too thin for its law.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), 0.01, temperature=20.0, shift=vr.WLF(T0=-50.0))
+    >>> roller = vr.Cylinder(R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=2e4)
+    >>> found = vr.heat_limit(roller, 70.0, V=[1.0, 2.0, 4.0], ambient=20.0, conductance=6.0)
+    >>> bool((found.load[1:] < found.load[:-1]).all())
+    True
+
+    Notes
+    -----
+    The limits are those of :func:`temperature` to 1e-8, relative (``tests/test_heat.py``).
+    """
+    _, _, scale = resolve_model(roller, "heat_limit")
+    name = check_one_given(V=V, load=load)
+    given = {name: V if load is None else load, "ambient": ambient, "conductance": conductance}
+    plain, labels = strip_labels(given, scale)
+    allowed = check_number("allowed", allowed, unit=SI)
+    value = check_array(name, plain[name], above=0.0 if name == "load" else -math.inf)
+    if name == "V" and not value.all():
+        raise described_error("V", "is 0, where no load heats,", "other than 0")
+    if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):
+        raise ParameterError("allowed", allowed, f"above ambient = {np.max(plain['ambient']):g}")
+    cylinder: Any = roller
+    if name == "load":
+        cylinder = cylinder.replace(load=value)
+    scene = cylinder.scene()
+    if scene.cover is not None:
+        if name == "V":
+            raise described_error("V", "is given", "left out for a cover, whose law depends on the load: give load=")
+        if scene.cover.shape:  # one law after another
+            return _for_each_load(roller, allowed, value, plain, labels)
+    given = {"V": value if name == "V" else None} | {key: plain[key] for key in ("ambient", "conductance")}
+    states = heat_states(cylinder, scene, "heat_limit", given)
+    check_ambient(np.asarray(allowed), states.curve, "allowed")
+    sought, whole = ("load" if name == "V" else "V"), allowed - states.ambient
+    s = np.linspace(0.0, 1.0, _TEMPERATURES)[1:]  # parts of the whole rise
+    ln = _ln_limit(states, sought, whole[:, np.newaxis] * s)
+    best = np.argmax(ln, axis=1)
+    low, high = s[np.maximum(best - 1, 0)], s[np.minimum(best + 1, s.size - 1)]
+    at, least = minimum_of(lambda part: -_ln_limit(states, sought, (whole * part)[:, np.newaxis])[:, 0], low, high)
+    end = ln[:, -1] >= -least
+    rows = {sought: np.exp(np.where(end, ln[:, -1], -least))}
+    rows |= {"temperature": states.ambient + np.where(end, 1.0, at) * whole, "runaway": ~end}
+    found = {key: each.reshape(states.shape) if states.shape else each[0].item() for key, each in rows.items()}
+    about = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
+    return Values(found, about, si=True, title="Limits by heat", labels=labels)
+
+
+def _for_each_load(roller: Any, allowed: float, load: Floats, plain: dict[str, Any], labels: Any) -> Values:
+    """Return the result of :func:`heat_limit` for loads of a cover, of which each has a law of its own.
+
+    plain: ambient and conductance, numbers or arrays; labels: of the arguments.
+    """
+    given = {"load": load} | {key: np.asarray(plain[key], np.float64) for key in ("ambient", "conductance")}
+    shape = broadcast_shape(**given)
+    rows = zip(*(np.broadcast_to(each, shape).ravel().tolist() for each in given.values()), strict=True)
+    parts = [heat_limit(roller, allowed, load=P, ambient=at, conductance=G) for P, at, G in rows]
+    found = {name: np.array([part[name] for part in parts]).reshape(shape) for name in ("V", "temperature", "runaway")}
+    return Values(found, given, si=True, title="Limits by heat", labels=labels)
+
+
+def _ln_limit(states: HeatStates, name: str, rise: Floats) -> Floats:
+    """Return ln of the load or speed at which heat balances at temperatures above ambient, by bisection.
+
+    states: the states, n of them; name: the quantity that is sought, "load" or "V".
+    rise: temperatures less ambient, K, > 0, (n, k).
+    Returns (n, k); +inf where no speed loses as much.
+    """
+    theta = states.ambient[:, np.newaxis] + rise
+    ln_factor, root_b = math.log(2.0) * states.curve.log2_of(theta), states.curve.root_b(theta)
+    ln_kappa = np.log(states.kappa[:, np.newaxis] * root_b)
+    ln_off = np.log(states.conductance[:, np.newaxis] * rise / (states.body.part * states.load[:, np.newaxis]))
+    ln_unit = np.log(states.unit)[:, np.newaxis]
+    if name == "V":
+        power, target = 1.0, ln_off + ln_factor - np.log(root_b) + 2.0 * ln_kappa - ln_unit
+    else:
+        ln_V = np.log(np.abs(states.V))[:, np.newaxis]  # type: ignore[arg-type]
+        ln_u0 = np.log(states.kappa)[:, np.newaxis] + ln_factor + ln_V - ln_unit
+        power, target = -3.0, ln_off + ln_kappa - ln_V - 3.0 * ln_u0
+    low, high = np.full((2, *rise.shape), [[[-_FARTHEST]], [[_FARTHEST]]])
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (low + high)
+        (C,) = pure_rolling_fields(states.law, np.exp2(middle).ravel(), "M")
+        below = (np.log(C.reshape(rise.shape)) + power * math.log(2.0) * middle < target) == (power > 0.0)
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    ln_u = np.where(high < _FARTHEST, math.log(2.0) * high, np.inf)
+    if name == "V":
+        return ln_u + ln_unit - np.log(states.kappa)[:, np.newaxis] - ln_factor
+    return np.log(states.load)[:, np.newaxis] + 2.0 * (ln_u0 - ln_u)
+
+
+def turning_points(roller: Roller, *, ambient: float, conductance: float) -> TurningPoints:
+    """Find the speeds at which equilibria of heat appear or vanish: where a cold branch ends, and where a hot one does.
+
+    Parameters
+    ----------
+    roller : a :class:`Cylinder` as of :func:`temperature`, without arrays; it rolls freely.
+    ambient, conductance : numbers as of :func:`temperature`.
+
+    Returns
+    -------
+    TurningPoints
+        Named tuple of ``V``, ``temperature`` and ``is_runaway``, arrays of one length by rising temperature; empty
+        where each speed has one equilibrium; up to 1e4 m/s.  Above a speed of runaway, up to 500 degrees Celsius,
+        the roller warms to a hotter branch.
+
+    Raises
+    ------
+    ParameterError
+        As of :func:`temperature`; arrays.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0, 40.0], [1.0, 0.01]), 0.02, temperature=20.0,
+    ...                      shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0))
+    >>> roller = vr.Cylinder(R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=2e4)
+    >>> vr.turning_points(roller, ambient=-30.0, conductance=6.0).is_runaway.tolist()
+    [True, False]
+
+    Notes
+    -----
+    The speeds have a relative error below 1e-8 (``tests/test_heat.py``).
+    """
+    _, scene, _ = resolve_model(roller, "turning_points")
+    given = {"ambient": check_number("ambient", ambient, unit="degC"), "conductance": check_number(
+        "conductance", conductance, unit="W m-1 K-1", above=0.0)}  # fmt: skip
+    states = heat_states(roller, scene, "turning_points", given)
+    if states.shape:
+        raise shape_error("roller", states.shape, "one without arrays")
+
+    def ln_V(y: Floats) -> Floats:
+        theta = states.curve.temperature_of(y)
+        return _ln_limit(states, "V", (theta - given["ambient"])[np.newaxis])[0]
+
+    hottest = np.float64(min(HOTTEST, states.curve.high))
+    ends = states.curve.log2_of(np.array([hottest, given["ambient"]]))
+    # from the hottest to ambient; nearer to it than two steps V only rises with the temperature
+    low, high = float(ends[0]) + 2.0 * _HALF_STEP, float(ends[1]) - 2.0 * _HALF_STEP
+    y = np.linspace(low, high, 2 + math.ceil(NODES * (high - low)))
+    flat = find_zeros(lambda at: ln_V(at + _HALF_STEP) - ln_V(at - _HALF_STEP), y)[::-1]
+    V = ln_V(flat)
+    flat, V = flat[V < math.log(FASTEST)], V[V < math.log(FASTEST)]
+    bends = ln_V(flat + _BEND) + ln_V(flat - _BEND) - 2.0 * V
+    return TurningPoints(np.exp(V), states.curve.temperature_of(flat), bends < 0.0)
+
+
+def conductance(
+    R: Numbers, *, film: Numbers = DEFAULT_FILM, thickness: Numbers | None = None, conductivity: Numbers | None =
+    None, core: Literal["cooled", "insulated"] = "insulated",
+) -> Any:  # fmt: skip
+    """Return the heat that a cylinder gives off per kelvin of its mean temperature, from film and conduction.
+
+    Heat arises evenly in a solid cylinder, or in a cover of which the other side is at a core; it is conducted to the
+    surface (in series with the film) and, of a cooled core, to the core too (in parallel).  The mean temperature
+    follows in closed form, of a cover as of a slab of mean radius R - thickness/2.
+
+    Parameters
+    ----------
+    R : radius of the surface, m, > 0; each number may be an array, and they broadcast.
+    film : film coefficient of the surface, W/(m2 K), > 0; default 20, of a roller that turns in air: from 10 (slow,
+        in still air) to 50 (10 m/s).
+    thickness : of the cover, m, > 0, below R; None: a solid cylinder.
+    conductivity : of the rubber, W/(m K), > 0 (0.15 to 0.3); None: the film alone counts.
+    core : "insulated", a core that takes no heat, or "cooled", one at ambient temperature (with a thickness and a
+        conductivity).
+
+    Returns
+    -------
+    float or array
+        W/(m K), per m of length.
+
+    Raises
+    ------
+    ParameterError
+        Values out of range, a thickness of R or more, a cooled core without thickness and conductivity.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> round(vr.conductance(0.1, film=20.0), 3)  # 2 pi R film
+    12.566
+    """
+    check_choice("core", core, "cooled", "insulated")
+    given: dict[str, Any] = {"R": R, "film": film, "thickness": thickness, "conductivity": conductivity}
+    arrays = {name: check_array(name, x, unit=SI, above=0.0)[()] for name, x in given.items() if x is not None}
+    broadcast_shape(**{name: np.asarray(array) for name, array in arrays.items()})
+    R, film = arrays["R"], arrays["film"]
+    h, k = arrays.get("thickness"), arrays.get("conductivity")
+    if core == "cooled" and (h is None or k is None):
+        raise described_error("core", "is 'cooled'", "'insulated' without a thickness and a conductivity")
+    if h is None:
+        inside = 0.0 if k is None else 1.0 / (8.0 * math.pi * k)
+        return 1.0 / (1.0 / (2.0 * math.pi * R * film) + inside)
+    if np.any(h >= R):
+        raise ParameterError("thickness", h, f"below R = {R}")
+    width = 2.0 * math.pi * (R - 0.5 * h)
+    if k is None:
+        return width * film
+    biot = film * h / k
+    if core == "insulated":
+        return width * film / (1.0 + biot / 3.0)
+    return width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
+
+
+def uniform_temperature(film: float, thickness: float, conductivity: float) -> Assumption:
+    """State whether one temperature stands for a cover: whether heat is conducted in it faster than it leaves it.
+
+    Parameters
+    ----------
+    film : film coefficient, W/(m2 K), > 0.
+    thickness : of the cover, m, > 0, on a core that takes no heat; of a solid cylinder its radius.
+    conductivity : of the rubber, W/(m K), > 0.
+
+    Returns
+    -------
+    Assumption
+        Its ``value`` is the Biot number film thickness/conductivity; it holds up to 0.75, where the hottest point
+        of a slab with even sources is 10 % of the rise above the mean; the sentence states that part.
+
+    Raises
+    ------
+    ParameterError
+        A value that is not one finite number > 0.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.uniform_temperature(film=10.0, thickness=0.01, conductivity=0.25).holds
+    True
+    """
+    given = {"film": film, "thickness": thickness, "conductivity": conductivity}
+    film, thickness, conductivity = (check_number(name, x, unit=SI, above=0.0) for name, x in given.items())
+    biot = film * thickness / conductivity
+    above = 100.0 * ((1.0 + 0.5 * biot) / (1.0 + biot / 3.0) - 1.0)
+    return Assumption(
+        biot <= BIOT_LIMIT, biot,
+        f"the Biot number is {biot:.2g}: the hottest point is {above:.2g} % of the rise above the mean temperature; "
+        f"up to {BIOT_LIMIT} (10 %) one temperature stands for the body",
+    )  # fmt: skip

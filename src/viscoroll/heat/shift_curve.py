@@ -1,0 +1,152 @@
+"""The shift of a material over temperature, for arrays: :class:`ShiftCurve`, the factor of speed and its inverse.
+
+Time-temperature superposition makes the law at a temperature that of the reference at the speed V a_T.  A vertical
+shift b_T multiplies all moduli, so that kappa, with the contact length at rest, has the factor sqrt(b_T): of
+half-spaces the law at a temperature is that of the reference at kappa V a_T sqrt(b_T), divided by kappa.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from ..core.array_types import Floats
+from ..core.errors import ModelWarning, ParameterError, ViscorollError, described_error
+from ..materials.material import Material
+from ..materials.shift import WLF, Arrhenius, relative_shift, vertical_factor
+
+#: temperatures, degrees Celsius, between which a function without a ``range`` is sampled: from the coldest at which
+#: rubbers are measured to far beyond the hottest at which one lasts
+_SAMPLED_RANGE = -150.0, 1000.0
+#: samples of such a function; a step is then 0.23 K, over which ln a_T is straight to 1e-3
+_SAMPLES = 5001
+#: slope, 1/K, that makes a constant shift invertible; equilibria are refined with the shift itself
+_TILT = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class ShiftCurve:
+    """log2 of the factor of kappa V at a temperature, a_T sqrt(b_T) relative to the reference, and its inverse.
+
+    log2_of : function of temperatures, degrees Celsius, any shape; outside of ``low`` to ``high`` extrapolated.
+    temperature_of : its inverse, +inf where the factor has no such value.
+    slope : derivative of ``log2_of``, 1/K, < 0, likewise.
+    root_b : function of temperatures that returns sqrt(b_T) relative to the reference; 1 without a vertical shift.
+    low, high : temperatures between which the shift is defined, degrees Celsius; -inf and inf of none.
+    exact : whether ``log2_of`` is the shift itself, else it interpolates samples.
+    material : the material at its reference.
+    """
+
+    log2_of: Callable[[Floats], Floats]
+    temperature_of: Callable[[Floats], Floats]
+    slope: Callable[[Floats], Floats]
+    root_b: Callable[[Floats], Floats]
+    low: float
+    high: float
+    exact: bool
+    material: Material
+
+    def factors(self, theta: Floats) -> tuple[Floats, Floats]:
+        """Return a_T and sqrt(b_T) relative to the reference at temperatures (n,), to the bits of ``Material.at``.
+
+        NaN where the shift is not defined.
+        """
+        found = np.full((2, theta.size), np.nan)
+        shift, vertical, reference = self.material.shift, self.material.vertical_shift, self.material.temperature
+        assert shift is not None
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ModelWarning)  # of temperatures that look like kelvin
+            unit = 1.0 if reference is None else shift(reference)
+            for n, at in enumerate(theta.tolist()):
+                if self.low <= at <= self.high:
+                    found[0, n] = shift(at) / unit
+                    found[1, n] = math.sqrt(vertical_factor(vertical, at, reference))
+        return found[0], found[1]
+
+
+def shift_curve(material: Material) -> ShiftCurve:
+    """Return the curve of a material's shift, which the material keeps.
+
+    Raises ParameterError for a material without a shift, for a shift that is not defined at the reference or does not
+    fall with temperature.
+    """
+    found: Any = material.__dict__.get("_shift_curve")
+    if found is None:
+        found = material.__dict__["_shift_curve"] = _make_curve(material, material.shift, material.vertical_shift)
+    return found
+
+
+def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
+    """Return the curve of a material with this ``shift`` and ``vertical`` shift."""
+    if shift is None:
+        allowed = "given to the Material of a body that relaxes: a WLF, an Arrhenius or a function"
+        raise ParameterError("shift", None, allowed)
+    reference = material.temperature
+    if isinstance(shift, WLF | Arrhenius) and vertical is None:
+        own = 0.0 if reference is None else float(shift.log(np.asarray(reference)))
+        low, high = _range_of(shift, (shift.T0 - shift.C2 if isinstance(shift, WLF) else -273.15, math.inf))
+        return ShiftCurve(
+            lambda theta: (shift.log(theta) - own) / math.log(2.0),
+            lambda x: shift.temperature_of(x * math.log(2.0) + own),
+            lambda theta: shift.slope(theta) / math.log(2.0),
+            np.ones_like, low, high, True, material,
+        )  # fmt: skip
+    theta, a_T = _sampled(shift, *_range_of(shift, _SAMPLED_RANGE), reference)
+    moduli = [vertical_factor(vertical, at, reference) for at in theta.tolist()]
+    log2 = np.log2(a_T) + 0.5 * np.log2(moduli)
+    if (rises := np.flatnonzero(np.diff(log2) > 0.0)).size:
+        found = f"rises at {theta[rises[0]]:.4g} degrees Celsius"
+        raise described_error("shift", found, "a function that does not rise with temperature")
+    log2 = log2 - _TILT * (theta - theta[0])
+    # one step beyond each end with the slope there extrapolates
+    step = np.array([-1e4, 1e4])
+    ends = log2[[0, -1]] + step * (np.diff(log2)[[0, -1]] / np.diff(theta)[[0, -1]])
+    whole = np.concatenate([theta[:1] + step[0], theta, theta[-1:] + step[1]])
+    logs = np.concatenate([ends[:1], log2, ends[1:]])
+    slopes = np.diff(logs) / np.diff(whole)
+    roots = np.sqrt(moduli)
+    return ShiftCurve(
+        lambda at: np.interp(at, whole, logs),
+        lambda x: np.where(x < logs[-1], np.inf, np.interp(x, logs[::-1], whole[::-1])),
+        lambda at: slopes[np.clip(np.searchsorted(whole, at) - 1, 0, slopes.size - 1)],
+        lambda at: np.interp(at, theta, roots),
+        float(theta[0]), float(theta[-1]), False, material,
+    )  # fmt: skip
+
+
+def _range_of(shift: Any, default: tuple[float, float]) -> tuple[float, float]:
+    """Return (lowest, highest) temperature of a shift by its attribute or method ``range``, else the default."""
+    found = getattr(shift, "range", None)
+    found = found() if callable(found) else found
+    return default if found is None else (float(found[0]), float(found[1]))
+
+
+def _sampled(shift: Any, low: float, high: float, reference: float | None) -> tuple[Floats, Floats]:
+    """Return temperatures and a_T relative to the reference there, over the range around it in which it is defined.
+
+    shift: function of a temperature in degrees Celsius.
+    low, high: temperatures between which it is sampled.
+    reference: temperature of the material; None: that at which a_T is nearest to 1.
+    Raises ParameterError for a shift that is not defined at the reference.
+    """
+    theta = np.linspace(low, high, _SAMPLES)
+    a_T = np.full(theta.size, np.nan)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", ModelWarning)
+        for n, at in enumerate(theta.tolist()):
+            try:
+                a_T[n] = relative_shift(shift, at, reference)
+            except (ViscorollError, ArithmeticError, ValueError):
+                continue
+    known = np.isfinite(a_T)
+    at = int(np.argmin(np.abs(theta - reference)) if reference is not None else np.nanargmin(np.abs(np.log(a_T))))
+    if not known[at]:
+        raise described_error("shift", "is not defined at the temperature of the material", "defined there")
+    ends = np.flatnonzero(~known)
+    first, last = ends[ends < at].max(initial=-1) + 1, ends[ends > at].min(initial=theta.size)
+    return theta[first:last], a_T[first:last]

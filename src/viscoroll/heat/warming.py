@@ -1,0 +1,180 @@
+"""Warming of a roller over time: :func:`warming` integrates the balance of heat."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+
+from ..contact_law.parameters import Roller, resolve_model
+from ..core.array_types import Floats, Numbers
+from ..core.checks import check_array, check_number
+from ..core.drive import Schedule
+from ..core.errors import ParameterError, described_error, shape_error
+from ..core.labels import strip_labels
+from ..core.results import Values
+from .balance import Curve, rolling_curve
+from .bodies import HeatStates, check_ambient, heat_states
+from .temperature import rolling_rows
+
+#: Tolerance of the integrator beside which its own default is loose: the energy then balances to 1e-6 of itself.
+RTOL = 1e-9
+
+
+def warming(
+    roller: Roller, V: Any, t: Numbers, *, ambient: Numbers, conductance: Numbers, capacity: Numbers,
+    start: Numbers | None = None, rtol: float = RTOL,
+) -> Values:  # fmt: skip
+    """Integrate the temperature of a freely rolling cylinder over time, with the law at the temperature of each time.
+
+    Parameters
+    ----------
+    roller : a :class:`Cylinder` as of :func:`temperature`.
+    V : speed, m/s, any sign: a number, a :class:`Schedule`, or a function of t.
+    t : times of the output, s, (t,), ascending, >= 0.
+    ambient, conductance : as of :func:`temperature`; these, ``capacity`` and ``start`` broadcast to the shape of
+        states.
+    capacity : heat that the body stores per kelvin, J/(m K), > 0: the sum of density, specific heat and cross
+        section of what warms together.
+    start : temperature at t = 0, degrees Celsius; default: ``ambient``.
+    rtol : relative tolerance of the integrator, in [1e-12, 1e-3]; the absolute one is as many kelvin.
+
+    Returns
+    -------
+    Values
+        Over (states..., t): ``temperature``, ``V``, ``C_rr``, ``M``, ``loss`` (W/m, of both bodies), ``heat``, the
+        energy that heated the body since t = 0, and ``given_off``, the part of it that it gave off, J/m.  What is
+        stored, capacity times the rise of temperature, is the difference.
+
+    Raises
+    ------
+    ParameterError
+        As of :func:`temperature`; a capacity <= 0, times that do not ascend, an array V, a function V that returns no
+        finite number, a temperature that leaves the range of the shift.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import viscoroll as vr
+    >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), 0.01, temperature=20.0, shift=vr.WLF(T0=-50.0))
+    >>> roller = vr.Cylinder(R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=2e4)
+    >>> t = np.linspace(0.0, 3600.0, 61)
+    >>> course = vr.warming(roller, 5.0, t, ambient=20.0, conductance=6.0, capacity=9e3)
+    >>> course.to_xarray()["temperature"].dims
+    ('t',)
+
+    Notes
+    -----
+    heat less given_off is what is stored to 1e-6, and the end of a long warming is a stable equilibrium
+    (``tests/test_heat.py``).
+    """
+    from scipy.integrate import solve_ivp
+
+    roller, scene, scale = resolve_model(roller, "warming")
+    given = {"ambient": ambient, "conductance": conductance, "capacity": capacity, "start": start}
+    plain, labels = strip_labels({name: value for name, value in given.items() if value is not None}, scale)
+    states = heat_states(roller, scene, "warming", plain)
+    capacity, start = (
+        _spread(states, check_array(name, plain.get(name, plain["ambient"]), above=low))
+        for name, low in (("capacity", 0.0), ("start", -np.inf))
+    )
+    check_ambient(start, states.curve, "start")
+    times = check_array("t", t, unit=scale, low=0.0)
+    if times.ndim != 1 or not times.size:
+        raise shape_error("t", times.shape, "a vector (t,) of at least one time")
+    if (np.diff(times) <= 0.0).any():
+        raise described_error("t", "does not ascend", "in ascending order")
+    rtol = check_number("rtol", rtol, low=1e-12, high=1e-3)
+    speed, corners = _speed_of(V, scale)
+    curve = rolling_curve(states.law, states.materials)
+
+    def rates(time: float, y: Floats) -> Floats:
+        """Return dtheta/dt of each state, then the heat per time and the heat given off, W/m."""
+        theta = y[: start.size]
+        off = states.conductance * (theta - states.ambient)
+        heat = states.body.part * _loss(states, curve, speed(time), theta)
+        return np.concatenate([(heat - off) / capacity, heat, off])
+
+    y, found, time = np.concatenate([start, np.zeros(2 * start.size)]), [], 0.0
+    for stop in np.unique(np.append(corners[(corners > 0.0) & (corners < times[-1])], times[-1])):
+        own = times[(times > time) & (times <= stop)] if time else times[times <= stop]
+        y, outputs = _integrate(solve_ivp, rates, (time, float(stop)), y, own, rtol)
+        found.append(outputs)
+        time = float(stop)
+    theta, heat, off = np.split(np.concatenate(found, axis=1), 3)
+    if (hot := theta.max(initial=-np.inf)) > states.curve.high:
+        sentence = f"the roller warms to {hot:.5g} degrees Celsius, beyond the shift's {states.curve.high:g}"
+        raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
+    n = np.repeat(np.arange(start.size), times.size)
+    V_t = np.tile([float(speed(time)) for time in times.tolist()], start.size)
+    rows = rolling_rows(states, n, V_t, theta.ravel())
+    values = {name: rows[name] for name in ("temperature", "V", "C_rr", "M", "loss")}
+    values |= {"heat": heat.ravel(), "given_off": off.ravel()}
+    shape = *states.shape, times.size
+    about: dict[str, Any] = {"t": times} | {
+        name: np.asarray(plain[name])[..., np.newaxis] for name in ("ambient", "conductance") if np.ndim(plain[name])
+    }
+    found_values = {name: each.reshape(shape) for name, each in values.items()}
+    return Values(found_values, about, si=True, title="Warming of a roller", labels=labels)
+
+
+def _spread(states: HeatStates, array: Floats) -> Floats:
+    """Return an array in the shape of the states, flattened, (n,)."""
+    return np.broadcast_to(array, states.shape or (1,)).ravel()
+
+
+def _loss(states: HeatStates, curve: Curve, V: float, theta: Floats) -> Floats:
+    """Return the loss in rolling of both bodies, W/m, of each state at one speed and its temperature, (n,)."""
+    if V == 0.0:
+        return np.zeros(theta.size)
+    factor, root_b = np.exp2(states.curve.log2_of(theta)), states.curve.root_b(theta)
+    if not states.curve.exact:
+        a_T, root_b = states.curve.factors(theta)
+        factor = a_T * root_b
+    C, _ = curve.values(np.arange(theta.size), np.log2(states.kappa * abs(V) / states.unit * factor))
+    return states.load * abs(V) / (states.kappa * root_b) * C
+
+
+def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
+    """Return the speed as a function of time, m/s, and the times of its corners, at which the integrator stops.
+
+    V: a number, a Schedule or a function.
+    """
+    if isinstance(V, Schedule):
+        if V.values.ndim > 1 or V.times.ndim > 1:
+            raise shape_error("V", V.values.shape, "a Schedule of one motion")
+        times, values = V.times, V.values
+        rising = np.flatnonzero(np.diff(times) > 0.0)
+
+        def at(time: float) -> float:
+            k = int(np.searchsorted(times, time, "right")) - 1  # of a jump the value after it
+            if k < 0 or k == times.size - 1:
+                return float(values[max(k, 0)])
+            part = (time - times[k]) / (times[k + 1] - times[k])
+            return float(values[k] + part * (values[k + 1] - values[k]))
+
+        return at, times if rising.size else np.empty(0)
+    if callable(V):
+        return lambda time: check_number("V", V(time), unit=scale), np.empty(0)
+    speed = check_number("V", V, unit=scale)
+    return lambda time: speed, np.empty(0)
+
+
+def _integrate(
+    solver: Any, rates: Any, span: tuple[float, float], y: Floats, times: Floats, rtol: float
+) -> tuple[Floats, Floats]:
+    """Integrate over one stretch without corners.
+
+    solver: ``scipy.integrate.solve_ivp``.
+    rates: function of time and y; span: begin and end, s; y: values at its begin, (k,); times: outputs within it.
+    rtol: relative tolerance.
+    Returns (y at the end, (k,); y at the times, (k, outputs)).
+    Raises ParameterError where the integrator finds no step that is small enough.
+    """
+    if span[1] == span[0]:
+        return y, np.repeat(y[:, np.newaxis], times.size, axis=1)
+    found = solver(rates, span, y, "DOP853", np.union1d(times, span[1]), rtol=rtol, atol=rtol)
+    if not found.success:
+        raise described_error("temperature", f"cannot be integrated ({found.message})", "one that a balance has")
+    return found.y[:, -1], found.y[:, : times.size]
