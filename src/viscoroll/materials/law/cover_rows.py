@@ -63,9 +63,10 @@ _BEYOND = 42
 _END_NODES = 52
 #: degree of these polynomials
 _END_DEGREE = 12
-#: degree of those by shear, which for nu < 1/2 have a term u^2 ln u at low speed, from the memory of the pressure near
-#: the edges: with 12 delta_0 jumped by 2e-10 of delta_star/mu where the first octave begins, with 18 by 3e-13
-_STRAIN_DEGREE = 18
+#: degree of those by shear, which for nu < 1/2 have terms in ln u at low speed, from the memory of the pressure near the
+#: edges: where the first octave begins they jump by 4e-12 of 2 kappa delta_star/mu, and by 4e-10 with 12; with 18 the
+#: noise of the solve makes their slopes jump by 1e-4, with 14 by 1e-6
+_STRAIN_DEGREE = 14
 #: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too: without them M was
 #: wrong by 1 % at a thousand times the fastest rate, with two it is by 1e-9; more terms amplify the noise of the solve
 _LOG_TERMS = 2
@@ -175,6 +176,9 @@ def _solve_node(
     if start is None:
         rough = 0.5 * goal - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0)) - math.log1p(0.2 / thickness)
         start = _find_length(modes, u, rough, slope, orders, goal)[0][-1]
+        # a slope as good as one that is extrapolated, for errors to be smooth over u
+        lengths, errors, _ = _find_length(modes, u, start + _OFFSET, slope, orders, goal)
+        start, slope = lengths[-1], (errors[1] - errors[0]) / (lengths[1] - lengths[0])
     y, errors, states = _find_length(modes, u, start + _OFFSET, slope, orders, goal)
     slope = (errors[1] - errors[0]) / (y[1] - y[0])
     shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
@@ -299,7 +303,7 @@ def _fit_end(
 ) -> tuple[Floats, Floats, Floats]:
     """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares, at one end of the speeds.
 
-    The degree of P is 18 for what shear does and 12 for the others.
+    The degree of P is 14 for what shear does and 12 for the others.
     y: nodes, proportional to u at the slow end and to 1/u at the fast end, in [0.05, 1], (n,).
     values: the quantities at the nodes (at the fast end M/(V y)), (11, n).
     limits: values for y -> 0, (11,); for NaN the value at 0 of a polynomial through the values is taken.
