@@ -116,7 +116,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     D = signed_creep(functions.L, free_creep, state, law)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
-    change = traction_on_moments(position, u, functions, out[0], state, law)
+    change = traction_on_moments(position, u, functions, out[0], state, cover_rows)
     out[1] = factor * functions.m + (change.half_space + change.cylinder)
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um
