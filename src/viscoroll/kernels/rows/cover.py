@@ -220,8 +220,10 @@ def shear_reaction(position, u, kappa, mu, L, dL, cover_rows):
     kappa : float, slenderness R/l0, dimensionless, > 0.
     mu : float, coefficient of friction, > 0.
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope over u, dimensionless.
-    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces: all is 0.
     """
+    if cover_rows is None:
+        return Reaction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
     excess = _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
     on_base = 0.5 / kappa
