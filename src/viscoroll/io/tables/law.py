@@ -203,7 +203,7 @@ def _measured_errors_of_cover(table: LawTable, count: int, random: np.random.Gen
     errors = dict(zip(COVER_FUNCTIONS[1:], (found - by_shear) / L, strict=True))
     # at the creepage of free rolling there is no traction
     free = 0.5 * (found[0] + found[1])
-    values = evaluate_law(table, [1.0, 1.0, free, u, 0.0], u.shape, False, _COVER_FIELDS)
+    values = evaluate_law(table, [1.0, 1.0, 1.0, u, free], u.shape, False, _COVER_FIELDS)
     errors |= {"lam": values[0] / lam - 1.0, "limit": 2.0 * values[1] / L - 1.0}
     errors["epsilon"] = np.divide(values[2] - epsilon, epsilon, out=np.zeros(count), where=epsilon > 0.0)
     for name, value, moment in zip(_COVER_FIELDS[3:], values[3:], moments, strict=True):
