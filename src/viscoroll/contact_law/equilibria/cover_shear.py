@@ -1,7 +1,8 @@
 """How shear acts back on the rolling moments of a cover, for steady states: the traction of a load, and the speeds.
 
 With the factors a and excesses e of base (b) and cylinder (c) of :class:`...kernels.rows.cover.Reaction`, the moments
-are M_half_space = M_b - Q (a_b + e_b |Q|/mu) and M_cylinder = M_c - Q (a_c + e_c |Q|/mu), with M_b and M_c those without
+are M_half_space = M_b - Q (a_b + e_b |Q|/mu) and M_cylinder = M_c - Q (a_c + e_c |Q|/mu), with M_b and M_c those
+without
 traction.  Equilibrium at V > 0 under a force f and a torque q is
 
     Q (1 + a_b + e_b |Q|/mu) = M_b - f        Q (1 - a_c - e_c |Q|/mu) = q - M_c
@@ -62,7 +63,8 @@ class Shear(NamedTuple):
 
         law : table of the material.
         Q : traction at rest, |Q| < mu, (n,).
-        Returns (1 + d(Q (a_b + ...))/dQ, factor of a change of Q on the axis; the same on the cylinder; dM_half_space/dV
+        Returns (1 + d(Q (a_b + ...))/dQ, factor of a change of Q on the axis; the same on the cylinder;
+        dM_half_space/dV
         and dM_cylinder/dV at fixed Q), (n,) each.
         """
         used = np.abs(Q) / self.mu
@@ -98,7 +100,8 @@ def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:
     if law.cover is None:
         nothing = np.zeros(V.size)
         return Shear(nothing, nothing, nothing, nothing, kappa, mu)
-    return Shear(*evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, _REACTION), kappa, mu)
+    fields = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, _REACTION)
+    return Shear(fields[0], fields[1], fields[2], fields[3], kappa, mu)
 
 
 def find_speeds_of_cover(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
@@ -121,9 +124,8 @@ def find_speeds_of_cover(law: LawTable, loads: Loads) -> tuple[Integers, Floats,
             def unbalanced(x: Floats, n: int = n, sign: float = sign, kappa: Any = kappa, mu: Any = mu) -> Floats:
                 """Return torque less M_cylinder and Q at speeds exp2(x)/kappa at which the axis is in balance."""
                 V = np.exp2(x) / kappa
-                names = "delta_0", *_REACTION
-                delta_0, *reaction = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, names)
-                shear = Shear(*reaction, kappa, mu)
+                shear = shear_at(law, kappa, mu, V)
+                delta_0 = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, ("delta_0",))[0]
                 state = [1.0, kappa, mu, V, delta_0]
                 half_space, cylinder = evaluate_law(law, state, V.shape, False, ("M_half_space", "M_cylinder"))
                 Q = shear.traction_of_force(half_space - sign * loads.force[n] - gains.force_V * V)

@@ -38,7 +38,8 @@ class Loss:
 
     Attributes
     ----------
-    slip : power that friction takes, at least 0: (omega - V) Q of a scene, (omega R - V) Q of a Cylinder; on a cover less
+    slip : power that friction takes, at least 0: (omega - V) Q of a scene, (omega R - V) Q of a Cylinder; on a cover
+    less
         the power that the stretch of its surface takes from it, V Q delta_0 and more.
     half_space, cylinder : power that either body dissipates, at least 0: V M_half_space and omega M_cylinder (of a
         Cylinder the first divided by R), of a cover with its moments without traction.  The sum of all three is the

@@ -49,7 +49,8 @@ class Field(IntEnum):
     From row 6 on the array has the slopes of the law while states are computed, in a frame where V > 0: dQ/dV at fixed
     omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega, dM_half_space/domega, dM_cylinder/domega.  In
     :class:`States` the same rows have omega, the real parts of the faster and of the slower eigenvalue, the imaginary
-    part of the slower one, and the moments that the bodies would have without traction, by which their losses are found.
+    part of the slower one, and the moments that the bodies would have without traction, by which their losses are
+    found.
     """
 
     V = 0
@@ -84,8 +85,10 @@ class States(NamedTuple):
     """Steady states one after another, dimensionless; speeds in R/T_ref.
 
     load : index of the load of each state, (n,).
-    rows : quantities of the states, (12, n), in the order of :class:`Field`, with omega, the eigenvalues and the moments
-        without traction from row 6 on; V, Q, M and omega have the signs of the motion.  delta and omega are NaN where the friction does not
+    rows : quantities of the states, (12, n), in the order of :class:`Field`, with omega, the eigenvalues and the
+    moments
+        without traction from row 6 on; V, Q, M and omega have the signs of the motion.  delta and omega are NaN where
+        the friction does not
         suffice; Q is what the balance needs there, and the other rows mean nothing.
     """
 

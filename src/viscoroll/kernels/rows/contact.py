@@ -302,7 +302,8 @@ def traction_on_moments(position, u, functions, Q, state, cover_rows):
 
 @inline_kernel
 def moment_slope(change_dQ, slope):
-    """Return the slope of a moment over creepage or omega at fixed speed, dimensionless; 0 where it does not depend on Q.
+    """Return the slope of a moment over creepage or omega at fixed speed, dimensionless; 0 where it does not depend
+    on Q.
 
     change_dQ : float, derivative of :class:`.cover.MomentChange` in Q; 0 of half-spaces.
     slope : float, slope of Q over the same variable; it may be infinite at rest.
