@@ -302,7 +302,8 @@ def traction_on_moments(position, u, functions, Q, state, cover_rows):
 
 @inline_kernel
 def moment_slope(change_dQ, slope):
-    """Return the slope of a moment over creepage or omega at fixed speed, dimensionless; 0 where it does not depend on Q.
+    """Return the slope of a moment over creepage or omega at fixed speed, dimensionless; 0 where it does not depend
+    on Q.
 
     change_dQ : float, derivative of :class:`.cover.MomentChange` in Q; 0 of half-spaces.
     slope : float, slope of Q over the same variable; it may be infinite at rest.
@@ -427,9 +428,34 @@ def _write_other_fields(n, c, law, scratch, request):
     slopes = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
     bodies = max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
     bodies = bodies or max(to.dM_half_space_domega, to.dM_cylinder_domega) >= 0
+    _write_reaction(n, position, u, state, law, law.cover_rows, request)
     if slopes or bodies:
         slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
         _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
+
+
+@inline_kernel
+def _write_reaction(n, position, u, state, law, cover_rows, request):
+    """Write how shear acts back on the moments of a state on a cover (:class:`.cover.Reaction`), if it is requested.
+
+    n : int, index of the state.
+    position : :class:`RowPosition` of u.
+    u : float, kappa |V|, dimensionless, >= 0.
+    state : :class:`State` of numbers, of which kappa and mu are read.
+    law : :class:`Law` of the material, of which L is read.
+    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written: nobody asks for it.
+    request : :class:`Request` of states and quantities.
+    Returns nothing.
+    """
+    if cover_rows is not None:
+        to = request.to
+        if max(to.reaction_half_space, to.reaction_cylinder, to.excess_half_space, to.excess_cylinder) >= 0:
+            functions = length_and_moment(position, u, law)
+            shear = shear_reaction(position, u, state.kappa, state.mu, functions.L, functions.dL, cover_rows)
+            write_field(to.reaction_half_space, shear.half_space, n, request)
+            write_field(to.reaction_cylinder, shear.cylinder, n, request)
+            write_field(to.excess_half_space, shear.half_space_excess, n, request)
+            write_field(to.excess_cylinder, shear.cylinder_excess, n, request)
 
 
 @inline_kernel

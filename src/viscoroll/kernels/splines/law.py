@@ -31,7 +31,8 @@ def _grid_law(V, omega, pointer, grids):
 
     V, omega : speed of the axis and angular velocity in the units of the grid, of any sign.
     pointer : address of RESULTS numbers, of which the first four are written: Q, M, M_half_space, M_cylinder; then,
-        if ``grid.slopes``, dQ/dV at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV and 0, 0 (M does not
+        if ``grid.slopes``, dQ/dV at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV and 0, 0 (M
+        does not
         depend on omega), else these stay; all in the units of the grid.
     grids : pointer to a GRID record: addresses of the splines and the bounds of the grid.
 
