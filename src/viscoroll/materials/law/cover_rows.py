@@ -158,7 +158,7 @@ def _solve_node(
     """Solve for the half contact length that carries the load at one speed, by the secant method.
 
     The unknown is ln z, z the half contact length divided by V T_ref; the equation is ln H = -ln(4 stiffness u^2) with
-    the load H of :class:`.cover_solve.CoverState`.  At the end lam, L and epsilon are extrapolated by the last secant
+    the load H of :class:`.cover_solve.CoverState`.  At the end lam, L, epsilon and M are extrapolated by the last secant
     step.
     modes: :class:`CoverModes` of the bodies.
     u: kappa |V|, dimensionless, > 0.
@@ -183,18 +183,19 @@ def _solve_node(
     slope = (errors[1] - errors[0]) / (y[1] - y[0])
     shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
     shift_slope = (shifts[1] - shifts[0]) / (y[1] - y[0])
-    lengths = [
-        np.array([2.0 * math.exp(each) * u, 2.0 * u * state.creep_limit, shift])
+    found = [
+        np.array([2.0 * math.exp(each) * u, 2.0 * u * state.creep_limit, shift, state.moment])
         for each, state, shift in zip(y, states, shifts)
     ]
     part = (y[-1] - y[-2]) / (y[-2] - y[-3])
-    lam, L, epsilon = lengths[-1] + (lengths[-1] - lengths[-2]) * part
+    lam, L, epsilon, moment = found[-1] + (found[-1] - found[-2]) * part
     z = math.exp(y[-2])
     shear = shear_of(modes, z, states[-1])
     tilt = -shear.load / slope
     slopes = lam * tilt, shear.shift / z + shift_slope * tilt
     free = 2.0 * u * shear.free
-    values = np.array([lam, L, epsilon, *shear.moments, *free, *(2.0 * u * shear.mirrored - free), *slopes])
+    moments = shear.moments * (moment / shear.moments.sum() if modes.J.size else 0.0)
+    values = np.array([lam, L, epsilon, *moments, *free, *(2.0 * u * shear.mirrored - free), *slopes])
     return values, y[-1], slope
 
 

@@ -91,6 +91,7 @@ class CoverState(NamedTuple):
         with lengths over V T_ref; z^2 for an elastic half-space.  At the speed u' = kappa |V| the contact carries the
         load where H = 1/(4 u'^2).
     shift : g = epsilon z, the shift of the contact ahead of the axis divided by V T_ref.
+    moment : M/V of both bodies, with M divided by P R and V by R/T_ref.
     creep_limit : delta_star/mu in units of V T_ref/R: the creep from which on the whole contact slips.
     q : terms of the pressure q_1 ... q_N, (N,).
     X : amplitudes of the relaxation modes, (modes,); from them follow terms of any higher order.
@@ -99,6 +100,7 @@ class CoverState(NamedTuple):
 
     load: float
     shift: float
+    moment: float
     creep_limit: float
     q: Floats
     X: Floats
@@ -408,4 +410,5 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     odd, even = mq[::2] @ A[1::2], mq[1::2] @ A[2::2]
     limit = z + shift + np.sum((modes.shear * own * (even - 1j * odd) * np.exp(1j * v)).real)
     work = SolveWork(v, A, compliance, own, odd, even, D, memory, exponentials, matrix, Xi, shares)
-    return CoverState(z * q[0], shift, limit, q, X0 - Xi @ (c @ q), work)
+    moment = shift + z * q[1] / (2.0 * q[0])
+    return CoverState(z * q[0], shift, moment, limit, q, X0 - Xi @ (c @ q), work)
