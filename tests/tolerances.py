@@ -486,12 +486,18 @@ COVER_ROWS = 1e-11
 COVER_JOIN = 1e-12
 #: M beside a body that relaxes too, up to a million millions of its fastest rate: the terms in ln u are extrapolated.
 COVER_LOGARITHMS = 1e-7
-#: delta_0 times 2 kappa where nu < 1/2: the strain is added up along the contact between points.
-COVER_FREE = 1e-5
+#: What shear does where nu < 1/2, of 2 kappa delta_star/mu: sums along the contact between points.
+COVER_FREE = 5e-5
+#: What shear does in rows of covers of nu = 1/2, of 2 kappa delta_star/mu: the end rows' fit of noise of the solve.
+COVER_SHEAR = 1e-8
+#: Bodies of a nip that change sides: sums in another order.
+COVER_MIRROR = 1e-12
+#: Digits of the numbers of other programs.
+COVER_MIRRORED = 2e-8
 #: The load of an elastic layer by pipeline/evidence/prove/layer.py, which is good to seven digits.
 COVER_ELASTIC = 1e-7
-#: delta_0 of an elastic half-space, in closed form: a rule of 512 points.
-COVER_LOCAL = 1e-9
+#: delta_0 of an elastic half-space, in closed form: its strain by 512 points and 100 terms.
+COVER_LOCAL = 1e-5
 #: A foundation of springs, which is off by the thickness over the half length times 0.43, at 1/6 of it.
 COVER_THIN = 0.08
 #: M V at 1e9 and 2e9 times the fastest rate.

@@ -4,9 +4,23 @@ library(ncdf4)
 
 read_law <- function(path) {
   file <- nc_open(path)
-  law <- sapply(c("e0", "alpha", "fast_limit"), function(name) ncvar_get(file, name), simplify = FALSE)
+  read <- function(names) sapply(names, function(name) ncvar_get(file, name), simplify = FALSE)
   names <- c("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
-  law$c <- sapply(names, function(name) ncvar_get(file, name), simplify = FALSE)
+  if ("limits" %in% names(file$var)) {
+    # A layer: shear acts back on the pressure, and N is not known.
+    law <- read(c("e0", "limits"))
+    ends <- law$limits
+    law$alpha <- ends[1]^-2
+    law$fast_limit <- rbind(c(0, 0, 0), c(4 * ends[9], 8 * ends[18], 8 * ends[19]))
+    law$c <- read(names[-5])
+    law$c$N <- NaN * law$c$lam
+    law$c <- law$c[names]
+    law$shear <- read(c("limit", "free_half_space", "free_cylinder", "excess_half_space", "excess_cylinder", "lam_Q",
+                        "epsilon_Q"))
+  } else {
+    law <- read(c("e0", "alpha", "fast_limit"))
+    law$c <- read(names)
+  }
   nc_close(file)
   function(kappa, mu, V, slip) contact_state(law, kappa, mu, V, slip)
 }
@@ -29,15 +43,29 @@ speed <- function(law, u) {
   W <- law$fast_limit[1, ]
   C <- law$fast_limit[2, ]
   m <- half * z * (C - W * (log(z) - 0.25))
+  e <- law$limits
+  if (!is.null(e))
+    return(c(lam = e[2] + e[10] / u, epsilon = e[17] / u, m_half_space = m[2], m_cylinder = m[3], N = NaN))
   c(lam = law$alpha^-0.5, epsilon = half * (C[1] - W[1] * log(z)), m_half_space = m[2], m_cylinder = m[3],
     N = 0.25 * (law$alpha - 1) * z^2)
+}
+
+# Of a layer: L, f and g of half-space and cylinder, slopes of lam and epsilon in Q.
+shear <- function(law, u) {
+  p <- place(law, u)
+  if (!fast(law, p)) return(unname(sapply(law$shear, function(c) sum(c[, p$row + 1] * p$t^(0:23)))))
+  n <- c(1, 3:8)
+  law$limits[n] + law$limits[n + 8] / u
 }
 
 stick <- function(law, v) {
   p <- place(law, v)
   if (!fast(law, p)) return(c(value(law, "share", p), value(law, "press", p)))
   share <- 1 - 0.5 * law$alpha / v * (law$fast_limit[2, 1] + law$fast_limit[1, 1] * log(v))
-  c(share, law$alpha * share^2)
+  press <- law$alpha * share^2
+  e <- law$limits
+  if (!is.null(e)) share <- e[2] / e[1] + 2 * (e[10] * e[1] - e[2] * e[9]) / e[1]^3 / v
+  c(share, press)
 }
 
 # Mean slope of press between v1 and v2.
@@ -72,17 +100,27 @@ contact_state <- function(law, kappa, mu, V, slip) {
     return(as.list(setNames(rep(NaN, 9), names)))
   }
   f <- as.list(speed(law, u))
-  L <- f$lam * (1 + f$epsilon)
-  delta <- if (slip == 0) 0 else abs(slip / V)
+  h <- if (is.null(law$limits)) c(f$lam * (1 + f$epsilon), 0, 0, 0, 0, 0, 0) else shear(law, u)
+  L <- h[1]
+  creepage <- if (slip == 0) 0 else if (V == 0) sign(slip) * Inf else slip / V
+  own <- creepage - 0.5 * (h[2] + h[3]) / kappa
+  turn <- if (V < 0) -sign(own) else sign(own)
+  delta <- abs(own)
   D <- 2 * kappa * delta / mu
   w <- L - D
-  s <- list(lam = f$lam, epsilon = f$epsilon, delta_star = 0.5 * mu * L / kappa, beta = 0, Q = sign(slip) * mu,
-            M = V * (f$m_half_space + f$m_cylinder), M_half_space = V * f$m_half_space,
-            M_cylinder = V * f$m_cylinder, N = f$N)
-  if (!(delta < s$delta_star && w > 0)) return(s)
-  at <- stick(law, 2 * u / w)
-  q <- if (D < L / 8) D * ((2 * L - D) * at[2] - 2 * u * L / w * secant(law, 2 * u / L, 2 * u / w)) else 1 - w^2 * at[2]
-  s$beta <- min(at[1] * w / f$lam, 1)
-  s$Q <- sign(slip) * mu * min(q, 1)
-  s
+  delta_star <- 0.5 * mu * L / kappa
+  beta <- 0
+  used <- 1
+  if (delta < delta_star && w > 0) {
+    at <- stick(law, 2 * u / w)
+    q <- if (D < L / 8) D * ((2 * L - D) * at[2] - 2 * u * L / w * secant(law, 2 * u / L, 2 * u / w)) else 1 - w^2 * at[2]
+    beta <- min(at[1] * w / f$lam, 1)
+    used <- min(q, 1)
+  }
+  Q <- turn * mu * used
+  more <- used * (1 + (2 * (h[4] + h[5]) / (mu * L))^4)^-0.25
+  Mh <- V * f$m_half_space - Q * (h[2] + more * h[4]) / (2 * kappa)
+  Mc <- V * f$m_cylinder - Q * (h[3] + more * h[5]) / (2 * kappa + h[2] + h[3])
+  list(lam = f$lam + h[6] * Q, epsilon = f$epsilon + h[7] * Q, delta_star = delta_star, beta = beta, Q = Q,
+       M = Mh + Mc, M_half_space = Mh, M_cylinder = Mc, N = f$N)
 }

@@ -6,8 +6,9 @@ module read_law_file
   implicit none
   type law
     integer :: e0, rows
-    real(8) :: alpha, limit(2, 3)
+    real(8) :: alpha, limit(2, 3), ends(0:18)
     real(8), allocatable :: c(:, :, :) ! power, octave, function
+    logical :: layer ! of finite thickness: shear acts back on the pressure, and N is not known
   end type
   type state
     real(8) :: lam, epsilon, delta_star, beta, Q, M, M_half_space, M_cylinder, N
@@ -24,23 +25,35 @@ contains
 
   function read_law(path) result(a)
     character(*), intent(in) :: path
-    character(12), parameter :: names(7) = [character(12) :: 'lam', 'epsilon', 'm_half_space', 'm_cylinder', 'N', 'share', 'press']
+    character(17), parameter :: names(14) = [character(17) :: 'lam', 'epsilon', 'm_half_space', 'm_cylinder', 'N', &
+      'share', 'press', 'limit', 'free_half_space', 'free_cylinder', 'excess_half_space', 'excess_cylinder', 'lam_Q', &
+      'epsilon_Q']
     type(law) :: a
     integer :: file, id, n
     call check(nf90_open(path, nf90_nowrite, file))
     call check(nf90_inq_dimid(file, 'octave', id))
     call check(nf90_inquire_dimension(file, id, len=a%rows))
-    allocate(a%c(0:23, 0:a%rows - 1, 7))
-    do n = 1, 7
+    a%layer = nf90_inq_varid(file, 'limits', id) == nf90_noerr
+    if (a%layer) call check(nf90_get_var(file, id, a%ends))
+    allocate(a%c(0:23, 0:a%rows - 1, 14))
+    a%c = 0
+    do n = 1, merge(14, 7, a%layer)
+      if (a%layer .and. n == 5) cycle
       call check(nf90_inq_varid(file, trim(names(n)), id))
       call check(nf90_get_var(file, id, a%c(:, :, n)))
     end do
     call check(nf90_inq_varid(file, 'e0', id))
     call check(nf90_get_var(file, id, a%e0))
-    call check(nf90_inq_varid(file, 'alpha', id))
-    call check(nf90_get_var(file, id, a%alpha))
-    call check(nf90_inq_varid(file, 'fast_limit', id))
-    call check(nf90_get_var(file, id, a%limit))
+    if (a%layer) then
+      a%alpha = 1/a%ends(0)**2
+      a%limit = 0
+      a%limit(2, :) = [4*a%ends(8), 8*a%ends(17), 8*a%ends(18)]
+    else
+      call check(nf90_inq_varid(file, 'alpha', id))
+      call check(nf90_get_var(file, id, a%alpha))
+      call check(nf90_inq_varid(file, 'fast_limit', id))
+      call check(nf90_get_var(file, id, a%limit))
+    end if
     call check(nf90_close(file))
   end function
 
@@ -106,7 +119,7 @@ contains
     type(law), intent(in) :: a
     real(8), intent(in) :: kappa, mu, V, slip
     type(place) :: p
-    real(8) :: u, f(7), z, L, delta, D, w, r, turn
+    real(8) :: u, f(7), h(7), z, L, own, delta, D, w, used, turn, share, more, beta, Q, Mh, Mc
     integer :: k
     u = kappa*abs(V)
     if (.not. (kappa > 0 .and. mu > 0 .and. ieee_is_finite(mu) .and. u <= 1d300 .and. ieee_is_finite(slip))) then
@@ -114,34 +127,52 @@ contains
       s = state(z, z, z, z, z, z, z, z, z)
       return
     end if
-    turn = merge(0d0, sign(1d0, slip), slip == 0)
     p = at(a, u)
+    h = 0
     if (p%row < a%rows) then
       f = [(value(a%c(:, p%row, k), p%t), k=1, 7)]
+      if (a%layer) h = [(value(a%c(:, p%row, k), p%t), k=8, 14)]
     else
       z = 0.5d0/(u*sqrt(a%alpha))
       f(1) = 1/sqrt(a%alpha)
       f(2) = a%alpha/2*z*(a%limit(2, 1) - a%limit(1, 1)*log(z))
       f(3:4) = a%alpha/2*z*z*(a%limit(2, 2:3) - a%limit(1, 2:3)*(log(z) - 0.25d0))
       f(5) = (a%alpha - 1)/4*z*z
+      if (a%layer) then
+        f(1:2) = [a%ends(1) + a%ends(9)/u, a%ends(16)/u]
+        h = [a%ends(0) + a%ends(8)/u, a%ends(2:7) + a%ends(10:15)/u]
+      end if
     end if
-    L = f(1)*(1 + f(2))
-    delta = 0
-    if (slip /= 0) delta = abs(slip/V)
+    L = merge(h(1), f(1)*(1 + f(2)), a%layer)
+    if (a%layer) f(5) = ieee_value(z, ieee_quiet_nan)
+    own = 0
+    if (slip /= 0) own = slip/V ! at V = 0 infinite
+    if (slip /= 0 .and. V == 0) own = sign(huge(own), slip)
+    own = own - 0.5d0*(h(2) + h(3))/kappa
+    turn = merge(0d0, sign(1d0, own), own == 0)*merge(-1, 1, V < 0)
+    delta = abs(own)
     D = 2*kappa*delta/mu
     w = L - D
-    s = state(f(1), f(2), mu*L/(2*kappa), 0d0, turn*mu, V*(f(3) + f(4)), V*f(3), V*f(4), f(5))
-    if (.not. (delta < s%delta_star .and. w > 0)) return
-    p = at(a, 2*u/w)
-    if (p%row < a%rows) then
-      f(6:7) = [value(a%c(:, p%row, 6), p%t), value(a%c(:, p%row, 7), p%t)]
-    else
-      f(6) = 1 - a%alpha/2*w/(2*u)*(a%limit(2, 1) + a%limit(1, 1)*log(2*u/w))
-      f(7) = a%alpha*f(6)**2
+    beta = 0
+    used = 1
+    if (delta < mu*L/(2*kappa) .and. w > 0) then
+      p = at(a, 2*u/w)
+      if (p%row < a%rows) then
+        f(6:7) = [value(a%c(:, p%row, 6), p%t), value(a%c(:, p%row, 7), p%t)]
+      else
+        share = 1 - a%alpha/2*w/(2*u)*(a%limit(2, 1) + a%limit(1, 1)*log(2*u/w))
+        f(6:7) = [share, a%alpha*share**2]
+        if (a%layer) f(6) = a%ends(1)/a%ends(0) + 2*(a%ends(9)*a%ends(0) - a%ends(1)*a%ends(8))/a%ends(0)**3*w/(2*u)
+      end if
+      used = 1 - w*w*f(7)
+      if (D < L/8) used = D*((2*L - D)*f(7) - 2*u*L/w*secant(a, 2*u/L, 2*u/w))
+      used = min(used, 1d0)
+      beta = min(f(6)*w/f(1), 1d0)
     end if
-    r = 1 - w*w*f(7)
-    if (D < L/8) r = D*((2*L - D)*f(7) - 2*u*L/w*secant(a, 2*u/L, 2*u/w))
-    s%beta = min(f(6)*w/f(1), 1d0)
-    s%Q = turn*mu*min(r, 1d0)
+    Q = turn*mu*used
+    more = used*(1 + (2*(h(4) + h(5))/(mu*L))**4)**(-0.25d0)
+    Mh = V*f(3) - Q*(h(2) + more*h(4))/(2*kappa)
+    Mc = V*f(4) - Q*(h(3) + more*h(5))/(2*kappa + h(2) + h(3))
+    s = state(f(1) + h(6)*Q, f(2) + h(7)*Q, mu*L/(2*kappa), beta, Q, Mh + Mc, Mh, Mc, f(5))
   end function
 end module

@@ -1,7 +1,17 @@
 // const contact = law(JSON.parse(text of rubber.json));  contact(kappa, mu, V, slip)      slip = omega - V
 // Plain JavaScript, for pages and Node; `viscoroll tables law MATERIAL.toml -o rubber.json` writes the file.
-function law({ lam, epsilon, m_half_space, m_cylinder, N, share, press, e0, alpha, fast_limit }) {
+function law(file) {
+  const { lam, epsilon, m_half_space, m_cylinder, N, share, press, e0, limits } = file;
   const rows = lam.length, slow = 2 ** -e0;
+  // of a layer: what it has besides; where shear acts back on the pressure
+  const alpha = limits ? limits[0] ** -2 : file.alpha;
+  const fast_limit = limits ? [[0, 4 * limits[8]], [0, 8 * limits[17]], [0, 8 * limits[18]]] : file.fast_limit;
+  const names = ["free_half_space", "free_cylinder", "excess_half_space", "excess_cylinder", "lam_Q", "epsilon_Q"];
+  function shear(u) { // L and the functions of these names
+    const p = place(u), order = [0, 2, 3, 4, 5, 6, 7];
+    if (p.row < rows) return ["limit", ...names].map(name => value(file[name], p));
+    return order.map(n => limits[n] + limits[n + 8] / u);
+  }
   const word = new Float64Array(1), half = new Uint32Array(word.buffer); // half[1]: sign, exponent, top of the mantissa
   function place(x) { // row 0 is that of the slow end
     word[0] = x;
@@ -19,16 +29,19 @@ function law({ lam, epsilon, m_half_space, m_cylinder, N, share, press, e0, alph
   }
   function speed(u) {
     const p = place(u);
-    if (p.row < rows) return [lam, epsilon, m_half_space, m_cylinder, N].map(c => value(c, p));
+    if (p.row < rows) return [lam, epsilon, m_half_space, m_cylinder, N].map(c => c ? value(c, p) : NaN);
     const z = 0.5 / (u * Math.sqrt(alpha)), g = 0.5 * alpha * z, ln = Math.log(z), [[W, C], ...bodies] = fast_limit;
     const [mh, mc] = bodies.map(([W, C]) => g * z * (C - W * (ln - 0.25)));
+    if (limits) return [limits[1] + limits[9] / u, limits[16] / u, mh, mc, NaN];
     return [alpha ** -0.5, g * (C - W * ln), mh, mc, 0.25 * (alpha - 1) * z * z];
   }
   function stick(v) {
     const p = place(v);
     if (p.row < rows) return [value(share, p), value(press, p)];
     const [W, C] = fast_limit[0], s = 1 - 0.5 * alpha / v * (C + W * Math.log(v));
-    return [s, alpha * s * s];
+    if (!limits) return [s, alpha * s * s];
+    const [L, l] = limits, slope = 2 * (limits[9] * L - l * limits[8]) / L ** 3;
+    return [l / L + slope / v, alpha * s * s];
   }
   function chord({ row, t }, s) {
     const c = press[row];
@@ -54,18 +67,24 @@ function law({ lam, epsilon, m_half_space, m_cylinder, N, share, press, e0, alph
       const names = ["lam", "epsilon", "delta_star", "beta", "Q", "M", "M_half_space", "M_cylinder", "N"];
       return Object.fromEntries(names.map(name => [name, NaN]));
     }
-    const [lam, epsilon, mh, mc, N] = speed(u), L = lam * (1 + epsilon);
-    const delta = slip === 0 ? 0 : Math.abs(slip / V), D = 2 * kappa * delta / mu, w = L - D, sign = Math.sign(slip);
-    const state = {
-      lam, epsilon, delta_star: 0.5 * mu * L / kappa, beta: 0, Q: sign * mu,
-      M: V * (mh + mc), M_half_space: V * mh, M_cylinder: V * mc, N,
+    const [lam, epsilon, mh, mc, N] = speed(u);
+    const [L, fh, fc, gh, gc, lam_Q, epsilon_Q] = limits ? shear(u) : [lam * (1 + epsilon), 0, 0, 0, 0, 0, 0];
+    const creepage = slip === 0 ? 0 : V === 0 ? Math.sign(slip) * Infinity : slip / V;
+    const own = creepage - 0.5 * (fh + fc) / kappa, sign = Math.sign(own) * (V < 0 ? -1 : 1);
+    const delta = Math.abs(own), D = 2 * kappa * delta / mu, w = L - D, delta_star = 0.5 * mu * L / kappa;
+    let beta = 0, used = 1;
+    if (delta < delta_star && w > 0) {
+      const [s, p] = stick(2 * u / w);
+      const q = D < L / 8 ? D * ((2 * L - D) * p - 2 * u * L / w * secant(2 * u / L, 2 * u / w)) : 1 - w * w * p;
+      beta = Math.min(s * w / lam, 1);
+      used = Math.min(q, 1);
+    }
+    const Q = sign * mu * used, more = used * (1 + (2 * (gh + gc) / (mu * L)) ** 4) ** -0.25;
+    const ch = Q * (fh + more * gh) / (2 * kappa), cc = Q * (fc + more * gc) / (2 * kappa + fh + fc);
+    return {
+      lam: lam + lam_Q * Q, epsilon: epsilon + epsilon_Q * Q, delta_star, beta, Q,
+      M: V * (mh + mc) - (ch + cc), M_half_space: V * mh - ch, M_cylinder: V * mc - cc, N,
     };
-    if (!(delta < state.delta_star && w > 0)) return state;
-    const [s, p] = stick(2 * u / w);
-    const q = D < L / 8 ? D * ((2 * L - D) * p - 2 * u * L / w * secant(2 * u / L, 2 * u / w)) : 1 - w * w * p;
-    state.beta = Math.min(s * w / lam, 1);
-    state.Q = sign * mu * Math.min(q, 1);
-    return state;
   };
 }
 if (typeof module !== "undefined") module.exports = law;

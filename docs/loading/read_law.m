@@ -2,9 +2,19 @@ function contact = read_law(path)
   % contact = read_law('rubber.nc');  s = contact(kappa, mu, V, slip)      slip = omega - V
   % In MATLAB, and in Octave with its package netcdf.  Arrays come as (power, octave).
   if exist('OCTAVE_VERSION', 'builtin'), pkg load netcdf, end
-  law = struct('e0', double(ncread(path, 'e0')), 'alpha', ncread(path, 'alpha'), 'limit', ncread(path, 'fast_limit'));
-  names = {'lam', 'epsilon', 'm_half_space', 'm_cylinder', 'N', 'share', 'press'};
-  for n = 1:7, law.c(:, :, n) = ncread(path, names{n}); end
+  names = {'lam', 'epsilon', 'm_half_space', 'm_cylinder', 'N', 'share', 'press', 'limit', 'free_half_space', ...
+           'free_cylinder', 'excess_half_space', 'excess_cylinder', 'lam_Q', 'epsilon_Q'};
+  law = struct('e0', double(ncread(path, 'e0')), 'ends', []);
+  law.c = NaN([size(ncread(path, 'lam')), 7]);
+  info = ncinfo(path);  layer = any(strcmp({info.Variables.Name}, 'limits'));
+  if layer                                   % a layer: shear acts back on the pressure, and N is not known
+    e = ncread(path, 'limits');  law.ends = e(:)';
+    law.alpha = e(1)^-2;  law.limit = [0, 0, 0; 4 * e(9), 8 * e(18), 8 * e(19)];
+  else
+    law.alpha = ncread(path, 'alpha');  law.limit = ncread(path, 'fast_limit');
+  end
+  for n = [1:4, 6:7], law.c(:, :, n) = ncread(path, names{n}); end
+  if layer, for n = 8:14, law.c(:, :, n) = ncread(path, names{n}); end, else, law.c(:, :, 5) = ncread(path, 'N'); end
   contact = @(kappa, mu, V, slip) state(law, kappa, mu, V, slip);
 end
 
@@ -17,16 +27,33 @@ function s = state(law, kappa, mu, V, slip)
     return
   end
   f = speed(law, u);
-  L = f(1) * (1 + f(2));  delta = 0;
-  if slip ~= 0, delta = abs(slip / V); end
-  D = 2 * kappa * delta / mu;  w = L - D;
-  s = struct('lam', f(1), 'epsilon', f(2), 'delta_star', 0.5 * mu * L / kappa, 'beta', 0, 'Q', sign(slip) * mu, ...
-             'M', V * (f(3) + f(4)), 'M_half_space', V * f(3), 'M_cylinder', V * f(4), 'N', f(5));
-  if ~(delta < s.delta_star && w > 0), return, end
-  v1 = 2 * u / L;  v2 = 2 * u / w;
-  [share, press] = stick(law, v2);
-  if D < L / 8, q = D * ((2 * L - D) * press - 2 * u * L / w * secant(law, v1, v2)); else, q = 1 - w^2 * press; end
-  s.beta = min(share * w / f(1), 1);  s.Q = sign(slip) * mu * min(q, 1);
+  h = [f(1) * (1 + f(2)), 0, 0, 0, 0, 0, 0];
+  if ~isempty(law.ends), h = shear(law, u); end
+  L = h(1);  creepage = 0;
+  if slip ~= 0, if V == 0, creepage = sign(slip) * Inf; else, creepage = slip / V; end, end
+  own = creepage - 0.5 * (h(2) + h(3)) / kappa;  turn = sign(own);  delta = abs(own);
+  if V < 0, turn = -turn; end
+  D = 2 * kappa * delta / mu;  w = L - D;  delta_star = 0.5 * mu * L / kappa;  beta = 0;  used = 1;
+  if delta < delta_star && w > 0
+    v1 = 2 * u / L;  v2 = 2 * u / w;
+    [share, press] = stick(law, v2);
+    if D < L / 8, q = D * ((2 * L - D) * press - 2 * u * L / w * secant(law, v1, v2)); else, q = 1 - w^2 * press; end
+    beta = min(share * w / f(1), 1);  used = min(q, 1);
+  end
+  Q = turn * mu * used;  more = used * (1 + (2 * (h(4) + h(5)) / (mu * L))^4)^-0.25;
+  Mh = V * f(3) - Q * (h(2) + more * h(4)) / (2 * kappa);
+  Mc = V * f(4) - Q * (h(3) + more * h(5)) / (2 * kappa + h(2) + h(3));
+  s = struct('lam', f(1) + h(6) * Q, 'epsilon', f(2) + h(7) * Q, 'delta_star', delta_star, 'beta', beta, 'Q', Q, ...
+             'M', Mh + Mc, 'M_half_space', Mh, 'M_cylinder', Mc, 'N', f(5));
+end
+
+function h = shear(law, u)                 % of a layer
+  [row, t] = place(law, u);
+  if row < size(law.c, 2)
+    h = t .^ (0:23) * reshape(law.c(:, row + 1, 8:14), 24, 7);
+  else
+    n = [1, 3:8];  h = law.ends(n) + law.ends(n + 8) / u;
+  end
 end
 
 function [row, t, dt_dx] = place(law, x)   % row 0 is that of the slow end
@@ -43,6 +70,7 @@ function f = speed(law, u)
   z = 0.5 / (u * sqrt(law.alpha));  half = 0.5 * law.alpha * z;  W = law.limit(1, :);  C = law.limit(2, :);
   m = half * z * (C - W * (log(z) - 0.25));
   f = [law.alpha^-0.5, half * (C(1) - W(1) * log(z)), m(2), m(3), 0.25 * (law.alpha - 1) * z^2];
+  if ~isempty(law.ends), f([1, 2, 5]) = [law.ends(2) + law.ends(10) / u, law.ends(17) / u, NaN]; end
 end
 
 function [share, press] = stick(law, v)
@@ -51,6 +79,9 @@ function [share, press] = stick(law, v)
     share = t .^ (0:23) * law.c(:, row + 1, 6);  press = t .^ (0:23) * law.c(:, row + 1, 7);  return
   end
   share = 1 - 0.5 * law.alpha / v * (law.limit(2, 1) + law.limit(1, 1) * log(v));  press = law.alpha * share^2;
+  if ~isempty(law.ends)
+    e = law.ends;  share = e(2) / e(1) + 2 * (e(10) * e(1) - e(2) * e(9)) / e(1)^3 / v;
+  end
 end
 
 function S = secant(law, v1, v2)           % mean slope of press between v1 and v2

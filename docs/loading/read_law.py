@@ -7,12 +7,21 @@ import numpy as np
 import xarray as xr
 
 FUNCTIONS = "lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press"
+# of a layer, where shear acts back on the pressure
+SHEAR = "limit", "free_half_space", "free_cylinder", "excess_half_space", "excess_cylinder", "lam_Q", "epsilon_Q"
 
 
 def read_law(path):
     with xr.open_dataset(path, engine="h5netcdf") as file:
-        c = np.stack([file[name].values for name in FUNCTIONS])  # [function, octave, power]
-        numbers = int(file.e0), float(file.alpha), file.fast_limit.values
+        names = FUNCTIONS + SHEAR if "limits" in file else FUNCTIONS
+        unknown = np.full(file.lam.shape, np.nan)
+        c = np.stack([file[name].values if name in file else unknown for name in names])  # [function, octave, power]
+        if "limits" in file:  # a layer
+            ends = file.limits.values
+            fast = ends[0] ** -2.0, np.array([[0.0, 4.0 * ends[8]], [0.0, 8.0 * ends[17]], [0.0, 8.0 * ends[18]]])
+        else:
+            ends, fast = None, (float(file.alpha), file.fast_limit.values)
+        numbers = int(file.e0), *fast, ends
     return lambda kappa, mu, V, slip: state(c, *numbers, *np.broadcast_arrays(kappa, mu, V, slip))
 
 
@@ -40,7 +49,7 @@ def chord(c, row, t, s):
 
 # NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300
 @np.errstate(all="ignore")
-def state(c, e0, alpha, limit, kappa, mu, V, slip):
+def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
     (W, C), rows = limit[0], c.shape[1]
     u = kappa * np.abs(V)
     good = (kappa > 0.0) & (mu > 0.0) & (mu < np.inf) & (u <= 1e300) & (np.abs(slip) < np.inf)
@@ -49,17 +58,28 @@ def state(c, e0, alpha, limit, kappa, mu, V, slip):
     half, log = 0.5 * alpha * z, np.log(z)
     fast = [alpha**-0.5, half * (C - W * log), *(half * z * (C - W * (log - 0.25)) for W, C in limit[1:])]
     fast.append(0.25 * (alpha - 1.0) * z * z)
+    if ends is not None:
+        fast[0], fast[1] = ends[1] + ends[9] / u, ends[16] / u
     lam, epsilon, half_space, cylinder, N = (np.where(row < rows, value(one, row, t), end) for one, end in zip(c, fast))
-    L = lam * (1.0 + epsilon)
-    delta = np.where(slip == 0.0, 0.0, np.abs(slip / V))
+    L, *shear = lam * (1.0 + epsilon), *np.zeros(6)
+    if ends is not None:
+        beyond = (ends[n] + ends[n + 8] / u for n in (0, *range(2, 8)))
+        L, *shear = (np.where(row < rows, value(one, row, t), end) for one, end in zip(c[7:], beyond))
+    f_h, f_c, g_h, g_c, lam_Q, epsilon_Q = shear
+    f = f_h + f_c
+    delta = np.where(slip == 0.0, 0.0, np.where(V == 0.0, np.copysign(np.inf, slip), slip / V)) - 0.5 * f / kappa
+    turn, delta = np.sign(delta) * np.where(V < 0.0, -1.0, 1.0), np.abs(delta)
     D = 2.0 * kappa * delta / mu
     slips = ~((delta < 0.5 * mu * L / kappa) & (D < L))
     w = np.where(slips, L, L - D)
     v1, v2 = 2.0 * u / L, 2.0 * u / w
     (r1, t1, p1), (r2, t2, p2) = place(v1, e0), place(v2, e0)
     bracket = [(C + W * np.log(v)) / v for v in (v1, v2)]
-    share = np.where(r2 < rows, value(c[5], r2, t2), 1.0 - 0.5 * alpha * bracket[1])
-    press = np.where(r2 < rows, value(c[6], r2, t2), alpha * share**2)
+    end = 1.0 - 0.5 * alpha * bracket[1]
+    press = np.where(r2 < rows, value(c[6], r2, t2), alpha * end**2)
+    if ends is not None:
+        end = ends[1] / ends[0] + 2.0 * (ends[9] * ends[0] - ends[1] * ends[8]) / ends[0] ** 3 / v2
+    share = np.where(r2 < rows, value(c[5], r2, t2), end)
     part = np.clip((np.ldexp(1.0, e0 + r2 - 1) - v1) / (v2 - v1), 0.0, 1.0)
     two = part * chord(c[6], r1, t1, 1.0) * p1 + (1.0 - part) * chord(c[6], r2, t2, -1.0) * p2
     x = (v2 - v1) / v1
@@ -67,10 +87,14 @@ def state(c, e0, alpha, limit, kappa, mu, V, slip):
     beyond *= 0.5 * alpha**2 * (2.0 - 0.5 * alpha * sum(bracket)) / v1 / v2
     S = np.where(r2 >= rows, beyond, np.where(r1 == r2, chord(c[6], r1, t1, t2) * p1, two))
     q = np.where(D < L / 8.0, D * ((2.0 * L - D) * press - 2.0 * u * L / w * S), 1.0 - w * w * press)
+    used = np.where(slips, 1.0, np.minimum(q, 1.0))
+    Q = turn * mu * used
+    more = used * (1.0 + (2.0 * (g_h + g_c) / (mu * L)) ** 4) ** -0.25
+    change_h, change_c = Q * (f_h + more * g_h) / (2.0 * kappa), Q * (f_c + more * g_c) / (2.0 * kappa + f)
     found = {
-        "lam": lam, "epsilon": epsilon, "delta_star": 0.5 * mu * L / kappa,
-        "beta": np.where(slips, 0.0, np.minimum(share * w / lam, 1.0)),
-        "Q": np.sign(slip) * mu * np.where(slips, 1.0, np.minimum(q, 1.0)),
-        "M": V * (half_space + cylinder), "M_half_space": V * half_space, "M_cylinder": V * cylinder, "N": N,
+        "lam": lam + lam_Q * Q, "epsilon": epsilon + epsilon_Q * Q, "delta_star": 0.5 * mu * L / kappa,
+        "beta": np.where(slips, 0.0, np.minimum(share * w / lam, 1.0)), "Q": Q,
+        "M": V * (half_space + cylinder) - (change_h + change_c), "M_half_space": V * half_space - change_h,
+        "M_cylinder": V * cylinder - change_c, "N": N,
     }  # fmt: skip
     return {name: np.where(good, each, np.nan) for name, each in found.items()}
