@@ -301,8 +301,15 @@ def _pack_cover(cover: CoverRows) -> Floats:
     """
     L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
     share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
-    front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
-    return np.append(front, interleave_pairs(cover.creep[1], cover.creep[1]))
+    # stand-in: delta_0 without traction's reaction, until cover_rows gives both parts, excess and slopes in Q
+    base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])
+    on = [free, free_slope, 0.0, 0.0] if base else [0.0, 0.0, free, free_slope]
+    front = [lam, lam_slope, *on, *([0.0] * 8), lam / L, share_slope, epsilon, 2.0 * moment / L]
+    creep = cover.creep[1]
+    parts = (creep, np.zeros_like(creep)) if base else (np.zeros_like(creep), creep)
+    free_rows = interleave_pairs(*parts).reshape(len(creep), -1)
+    rows = np.concatenate([free_rows, np.zeros((len(creep), 2 * free_rows.shape[1]))], axis=1)
+    return np.append(front, rows)
 
 
 class AxisRows(NamedTuple):
