@@ -156,7 +156,7 @@ def measure_errors(rows: CoupledRows, pair: CoupledPair, count: int = _CHECKED, 
     seed: of the random points.
     Returns field -> largest absolute error, with 2 kappa times that of the work.
     """
-    from ..kernels.splines.look_up import look_up
+    from ..kernels.splines.law import look_up
 
     random = np.random.default_rng(seed)
     speeds = np.exp(random.uniform(*np.log(rows.u[[0, -1]]), -(-count // 8)))

@@ -44,8 +44,12 @@ FIELDS = 9
 FIELD_COUNT = 10
 #: Largest u: infinite, or LAST for a table without the limit of u infinite.
 MOST = 11
+#: 1 if slip is full beyond the onsets, 0 where nothing is known there.
+SLIPS = 12
+#: Largest |Q/mu|: 1, or infinite where it is not known.
+LIMIT = 13
 #: Numbers of the head.
-HEAD = 12
+HEAD = 14
 
 #: Edge: the creep D_0 between the signs.
 MIDDLE = 0

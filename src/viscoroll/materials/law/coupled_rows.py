@@ -30,7 +30,9 @@ class CoupledRows:
     edges : 2 kappa times the creepages :data:`EDGES`, (n + 2, 4): first for u = 0, last for u infinite.
     fields : :data:`FIELDS`, (n + 2, m, 8): M times kappa; work is 2 kappa times that of shear on the strain of a body.
     graded : whether t is graded at 0 and +-1; else it is the place itself, and the splines are not clamped there.
-    fastest : largest u: infinite where the limit of u infinite is known.
+    fastest : largest u that is allowed; for a last row that is the limit of u infinite 1e300.
+    slips : whether the contact slips fully beyond the onsets; False: nothing is known there.
+    limit : largest abs(Q/mu): 1, or infinite where it is not known.
     errors : field -> largest error found beside the nodes, absolute.
     """
 
@@ -40,7 +42,9 @@ class CoupledRows:
     edges: Floats
     fields: Floats
     graded: bool = True
-    fastest: float = np.inf
+    fastest: float = 1e300
+    slips: bool = True
+    limit: float = 1.0
     errors: dict[str, float] = field(default_factory=dict)
 
     @cached_property
@@ -59,7 +63,7 @@ class CoupledRows:
         head[[layout.U_STEP, layout.T_STEP]] = _equal_step(x), _equal_step(self.t)
         begin = layout.HEAD + np.cumsum([x.size, self.t.size, edges.size])
         head[[layout.T_BEGIN, layout.EDGES, layout.FIELDS]] = begin
-        head[layout.FIELD_COUNT] = self.fields.shape[-1]
+        head[[layout.FIELD_COUNT, layout.SLIPS, layout.LIMIT]] = self.fields.shape[-1], self.slips, self.limit
         return lock_array(np.concatenate([head, x, self.t, edges.ravel(), jets.ravel()]))
 
     def _slopes_along(self, x: Floats, values: Floats) -> Floats:
@@ -76,7 +80,8 @@ class CoupledRows:
         from scipy.interpolate import CubicSpline
 
         if not self.graded:
-            return np.moveaxis(_slopes(self.t, np.moveaxis(self.fields, 1, 0)), 0, 1)
+            slopes = np.moveaxis(_slopes(self.t, np.moveaxis(self.fields, 1, 0)), 0, 1)
+            return np.where(np.ptp(self.fields, axis=1, keepdims=True) > 0.0, slopes, 0.0)
         middle = int(np.argmin(np.abs(self.t)))
         found = np.zeros_like(self.fields)
         for side in (slice(0, middle + 1), slice(middle, None)):
