@@ -122,7 +122,8 @@ class Law:
         -------
         Loads or LoadsAndSlopes
             Named tuple of Q, M, M_half_space and M_cylinder (the parts of M by the losses in either body); with slopes
-            also dQ_dV at fixed omega, dQ_domega at fixed V, dM_half_space_dV, dM_cylinder_dV and both slopes over omega.  Each is a float if V
+            also dQ_dV at fixed omega, dQ_domega at fixed V, dM_half_space_dV, dM_cylinder_dV and both slopes over
+            omega.  Each is a float if V
             and omega are numbers, else an array of the broadcast shape.  Of a Cylinder Q is in N/m and M in N m/m, of a
             Scene they are divided by P and P R; slopes have these units divided by that of V or omega.  In full slip
             |Q| = mu P, and the slopes of Q are 0; at V = omega = 0 dQ_domega is infinite and dQ_dV -infinite.

@@ -38,15 +38,16 @@ class Loss:
 
     Attributes
     ----------
-    slip : power lost in slip, (omega - V) Q of a scene, (omega R - V) Q of a Cylinder.  On a cover it contains
-        delta_0 V Q, the work of the coupling that its law neglects, and may be negative (docs/validity_covers.md).
-    half_space, cylinder : power lost in rolling in either body, V M_half_space and omega M_cylinder (of a Cylinder the
-        first divided by R); their sum with ``slip`` is the power of force and torque.
+    slip : power that friction takes, at least 0: (omega - V) Q of a scene, (omega R - V) Q of a Cylinder; on a cover
+    less
+        the power that the stretch of its surface takes from it, V Q delta_0 and more.
+    half_space, cylinder : power that either body dissipates, at least 0: V M_half_space and omega M_cylinder (of a
+        Cylinder the first divided by R), of a cover with its moments without traction.  The sum of all three is the
+        power of force and torque.
     coefficient : coefficient of rolling resistance, dimensionless: all losses divided by P |V|; at rest the limit V ->
         0, |Q delta|/P; infinite for a cylinder that spins at V = 0.
     efficiency : output power divided by input power, dimensionless.  Force V and torque omega are input where they are
-        positive, output where they are negative.  0 without output; NaN without input, as at rest.  Of a
-        driven cover it may exceed 1 by the neglected coupling.
+        positive, output where they are negative.  0 without output; NaN without input, as at rest.
     """
 
     slip: Floats
@@ -154,8 +155,12 @@ class Steady(Values):
     (True, [False, True])
     """
 
-    def __init__(self, values: dict[str, Any], reasons: Diagnosis, scale: Scale, labels: Labels | None) -> None:
+    def __init__(
+        self, values: dict[str, Any], free: Floats, reasons: Diagnosis, scale: Scale, labels: Labels | None
+    ) -> None:
+        """Keep the fields, and M_half_space and M_cylinder without traction, ``free``, (2, loads..., equilibria)."""
         super().__init__(values, title="Steady rolling", si=scale.si)
+        self._free = free
         self.reasons, self.scale, self._labels = reasons, scale, labels
 
     def keys(self) -> Iterable[str]:
@@ -189,7 +194,10 @@ class Steady(Values):
         R, P = (append_axis(self.scale[name]) for name in ("R", "P"))
         moving = V != 0.0
         slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
-        half_space, cylinder = V * M_half_space / R, omega * M_cylinder
+        half_space = V * self._free[0] / R
+        cylinder = omega * self._free[1]
+        # what shear changes in the moments is taken from friction
+        slip = slip + (V * (M_half_space - self._free[0]) / R + omega * (M_cylinder - self._free[1]))
         whole, speed = slip + half_space + cylinder, np.where(moving, np.abs(V), 1.0)
         with np.errstate(invalid="ignore"):
             coefficient = np.where(moving, whole / speed, np.abs(Q * delta)) / P
@@ -296,7 +304,7 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     the loads alone, an int for one load.  With V given, force or torque is what the balance needs.
     """
     number, count, gains = states.load, reasons.number, loads.gains
-    V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary = states.rows
+    V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary, *free = states.rows
     force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
     torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
     if loads.given == "torque":
@@ -304,7 +312,7 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     elif loads.given == "force":
         torque = M_cylinder + Q
     grip = 1.0 - np.abs(Q) / loads.mu[number]
-    more = np.array([M_half_space + M_cylinder, grip, force, torque, fast, slow, imaginary])
+    more = np.array([M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary])
     rows = np.concatenate([states.rows[: Field.FAST], more])
     most = int(count.max(initial=0))
     if most * count.size > number.size:  # some have fewer
@@ -327,4 +335,5 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
         found = {
             name: labels.apply(name, each, *axes_after.get(name, ("equilibrium",))) for name, each in found.items()
         }
-    return Steady(found, reasons, scale, labels)
+    free_moments = rows[len(_FIELDS) : len(_FIELDS) + 2] * append_axis(scale["M"])
+    return Steady(found, free_moments, reasons, scale, labels)

@@ -11,7 +11,7 @@ a limit of stick, which are found first.  If fw + qw = 0, the sum determines V, 
 In this file all is dimensionless, and states are in a frame where V > 0; ``slip`` is omega - V, x is log2(kappa V)
 with kappa = R/l0, mu is the coefficient of friction, delta_0 the creepage (omega - V)/V at which Q = 0, delta_star the
 distance from it at which full slip begins, and a law is a :class:`LawTable`, the rows of one material.
-Rows of :class:`.states.Field` are V, delta, Q, M_half_space, M_cylinder, beta and four slopes of the law, dQ_dV at
+Rows of :class:`.states.Field` are V, delta, Q, M_half_space, M_cylinder, beta and six slopes of the law, dQ_dV at
 fixed omega, dQ_domega, dM_half_space_dV and dM_cylinder_dV; :class:`.states.States` have omega and the eigenvalues in
 place of the slopes.
 """
@@ -104,7 +104,7 @@ class _ScanProblem(NamedTuple):
         """Evaluate the law and the residuals of the equations of equilibrium, full slip included.
 
         V, slip : speed and omega - V, (n,), dimensionless, in the frame where V > 0.
-        Returns (rows of :class:`Field` with the slopes of the law from row 6 on, (10, n); residuals, (2, n): M less
+        Returns (rows of :class:`Field` with the slopes of the law from row 6 on, (12, n); residuals, (2, n): M less
         force and torque, and Q - M_half_space + force), dimensionless; a state is one of equilibrium if both residuals
         are 0.
         """
@@ -242,7 +242,7 @@ def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
     its logarithm alone.
     problem : :class:`_ScanProblem`, the load and the table of its material.
     V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where V > 0; n may be 0.
-    Returns rows of :class:`Field` with the slopes of the law from row 6 on at the refined states, (10, states), sorted
+    Returns rows of :class:`Field` with the slopes of the law from row 6 on at the refined states, (12, states), sorted
     by V and creepage.  A step that does not reduce the sum of the moduli of both residuals, or changes V by a
     thousandth or more, is rejected.  A state of which a residual stays above :data:`_RESIDUAL` times (mu +
     |M_half_space| + |M_cylinder|) is dropped, and of neighbours in this order whose V and delta agree to
@@ -253,7 +253,7 @@ def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
     gains = problem.load_rows[:, 1:]
     (of_V, of_omega), (force_V, force_omega) = gains.sum(axis=0), gains[0]
     for _ in range(_NEWTON_STEPS if V.size else 0):
-        a, b, one, other = rows[Field.DQ_DV :]
+        a, b, one, other = rows[Field.DQ_DV : Field.DM_HALF_SPACE_DOMEGA]
         sum_V, sum_slip = one + other - of_V - of_omega, -of_omega
         rest_V, rest_slip = a + b - one + force_V + force_omega, b + force_omega
         det = sum_V * rest_slip - sum_slip * rest_V

@@ -9,8 +9,9 @@ half the transit times of the contact and of its stick zone, H a function of the
 load P, M the rolling moment over P R, mu the coefficient of friction, kappa = R/l0 with the contact length at rest l0,
 delta = (omega - V)/V the creepage, delta_star the size of it from which on the contact slips fully (of a cover: of its
 difference from delta_0, at which Q = 0), lam the contact length over l0, and beta the part of it that sticks.
-Rows of :class:`Field` are V, delta, Q, M_half_space, M_cylinder, beta, and then either four slopes of the law, dQ_dV at
-fixed omega, dQ_domega, dM_half_space_dV and dM_cylinder_dV, or omega and the eigenvalues.
+Rows of :class:`Field` are V, delta, Q, M_half_space, M_cylinder, beta, and then either six slopes of the law, dQ_dV at
+fixed omega, dQ_domega, dM_half_space_dV, dM_cylinder_dV and both slopes of M over omega, or omega, the eigenvalues and
+the moments without traction.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from ...core.array_types import Floats, Integers
 from ...core.blocks import run_blocks
 from ...materials.law.table import LawTable
 from ..contact_table import evaluate_law
+from .cover_shear import shear_at
 from .loads import Gains, Loads
 from .resistance import branches
 
@@ -35,15 +37,20 @@ _SMALL_TRACTION = 1e-8
 #: |Q|/mu below which a Newton step corrects delta, which is a difference there
 _CORRECTED_TRACTION = 0.2
 #: fields of ``contact`` that make the rows of :class:`Field` from Q on
-_ROWS = "Q", "M_half_space", "M_cylinder", "beta", "dQ_dV", "dQ_domega", "dM_half_space_dV", "dM_cylinder_dV"
+_ROWS = (
+    "Q", "M_half_space", "M_cylinder", "beta", "dQ_dV", "dQ_domega", "dM_half_space_dV", "dM_cylinder_dV",
+    "dM_half_space_domega", "dM_cylinder_domega",
+)  # fmt: skip
 
 
 class Field(IntEnum):
-    """Index of the row of a quantity in an array of states, (10, n).
+    """Index of the row of a quantity in an array of states, (12, n).
 
     From row 6 on the array has the slopes of the law while states are computed, in a frame where V > 0: dQ/dV at fixed
-    omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV.  In :class:`States` the same rows have omega, the real parts of
-    the faster and of the slower eigenvalue, and the imaginary part of the slower one.
+    omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega, dM_half_space/domega, dM_cylinder/domega.  In
+    :class:`States` the same rows have omega, the real parts of the faster and of the slower eigenvalue, the imaginary
+    part of the slower one, and the moments that the bodies would have without traction, by which their losses are
+    found.
     """
 
     V = 0
@@ -60,14 +67,28 @@ class Field(IntEnum):
     FAST = 7
     SLOW = 8
     IMAGINARY = 9
+    DM_HALF_SPACE_DOMEGA = 10
+    DM_CYLINDER_DOMEGA = 11
+    FREE_HALF_SPACE = 10
+    FREE_CYLINDER = 11
+
+
+#: slopes over V, each with that over omega: at fixed omega the first lacks (1 + delta) times the second
+_SLOPES = (
+    (Field.DQ_DV, Field.DQ_DOMEGA),
+    (Field.DM_HALF_SPACE, Field.DM_HALF_SPACE_DOMEGA),
+    (Field.DM_CYLINDER, Field.DM_CYLINDER_DOMEGA),
+)
 
 
 class States(NamedTuple):
     """Steady states one after another, dimensionless; speeds in R/T_ref.
 
     load : index of the load of each state, (n,).
-    rows : quantities of the states, (10, n), in the order of :class:`Field`, with omega and the eigenvalues from row 6
-        on; V, Q, M and omega have the signs of the motion.  delta and omega are NaN where the friction does not
+    rows : quantities of the states, (12, n), in the order of :class:`Field`, with omega, the eigenvalues and the
+    moments
+        without traction from row 6 on; V, Q, M and omega have the signs of the motion.  delta and omega are NaN where
+        the friction does not
         suffice; Q is what the balance needs there, and the other rows mean nothing.
     """
 
@@ -75,20 +96,24 @@ class States(NamedTuple):
     rows: Floats
 
     @classmethod
-    def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray) -> States:
+    def of(cls, loads: Loads, load: NDArray, sign: NDArray, answers: NDArray, free: NDArray | None = None) -> States:
         """Make the states from the law at them: give V, Q and M their signs, and add omega and the eigenvalues.
 
         loads : :class:`Loads`, the loads, of which the gains and j are used.
         load : index of the load of each state, (n,).
         sign : sign of V, 1.0 or -1.0, (n,).
-        answers : rows of :class:`Field` with the slopes of the law from row 6 on, (10, n), in a frame where V > 0; not
+        answers : rows of :class:`Field` with the slopes of the law from row 6 on, (12, n), in a frame where V > 0; not
             changed.
+        free : M_half_space and M_cylinder without traction, (2, n), in that frame; None: those of ``answers``, as of
+            half-spaces.
         Returns the :class:`States`, (n,); omega is NaN where delta is.
         """
         rows = answers.copy()
-        rows[[Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER]] *= sign
+        rows[Field.FREE_HALF_SPACE :] = answers[[Field.M_HALF_SPACE, Field.M_CYLINDER]] if free is None else free
+        signed = Field.V, Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.FREE_HALF_SPACE, Field.FREE_CYLINDER
+        rows[list(signed)] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
-        rows[Field.FAST :] = _eigenvalues(answers[Field.DQ_DV :], loads.gains, loads.j[load])
+        rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(answers[Field.DQ_DV :], loads.gains, loads.j[load])
         return cls(load, rows)
 
     @classmethod
@@ -108,24 +133,34 @@ class States(NamedTuple):
         """
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
         limit, free = (1.0, 0.0) if law.cover is None else law.cover.creep[:, 0, 0]
-        Q, kappa, mu, j = (values[load] for values in (loads.torque, loads.kappa, loads.mu, loads.j))
+        kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
+        shear = shear_at(law, kappa, mu, np.zeros(load.size))
+        Q = shear.traction_of_torque(loads.torque[load])
         if loads.given == "force":
-            Q = -loads.force[load]
-        part, rows = np.abs(Q) / mu, np.zeros((Field.IMAGINARY + 1, load.size))
+            Q = shear.traction_of_force(-loads.force[load])
+        part = np.abs(Q) / mu
+        rows = np.zeros((2 + len(_ROWS), load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
-        delta, free = 0.5 * limit * mu / kappa * part / (1.0 + beta), 0.5 * free / kappa
-        rows[Field.OMEGA], rows[Field.DELTA], rows[Field.Q] = 0.0 * beta, np.sign(Q) * delta + free, Q
+        delta = 0.5 * limit * mu / kappa * part / (1.0 + beta)
+        free = 0.5 * free / kappa
+        rows[Field.OMEGA] = 0.0 * beta
+        rows[Field.DELTA] = np.sign(Q) * delta + free
+        rows[Field.Q] = Q
+        rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = shear.moments(Q)
         rows[Field.FAST] = rows[Field.SLOW] = -np.inf
+        on_axis, on_spin, half_space, cylinder = shear.slopes_at_rest(law, Q)
         gains = loads.gains
         for creep in (free + delta, free - delta):  # to either side omega = V (1 + delta) or V (1 - delta)
-            rate = law.T_mean - gains.V - (gains.force_omega + gains.torque_omega) * (1.0 + creep)
-            rows[Field.SLOW] = np.maximum(rows[Field.SLOW], -rate / (1.0 + j * (1.0 + creep)))
+            push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
+            turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
+            rate = on_spin * push + on_axis * turn
+            rows[Field.SLOW] = np.maximum(rows[Field.SLOW], -rate / (on_spin + j * on_axis * (1.0 + creep)))
         return cls(load, rows)
 
     @classmethod
     def none(cls) -> States:
         """No state."""
-        return cls(np.empty(0, np.int64), np.empty((Field.IMAGINARY + 1, 0)))
+        return cls(np.empty(0, np.int64), np.empty((len(_ROWS) + 2, 0)))
 
     @classmethod
     def joined(cls, *parts: States) -> States:
@@ -144,20 +179,27 @@ class States(NamedTuple):
 def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
     """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
-    slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV, (4, n), dimensionless, finite.
+    slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega, dM_half_space/domega,
+        dM_cylinder/domega, (6, n), dimensionless, finite.
     gains : :class:`Gains`, gains of force and torque on V and omega.
     j : moments of inertia divided by m R^2, (n,).
     Returns rows, (3, n): real part of the faster eigenvalue (the smaller number) and of the slower one, imaginary part
     of the slower (>= 0; the faster has its negative).  Of a complex pair both real parts are equal, of real eigenvalues
     the imaginary part is 0.  The determinant is b (M'(V) - gain)/j without a gain on omega, where b = dQ/domega; it is
-    computed without the cancellation of the large slopes of Q.
+    computed without the cancellation of the large slopes of Q.  Where M depends on Q too, as of a cover, M' is that at
+    fixed Q, and Q acts on the axis and on the cylinder with the factors ``on_axis`` and ``on_spin``.
     """
-    a, b, d_half_space, d_cylinder = slopes
-    with np.errstate(invalid="ignore"):
-        det = b * (d_half_space + d_cylinder - gains.V)
-        det += gains.torque_omega * (a - d_half_space + gains.force_V)
-        det = (det + gains.force_omega * (a + d_cylinder - gains.torque_V)) / j
-        half = 0.5 * (a - d_half_space + gains.force_V + (gains.torque_omega - b) / j)
+    a, b, d_half_space, d_cylinder, half_space_b, cylinder_b = slopes
+    with np.errstate(invalid="ignore", divide="ignore"):
+        on_axis = 1.0 - np.where(half_space_b == 0.0, 0.0, half_space_b / b)
+        on_spin = 1.0 + np.where(cylinder_b == 0.0, 0.0, cylinder_b / b)
+        d_half_space = d_half_space - (1.0 - on_axis) * a
+        d_cylinder = d_cylinder - (on_spin - 1.0) * a
+        det = on_spin * d_half_space + on_axis * d_cylinder
+        det = b * (det - (on_spin * gains.force_V + on_axis * gains.torque_V))
+        det += gains.torque_omega * (on_axis * a - d_half_space + gains.force_V)
+        det = (det + gains.force_omega * (on_spin * a + d_cylinder - gains.torque_V)) / j
+        half = 0.5 * (on_axis * a - d_half_space + gains.force_V + (gains.torque_omega - on_spin * b) / j)
         spread = half * half - det
         root = np.sqrt(np.abs(spread))
         larger = half + np.copysign(root, half)
@@ -200,12 +242,13 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
     law : table of the material.
     kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
     V, delta : speeds, > 0, which is not checked, and creepages, (n,), dimensionless.
-    Returns rows of :class:`Field` with slopes, (10, n); row 6 is dQ/dV at fixed omega.  In full slip Q is mu or -mu,
+    Returns rows of :class:`Field` with slopes, (12, n); row 6 is dQ/dV at fixed omega.  In full slip Q is mu or -mu,
     and beta and the slopes of Q are 0.
     """
     rows = np.empty((2 + len(_ROWS), V.size))
     rows[Field.V], rows[Field.DELTA], rows[2:] = V, delta, contact_fields_at(law, kappa, mu, V, delta, *_ROWS)
-    rows[Field.DQ_DV] -= rows[Field.DQ_DOMEGA] * (1.0 + delta)
+    for over_V, over_omega in _SLOPES:
+        rows[over_V] -= rows[over_omega] * (1.0 + delta)
     return rows
 
 
@@ -251,13 +294,15 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V
     delta_0 = free_creep(law, kappa, mu, V)
     free = contact_fields_at(law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta")
-    M = free[0] + free[1]
-    share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
-    if loads.given is None:
-        M = force + torque
-        Q = share * torque - (1.0 - share) * force
+    if law.cover is None:
+        Q, moments = _tractions_of_half_spaces(loads.given, force, torque, free[:2])
     else:
-        Q = torque - (1.0 - share) * M if loads.given == "torque" else share * M - force
+        shear = shear_at(law, kappa, mu, V)
+        if loads.given == "torque":
+            Q = shear.traction_of_torque(torque - free[1])
+        else:
+            Q = shear.traction_of_force(free[0] - force)
+        moments = free[:2] + shear.moments(Q)
     part = np.abs(Q) / mu
     exists = part < 1.0
     root, (star, lam, rise) = np.sqrt(np.where(exists, 1.0 - part, 1.0)), free[2:]
@@ -268,9 +313,28 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     rows[Field.DELTA] -= np.divide(
         rows[Field.Q] - Q, V * rows[Field.DQ_DOMEGA], out=0.0 * V, where=part < _CORRECTED_TRACTION
     )
-    rows[Field.Q], rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = Q, share * M, (1.0 - share) * M
+    rows[Field.Q] = Q
+    rows[[Field.M_HALF_SPACE, Field.M_CYLINDER]] = moments
     rows[Field.BETA] = root * less_lam / lam
     if not exists.all():
         rows[[Field.BETA, Field.DQ_DV, Field.DQ_DOMEGA]] *= exists
         rows[Field.DELTA, ~exists] = np.nan
-    return States.of(loads, load, sign, rows)
+    return States.of(loads, load, sign, rows, None if law.cover is None else free[:2])
+
+
+def _tractions_of_half_spaces(given: str | None, force: Floats, torque: Floats, free: Floats) -> tuple[Floats, Floats]:
+    """Return the traction that balances the loads on half-spaces at given speeds, and the moments of both bodies.
+
+    given : name of the load that was given beside V, "force" or "torque"; None: V is such that both balance M.
+    force, torque : loads in the frame where V > 0, (n,); the one that is not given has no meaning.
+    free : M_half_space and M_cylinder of the law, (2, n).
+    Returns (Q, (n,); M_half_space and M_cylinder, (2, n)), dimensionless.
+    """
+    M = free[0] + free[1]
+    share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
+    if given is None:
+        M = force + torque
+        Q = share * torque - (1.0 - share) * force
+    else:
+        Q = torque - (1.0 - share) * M if given == "torque" else share * M - force
+    return Q, np.stack([share * M, (1.0 - share) * M])

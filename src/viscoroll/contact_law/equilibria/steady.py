@@ -17,8 +17,9 @@ from ...core.drive import Feedback, make_dimensionless
 from ...core.errors import ParameterError
 from ...core.labels import strip_labels
 from ...materials.law.table import LawTable
-from ..parameters import Roller, refuse_arrays, resolve_model, scale_of
+from ..parameters import Roller, refuse_arrays, refuse_cover, resolve_model, scale_of
 from ..validity.model_warnings import warn_of_contact
+from .cover_shear import find_speeds_of_cover, is_balanced_at_rest
 from .loads import Loads, loads_of
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
 from .result import Diagnosis, Steady, pack_result
@@ -118,11 +119,12 @@ def steady(
         speed = loads.V[moving]
         rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
     elif loads.gains.omega:
+        refuse_cover(scene, "a feedback on omega is not examined: give one on V alone")
         rolling = scan_states(law, loads)
     else:
         rolling = _states_under_load(law, loads)
     neutral = elastic and loads.given is None and not gained
-    resting = _loads_at_rest(loads, neutral)
+    resting = _loads_at_rest(law, loads, neutral)
     if resting.size:
         rolling = States.joined(rolling, States.at_rest(loads, resting, law))
     existing = rolling.existing()
@@ -135,9 +137,10 @@ def steady(
     return found
 
 
-def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
+def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
     """Return the indices of the loads under which the cylinder is examined at rest, V = omega = 0, (m,).
 
+    law : table of the material.
     loads : the loads, dimensionless.  Chosen are those with V = 0 where V was given, else those with force + torque = 0
         at rest, whether or not the friction suffices.
     neutral : whether every speed is steady without a load, as of elastic bodies; without a given V rest is then chosen
@@ -145,7 +148,7 @@ def _loads_at_rest(loads: Loads, neutral: bool) -> Integers:
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
-    rests = loads.force + loads.torque == 0.0
+    rests = is_balanced_at_rest(law, loads)
     return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 
@@ -168,5 +171,8 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
     if not gain and law.alpha == 1.0:
         return States.none()
+    if law.cover is not None:
+        load, sign, V = find_speeds_of_cover(law, loads)
+        return states_at(law, loads, load, sign, V)
     load, sign, u = find_crossings(law, gain, total)
     return states_at(law, loads, load, sign, u / loads.kappa[load])

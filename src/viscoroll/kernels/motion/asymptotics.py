@@ -207,7 +207,11 @@ def is_coasting(state, regime, step_state, work):
     rtol = work.options.rtol
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
-    return free_decay(work).rate > 0.0 and abs(state.omega_or_d) < _COASTING_D * rtol and is_unloaded(step_state.segment, work.drive)
+    return (
+        free_decay(work).rate > 0.0
+        and abs(state.omega_or_d) < _COASTING_D * rtol
+        and is_unloaded(step_state.segment, work.drive)
+    )
 
 
 @kernel
@@ -238,7 +242,8 @@ def coast_to_end(state, regime, step_state, work):
     """Write the remaining outputs by the closed form of slow rolling, V' = -rate V with delta - delta_0 proportional to
     V.
 
-    Of half-spaces the rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit
+    Of half-spaces the rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the
+    limit
     V -> 0 and inertia = 1 + j + gamma N, with gamma N the added mass; :func:`.law.free_decay` has it for covers too.
     delta_0 is the creepage of free rolling for V -> 0, 0 for half-spaces.
 

@@ -64,7 +64,8 @@ _NEGLIGIBLE_FORCE = 1e-75
 
 @inline_kernel
 def _leverage(used, scene):
-    """Return how much of the traction acts on the axis and on the cylinder at V = 0, the moments that it makes included.
+    """Return how much of the traction acts on the axis and on the cylinder at V = 0, the moments that it makes
+    included.
 
     With the factors a and excesses e of base and cylinder (:class:`..rows.cover.Reaction`), V' contains Q (1 + a_b +
     e_b |Q|/mu), and j omega' contains -Q (1 - a_c - e_c |Q|/mu).

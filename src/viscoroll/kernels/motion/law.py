@@ -22,7 +22,7 @@ import numpy as np
 from ..compile.by_reference import by_value
 from ..compile.jit import inline_kernel, kernel
 from ..rows.added_mass import added_mass
-from ..rows.cover import moment_change, shear_reaction
+from ..rows.cover import MomentChange, moment_change, shear_reaction
 from ..rows.evaluate import body_moments, free_creep_and_slopes, length_and_moment, limits_at_rest, locate_row
 
 
@@ -69,16 +69,21 @@ class LoadedMoments(NamedTuple):
 
 
 @inline_kernel
-def _reaction_at(u, scene):
-    """Return how shear acts back on the moments of a cover at one speed, as :class:`..rows.cover.Reaction`.
+def _change_at(u, Q, scene, cover_rows):
+    """Return what the traction changes in the moments at one speed, as :class:`..rows.cover.MomentChange`.
 
     u: float, kappa |V|, dimensionless, at least 0 and finite.
-    scene: Scene, of a cover, of which kappa, mu and ``law`` are read.
+    Q: float, traction, dimensionless.
+    scene: Scene, of which kappa, mu and ``law`` are read, of a cover alone.
+    cover_rows: ``cover_rows`` of its law; None of half-spaces, of which all is 0.
     """
+    if cover_rows is None:
+        return MomentChange(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     law = by_value(scene.law)
     position = locate_row(u, law)
     functions = length_and_moment(position, u, law)
-    return shear_reaction(position, u, scene.kappa, scene.mu, functions.L, functions.dL, law.cover_rows)
+    reaction = shear_reaction(position, u, scene.kappa, scene.mu, functions.L, functions.dL, cover_rows)
+    return moment_change(Q, scene.mu, reaction)
 
 
 @inline_kernel
@@ -92,9 +97,7 @@ def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene):
     scene: Scene, of which kappa, mu and ``law`` are read, of a cover alone.
     """
     half_space, cylinder, half_space_slope, cylinder_slope = free
-    if by_value(scene.law).cover_rows is None:
-        return LoadedMoments(V * half_space, V * cylinder, half_space_slope, cylinder_slope, 0.0, 0.0)
-    change = moment_change(Q, scene.mu, _reaction_at(scene.kappa * abs(V), scene))
+    change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
     return LoadedMoments(
         half_space=V * half_space + change.half_space,
         cylinder=V * cylinder + change.cylinder,
@@ -116,14 +119,9 @@ def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
     scene: Scene, of which ``law``, moments_differ, kappa and mu are read, of a cover alone.
     Returns (slip, rolling), floats, dimensionless, per unit of tau.
     """
-    slip = (omega - V) * Q
-    rolling = V * M_half_space + omega * M_cylinder
-    if by_value(scene.law).cover_rows is None:
-        return slip, rolling
-    _, _, _, half_space, cylinder, _, _ = evaluate_moments(scene.kappa * abs(V), scene)
-    bodies = V * (V * half_space) + omega * (V * cylinder)
-    change = moment_change(Q, scene.mu, _reaction_at(scene.kappa * abs(V), scene))
-    return slip + V * change.half_space + omega * change.cylinder, bodies
+    change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
+    by_shear = V * change.half_space + omega * change.cylinder
+    return (omega - V) * Q + by_shear, V * M_half_space + omega * M_cylinder - by_shear
 
 
 @inline_kernel
@@ -132,7 +130,10 @@ def reaction_at_rest(scene):
 
     scene: Scene, of which ``law`` and, of a cover, kappa and mu are read; all is 0 of half-spaces.
     """
-    return _reaction_at(0.0, scene)
+    law = by_value(scene.law)
+    position = locate_row(0.0, law)
+    functions = length_and_moment(position, 0.0, law)
+    return shear_reaction(position, 0.0, scene.kappa, scene.mu, functions.L, functions.dL, law.cover_rows)
 
 
 @inline_kernel

@@ -212,7 +212,8 @@ def _evaluate_integrands(regime, work):
 
     In the order of :func:`write_quadrature`, with the traction Q, the moments and the forces that act
     (:func:`required_forces`): V/gamma and omega/gamma in fixed directions; (omega - V) Q; V M_half_space + omega
-    M_cylinder, both of a cover as of :func:`.law.slip_power`; force V; torque omega; -(torque of the brake) omega.  All are integrated over tau: distance and angle
+    M_cylinder, both of a cover as of :func:`.law.slip_power`; force V; torque omega; -(torque of the brake) omega.
+    All are integrated over tau: distance and angle
     thus become integrals over t.
 
     regime: Regime, that of the step; all fields are read.

@@ -2,7 +2,8 @@
 
 The function is compiled once; ``scene`` is its user data, a :data:`SCENE`.  It writes Q, M, and the parts of M in
 half-space and cylinder into ``out``; then, where the scene asks for slopes, dQ/dV at fixed omega, dQ/domega and the
-slopes of the parts over V and over omega.  It returns 0, or another number with NaN in ``out``.  It writes nothing else: any number of
+slopes of the parts over V and over omega.  It returns 0, or another number with NaN in ``out``.  It writes nothing
+else: any number of
 threads may call it.
 """
 
@@ -87,7 +88,8 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
 
     caller_V, caller_omega : floats, speed and angular velocity in the units of the caller, of any sign.
     pointer : address of RESULTS doubles, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``, dQ/dV at
-        fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, dM_half_space/domega, dM_cylinder/domega.  Without slopes numbers 4 and 5 stay as
+        fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, dM_half_space/domega, dM_cylinder/domega.
+         Without slopes numbers 4 and 5 stay as
         they were, and the others are overwritten by numbers without meaning.
     scene : a SCENE record, of which all fields but ``function`` and ``cover_rows`` are read: rows and marks of the law,
         kappa, mu > 0 and the units of the caller.
@@ -116,7 +118,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     D = signed_creep(functions.L, free_creep, state, law)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
-    change = traction_on_moments(position, u, functions, out[0], state, law)
+    change = traction_on_moments(position, u, functions, out[0], state, cover_rows)
     out[1] = factor * functions.m + (change.half_space + change.cylinder)
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um

@@ -284,7 +284,7 @@ def Q_slopes(u, L, dL, D, state, law):
 
 
 @inline_kernel
-def traction_on_moments(position, u, functions, Q, state, law):
+def traction_on_moments(position, u, functions, Q, state, cover_rows):
     """Return what the traction changes in the rolling moments of a state, as :class:`.cover.MomentChange`.
 
     position : :class:`RowPosition` of u.
@@ -292,17 +292,18 @@ def traction_on_moments(position, u, functions, Q, state, law):
     functions : :class:`LengthAndMoment` at u, of which L and dL are read.
     Q : float, traction of the state, dimensionless.
     state : :class:`State` of numbers, of which kappa and mu are read.
-    law : :class:`Law` of the material; of half-spaces nothing is read, and all changes are 0.
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover`); None for half-spaces: all changes are 0.
     """
-    if law.cover_rows is None:  # LLVM leaves out what follows, and numba compiles nothing of a cover
+    if cover_rows is None:
         return MomentChange(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    reaction = shear_reaction(position, u, state.kappa, state.mu, functions.L, functions.dL, law.cover_rows)
+    reaction = shear_reaction(position, u, state.kappa, state.mu, functions.L, functions.dL, cover_rows)
     return moment_change(Q, state.mu, reaction)
 
 
 @inline_kernel
 def moment_slope(change_dQ, slope):
-    """Return the slope of a moment over creepage or omega at fixed speed, dimensionless; 0 where it does not depend on Q.
+    """Return the slope of a moment over creepage or omega at fixed speed, dimensionless; 0 where it does not depend
+    on Q.
 
     change_dQ : float, derivative of :class:`.cover.MomentChange` in Q; 0 of half-spaces.
     slope : float, slope of Q over the same variable; it may be infinite at rest.
@@ -427,16 +428,43 @@ def _write_other_fields(n, c, law, scratch, request):
     slopes = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
     bodies = max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
     bodies = bodies or max(to.dM_half_space_domega, to.dM_cylinder_domega) >= 0
+    _write_reaction(n, position, u, state, law, law.cover_rows, request)
     if slopes or bodies:
-        _write_moments_and_slopes(n, c, bodies, law, scratch, request)
+        slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
+        _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
 
 
 @inline_kernel
-def _write_moments_and_slopes(n, c, bodies, law, scratch, request):
+def _write_reaction(n, position, u, state, law, cover_rows, request):
+    """Write how shear acts back on the moments of a state on a cover (:class:`.cover.Reaction`), if it is requested.
+
+    n : int, index of the state.
+    position : :class:`RowPosition` of u.
+    u : float, kappa |V|, dimensionless, >= 0.
+    state : :class:`State` of numbers, of which kappa and mu are read.
+    law : :class:`Law` of the material, of which L is read.
+    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written: nobody asks for it.
+    request : :class:`Request` of states and quantities.
+    Returns nothing.
+    """
+    if cover_rows is not None:
+        to = request.to
+        if max(to.reaction_half_space, to.reaction_cylinder, to.excess_half_space, to.excess_cylinder) >= 0:
+            functions = length_and_moment(position, u, law)
+            shear = shear_reaction(position, u, state.kappa, state.mu, functions.L, functions.dL, cover_rows)
+            write_field(to.reaction_half_space, shear.half_space, n, request)
+            write_field(to.reaction_cylinder, shear.cylinder, n, request)
+            write_field(to.excess_half_space, shear.half_space_excess, n, request)
+            write_field(to.excess_cylinder, shear.cylinder_excess, n, request)
+
+
+@inline_kernel
+def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     """Write the moments of the bodies, and the slopes of Q and of the moments, of those that are requested.
 
     n, c, law, scratch, request : as of :func:`_write_other_fields`.
     bodies : bool, whether a quantity of one body is requested.
+    slopes_of_Q : bool, whether a slope of Q is requested; the moments of a cover need them in any case.
     Returns nothing.  Of half-spaces M depends on the speed alone: its slopes in delta and omega are 0.
     """
     to = request.to
@@ -444,10 +472,11 @@ def _write_moments_and_slopes(n, c, bodies, law, scratch, request):
     u = scratch[_U + c]
     position = _position(_POSITION, c, scratch)
     functions = length_and_moment(position, u, law)
-    change = traction_on_moments(position, u, functions, scratch[_Q + c], state, law)
-    over_V, over_delta, over_omega = 0.0, 0.0, 0.0
-    wanted = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
-    if wanted or law.cover_rows is not None:
+    change = traction_on_moments(position, u, functions, scratch[_Q + c], state, law.cover_rows)
+    over_V = 0.0
+    over_delta = 0.0
+    over_omega = 0.0
+    if slopes_of_Q or _is_cover(law.cover_rows):
         over_V, over_delta, over_omega = Q_slopes(u, functions.L, functions.dL, scratch[_D + c], state, law)
         write_field(to.dQ_dV, over_V, n, request)
         write_field(to.dQ_ddelta, over_delta, n, request)
@@ -471,18 +500,45 @@ def _write_moments_and_slopes(n, c, bodies, law, scratch, request):
 
 
 @inline_kernel
-def _write_moment_of_cover(n, c, law, scratch, request):
-    """Write M of a state on a cover, which depends on the traction, if it is requested.
+def _is_cover(cover_rows):
+    """Return whether a law is that of a cover, a bool that numba knows when it compiles.
 
-    n, c, law, scratch, request : as of :func:`_write_other_fields`; Q of the state is in the scratch.
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover`); None for half-spaces.
+    """
+    return cover_rows is not None
+
+
+@inline_kernel
+def _write_moment_of_half_space(n, c, position, functions, cover_rows, scratch, request):
+    """Write M of a state on half-spaces, which depends on the speed alone, if it is requested.
+
+    n, c, scratch, request : as of :func:`_write_other_fields`.
+    position, functions : :class:`RowPosition` of u, and :class:`LengthAndMoment` there.
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover`), and then nothing is written; None for
+        half-spaces.
     Returns nothing.
     """
-    if request.to.M >= 0:
+    if cover_rows is None:
+        factor = moment_factor(position, scratch[_U + c], functions.scale, _state(c, scratch, request))
+        write_field(request.to.M, factor * functions.m, n, request)
+
+
+@inline_kernel
+def _write_moment_of_cover(Q, n, c, law, cover_rows, scratch, request):
+    """Store Q of a state on a cover in the scratch, and write M, which depends on it, if that is requested.
+
+    Q : float, traction, dimensionless.
+    n, c, law, scratch, request : as of :func:`_write_other_fields`; the entry of Q is written.
+    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written.
+    Returns nothing.
+    """
+    if cover_rows is not None:
+        scratch[_Q + c] = Q
         state = _state(c, scratch, request)
         u = scratch[_U + c]
         position = _position(_POSITION, c, scratch)
         functions = length_and_moment(position, u, law)
-        change = traction_on_moments(position, u, functions, scratch[_Q + c], state, law)
+        change = traction_on_moments(position, u, functions, Q, state, cover_rows)
         M = moment_factor(position, u, functions.scale, state) * functions.m
         write_field(request.to.M, M + (change.half_space + change.cylinder), n, request)
 
@@ -537,9 +593,9 @@ def contact_loop(laws, request, scratch, count):
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
                 scratch[_FREE_CREEP + c] = free_creep_at(position, u, law.cover_rows)[0]
-                if laws[0].cover_rows is None:
-                    factor = moment_factor(position, u, functions.scale, _state(c, scratch, request))
-                    write_field(to.M, factor * functions.m, _index(first + k, request), request)
+                _write_moment_of_half_space(
+                    _index(first + k, request), c, position, functions, law.cover_rows, scratch, request
+                )  # fmt: skip
             for k in range(begin, end):
                 c = np.uint64(k)
                 L = scratch[_L + c]
@@ -547,7 +603,7 @@ def contact_loop(laws, request, scratch, count):
                 scratch[_D + c] = D
                 scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
             _write_positions(_STICK, _STICK_POSITION, begin, end, laws, scratch)
-            if to.Q >= 0 or laws[0].cover_rows is not None:
+            if to.Q >= 0 or _is_cover(laws[0].cover_rows):
                 for k in range(begin, end):
                     c = np.uint64(k)
                     Q = signed_traction(
@@ -555,11 +611,8 @@ def contact_loop(laws, request, scratch, count):
                         scratch[_D + c], scratch[_MU + c], laws[k % len(laws)],
                     )  # fmt: skip
                     write_field(to.Q, Q, _index(first + k, request), request)
-                    if laws[0].cover_rows is not None:
-                        scratch[_Q + c] = Q
-                        _write_moment_of_cover(
-                            _index(first + k, request), c, laws[k % len(laws)], scratch, request
-                        )  # fmt: skip
+                    law = laws[k % len(laws)]
+                    _write_moment_of_cover(Q, _index(first + k, request), c, law, law.cover_rows, scratch, request)
             if others:
                 for k in range(begin, end):
                     n = _index(first + k, request)
