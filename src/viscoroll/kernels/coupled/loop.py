@@ -26,8 +26,10 @@ _MOST_LENGTHS = 15
 _LOAD_ERROR = 1e-6
 #: bounds of d ln(load)/d ln(half length)
 _LEAST_SLOPE, _LARGEST_SLOPE = 0.7, 5.0
-#: steps of the search for the place of an edge
-_EDGE_STEPS = 4
+#: most edges at which a mesh is refined
+MOST_SPOTS = 8
+#: width of the refinement at an edge times the number of elements, and elements in a factor of e
+WIDTH_OF_SPOT, WEIGHT_OF_SPOT = 0.05, 2.0
 #: steps of the bisection of the creep where the other slip opens
 _BISECTIONS = 20
 
@@ -55,7 +57,7 @@ class Contact(NamedTuple):
     """Arrays of one contact of N elements.
 
     nodes : (N + 1,).  at : (N,), places of collocation.  H, T, C : (N, N - 1).  p, q : at inner nodes, (N - 1,).
-    strain : u' at places, (N,).  zone : (N - 1,).
+    strain : u' at places, (N,).  zone : (N - 1,).  place : parameters of the nodes, (N + 1,).
     """
 
     nodes: Any
@@ -67,6 +69,7 @@ class Contact(NamedTuple):
     q: Any
     strain: Any
     zone: Any
+    place: Any
 
 
 @kernel(allocates=True)
@@ -76,40 +79,69 @@ def new_contact(count):
     return Contact(
         np.zeros(count + 1), np.zeros(count), np.zeros((count, inner)), np.zeros((count, inner)),
         np.zeros((count, inner)), np.zeros(inner), np.zeros(inner), np.zeros(count), np.zeros(inner),
+        np.linspace(0.0, 1.0, count + 1),
     )  # fmt: skip
 
 
+@kernel
+def find_spots(zone, place, width, weight, spots):
+    """Write the spots of a mesh at the edges of the zones of a contact; return their number.
+
+    zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
+    width, weight : of each spot.
+    spots : (MOST_SPOTS, 3), written; further edges have none.
+    """
+    used = 0
+    for i in range(zone.size - 1):
+        if zone[i] != zone[i + 1] and used < spots.shape[0]:
+            spots[used, 0] = place[i + 1] if zone[i] != 0.0 else place[i + 2]
+            spots[used, 1] = width
+            spots[used, 2] = weight
+            used += 1
+    return used
+
+
 @kernel(allocates=True)
-def solve_contact(row, contact, c, mu, d, edge, place):
+def carry_zones(zone, place, own, moved):
+    """Write zones of one mesh to the nodes of another: that of the nearest node.
+
+    zone, place : (N - 1,) and (N + 1,), of the first mesh.  own : parameters of the other, (M + 1,).
+    moved : (M - 1,), written.
+    """
+    i = 0
+    for k in range(moved.size):
+        t = own[k + 1]
+        while i + 1 < zone.size and abs(place[i + 2] - t) <= abs(place[i + 1] - t):
+            i += 1
+        moved[k] = zone[i]
+
+
+@kernel(allocates=True)
+def solve_contact(row, contact, c, mu, d):
     """Solve one contact of half length c with its zones of stick and slip.
 
     row : :class:`Row`.  contact : :class:`Contact`, written; its zones are the first guess.
     c : half length.  mu : friction.  d : creep.
-    edge, place : node that is moved and its parameter (:func:`.elements.make_mesh`); zones up to it are kept; 0: none.
     Returns (status; g).
     """
-    make_mesh(c, contact.at.size, edge, place, contact.nodes, contact.at)
+    spots = np.empty((MOST_SPOTS, 3))
+    used = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / contact.at.size, WEIGHT_OF_SPOT, spots)
+    zone = contact.zone.copy()
+    place = contact.place.copy()
+    make_mesh(c, spots, used, contact.nodes, contact.at, contact.place)
+    if used > 0:
+        carry_zones(zone, place, contact.place, contact.zone)
     assemble(row.table, row.instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
     good, B = eliminate(contact.H, contact.C, contact.at, row.coupled)
     if not good:
         return SINGULAR, 0.0
     S = strain_by_shear(contact.T, contact.C, B, row.coupled)
-    kept = edge + 1 if edge > 0 else 0
     if math.isinf(d):
         if not solve_zones(S, B, mu, contact.zone, 0.0, contact.q):
             return SINGULAR, 0.0
         return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain)
-    good, g = find_zones(S, B, mu, d, contact.zone, kept, contact.p, contact.q, contact.strain)
+    good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
     return SOLVED if good else NO_ZONES, g
-
-
-@kernel
-def front_edge(zone):
-    """Return the foremost node with slip behind and stick ahead of it, 0 without one.  zone: at inner nodes."""
-    for i in range(zone.size - 2, -1, -1):
-        if zone[i] != 0.0 and zone[i + 1] == 0.0:
-            return i + 1
-    return 0
 
 
 @kernel
@@ -207,7 +239,7 @@ def find_length(row, contact, c, slope, mu, d, out):
     error = 1.0
     for n in range(_MOST_LENGTHS):
         c = math.exp(y)
-        status, g = solve_contact(row, contact, c, mu, d, 0, 0.0)
+        status, g = solve_contact(row, contact, c, mu, d)
         total = write_state(row, contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
@@ -223,47 +255,6 @@ def find_length(row, contact, c, slope, mu, d, out):
         out[8] = NO_LOAD
     out[0] = 2.0 * c * math.exp(-error / slope)
     return c, slope
-
-
-@kernel(allocates=True)
-def place_edge(row, contact, c, slope, mu, d, out):
-    """Move the foremost edge from slip to stick until the element ahead of it sticks too; the half length is kept.
-
-    out : (COLUMNS,), of the state on the plain mesh; written, with lam corrected to first order for the load.
-    """
-    count = contact.at.size
-    edge = front_edge(contact.zone)
-    if edge < 1 or edge > count - 2 or out[8] != SOLVED:
-        return
-    sign = contact.zone[edge - 1]
-    low = (edge - 0.6) / count
-    high = (edge + 1.3) / count
-    place = edge / count
-    last = 0.0
-    before = 0.0
-    zone = contact.zone.copy()
-    for step in range(_EDGE_STEPS):
-        contact.zone[:] = zone
-        status, g = solve_contact(row, contact, c, mu, d, edge, place)
-        if status != SOLVED:
-            out[8] = status
-            return
-        total = write_state(row, contact, c, g, mu, d, status, out)
-        out[0] = 2.0 * c * math.exp(-math.log(total / LOAD) / slope)
-        slip = sign * (d - contact.strain[edge])
-        if step == 0:
-            last = slip
-            before = place
-            place += 0.4 / count
-            continue
-        if slip == last:
-            break
-        moved = place - slip * (place - before) / (slip - last)
-        last = slip
-        before = place
-        place = min(max(moved, low), high)
-        if abs(place - before) < 0.01 / count:
-            break
 
 
 @kernel(allocates=True)
@@ -319,13 +310,9 @@ def states_loop(row, mu, creeps, count, c, out):
     out : (n, COLUMNS), written.
     """
     contact = new_contact(count)
-    kept = np.zeros(count - 1)
     slope = 2.0
     for n in range(creeps.size):
-        contact.zone[:] = kept
         c, slope = find_length(row, contact, c, slope, mu, creeps[n], out[n])
-        kept[:] = contact.zone
-        place_edge(row, contact, c, slope, mu, creeps[n], out[n])
         finish_state(row, contact, out[n])
 
 
