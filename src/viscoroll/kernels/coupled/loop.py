@@ -22,16 +22,22 @@ COLUMNS = 10
 SOLVED, NO_ZONES, TENSION, NO_LOAD, SINGULAR = range(5)
 #: largest number of half lengths that are tried for one load
 _MOST_LENGTHS = 15
-#: relative error of the load, which is then corrected to first order
-_LOAD_ERROR = 1e-6
+#: relative error of the load, for which lam is then corrected to first order
+_LOAD_ERROR = 2e-5
+#: relative error of the load where only zones are asked
+_ROUGH_LOAD = 1e-3
+#: least change of ln(c) from which a secant is taken: that of a new mesh is smaller
+_LEAST_CHANGE = 1e-3
 #: bounds of d ln(load)/d ln(half length)
 _LEAST_SLOPE, _LARGEST_SLOPE = 0.7, 5.0
 #: most edges at which a mesh is refined
 MOST_SPOTS = 8
 #: width of the refinement at an edge times the number of elements, and elements in a factor of e
-WIDTH_OF_SPOT, WEIGHT_OF_SPOT = 0.05, 2.0
+WIDTH_OF_SPOT, WEIGHT_OF_SPOT = 0.1, 1.0
+#: elements in a factor of e of the distance from the front edge, down to the edge layer
+WEIGHT_OF_LAYER = 2.0
 #: steps of the bisection of the creep where the other slip opens
-_BISECTIONS = 20
+_BISECTIONS = 17
 
 
 class Row(NamedTuple):
@@ -42,6 +48,7 @@ class Row(NamedTuple):
     coupled : whether shear acts on the pressure.
     split : whether both bodies deform; else all losses are in one.
     cylinder : whether that one is the cylinder.
+    layer : length of the layer at the front edge in which the material is stiff; infinite without one.
     """
 
     table: Any
@@ -51,6 +58,7 @@ class Row(NamedTuple):
     coupled: bool
     split: bool
     cylinder: bool
+    layer: float
 
 
 class Contact(NamedTuple):
@@ -125,7 +133,14 @@ def solve_contact(row, contact, c, mu, d):
     Returns (status; g).
     """
     spots = np.empty((MOST_SPOTS, 3))
-    used = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / contact.at.size, WEIGHT_OF_SPOT, spots)
+    count = contact.at.size
+    used = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
+    thin = math.sqrt(2.0 * row.layer / c) / math.pi
+    if thin * count < 1.0 and used < MOST_SPOTS:
+        spots[used, 0] = 1.0
+        spots[used, 1] = thin
+        spots[used, 2] = WEIGHT_OF_LAYER
+        used += 1
     zone = contact.zone.copy()
     place = contact.place.copy()
     make_mesh(c, spots, used, contact.nodes, contact.at, contact.place)
@@ -226,10 +241,13 @@ def write_state(row, contact, c, g, mu, d, status, out):
 
 
 @kernel(allocates=True)
-def find_length(row, contact, c, slope, mu, d, out):
+def find_length(row, contact, c, slope, mu, d, tolerance, out):
     """Find the half length at which the contact bears the load, by the secant method in logarithms.
 
+    The mesh of each length gathers at the edges that the one before had.
+
     c, slope : first guesses of the half length and of d ln(load)/d ln(c).
+    tolerance : relative error of the load.
     out : (COLUMNS,), written.
     Returns (half length; slope).
     """
@@ -244,16 +262,18 @@ def find_length(row, contact, c, slope, mu, d, out):
         if status == SINGULAR:
             return c, slope
         error = math.log(total / LOAD) if total > 0.0 else -1.0
-        if n > 0 and abs(y - before) > 1e-7:
+        if n > 0 and abs(y - before) > _LEAST_CHANGE:
             slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
-        if abs(error) < _LOAD_ERROR:
+        if n > 0 and abs(error) < tolerance:
             break
         last = error
         before = y
         y -= error / slope
-    if not abs(error) < _LOAD_ERROR and out[8] == SOLVED:
+    if not abs(error) < tolerance and out[8] == SOLVED:
         out[8] = NO_LOAD
-    out[0] = 2.0 * c * math.exp(-error / slope)
+    c *= math.exp(-error / slope)
+    out[0] = 2.0 * c
+    out[9] = c
     return c, slope
 
 
@@ -280,7 +300,7 @@ def full_slip(row, mu, sign, count, c, out):
     """
     contact = new_contact(count)
     contact.zone[:] = sign
-    find_length(row, contact, c, 2.0, mu, np.inf, out)
+    find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
     best = -np.inf
     for e in range(count):
         best = max(best, sign * contact.strain[e])
@@ -311,15 +331,20 @@ def states_loop(row, mu, creeps, count, c, out):
     """
     contact = new_contact(count)
     slope = 2.0
+    guess = c
     for n in range(creeps.size):
-        c, slope = find_length(row, contact, c, slope, mu, creeps[n], out[n])
+        c, slope = find_length(row, contact, guess, slope, mu, creeps[n], _LOAD_ERROR, out[n])
         finish_state(row, contact, out[n])
+        guess = c
+        if 0 < n < creeps.size - 1:
+            ahead = (creeps[n + 1] - creeps[n]) / (creeps[n] - creeps[n - 1])
+            guess *= (c / out[n - 1, 9]) ** min(ahead, 2.0)
 
 
 @kernel(allocates=True)
 def rear_slip(row, contact, c, mu, d, out):
     """Solve a state and return (slip of sign + in its rear half; of sign -; zone at the rear edge; half length)."""
-    c, _ = find_length(row, contact, c, 2.0, mu, d, out)
+    c, _ = find_length(row, contact, c, 2.0, mu, d, _ROUGH_LOAD, out)
     plus = False
     minus = False
     for i in range(contact.zone.size // 2):
