@@ -20,6 +20,10 @@ LOAD = math.pi / 8.0
 COLUMNS = 10
 #: status of a state: solved; the zones were not found; negative pressure; the load was not reached; singular matrix
 SOLVED, NO_ZONES, TENSION, NO_LOAD, SINGULAR = range(5)
+#: distance of an edge from its spot times the number of elements from which on the mesh is made anew
+OFF_SPOT = 0.25
+#: number of meshes after which that is not asked any more
+_MOST_CENTRINGS = 6
 #: largest number of half lengths that are tried for one load
 _MOST_LENGTHS = 15
 #: relative error of the load, for which lam is then corrected to first order
@@ -130,11 +134,12 @@ def solve_contact(row, contact, c, mu, d):
 
     row : :class:`Row`.  contact : :class:`Contact`, written; its zones are the first guess.
     c : half length.  mu : friction.  d : creep.
-    Returns (status; g).
+    Returns (status; g; whether the edges found lie where the mesh gathers).
     """
     spots = np.empty((MOST_SPOTS, 3))
     count = contact.at.size
     used = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
+    edges = used
     thin = math.sqrt(2.0 * row.layer / c) / math.pi
     if thin * count < 1.0 and used < MOST_SPOTS:
         spots[used, 0] = 1.0
@@ -149,14 +154,18 @@ def solve_contact(row, contact, c, mu, d):
     assemble(row.table, row.instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
     good, B = eliminate(contact.H, contact.C, contact.at, row.coupled)
     if not good:
-        return SINGULAR, 0.0
+        return SINGULAR, 0.0, True
     S = strain_by_shear(contact.T, contact.C, B, row.coupled)
     if math.isinf(d):
         if not solve_zones(S, B, mu, contact.zone, 0.0, contact.q):
-            return SINGULAR, 0.0
-        return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain)
+            return SINGULAR, 0.0, True
+        return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain), True
     good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
-    return SOLVED if good else NO_ZONES, g
+    found = np.empty((MOST_SPOTS, 3))
+    centred = find_spots(contact.zone, contact.place, 1.0, 1.0, found) == edges
+    for k in range(edges):
+        centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
+    return SOLVED if good else NO_ZONES, g, centred
 
 
 @kernel
@@ -257,14 +266,14 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
     error = 1.0
     for n in range(_MOST_LENGTHS):
         c = math.exp(y)
-        status, g = solve_contact(row, contact, c, mu, d)
+        status, g, centred = solve_contact(row, contact, c, mu, d)
         total = write_state(row, contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
         error = math.log(total / LOAD) if total > 0.0 else -1.0
         if n > 0 and abs(y - before) > _LEAST_CHANGE:
             slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
-        if n > 0 and abs(error) < tolerance:
+        if n > 0 and abs(error) < tolerance and (centred or n >= _MOST_CENTRINGS):
             break
         last = error
         before = y
