@@ -19,7 +19,7 @@ from ..core.array_types import Floats
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.prony import Prony, series_of_alpha
-from .coupled_kernels import body_table
+from .coupled_kernels import body_table, edge_layer
 
 #: Elements of a state.
 ELEMENTS = 64
@@ -129,7 +129,7 @@ class CoupledRow:
         own, own_instant = tables.get("cylinder", (total, instant))
         coupled = bool(np.abs(total[:, :, 2]).max() > 1e-14 * np.abs(total).max())
         arrays = np.ascontiguousarray(total), np.ascontiguousarray(own)
-        self._row = loop.Row(*arrays, instant, own_instant, coupled, len(tables) == 2, "cylinder" in tables)
+        self._row = loop.Row(*arrays, instant, own_instant, coupled, len(tables) == 2, "cylinder" in tables, edge_layer(pair.bodies, u))
         self._full = np.zeros((2, loop.COLUMNS))
         length = 0.5 * math.sqrt(max(instant, 1e-3))
         self._ends = [loop.full_slip(self._row, mu, sign, n, length, out) for sign, out in zip((-1.0, 1.0), self._full)]

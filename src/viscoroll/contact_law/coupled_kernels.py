@@ -24,6 +24,11 @@ _FAR, _FAR_TERMS = 50.0, 30
 _NEAR_TERMS = 22
 #: k |x| below which the transforms of second antiderivatives are taken from two terms of their series
 _SMALL_PHASE = 0.02
+#: scales, over l0, at which the growth of the compliance is looked at
+_SCALES = np.geomspace(1e-14, 1.0, 300)
+#: growth d ln J/d ln x of the compliance over distance x from the front edge from which on pressure gathers there; the
+#: pressure of half-spaces grows like the distance to the power of 1/2 less it
+_GROWTH = 0.4
 
 
 @cache
@@ -128,3 +133,23 @@ def body_table(body: Any, u: float) -> tuple[Floats, float]:
     values[:, 2] *= 1.0 if body.side == "base" else -1.0
     table = values.reshape(2, 3, BINS, DEGREE + 1) @ fit.T
     return body.share * table.transpose(2, 0, 1, 3), body.share * instant
+
+
+def edge_layer(bodies: Any, u: float) -> float:
+    """Return the length of the layer at the front edge in which the material is stiff, over l0; infinite without one.
+
+    bodies: :class:`.coupled.CoupledBody` of each.  u: kappa |V|.
+    It is the least distance at which the compliance, of the time of the passage, grows faster than like its root.
+    """
+    if u == 0.0 or math.isinf(u):
+        return math.inf
+    compliance = np.zeros_like(_SCALES)
+    growth = np.zeros_like(_SCALES)
+    for body in bodies:
+        compliance += body.share * max(1.0 - math.fsum(body.J), 0.0)
+        for strength, time in zip(body.J, body.T, strict=True):
+            x = _SCALES / (time * u)
+            compliance -= body.share * strength * np.expm1(-x)
+            growth += body.share * strength * x * np.exp(-x)
+    steep = _SCALES[growth > _GROWTH * compliance]
+    return float(steep[0]) if steep.size else math.inf

@@ -20,6 +20,10 @@ LOWEST = -24.5
 WIDTH = 0.35
 #: number of bins: up to |x| = exp(1.4), four contact lengths at rest
 BINS = 74
+#: largest part of the elements that gather at spots
+_SPOTS_PART = 0.7
+#: error of a node in units of elements, and largest number of steps that find it
+_MESH_ERROR, _MOST_STEPS = 1e-9, 60
 
 
 @inline_kernel
@@ -28,26 +32,70 @@ def graded(t):
     return math.sin(0.5 * math.pi * t) ** 2
 
 
+@inline_kernel
+def _gathered(t, spots, used):
+    """Return (sum over spots of weight sgn(t - place) ln(1 + |t - place|/width); its derivative)."""
+    total = 0.0
+    rate = 0.0
+    for k in range(used):
+        distance = t - spots[k, 0]
+        width = spots[k, 1]
+        weight = spots[k, 2]
+        total += math.copysign(weight * math.log(1.0 + abs(distance) / width), distance)
+        rate += weight / (abs(distance) + width)
+    return total, rate
+
+
 @kernel
-def make_mesh(c, count, edge, place, nodes, at):
+def make_mesh(c, spots, used, nodes, at, place):
     """Write the nodes of a mesh and the places of collocation, one in each element.
 
+    The elements are equal in s(t) = a t + sum of weight ln(1 + |t - spot|/width): geometric towards each spot.
+
     c : half length of the contact, > 0.
-    count : number of elements.
-    edge : int, node that is moved, with the others along; 0: none.
-    place : parameter in (0, 1) to which node ``edge`` is moved from edge/count.
-    nodes, at : (count + 1,) and (count,), written, from -c to c.
+    spots : (most, 3): parameter in [0, 1], width > 0 in the parameter, and number of elements in a factor of e of the
+        distance from it; changed in place: weights are reduced where spots would take more than :data:`_SPOTS_PART`.
+    used : number of spots.
+    nodes, at, place : (N + 1,), (N,) and (N + 1,), written: from -c to c; the parameter of each node.
     """
-    own = edge / count
+    count = at.size
+    low, _ = _gathered(0.0, spots, used)
+    high, _ = _gathered(1.0, spots, used)
+    if high - low > _SPOTS_PART * count:
+        reduced = _SPOTS_PART * count / (high - low)
+        for k in range(used):
+            spots[k, 2] *= reduced
+        low *= reduced
+        high *= reduced
+    plain = count - (high - low)
+    t = 0.0
     for n in range(2 * count + 1):
-        t = 0.5 * n / count
-        if edge > 0:
-            t = t * place / own if t <= own else place + (t - own) * (1.0 - place) / (1.0 - own)
+        wanted = 0.5 * n + low
+        left = t
+        right = 1.0
+        t = min(t + 0.5 / count, 1.0)
+        for _ in range(_MOST_STEPS):
+            total, rate = _gathered(t, spots, used)
+            error = plain * t + total - wanted
+            if abs(error) < _MESH_ERROR:
+                break
+            if error > 0.0:
+                right = t
+            else:
+                left = t
+            t -= error / (plain + rate)
+            if not left < t < right:
+                t = 0.5 * (left + right)
+        if n == 0:
+            t = 0.0
+        if n == 2 * count:
+            t = 1.0
         x = -c + 2.0 * c * graded(t)
         if n % 2:
             at[n // 2] = x
         else:
             nodes[n // 2] = x
+            place[n // 2] = t
 
 
 @kernel(allocates=True)

@@ -20,16 +20,28 @@ LOAD = math.pi / 8.0
 COLUMNS = 10
 #: status of a state: solved; the zones were not found; negative pressure; the load was not reached; singular matrix
 SOLVED, NO_ZONES, TENSION, NO_LOAD, SINGULAR = range(5)
+#: distance of an edge from its spot times the number of elements from which on the mesh is made anew
+OFF_SPOT = 0.25
+#: number of meshes after which that is not asked any more
+_MOST_CENTRINGS = 6
 #: largest number of half lengths that are tried for one load
 _MOST_LENGTHS = 15
-#: relative error of the load, which is then corrected to first order
-_LOAD_ERROR = 1e-6
+#: relative error of the load, for which lam is then corrected to first order
+_LOAD_ERROR = 2e-5
+#: relative error of the load where only zones are asked
+_ROUGH_LOAD = 1e-3
+#: least change of ln(c) from which a secant is taken: that of a new mesh is smaller
+_LEAST_CHANGE = 1e-3
 #: bounds of d ln(load)/d ln(half length)
 _LEAST_SLOPE, _LARGEST_SLOPE = 0.7, 5.0
-#: steps of the search for the place of an edge
-_EDGE_STEPS = 4
+#: most edges at which a mesh is refined
+MOST_SPOTS = 8
+#: width of the refinement at an edge times the number of elements, and elements in a factor of e
+WIDTH_OF_SPOT, WEIGHT_OF_SPOT = 0.1, 1.0
+#: elements in a factor of e of the distance from the front edge, down to the edge layer
+WEIGHT_OF_LAYER = 2.0
 #: steps of the bisection of the creep where the other slip opens
-_BISECTIONS = 20
+_BISECTIONS = 17
 
 
 class Row(NamedTuple):
@@ -40,6 +52,7 @@ class Row(NamedTuple):
     coupled : whether shear acts on the pressure.
     split : whether both bodies deform; else all losses are in one.
     cylinder : whether that one is the cylinder.
+    layer : length of the layer at the front edge in which the material is stiff; infinite without one.
     """
 
     table: Any
@@ -49,13 +62,14 @@ class Row(NamedTuple):
     coupled: bool
     split: bool
     cylinder: bool
+    layer: float
 
 
 class Contact(NamedTuple):
     """Arrays of one contact of N elements.
 
     nodes : (N + 1,).  at : (N,), places of collocation.  H, T, C : (N, N - 1).  p, q : at inner nodes, (N - 1,).
-    strain : u' at places, (N,).  zone : (N - 1,).
+    strain : u' at places, (N,).  zone : (N - 1,).  place : parameters of the nodes, (N + 1,).
     """
 
     nodes: Any
@@ -67,6 +81,7 @@ class Contact(NamedTuple):
     q: Any
     strain: Any
     zone: Any
+    place: Any
 
 
 @kernel(allocates=True)
@@ -76,40 +91,81 @@ def new_contact(count):
     return Contact(
         np.zeros(count + 1), np.zeros(count), np.zeros((count, inner)), np.zeros((count, inner)),
         np.zeros((count, inner)), np.zeros(inner), np.zeros(inner), np.zeros(count), np.zeros(inner),
+        np.linspace(0.0, 1.0, count + 1),
     )  # fmt: skip
 
 
+@kernel
+def find_spots(zone, place, width, weight, spots):
+    """Write the spots of a mesh at the edges of the zones of a contact; return their number.
+
+    zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
+    width, weight : of each spot.
+    spots : (MOST_SPOTS, 3), written; further edges have none.
+    """
+    used = 0
+    for i in range(zone.size - 1):
+        if zone[i] != zone[i + 1] and used < spots.shape[0]:
+            spots[used, 0] = place[i + 1] if zone[i] != 0.0 else place[i + 2]
+            spots[used, 1] = width
+            spots[used, 2] = weight
+            used += 1
+    return used
+
+
 @kernel(allocates=True)
-def solve_contact(row, contact, c, mu, d, edge, place):
+def carry_zones(zone, place, own, moved):
+    """Write zones of one mesh to the nodes of another: that of the nearest node.
+
+    zone, place : (N - 1,) and (N + 1,), of the first mesh.  own : parameters of the other, (M + 1,).
+    moved : (M - 1,), written.
+    """
+    i = 0
+    for k in range(moved.size):
+        t = own[k + 1]
+        while i + 1 < zone.size and abs(place[i + 2] - t) <= abs(place[i + 1] - t):
+            i += 1
+        moved[k] = zone[i]
+
+
+@kernel(allocates=True)
+def solve_contact(row, contact, c, mu, d):
     """Solve one contact of half length c with its zones of stick and slip.
 
     row : :class:`Row`.  contact : :class:`Contact`, written; its zones are the first guess.
     c : half length.  mu : friction.  d : creep.
-    edge, place : node that is moved and its parameter (:func:`.elements.make_mesh`); zones up to it are kept; 0: none.
-    Returns (status; g).
+    Returns (status; g; whether the edges found lie where the mesh gathers).
     """
-    make_mesh(c, contact.at.size, edge, place, contact.nodes, contact.at)
+    spots = np.empty((MOST_SPOTS, 3))
+    count = contact.at.size
+    used = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
+    edges = used
+    thin = math.sqrt(2.0 * row.layer / c) / math.pi
+    if thin * count < 1.0 and used < MOST_SPOTS:
+        spots[used, 0] = 1.0
+        spots[used, 1] = thin
+        spots[used, 2] = WEIGHT_OF_LAYER
+        used += 1
+    zone = contact.zone.copy()
+    place = contact.place.copy()
+    make_mesh(c, spots, used, contact.nodes, contact.at, contact.place)
+    if used > 0:
+        carry_zones(zone, place, contact.place, contact.zone)
     assemble(row.table, row.instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
     good, B = eliminate(contact.H, contact.C, contact.at, row.coupled)
     if not good:
-        return SINGULAR, 0.0
+        return SINGULAR, 0.0, True
     S = strain_by_shear(contact.T, contact.C, B, row.coupled)
-    kept = edge + 1 if edge > 0 else 0
     if math.isinf(d):
         if not solve_zones(S, B, mu, contact.zone, 0.0, contact.q):
-            return SINGULAR, 0.0
-        return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain)
-    good, g = find_zones(S, B, mu, d, contact.zone, kept, contact.p, contact.q, contact.strain)
-    return SOLVED if good else NO_ZONES, g
-
-
-@kernel
-def front_edge(zone):
-    """Return the foremost node with slip behind and stick ahead of it, 0 without one.  zone: at inner nodes."""
-    for i in range(zone.size - 2, -1, -1):
-        if zone[i] != 0.0 and zone[i + 1] == 0.0:
-            return i + 1
-    return 0
+            return SINGULAR, 0.0, True
+        return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain), True
+    good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
+    found = np.empty((MOST_SPOTS, 3))
+    centred = find_spots(contact.zone, contact.place, 1.0, 1.0, found) == edges
+    for k in range(edges):
+        centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
+    return SOLVED if good else NO_ZONES, g, centred
 
 
 @kernel
@@ -194,10 +250,13 @@ def write_state(row, contact, c, g, mu, d, status, out):
 
 
 @kernel(allocates=True)
-def find_length(row, contact, c, slope, mu, d, out):
+def find_length(row, contact, c, slope, mu, d, tolerance, out):
     """Find the half length at which the contact bears the load, by the secant method in logarithms.
 
+    The mesh of each length gathers at the edges that the one before had.
+
     c, slope : first guesses of the half length and of d ln(load)/d ln(c).
+    tolerance : relative error of the load.
     out : (COLUMNS,), written.
     Returns (half length; slope).
     """
@@ -207,63 +266,24 @@ def find_length(row, contact, c, slope, mu, d, out):
     error = 1.0
     for n in range(_MOST_LENGTHS):
         c = math.exp(y)
-        status, g = solve_contact(row, contact, c, mu, d, 0, 0.0)
+        status, g, centred = solve_contact(row, contact, c, mu, d)
         total = write_state(row, contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
         error = math.log(total / LOAD) if total > 0.0 else -1.0
-        if n > 0 and abs(y - before) > 1e-7:
+        if n > 0 and abs(y - before) > _LEAST_CHANGE:
             slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
-        if abs(error) < _LOAD_ERROR:
+        if n > 0 and abs(error) < tolerance and (centred or n >= _MOST_CENTRINGS):
             break
         last = error
         before = y
         y -= error / slope
-    if not abs(error) < _LOAD_ERROR and out[8] == SOLVED:
+    if not abs(error) < tolerance and out[8] == SOLVED:
         out[8] = NO_LOAD
-    out[0] = 2.0 * c * math.exp(-error / slope)
+    c *= math.exp(-error / slope)
+    out[0] = 2.0 * c
+    out[9] = c
     return c, slope
-
-
-@kernel(allocates=True)
-def place_edge(row, contact, c, slope, mu, d, out):
-    """Move the foremost edge from slip to stick until the element ahead of it sticks too; the half length is kept.
-
-    out : (COLUMNS,), of the state on the plain mesh; written, with lam corrected to first order for the load.
-    """
-    count = contact.at.size
-    edge = front_edge(contact.zone)
-    if edge < 1 or edge > count - 2 or out[8] != SOLVED:
-        return
-    sign = contact.zone[edge - 1]
-    low = (edge - 0.6) / count
-    high = (edge + 1.3) / count
-    place = edge / count
-    last = 0.0
-    before = 0.0
-    zone = contact.zone.copy()
-    for step in range(_EDGE_STEPS):
-        contact.zone[:] = zone
-        status, g = solve_contact(row, contact, c, mu, d, edge, place)
-        if status != SOLVED:
-            out[8] = status
-            return
-        total = write_state(row, contact, c, g, mu, d, status, out)
-        out[0] = 2.0 * c * math.exp(-math.log(total / LOAD) / slope)
-        slip = sign * (d - contact.strain[edge])
-        if step == 0:
-            last = slip
-            before = place
-            place += 0.4 / count
-            continue
-        if slip == last:
-            break
-        moved = place - slip * (place - before) / (slip - last)
-        last = slip
-        before = place
-        place = min(max(moved, low), high)
-        if abs(place - before) < 0.01 / count:
-            break
 
 
 @kernel(allocates=True)
@@ -289,7 +309,7 @@ def full_slip(row, mu, sign, count, c, out):
     """
     contact = new_contact(count)
     contact.zone[:] = sign
-    find_length(row, contact, c, 2.0, mu, np.inf, out)
+    find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
     best = -np.inf
     for e in range(count):
         best = max(best, sign * contact.strain[e])
@@ -319,20 +339,21 @@ def states_loop(row, mu, creeps, count, c, out):
     out : (n, COLUMNS), written.
     """
     contact = new_contact(count)
-    kept = np.zeros(count - 1)
     slope = 2.0
+    guess = c
     for n in range(creeps.size):
-        contact.zone[:] = kept
-        c, slope = find_length(row, contact, c, slope, mu, creeps[n], out[n])
-        kept[:] = contact.zone
-        place_edge(row, contact, c, slope, mu, creeps[n], out[n])
+        c, slope = find_length(row, contact, guess, slope, mu, creeps[n], _LOAD_ERROR, out[n])
         finish_state(row, contact, out[n])
+        guess = c
+        if 0 < n < creeps.size - 1:
+            ahead = (creeps[n + 1] - creeps[n]) / (creeps[n] - creeps[n - 1])
+            guess *= (c / out[n - 1, 9]) ** min(ahead, 2.0)
 
 
 @kernel(allocates=True)
 def rear_slip(row, contact, c, mu, d, out):
     """Solve a state and return (slip of sign + in its rear half; of sign -; zone at the rear edge; half length)."""
-    c, _ = find_length(row, contact, c, 2.0, mu, d, out)
+    c, _ = find_length(row, contact, c, 2.0, mu, d, _ROUGH_LOAD, out)
     plus = False
     minus = False
     for i in range(contact.zone.size // 2):
