@@ -83,18 +83,19 @@ def contact(
         ``zeta``: half the transit time, T_ref or s; infinite at V = 0, and where lam/V exceeds the doubles;
         ``Q``: force on the cylinder by friction, positive in the direction of a positive V, of the sign of delta V, at
         V = 0 of delta (of a layer with delta - delta_0 for delta); P or N/m; in full slip |Q| = mu P;
-        ``M``: rolling resistance moment, of the sign of V, 0 at V = 0 and of elastic bodies; P R or N m/m.
+        ``M``: rolling resistance moment, of the sign of V, 0 at V = 0 and of elastic bodies; P R or N m/m.  Of a layer
+        it has a part by Q too, of either sign, as shear acts back on the pressure; so have lam and epsilon.
         These nine are the default.  Bodies that differ, and every Cylinder, add ``M_half_space`` and ``M_cylinder``,
         the parts of M by the losses in either body; a Cylinder adds ``length``, the contact length in m, and ``C_rr`` =
         M/(P R), the coefficient of rolling resistance; a layer adds ``delta_0``, the creepage at which Q = 0, caused by
-        the strain under the pressure.  If the body beside a layer relaxes too, only lam, length, zeta, epsilon,
-        delta_star, delta, M, C_rr and dM_dV are known, and the default fields are reduced to these.
+        the strain under the pressure.
         Fields by name alone: ``grip``, the friction reserve 1 - |Q|/(mu P) without loss of digits, 0 in full slip;
         ``N``, the added mass of slow speed changes, in which the moment is M(V) + N dV/dt (P T_ref^2 or N s^2/m), not
         known of layers and of arrays of materials; and each slope below.
     slopes : whether ``dQ_dV``, ``dQ_ddelta``, ``dQ_domega`` and ``dM_dV`` are computed in addition, and of bodies that
-        differ ``dM_half_space_dV`` and ``dM_cylinder_dV``.  ``dQ_dV`` is at fixed delta or fixed omega, whichever was
-        given, the others are at fixed V.  In full slip the slopes of Q are 0.  Where full slip begins Q has a corner
+        differ ``dM_half_space_dV`` and ``dM_cylinder_dV``; of a layer also ``dM_ddelta``, ``dM_domega`` and those over
+        omega of either body.  ``dQ_dV``, and of a layer slopes of M over V, are at fixed delta or fixed omega,
+        whichever was given, the others are at fixed V.  In full slip the slopes of Q are 0.  Where full slip begins Q has a corner
         over V, and the slopes there are those of full slip.  In partial slip at V = 0 ``dQ_domega`` is infinite, and
         where omega = 0 was given ``dQ_dV`` is -infinite.
     method : "table" (from the rows of the law: no equation is solved) or "direct" (the equations as the paper prints
@@ -155,10 +156,8 @@ def contact(
     creep_name = check_one_given(delta=delta, omega=omega)
     if slopes is not False:
         slopes = check_bool("slopes", slopes)
-    cover = scene.material if type(scene.material) is Cover else None
-    split = cover is None or cover.other.alpha == 1.0
-    like, of_cover = scene.like_bodies, cover is not None
-    names = field_names(fields, slopes, method, like=like, si=scale.si, cover=of_cover, split=split)
+    like, cover = scene.like_bodies, type(scene.material) is Cover
+    names = field_names(fields, slopes, method, like=like, si=scale.si, cover=cover)
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])
     creep = check_array(creep_name, given[creep_name])

@@ -29,24 +29,25 @@ OF_BODIES = ("M_half_space", "M_cylinder")
 SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
 #: Slopes of the parts of M.
 SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
+#: Slopes that are 0 of half-spaces, whose M depends on the speed alone; of a cover with ``slopes=True``.
+SLOPES_OF_COVERS = ("dM_ddelta", "dM_domega", "dM_half_space_domega", "dM_cylinder_domega")
 #: Added mass of slow speed changes.
 UNSTEADY = "N"
 #: Friction reserve 1 - |Q|/mu.
 GRIP = "grip"
-#: Creepage of free rolling by the strain that the pressure causes in a cover; 0 for half-spaces.
+#: Creepage of free rolling of a cover, in which stick and the strain by the pressure balance; 0 for half-spaces.
 FREE_CREEP = "delta_0"
 #: Field -> the field of which it is a multiple: the length is lam times l0, C_rr is M/(P R).
 _MULTIPLES = {"length": "lam", "C_rr": "M"}
 #: Field of like bodies -> the field of which it is half.
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
-#: Fields that are known if both bodies relax and one of them is a layer.
-_BEFORE_THE_SPLIT = ("lam", "length", "zeta", "epsilon", "delta_star", "delta", "M", "C_rr", "dM_dV")
+_HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
-_KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES)
+_KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, *SLOPES_OF_COVERS, UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES)
 
 
 def field_names(
-    fields: Iterable[str] | None, slopes: bool, method: str, *, like: bool, si: bool, cover: bool, split: bool = True
+    fields: Iterable[str] | None, slopes: bool, method: str, *, like: bool, si: bool, cover: bool
 ) -> tuple[str, ...]:
     """Return the names of the fields that a call of :func:`.contact.contact` has to return, in their order.
 
@@ -62,22 +63,17 @@ def field_names(
     si : whether the roller is a cylinder, in SI units; ``length``, ``C_rr`` and the parts of M are then default fields.
     cover : whether a body is a cover, a layer of finite thickness; ``delta_0`` is then a default field, and N is not
         available.
-    split : whether it is known how slip and M are split between the bodies.  It is not if the body beside a cover
-        relaxes; the fields are then those of :data:`_BEFORE_THE_SPLIT`.
 
     Returns
     -------
     tuple of str
         Those of ``fields`` in their order, or the default fields; then with ``slopes`` those slopes that were not among
-        them; then, of a cover with ``fields`` None and ``split``, ``delta_0``.  Without ``split`` default fields and
-        slopes that are not known are left out; a name in ``fields`` that is not known is an error then, and so is
-        ``slopes`` with ``fields``.
+        them; then, of a cover with ``fields`` None, ``delta_0``.
 
     Raises
     ------
     ParameterError
-        An unknown field or method; slopes, N, grip or delta_0 with method "direct"; N of a cover; without ``split`` a
-        field in ``fields`` that is not known.
+        An unknown field or method; slopes, N, grip or delta_0 with method "direct"; N of a cover.
     """
     check_choice("method", method, "table", "direct")
     if fields is not None:
@@ -87,22 +83,16 @@ def field_names(
     else:
         names = FIELDS if like else (*FIELDS, *OF_BODIES)
     if slopes:
-        names += tuple(name for name in (SLOPES if like else SLOPES + SLOPES_OF_BODIES) if name not in names)
+        more = SLOPES + (() if like else SLOPES_OF_BODIES) + (SLOPES_OF_COVERS if cover else ())
+        names += tuple(name for name in more if name not in names)
     if method == "direct":
-        if set(names) & set(SLOPES + SLOPES_OF_BODIES):
+        if set(names) & set(SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS):
             raise ParameterError("method", "'direct'", "'table' for slopes: the equations of the paper give none")
         for name in (UNSTEADY, GRIP, FREE_CREEP):
             if name in names:
                 raise ParameterError("fields", repr(name), "left out, or computed with method='table'")
     if not cover:
         return names
-    if not split:
-        known = tuple(name for name in names if name in _BEFORE_THE_SPLIT)
-        if fields is None or known == names:
-            return known
-        unknown = next(name for name in names if name not in known)
-        allowed = f"one of {', '.join(_BEFORE_THE_SPLIT)}: others are not available if both bodies are viscoelastic"
-        raise ParameterError("fields", repr(unknown), allowed)
     if UNSTEADY in names:
         allowed = "left out for a cover: N of a layer of finite thickness is not available"
         raise ParameterError("fields", repr(UNSTEADY), allowed)

@@ -228,17 +228,25 @@ def _laws_of_block(material: Any, alpha: Floats, parts: tuple[Floats, ...], dire
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
-    """Return fields of the contact at zero creepage, delta = 0, for kappa = mu = 1 and the speed V = u.
+    """Return fields of the contact without traction, for kappa = mu = 1 and the speed V = u.
 
     These are functions of u = kappa |V| alone, so that they serve every kappa: ``lam`` and ``epsilon`` as they are,
-    ``M`` as kappa M, ``dM_dV`` and ``N`` as they are.  (Of a cover the traction is not 0 at delta = 0.)
+    ``M`` as kappa M, ``dM_dV`` and ``N`` as they are.
     law: table of the material.
     u: kappa |V|, >= 0, at most 1e300, not checked, (n,).
     names: fields that kernels compute, as "lam", "epsilon", "M", "dM_dV", "N"
         (:func:`.contact_fields.computed_fields`); all are those of kappa = mu = 1.
     Returns a new array (names, n), dimensionless, rows in the order of ``names``; N of a cover is NaN.
     """
-    return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
+    if law.cover is None:
+        return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
+    free = evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, ("delta_0",))[0]
+    state = [1.0, 1.0, 1.0, u, free]
+    found = evaluate_law(law, state, u.shape, False, names)
+    if "dM_dV" in names:  # along free rolling, whose creepage changes with the speed
+        of_M, of_V, of_Q = evaluate_law(law, state, u.shape, False, ("dM_ddelta", "dQ_dV", "dQ_ddelta"))
+        found[names.index("dM_dV")] -= of_M * of_V / of_Q
+    return found
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:

@@ -117,7 +117,7 @@ class Law:
         -------
         Loads or LoadsAndSlopes
             Named tuple of Q, M, M_half_space and M_cylinder (the parts of M by the losses in either body); with slopes
-            also dQ_dV at fixed omega, dQ_domega at fixed V, dM_half_space_dV and dM_cylinder_dV.  Each is a float if V
+            also dQ_dV at fixed omega, dQ_domega at fixed V, dM_half_space_dV, dM_cylinder_dV and both slopes over omega.  Each is a float if V
             and omega are numbers, else an array of the broadcast shape.  Of a Cylinder Q is in N/m and M in N m/m, of a
             Scene they are divided by P and P R; slopes have these units divided by that of V or omega.  In full slip
             |Q| = mu P, and the slopes of Q are 0; at V = omega = 0 dQ_domega is infinite and dQ_dV -infinite.
@@ -182,9 +182,10 @@ class Law:
     def address(self) -> tuple[int, int]:
         """Return two addresses for programs in C, as integers: that of a function and that of its user data.
 
-        The function is ``int law(double V, double omega, double out[8], void *user_data)``.  It takes V and omega in
+        The function is ``int law(double V, double omega, double out[10], void *user_data)``.  It takes V and omega in
         the units of the roller, fills ``out`` with the eight numbers of :class:`LoadsAndSlopes` in their order (Q, M,
-        M_half_space, M_cylinder, dQ_dV, dQ_domega, dM_half_space_dV, dM_cylinder_dV) and returns 0; where the law
+        M_half_space, M_cylinder, dQ_dV, dQ_domega, dM_half_space_dV, dM_cylinder_dV, dM_half_space_domega,
+        dM_cylinder_domega) and returns 0; where the law
         would raise an error, it fills ``out`` with NaN and returns another number.  Any number of threads may call it,
         while this law exists.  All laws of half-spaces share the function, all laws of covers another one, and all
         laws of grids a third.
@@ -235,7 +236,7 @@ class _LawOfGrid(Law):
         Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or infinite input, and
         ValueError of numpy for shapes that do not broadcast.
         """
-        evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 8)
+        evaluate = np.vectorize(lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 10)
         return kind(*evaluate(check_array("V", V), check_array("omega", omega))[: len(kind._fields)])
 
     def _refuse(self, V: Floats, omega: Floats) -> None:

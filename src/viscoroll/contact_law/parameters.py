@@ -365,8 +365,6 @@ def scale_of(roller: Any) -> Scale:
     return roller.scale if isinstance(roller, Roller) else DIMENSIONLESS
 
 
-#: Functions that answer if both bodies relax and one of them is a layer: they need neither the split of M nor slip.
-_BEFORE_THE_SPLIT = ("contact", "stress", "validity", "resistance_extrema")
 
 
 def resolve_model(
@@ -375,16 +373,14 @@ def resolve_model(
     """Check the first argument of a call, and return the roller on its slope with its parameters and its scale.
 
     roller: the first argument of the call, of any type.
-    call: name of the function that is called, for errors.  It also decides about a layer beside a body that relaxes
-        too: only the functions of :data:`_BEFORE_THE_SPLIT` take it.
+    call: name of the function that is called, for errors.
     moves: whether the function needs gamma, which a scene may lack.
     slope: angle, rad, in (-pi/2, pi/2), a number or an array that broadcasts with the parameters; None: level.
     Returns (the Scene or Cylinder under the load on the slope, the argument itself if ``slope`` is None; its
     dimensionless parameters; its :class:`Scale`: the factor by which each dimensionless quantity is multiplied to get
     the units of the roller, 1 for a Scene).
     Raises ParameterError for what is no scene and no cylinder (for a LawGrid with a message of its own), a slope out of
-    range, a scene without gamma where ``moves``, a layer beside a body that relaxes too in a function that does not
-    take it, a slope of a shape that does not broadcast, and what the scene of a Cylinder does not allow.
+    range, a scene without gamma where ``moves``, a slope of a shape that does not broadcast, and what the scene of a Cylinder does not allow.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
@@ -395,8 +391,6 @@ def resolve_model(
     if slope is not None:
         roller = roller.on_slope(slope)
     scene = roller.scene()
-    if scene.cover is not None and call not in _BEFORE_THE_SPLIT:
-        scene.cover.refuse_unknown_split(call)
     if moves and scene.gamma is None:
         sentence = (
             f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time scale, but gamma is not given"

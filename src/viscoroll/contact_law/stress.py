@@ -187,5 +187,5 @@ def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
     for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
         place = which.ravel() == n
         y = 2.0 * x[place] / lam - epsilon
-        found[place] = pressure(modes, zeta, 0.5 * lam / cover.thickness, y) / (8.0 * np.pi * kappa * lam)
+        found[place] = pressure(modes, zeta, 0.5 * lam, y) / (8.0 * np.pi * kappa * lam)
     return found

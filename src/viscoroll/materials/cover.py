@@ -19,11 +19,13 @@ from .prony_forms import HIGHEST_ALPHA
 
 #: thickness divided by l0 beyond which a body is a half-space to rounding at any speed of interest
 _THICKEST = 1e15
+#: largest relative difference of the proportions of two thicknesses that count as one
+_SAME_RATIO = 1e-9
 
 
 @dataclass(frozen=True, eq=False, repr=False, init=False)
 class Cover(Bodies):
-    """A viscoelastic layer bonded to a rigid core or bed, rolling against a rigid or elastic body.
+    """A viscoelastic layer bonded to a rigid core or bed, rolling against a rigid body, a half-space or another layer.
 
     It is the ``material`` of a :class:`viscoroll.Scene`.  In SI units a :class:`viscoroll.Material` has a
     ``thickness`` instead.
@@ -39,11 +41,11 @@ class Cover(Bodies):
         which ``cover[i]`` is one, for an array parameter of a scene or for the motions of an ensemble.
     on : "cylinder" (a covered roller; default) or "base" (a belt or lining that a roller runs on).
     part : the layer's part of the long-time compliance of both bodies as half-spaces, in (0, 1]; 1 (default): the other
-        body is rigid; below 1 it is an elastic half-space.
+        body is rigid.
     other_nu : Poisson's ratio of the other body; only where ``part`` < 1.
-    other : series of the other body if it relaxes too, times in units of T_ref; default: elastic.  How slip and M are
-        split between the bodies is then not known: :func:`contact` gives lam, zeta, epsilon, delta_star, M and C_rr
-        alone.
+    other : series of the other body if it relaxes too, times in units of T_ref; default: elastic.
+    other_thickness : h/l0 of the other body if it is a layer too, as in a nip of two covered rollers; default: it is a
+        half-space.  Only where ``part`` < 1; of n covers (n,), in one proportion to ``thickness``.
 
     Raises
     ------
@@ -74,6 +76,7 @@ class Cover(Bodies):
     thickness: Any = 1.0
     on: Literal["cylinder", "base"] = "cylinder"
     other_nu: float = 0.5
+    other_thickness: Any = None
 
     def __init__(
         self,
@@ -85,6 +88,7 @@ class Cover(Bodies):
         part: float = 1.0,
         other_nu: float = 0.5,
         other: Prony | None = None,
+        other_thickness: ArrayLike | None = None,
     ) -> None:
         """Check the parameters and make one or many covers.
 
@@ -96,9 +100,13 @@ class Cover(Bodies):
         part: part of the layer in the long-time compliance of both bodies as half-spaces, in (0, 1].
         other_nu: Poisson's ratio of the other body, in [0, 0.5]; without effect if ``part`` is 1.
         other: series of the other body, times in units of T_ref; None: elastic.
-        Sets the fields of :class:`Bodies` (cylinder, base, share), nu, thickness, on, other_nu, and ``shape``.
+        other_thickness: thickness of the other body divided by l0, in (0, 1e15], of the shape of ``thickness``; None: a
+            half-space.
+        Sets the fields of :class:`Bodies` (cylinder, base, share), nu, thickness, on, other_nu, other_thickness, and
+        ``shape``.
         Raises ParameterError for a value out of range, a ``series`` or ``other`` of many materials or of another type,
-        and shapes that do not agree.  A cover that is too thin for its law is refused where the law is computed.
+        shapes that do not agree, and an ``other_thickness`` of a rigid body or in several proportions to ``thickness``.
+        A cover that is too thin for its law is refused where the law is computed.
         """
         if is_real(series):
             series = series_of_alpha(check_number("alpha", series, low=1.0, high=HIGHEST_ALPHA))
@@ -116,12 +124,34 @@ class Cover(Bodies):
         other = Prony.elastic() if other is None else other
         if not isinstance(other, Prony) or other.shape:
             raise ParameterError("other", f"{other!r:.60}", "a Prony series of one material, or None")
+        if other_thickness is not None:
+            other_thickness = read_only(self._check_other_thickness(other_thickness, given, part))
         bodies = (series, other) if on == "cylinder" else (other, series)
         share = part if on == "cylinder" else 1.0 - part
         values: Any = dict(zip(("cylinder", "base"), bodies, strict=True), share=share, on=on, other_nu=other_nu)
+        values["other_thickness"] = other_thickness
         self.__dict__.update(values, thickness=read_only(given), nu=read_only(ratio))
         super().__post_init__()
         self.__dict__["shape"] = given.shape
+
+    @staticmethod
+    def _check_other_thickness(value: ArrayLike, thickness: Any, part: float) -> Any:
+        """Return the thickness of the other layer over l0, an array of the shape of ``thickness``, which is () or (n,).
+
+        value: as given.
+        part: part of the first layer in the compliance, in (0, 1].
+        Raises ParameterError for a value out of (0, 1e15], another shape, a rigid body (``part`` is 1), and proportions
+        of the two thicknesses that differ by more than 1e-9: laws are interpolated over one thickness.
+        """
+        other = check_array("other_thickness", value, above=0.0, high=_THICKEST)
+        if part == 1.0:
+            raise ParameterError("other_thickness", other, "left out: the other body is rigid, as part is 1")
+        if other.shape != thickness.shape:
+            raise shape_error("other_thickness", other.shape, "of the shape of thickness")
+        ratio = other / thickness
+        if np.ptp(ratio) > _SAME_RATIO * np.max(ratio):
+            raise described_error("other_thickness", "varies otherwise than thickness", "in one proportion to it")
+        return other
 
     @property
     def like(self) -> bool:
@@ -143,37 +173,39 @@ class Cover(Bodies):
         """The layer's part of the long-time compliance, in (0, 1]."""
         return float(self.share if self.on == "cylinder" else 1.0 - self.share)
 
-    def refuse_unknown_split(self, call: str) -> None:
-        """Raise ParameterError if the other body relaxes, for functions that need slip and M of each body.
+    @property
+    def thinnest(self) -> Any:
+        """Thickness of the thinner layer divided by l0, a number or (n,)."""
+        return self.thickness if self.other_thickness is None else np.minimum(self.thickness, self.other_thickness)
 
-        Parameters
-        ----------
-        call : name of that function, for the error.
+    def body(self, name: str) -> tuple[Prony, Any, Any]:
+        """Return the series of one body, its Poisson's ratio, and its thickness divided by l0, None of a half-space.
 
-        Raises
-        ------
-        ParameterError
-            The series of the other body relaxes; beside a rigid or elastic body nothing is done.
-
-        Examples
-        --------
-        >>> import viscoroll as vr
-        >>> cover = vr.Cover(vr.Prony([10.0], [0.1]), nu=0.5, thickness=1.0)
-        >>> cover.refuse_unknown_split("steady")  # the other body is rigid
+        name : "cylinder" or "base"; of a rigid body series and Poisson's ratio have no meaning.
         """
-        if self.other.alpha > 1.0:
-            allowed = (
-                f"rigid or elastic: {call} needs the parts of M and of slip in each body, which the law of a layer "
-                "does not give; contact gives M"
-            )
-            raise described_error("the body in contact with the layer", "is viscoelastic", allowed)
+        if name == self.on:
+            return self.layer, self.nu, self.thickness
+        return self.other, self.other_nu, self.other_thickness
+
+    def elastic(self, share: float) -> Cover:
+        """Return the same bodies without relaxation.
+
+        share : the cylinder's part of the compliance of both bodies, in [0, 1], that of the layer above 0.
+        Returns a new :class:`Cover`; where the other body becomes rigid it has no thickness.
+        """
+        part = share if self.on == "cylinder" else 1.0 - share
+        thickness = self.other_thickness if part < 1.0 else None
+        return Cover(
+            1.0, nu=self.nu, thickness=self.thickness, on=self.on, part=part, other_nu=self.other_nu,
+            other_thickness=thickness,
+        )  # fmt: skip
 
     def of_thickness(self, thickness: ArrayLike, nu: ArrayLike | None = None) -> Cover:
         """Return the same bodies with other thicknesses and Poisson's ratios, as one :class:`Cover`.
 
         Parameters
         ----------
-        thickness : thickness divided by l0, in (0, 1e15], a number or (n,).
+        thickness : thickness divided by l0, in (0, 1e15], a number or (n,); that of another layer stays in proportion.
         nu : Poisson's ratio of the layer, in [0, 0.5], a number or, beside an array of thicknesses, (n,); None: that of
             this cover, which must then fit.
 
@@ -194,6 +226,9 @@ class Cover(Bodies):
         array([0.2, 0.4])
         """
         more: dict[str, Any] = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
+        if self.other_thickness is not None:
+            ratio = np.ravel(self.other_thickness)[0] / np.ravel(self.thickness)[0]
+            more["other_thickness"] = ratio * np.asarray(thickness)
         return Cover(self.layer, nu=self.nu if nu is None else nu, thickness=thickness, **more)
 
     def __getitem__(self, which: Any) -> Cover:
@@ -202,10 +237,12 @@ class Cover(Bodies):
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         numbers = (np.shape(self.thickness), *(np.asarray(each).tobytes() for each in (self.thickness, self.nu)))
-        return self.layer, numbers, self.on, self.part, self.other_nu, self.other
+        second = None if self.other_thickness is None else np.asarray(self.other_thickness).tobytes()
+        return self.layer, numbers, self.on, self.part, self.other_nu, self.other, second
 
     def __repr__(self) -> str:
         other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
         other += f", other={self.other!r}" if self.other.alpha > 1.0 else ""
+        other += "" if self.other_thickness is None else f", other_thickness={format_value(self.other_thickness)}"
         nu, thickness = format_value(self.nu), format_value(self.thickness)
         return f"Cover({self.layer!r}, nu={nu}, thickness={thickness}, on={self.on!r}{other})"

@@ -113,7 +113,12 @@ KINDS = {
         {name: _LAW.functions[name] for name in _OF_SPEED}
         | {
             "limit": "2 kappa delta_star/mu, as a function of kappa |V|",
-            "free": "2 kappa delta_0, as a function of kappa |V|",
+            "free_half_space": "part of the half-space in 2 kappa delta_0, as a function of kappa |V|",
+            "free_cylinder": "part of the cylinder in 2 kappa delta_0, as a function of kappa |V|",
+            "excess_half_space": "g of the half-space, by which full slip changes M, as a function of kappa |V|",
+            "excess_cylinder": "g of the cylinder, as a function of kappa |V|",
+            "lam_Q": "slope of lam in Q, as a function of kappa |V|",
+            "epsilon_Q": "slope of epsilon in Q, as a function of kappa |V|",
         },
         ("octave", "power"),
         "powers of t",
@@ -123,15 +128,19 @@ KINDS = {
             "T_ref": _LAW.others["T_ref"],
             "limits": (
                 ("limit_number",),
-                "limits for u -> infinity: of limit, lam and free; of their coefficients of 1/u; of epsilon u "
-                "and m u^2",
+                "limits for u -> infinity: of limit, lam, free (2), excess (2), lam_Q and epsilon_Q; of their "
+                "coefficients of 1/u; of epsilon u, and of m_half_space u^2 and m_cylinder u^2",
             ),
         },
-        _ROW + "u = kappa |V|; L = limit(u); delta_star = mu L/(2 kappa); delta_0 = free/(2 kappa); "
-        "D = |2 kappa delta - free|/mu; D >= L: full slip, |Q| = mu, beta = 0. Else w = L - D, v = 2 u/w: "
-        "beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)). M_half_space = V m_half_space, M_cylinder = V m_cylinder. "
-        "Q has the sign of (delta - delta_0) V. Fast limit: the limits and their first order in 1/u; "
-        "press = 1/L^2 and share = lam/L at the u where v = 2 u/L.",
+        _ROW + "u = kappa |V|; L = limit(u); delta_star = mu L/(2 kappa); f_h = free_half_space, f_c = free_cylinder, "
+        "f = f_h + f_c; delta_0 = f/(2 kappa); D = |2 kappa delta - f|/mu; D >= L: full slip, |Q| = mu, beta = 0. Else "
+        "w = L - D, v = 2 u/w: beta = share(v) w/lam(u), |Q| = mu (1 - w^2 press(v)). Q has the sign of "
+        "(delta - delta_0) V. r = (g_h + g_c)/(mu L/2) with g of excess; k = (1 + r^4)^(-1/4)/mu; "
+        "M_half_space = V m_half_space - Q (f_h + k g_h |Q|)/(2 kappa); "
+        "M_cylinder = V m_cylinder - Q (f_c + k g_c |Q|)/(2 kappa + f); lam = lam(u) + lam_Q Q; "
+        "epsilon = epsilon(u) + epsilon_Q Q. Fast limit: the limits and their first order in 1/u; with L_1 and a the "
+        "limit of L and its coefficient: press = (1 - 2 a/(L_1 v))^2/L_1^2, "
+        "share = lam/L and in first order 2 (b L_1 - lam a)/(L_1^3 v) more, b that of lam.",
     ),
     AXIS: Kind(
         "The contact law of one relaxation time as polynomials of speed and of ln alpha: ",

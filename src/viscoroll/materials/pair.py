@@ -52,8 +52,7 @@ class Pair:
     Raises
     ------
     ParameterError
-        A body that is no :class:`Material` or :class:`Solid`; two rigid bodies; two bodies with a thickness, or one in
-        plane stress.
+        A body that is no :class:`Material` or :class:`Solid`; two rigid bodies; a body with a thickness in plane stress.
     """
 
     cylinder: Any
@@ -80,18 +79,14 @@ class Pair:
         """Refuse pairs with a layer to which the law of a cover does not apply; called only where a body has a
         thickness.
 
-        Raises ParameterError for a thickness of both bodies (also of a cylinder without a base, whose material is that
-        of both), and for a layer in plane stress.
+        Raises ParameterError for a layer in plane stress.
         """
-        if self.cylinder.thickness is not None and self.half_space.thickness is not None:
-            allowed = "given for one body only: the law of two layers is not available; give base=, rigid or elastic"
-            raise described_error("thickness", "is given for both bodies", allowed)
         if self.plane != "strain":
             raise ParameterError("plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)")
 
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
-        """Name of the body that is a layer of finite thickness, or None."""
+        """Name of the body that is a layer of finite thickness, of two layers "cylinder", or None."""
         if self.cylinder.thickness is not None:
             return "cylinder"
         return "base" if self.half_space.thickness is not None else None
@@ -169,7 +164,7 @@ class Pair:
         return Bodies(one, other, self.share)
 
     def cover(self, l0: Any) -> Cover:
-        """Return the layer of finite thickness and the other body as a dimensionless :class:`Cover`.
+        """Return the layer of finite thickness and the other body, which may be one too, as a dimensionless :class:`Cover`.
 
         One of the bodies must have a thickness (:attr:`covered`).
 
@@ -209,6 +204,8 @@ class Pair:
         series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))
         part = float(np.max(parts))
         more = {} if part == 1.0 else {"other_nu": other.nu, "other": other_series}
+        if other.thickness is not None and part < 1.0:
+            more["other_thickness"] = np.broadcast_to(other.thickness / l0, np.shape(layer.thickness / l0))
         return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, **more)
 
     @cached_property

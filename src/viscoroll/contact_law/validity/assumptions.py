@@ -179,11 +179,6 @@ UNKNOWN_OF_COVERS = Assumption(
     "not available",
 )
 
-#: The assumption ``creep`` of a cover beside a body that relaxes too.
-UNKNOWN_CREEP = Assumption(
-    None, None, "how much a layer slips against a body that relaxes too is not known, and so whether it slips fully"
-)
-
 
 def transit_frequency(V: Any, length: Any) -> Any:
     """Return the transit frequency, the rate at which a point passes the contact: |V| divided by the contact length.

@@ -13,7 +13,6 @@ from ..contact_table import evaluate_contact
 from ..parameters import Roller, resolve_model
 from .assumptions import (
     UNKNOWN,
-    UNKNOWN_CREEP,
     UNKNOWN_OF_COVERS,
     Validity,
     assess_creep,
@@ -88,8 +87,7 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
         full: Any = np.abs(delta) >= scene.mu * np.asarray(lengths.reach)
         if scene.cover is not None:
             full = evaluate_contact(scene, speed, spin, True, ("full_slip",))["full_slip"]
-        splits = scene.cover is None or scene.cover.other.alpha == 1.0
-        report = report._replace(creep=assess_creep(delta, full) if splits else UNKNOWN_CREEP)
+        report = report._replace(creep=assess_creep(delta, full))
     if roller.body_data is not None:
         return roller.body_data.extend_validity(report, lengths.lam, given["V"], given.get("omega"), density)
     if density is not None:

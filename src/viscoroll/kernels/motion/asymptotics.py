@@ -34,7 +34,7 @@ from ..compile.by_reference import by_value
 from ..compile.jit import inline_kernel, kernel
 from .collocation import NODE_FRACTIONS, N
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
-from .law import added_inertia, low_speed_limits, rest_limits
+from .law import free_decay, low_speed_limits, rest_limits
 from .output import accept_step, record_switch, write_column, write_quadrature
 from .records import AT_REST, CAME_TO_REST, COMPLETED, N_QUADRATURES, PARTIAL_SLIP, State, Step, StepState
 from .rhs import current_rates
@@ -207,33 +207,29 @@ def is_coasting(state, regime, step_state, work):
     rtol = work.options.rtol
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
-    half_space, cylinder, force, torque = low_speed_limits(work)
-    decays = half_space + cylinder > force + torque and abs(state.omega_or_d) < _COASTING_D * rtol
-    return decays and is_unloaded(step_state.segment, work.drive)
+    return free_decay(work).rate > 0.0 and abs(state.omega_or_d) < _COASTING_D * rtol and is_unloaded(step_state.segment, work.drive)
 
 
 @kernel
-def _energies_of_decay(rate, inertia, torque_difference, work):
+def _energies_of_decay(decay, work):
     """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the start.
 
-    Of half-spaces the loss in slip is of higher order and counts as 0, and the loss in rolling is the kinetic energy
-    plus the works of the feedback.  Of a cover, which slips in free rolling with the creepage delta_0, both follow from
-    the traction Q and the moments.
+    The loss in slip is of higher order and counts as 0.  Of half-spaces the loss in rolling is the kinetic energy plus
+    the works of the feedback; of a cover, which rolls freely with the creepage delta_0, it follows from the moments.
 
-    rate: float, rate of the decay of V per unit of tau, above 0.
-    inertia: float, factor of V' in the equation of the decay, dimensionless.
-    torque_difference: float, inertia times Q/V, dimensionless; only a cover needs it.
+    decay: :class:`.law.FreeDecay`, of which the rate, above 0, is read.
     work: Workspace, of the motion; its Scene and the gains of its feedback are read.
     Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the brake), floats,
     dimensionless, in the order of quadratures 2 ... 6 of :func:`write_quadrature`; works of a feedback that brakes are
     negative; the last is 0, as no brake acts.
     """
     half_space, cylinder, force, torque = low_speed_limits(work)
-    delta_0, force_work, torque_work = rest_limits(work.scene)[1], force / rate, torque / rate
-    omega_over_V = 1.0 + delta_0
+    force_work = force / decay.rate
+    torque_work = torque / decay.rate
     if by_value(work.scene.law).cover_rows is not None:
-        slip, rolling = delta_0 * torque_difference / (inertia * rate), (half_space + cylinder * omega_over_V) / rate
-        return slip, rolling, force_work, torque_work * omega_over_V, 0.0
+        omega_over_V = 1.0 + rest_limits(work.scene)[1]
+        rolling = (half_space + cylinder * omega_over_V) / decay.rate
+        return 0.0, rolling, force_work, torque_work * omega_over_V, 0.0
     return 0.0, 1.0 + work.scene.j + force_work + torque_work, force_work, torque_work, 0.0
 
 
@@ -242,9 +238,9 @@ def coast_to_end(state, regime, step_state, work):
     """Write the remaining outputs by the closed form of slow rolling, V' = -rate V with delta - delta_0 proportional to
     V.
 
-    The rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit V -> 0 and
-    inertia = 1 + j (1 + delta_0) + gamma N.  delta_0 is the creepage of free rolling for V -> 0, 0 for half-spaces;
-    gamma N is the added mass (:func:`.law.added_inertia`).
+    Of half-spaces the rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the limit
+    V -> 0 and inertia = 1 + j + gamma N, with gamma N the added mass; :func:`.law.free_decay` has it for covers too.
+    delta_0 is the creepage of free rolling for V -> 0, 0 for half-spaces.
 
     With a rest threshold the motion ends when the larger speed has fallen to it; an output at that very time still
     moves.  From then on V = omega = delta = 0, forces of 0 and the code AT_REST are written, the kinetic energy that is
@@ -260,19 +256,18 @@ def coast_to_end(state, regime, step_state, work):
     steps unchanged.
     """
     scene, direction = work.scene, regime.direction
-    half_space, cylinder, force, torque = low_speed_limits(work)
+    _, _, force, torque = low_speed_limits(work)
     L, delta_0 = rest_limits(scene)
     omega_over_V = 1.0 + delta_0
-    inertia = 1.0 + scene.j * omega_over_V + added_inertia(0.0, scene)[0]
+    free = free_decay(work)
+    rate = free.rate
     # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the moments.
-    rate, stiffness = (half_space + cylinder - force - torque) / inertia, 4.0 * scene.kappa * inertia
-    torque_difference = scene.j * omega_over_V * (half_space - force) - cylinder + torque
-    creep = state.V * torque_difference / stiffness * L
+    creep = state.V * free.torque_difference / (4.0 * scene.kappa * free.inertia) * L
     largest_speed = max(state.V, abs(state.V * (omega_over_V + creep)))
     tau, rest_speed, end = work.output_tau, rest_threshold(step_state.segment, work), np.inf
     if rest_speed > 0.0:
         end = step_state.tau + max(np.log(largest_speed / rest_speed) / rate, 0.0)
-    energies = _energies_of_decay(rate, inertia, torque_difference, work)
+    energies = _energies_of_decay(free, work)
     for column in range(step_state.next_output, tau.size):
         moves = tau[column] <= end
         expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))

@@ -30,9 +30,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..compile.by_reference import by_value
 from ..compile.jit import inline_kernel, kernel
 from .drive import evaluate_load, has_brake, is_constant, segment_end
-from .law import added_inertia, rest_limits
+from .law import added_inertia, reaction_at_rest, rest_limits
 from .records import REGIME_AT_REST, Load, Regime
 
 #: Code of a departure: the cylinder stays at rest for a time.
@@ -62,6 +63,26 @@ _NEGLIGIBLE_FORCE = 1e-75
 
 
 @inline_kernel
+def _leverage(used, scene):
+    """Return how much of the traction acts on the axis and on the cylinder at V = 0, the moments that it makes included.
+
+    With the factors a and excesses e of base and cylinder (:class:`..rows.cover.Reaction`), V' contains Q (1 + a_b +
+    e_b |Q|/mu), and j omega' contains -Q (1 - a_c - e_c |Q|/mu).
+
+    used: float, |Q|/mu, in [0, 1].
+    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read.
+    Returns (the factor on the axis, that on the cylinder, derivatives in Q of Q times each), floats, dimensionless; all
+    are 1 of half-spaces.
+    """
+    if by_value(scene.law).cover_rows is None:
+        return 1.0, 1.0, 1.0, 1.0
+    reaction = reaction_at_rest(scene)
+    on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * used
+    on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * used
+    return on_axis, on_spin, on_axis + reaction.half_space_excess * used, on_spin - reaction.cylinder_excess * used
+
+
+@inline_kernel
 def _residual_of_d(d, load, scene):
     """Evaluate the equation of d at V = 0, of the module: its left side less its right side, divided by L.
 
@@ -70,13 +91,16 @@ def _residual_of_d(d, load, scene):
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
     Returns (residual, its slope in d, V'), floats, dimensionless; V' is in the direction of ``load``, of either sign.
     """
-    Q, Q_d = scene.mu * d * (2.0 - abs(d)), 2.0 * scene.mu * (1.0 - abs(d))
-    V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
-    omega_rate = load.inverse_inertia * (load.torque - Q) + load.prescribed_omega_rate
+    Q = scene.mu * d * (2.0 - abs(d))
+    dQ_dd = 2.0 * scene.mu * (1.0 - abs(d))
+    on_axis, on_spin, axis_dQ, spin_dQ = _leverage(abs(d) * (2.0 - abs(d)), scene)
+    V_rate = load.inverse_mass * (Q * on_axis + load.force) + load.prescribed_V_rate
+    omega_rate = load.inverse_inertia * (load.torque - Q * on_spin) + load.prescribed_omega_rate
     L, delta_0 = rest_limits(scene)
     inverse_k = 2.0 * scene.kappa / scene.mu / L
     d_total = d + delta_0 * inverse_k
-    slope = -(load.inverse_inertia + load.inverse_mass) * Q_d * inverse_k - V_rate - d_total * load.inverse_mass * Q_d
+    slope = -(load.inverse_inertia * spin_dQ + load.inverse_mass * axis_dQ) * dQ_dd * inverse_k
+    slope = slope - V_rate - d_total * load.inverse_mass * axis_dQ * dQ_dd
     return (omega_rate - V_rate) * inverse_k - d_total * V_rate, slope, V_rate
 
 
@@ -109,7 +133,8 @@ def _spin_against_brake(load, scene):
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
         return 1.0, False
-    torque = load.torque - scene.mu * d_zero * (2.0 + d_zero)
+    on_spin = _leverage(-d_zero * (2.0 + d_zero), scene)[1]
+    torque = load.torque - scene.mu * d_zero * (2.0 + d_zero) * on_spin
     return np.sign(torque), abs(torque) <= load.brake
 
 
@@ -148,7 +173,7 @@ def _local_maximum_of_residual(load, scene):
 
     where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so that the larger zero of
     the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the residual is quadratic, and its only maximum
-    is returned.
+    is returned.  The moments of a cover by its traction are left out here: the result bounds a search.
 
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
@@ -203,32 +228,75 @@ def solve_d_at_departure(load, spin_sign, scene):
     return V_rate > 0.0, d
 
 
+@inline_kernel
+def _traction_at_rest(force, scene):
+    """Return the traction that balances a force on the axis at rest, |Q|, and the torque on the cylinder that it makes.
+
+    Of half-spaces both are |force|.  Of a cover |Q| (1 + a_b + e_b |Q|/mu) = |force| and the torque is |Q| (1 - a_c -
+    e_c |Q|/mu), with the factors a and excesses e of the base and the cylinder (:class:`..rows.cover.Reaction`).
+
+    force: float, the force, dimensionless, of either sign.
+    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
+    Returns (|Q|, modulus of the torque), floats, dimensionless.
+    """
+    if by_value(scene.law).cover_rows is None:
+        return abs(force), abs(force)
+    reaction = reaction_at_rest(scene)
+    factor = 1.0 + reaction.half_space
+    excess = reaction.half_space_excess / scene.mu
+    Q = 2.0 * abs(force) / (factor + np.sqrt(max(factor * factor + 4.0 * excess * abs(force), 0.0)))
+    return Q, Q * (1.0 - (reaction.cylinder + reaction.cylinder_excess * Q / scene.mu))
+
+
+@inline_kernel
+def _traction_of_torque_at_rest(torque, scene):
+    """Return |Q| that balances a torque on the cylinder at rest, a float, dimensionless; of half-spaces |torque|.
+
+    torque: float, the torque that the traction has to balance, dimensionless, of either sign.
+    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
+    """
+    if by_value(scene.law).cover_rows is None:
+        return abs(torque)
+    reaction = reaction_at_rest(scene)
+    factor = 1.0 - reaction.cylinder
+    excess = -reaction.cylinder_excess / scene.mu
+    return 2.0 * abs(torque) / (factor + np.sqrt(max(factor * factor + 4.0 * excess * abs(torque), 0.0)))
+
+
 @kernel
-def holding_margin(load, mu):
+def holding_margin(load, scene):
     """Return the margin by which friction and brake hold the cylinder at V = omega = 0; below 0 where it moves.
 
-    A traction within +-mu must leave V constant, and omega too, which a brake may help with:
+    A traction within +-mu must leave V constant, and omega too, which a brake may help with.  Of half-spaces:
 
     - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force + torque|, which
       counts as 0 up to 1e-75.  Without a brake the margin is at most 0, and 0 only where this modulus counts as 0;
     - V prescribed to stay 0: mu plus the torque of the brake, less the modulus of the torque of the motor;
     - omega prescribed to stay 0: mu - |force|.
 
+    Of a cover the traction is that which balances the force with the moment that it makes, M = -delta_0 Q and more
+    (:func:`_traction_at_rest`), so that rest without a brake needs force + (1 + delta_0) torque = 0 for a cover on the
+    base.
+
     load: Load, at V = omega = 0, where feedback vanishes; force, torque, brake, the prescribed slopes and the inverse
     mass and inertia are read.  The brake must not hold omega (``locked``), as inverse_inertia = 0 is taken for a
     prescribed omega.
-    mu: float, coefficient of friction, dimensionless, > 0.
+    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
     Returns the margin as a force or torque, a float, dimensionless, at most mu + brake; 0 holds.  It is -1.0 where a
     prescribed speed has a slope other than 0.
     """
+    mu = scene.mu
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
         return -1.0
     if load.inverse_mass == 0.0:
-        return mu + load.brake - abs(load.torque)
+        if by_value(scene.law).cover_rows is None:
+            return mu + load.brake - abs(load.torque)
+        return mu - _traction_of_torque_at_rest(max(abs(load.torque) - load.brake, 0.0), scene)
+    Q, torque = _traction_at_rest(load.force, scene)
     if load.inverse_inertia == 0.0:
-        return mu - abs(load.force)
-    force = abs(load.force + load.torque)
-    return min(mu - abs(load.force), load.brake - (force if force > _NEGLIGIBLE_FORCE else 0.0))
+        return mu - Q
+    rest = abs(np.copysign(torque, load.force) + load.torque)
+    return min(mu - Q, load.brake - (rest if rest > _NEGLIGIBLE_FORCE else 0.0))
 
 
 @kernel
@@ -243,7 +311,7 @@ def _holding_margin_at(tau, segment, work):
     Returns a force or torque, a float, dimensionless: at least 0 where the cylinder stays, below 0 where the drive
     moves it, -1.0 where a prescribed speed has a slope other than 0.
     """
-    return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene.mu)
+    return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene)
 
 
 @kernel
@@ -300,10 +368,11 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
     scene = work.scene
     L, free_creep = rest_limits(scene)
     load = evaluate_load(tau, segment, Regime(True, 1.0, 1.0, 0.0, False), work)
+    on_axis, on_spin, _, _ = _leverage(1.0, scene)
     for sigma in (1.0, -1.0):
         Q = sigma * scene.mu
-        V_rate = load.inverse_mass * (Q + load.force) + load.prescribed_V_rate
-        torque = load.torque - Q
+        V_rate = load.inverse_mass * (Q * on_axis + load.force) + load.prescribed_V_rate
+        torque = load.torque - Q * on_spin
         spin_sign = np.sign(torque) if braked and abs(torque) > load.brake else 0.0
         locked = braked and spin_sign == 0.0
         omega_rate = load.inverse_inertia * (torque - spin_sign * load.brake) + load.prescribed_omega_rate
@@ -339,12 +408,12 @@ def depart_from_rest(tau, segment, work):
     tau_drive = tau
     load = evaluate_load(tau, segment, REGIME_AT_REST, work)
     rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
-    if holding_margin(load, scene.mu) >= -rounding and not is_constant(segment, work.drive):
+    if holding_margin(load, scene) >= -rounding and not is_constant(segment, work.drive):
         # Whether the drive moves the cylinder is decided by its values a little later.
         tau_drive = tau + _LOOKAHEAD * (segment_end(segment, work) - tau)
         load = evaluate_load(tau_drive, segment, REGIME_AT_REST, work)
     braked = has_brake(segment, work.drive)
-    if holding_margin(load, scene.mu) >= 0.0:
+    if holding_margin(load, scene) >= 0.0:
         return STAYS_AT_REST, REGIME_AT_REST, 0.0
     kind, departure, d_start = STAYS_AT_REST, REGIME_AT_REST, 0.0
     for direction in (1.0, -1.0):

@@ -15,11 +15,14 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from ..compile.by_reference import by_value
 from ..compile.jit import inline_kernel, kernel
 from ..rows.added_mass import added_mass
+from ..rows.cover import MomentChange, moment_change, shear_reaction
 from ..rows.evaluate import body_moments, free_creep_and_slopes, length_and_moment, limits_at_rest, locate_row
 
 
@@ -49,6 +52,90 @@ def evaluate_moments(u, scene):
     return law_at_u.L, law_at_u.dL, law_at_u.ddL, scale * half_space, scale * cylinder, half_space_slope, cylinder_slope
 
 
+class LoadedMoments(NamedTuple):
+    """Rolling moments of both bodies under traction, with their derivatives, dimensionless.
+
+    half_space, cylinder : M_half_space and M_cylinder.
+    half_space_dV, cylinder_dV : derivatives in V at fixed omega or d.
+    half_space_dd, cylinder_dd : derivatives in d at fixed V; 0 of half-spaces.
+    """
+
+    half_space: float
+    cylinder: float
+    half_space_dV: float
+    cylinder_dV: float
+    half_space_dd: float
+    cylinder_dd: float
+
+
+@inline_kernel
+def _change_at(u, Q, scene, cover_rows):
+    """Return what the traction changes in the moments at one speed, as :class:`..rows.cover.MomentChange`.
+
+    u: float, kappa |V|, dimensionless, at least 0 and finite.
+    Q: float, traction, dimensionless.
+    scene: Scene, of which kappa, mu and ``law`` are read, of a cover alone.
+    cover_rows: ``cover_rows`` of its law; None of half-spaces, of which all is 0.
+    """
+    if cover_rows is None:
+        return MomentChange(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    law = by_value(scene.law)
+    position = locate_row(u, law)
+    functions = length_and_moment(position, u, law)
+    reaction = shear_reaction(position, u, scene.kappa, scene.mu, functions.L, functions.dL, cover_rows)
+    return moment_change(Q, scene.mu, reaction)
+
+
+@inline_kernel
+def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene):
+    """Return the rolling moments under traction with their derivatives, as :class:`LoadedMoments`.
+
+    V: float, speed of the axis, dimensionless.
+    du_dV: float, derivative of u = kappa |V| in V, kappa with the sign of V.
+    Q, dQ_dV, dQ_dd: floats, traction and its derivatives in V and in d; of full slip the derivatives are 0.
+    free: the four last numbers of :func:`evaluate_moments` at u: moments over V and slopes in V without traction.
+    scene: Scene, of which kappa, mu and ``law`` are read, of a cover alone.
+    """
+    half_space, cylinder, half_space_slope, cylinder_slope = free
+    change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
+    return LoadedMoments(
+        half_space=V * half_space + change.half_space,
+        cylinder=V * cylinder + change.cylinder,
+        half_space_dV=half_space_slope + du_dV * change.half_space_du + change.half_space_dQ * dQ_dV,
+        cylinder_dV=cylinder_slope + du_dV * change.cylinder_du + change.cylinder_dQ * dQ_dV,
+        half_space_dd=change.half_space_dQ * dQ_dd,
+        cylinder_dd=change.cylinder_dQ * dQ_dd,
+    )
+
+
+@inline_kernel
+def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
+    """Return the power that friction takes, and that which the bodies take, at a state.
+
+    The load's power V M_half_space + omega M_cylinder + (omega - V) Q is their sum.  The bodies take V^2 and omega V
+    times the moments over V without traction; of half-spaces friction takes (omega - V) Q.
+
+    V, omega, Q, M_half_space, M_cylinder: floats, the state, dimensionless, with the moments under traction.
+    scene: Scene, of which ``law``, moments_differ, kappa and mu are read, of a cover alone.
+    Returns (slip, rolling), floats, dimensionless, per unit of tau.
+    """
+    change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
+    by_shear = V * change.half_space + omega * change.cylinder
+    return (omega - V) * Q + by_shear, V * M_half_space + omega * M_cylinder - by_shear
+
+
+@inline_kernel
+def reaction_at_rest(scene):
+    """Return how shear acts back on the moments in the limit V -> 0, as :class:`..rows.cover.Reaction`.
+
+    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read; all is 0 of half-spaces.
+    """
+    law = by_value(scene.law)
+    position = locate_row(0.0, law)
+    functions = length_and_moment(position, 0.0, law)
+    return shear_reaction(position, 0.0, scene.kappa, scene.mu, functions.L, functions.dL, law.cover_rows)
+
+
 @inline_kernel
 def rest_limits(scene):
     """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for half-spaces.
@@ -76,6 +163,43 @@ def low_speed_limits(work):
     omega_over_V = 1.0 + rest_limits(work.scene)[1]
     force, torque = gains.force_V + gains.force_omega * omega_over_V, gains.torque_V + gains.torque_omega * omega_over_V
     return half_space, cylinder, force, torque
+
+
+class FreeDecay(NamedTuple):
+    """Exponential decay of V in slow free rolling, V' = -rate V, dimensionless.
+
+    rate : its rate per unit of tau, below 0 where the feedback drives.
+    inertia : factor of V' in the equation of the decay.
+    torque_difference : inertia times traction divided by V.
+    """
+
+    rate: float
+    inertia: float
+    torque_difference: float
+
+
+@kernel
+def free_decay(work):
+    """Return the decay of V where nothing but resistance and feedback acts, as :class:`FreeDecay`, in the limit V -> 0.
+
+    With a_b and a_c, the factors of Q by which shear acts back on M (:class:`..rows.cover.Reaction`), 0 of half-spaces,
+    and delta_0 the creepage of free rolling, V' = (1 + a_b) Q - M_half_space + f and j (1 + delta_0) V' = q - (1 - a_c)
+    Q - M_cylinder, with moments without traction and feedback f and q in proportion to V.
+
+    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
+    """
+    half_space, cylinder, force, torque = low_speed_limits(work)
+    scene = work.scene
+    reaction = reaction_at_rest(scene)
+    spin_inertia = scene.j * (1.0 + rest_limits(scene)[1])
+    on_axis = 1.0 + reaction.half_space
+    on_spin = 1.0 - reaction.cylinder
+    inertia = on_spin + spin_inertia * on_axis + added_inertia(0.0, scene)[0]
+    if by_value(scene.law).cover_rows is None:
+        rate = (half_space + cylinder - force - torque) / inertia
+    else:
+        rate = (on_spin * (half_space - force) + on_axis * (cylinder - torque)) / inertia
+    return FreeDecay(rate, inertia, spin_inertia * (half_space - force) - cylinder + torque)
 
 
 @inline_kernel

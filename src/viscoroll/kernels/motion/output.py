@@ -26,7 +26,7 @@ from ..compile.by_reference import by_value
 from ..compile.jit import inline_kernel, kernel
 from .collocation import QUADRATURE_WEIGHTS, ROW_LENGTH, N, evaluate_integral, fit_integral
 from .drive import evaluate_load, load_at_node
-from .law import omega_and_delta
+from .law import omega_and_delta, slip_power
 from .records import DIRECTION_REVERSED, N_FREE_QUADRATURES, N_QUADRATURES, REGIME_AT_REST, StepState
 from .regimes import regime_code
 from .rhs import evaluate_rhs, evaluate_rhs_inline, required_forces
@@ -212,7 +212,7 @@ def _evaluate_integrands(regime, work):
 
     In the order of :func:`write_quadrature`, with the traction Q, the moments and the forces that act
     (:func:`required_forces`): V/gamma and omega/gamma in fixed directions; (omega - V) Q; V M_half_space + omega
-    M_cylinder; force V; torque omega; -(torque of the brake) omega.  All are integrated over tau: distance and angle
+    M_cylinder, both of a cover as of :func:`.law.slip_power`; force V; torque omega; -(torque of the brake) omega.  All are integrated over tau: distance and angle
     thus become integrals over t.
 
     regime: Regime, that of the step; all fields are read.
@@ -227,9 +227,10 @@ def _evaluate_integrands(regime, work):
         rates = evaluate_rhs_inline(V, nodes[ROW_OMEGA_OR_D + i], load, regime, values.scene)
         omega = rates.omega
         force, torque, brake = required_forces(V, omega, rates, load, regime, values.scene.j)
+        slip, rolling = slip_power(V, omega, rates.Q, rates.M_half_space, rates.M_cylinder, values.scene)
         integrands = (
             direction_over_gamma * V, direction_over_gamma * omega,
-            (omega - V) * rates.Q, V * rates.M_half_space + omega * rates.M_cylinder,
+            slip, rolling,
             force * V, torque * omega, -brake * omega,
         )  # fmt: skip
         for n in range(N_QUADRATURES):

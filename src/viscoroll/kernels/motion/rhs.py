@@ -53,7 +53,7 @@ from ..compile.jit import inline_kernel, kernel
 from ..rows.cover import free_kinematics
 from ..rows.evaluate import H_over_F2, H_over_F2_secants, locate_row
 from .drive import current_load, load_at_node
-from .law import added_inertia, evaluate_moments
+from .law import added_inertia, evaluate_moments, loaded_moments
 from .records import State
 from .workspace import ROW_OMEGA_OR_D, ROW_V
 
@@ -79,8 +79,8 @@ class Rates(NamedTuple):
     weighted_rate : ``weight`` times the slope of the second unknown: V d' in partial slip, omega' in full slip
     weight : V in partial slip, 1 in full slip
     dp_dV, dp_dd : derivatives of p
-    dp_rate_dV, dp_rate_dd : derivatives of p'; in partial slip without strong friction dp_rate_dd is set to 0, which
-        leaves out the feedback of omega through d
+    dp_rate_dV, dp_rate_dd : derivatives of p'; in partial slip without strong friction dp_rate_dd is 0 but for the
+        moments of a cover, which depend on Q: it leaves out the feedback of omega through d
     drate_dV, drate_dd : derivatives of ``weighted_rate``
     dweight_dV : derivative of ``weight``: 1 in partial slip, 0 in full slip
     """
@@ -209,17 +209,23 @@ def partial_slip_rates(V, d, load, regime, scene):
     d_total = d + cover.aside
     omega, omega_V, omega_d = V * (1.0 + k * L * d + cover.creep), 1.0 + k * d_total * dVdelta_star, k * V * L
     force, _, torque = applied_forces(V, omega, load, regime)
-    M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
+    gains = load.gains
+    free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
+    moments = loaded_moments(V, du_dV, Q, Q_V, Q_d, free, scene)
+    M_half_space = moments.half_space
+    M_cylinder = moments.cylinder
     inverse_mass, inverse_inertia = load.inverse_mass, load.inverse_inertia
     inverse_product = inverse_mass * inverse_inertia
     force_V, torque_V = gains.force_V + gains.force_omega * omega_V, gains.torque_V + gains.torque_omega * omega_V
     p, p_V = inverse_inertia * V + inverse_mass * omega, inverse_inertia + inverse_mass * omega_V
-    p_d, p_rate_d = inverse_mass * omega_d, 0.0
+    p_d = inverse_mass * omega_d
+    p_rate_d = -inverse_product * (moments.half_space_dd + moments.cylinder_dd)
     p_rate = inverse_product * (force + torque - M_half_space - M_cylinder)
     p_rate = p_rate + inverse_inertia * load.prescribed_V_rate + inverse_mass * load.prescribed_omega_rate
-    p_rate_V = inverse_product * (force_V + torque_V - half_space_slope - cylinder_slope)
+    p_rate_V = inverse_product * (force_V + torque_V - moments.half_space_dV - moments.cylinder_dV)
     V_rate = inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate
-    V_V, V_d = inverse_mass * (Q_V - half_space_slope + force_V), inverse_mass * (Q_d + gains.force_omega * omega_d)
+    V_V = inverse_mass * (Q_V - moments.half_space_dV + force_V)
+    V_d = inverse_mass * (Q_d - moments.half_space_dd + gains.force_omega * omega_d)
     torque_d = gains.torque_omega * omega_d
     n, n_V, n_integral = added_inertia(V, scene)
     if n != 0.0:
@@ -233,7 +239,8 @@ def partial_slip_rates(V, d, load, regime, scene):
     # Reciprocals are formed once: the processor takes longer for a division than for five products.
     inverse_k, inverse_L = 1.0 / k, 1.0 / L
     rate = inverse_L * (inverse_k * (omega_rate - V_rate) - d_total * dVdelta_star * V_rate)
-    omega_rate_V, omega_rate_d = inverse_inertia * (torque_V - Q_V - cylinder_slope), inverse_inertia * (torque_d - Q_d)
+    omega_rate_V = inverse_inertia * (torque_V - Q_V - moments.cylinder_dV)
+    omega_rate_d = inverse_inertia * (torque_d - Q_d - moments.cylinder_dd)
     curvature = du_dV * (((2.0 * dL + u * ddL) * d + cover.bend) * V_rate + dL * rate)
     if unlikely(has_strong_friction(load, regime, scene)):
         p, p_rate, p_V, p_d, p_rate_V, p_rate_d = V, V_rate, 1.0, 0.0, V_V, V_d
@@ -263,13 +270,17 @@ def full_slip_rates(V, omega, load, regime, scene):
     u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
     _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
     force, _, torque = applied_forces(V, omega, load, regime)
-    M_half_space, M_cylinder, gains = V * m_half_space, V * m_cylinder, load.gains
+    gains = load.gains
+    free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
+    moments = loaded_moments(V, scene.kappa if V >= 0.0 else -scene.kappa, Q, 0.0, 0.0, free, scene)
+    M_half_space = moments.half_space
+    M_cylinder = moments.cylinder
     V_rate = load.inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
     return Rates(
         omega, Q, M_half_space, M_cylinder, V_rate, V, V_rate, omega_rate, 1.0,
-        1.0, 0.0, load.inverse_mass * (gains.force_V - half_space_slope), load.inverse_mass * gains.force_omega,
-        load.inverse_inertia * (gains.torque_V - cylinder_slope), load.inverse_inertia * gains.torque_omega, 0.0,
+        1.0, 0.0, load.inverse_mass * (gains.force_V - moments.half_space_dV), load.inverse_mass * gains.force_omega,
+        load.inverse_inertia * (gains.torque_V - moments.cylinder_dV), load.inverse_inertia * gains.torque_omega, 0.0,
     )  # fmt: skip
 
 

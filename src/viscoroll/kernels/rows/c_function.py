@@ -2,7 +2,7 @@
 
 The function is compiled once; ``scene`` is its user data, a :data:`SCENE`.  It writes Q, M, and the parts of M in
 half-space and cylinder into ``out``; then, where the scene asks for slopes, dQ/dV at fixed omega, dQ/domega and the
-slopes of the parts over V.  It returns 0, or another number with NaN in ``out``.  It writes nothing else: any number of
+slopes of the parts over V and over omega.  It returns 0, or another number with NaN in ``out``.  It writes nothing else: any number of
 threads may call it.
 """
 
@@ -16,7 +16,15 @@ from numpy.typing import NDArray
 
 from ..compile.intrinsics import floats_at, function_address, integers_at, record_at, record_type
 from ..compile.jit import inline_kernel, kernel
-from .contact import Q_slopes, signed_creep, signed_traction, stick_argument
+from .contact import (
+    Q_slopes,
+    moment_slope,
+    moment_slope_over_V,
+    signed_creep,
+    signed_traction,
+    stick_argument,
+    traction_on_moments,
+)  # fmt: skip
 from .contact_states import State
 from .cover import COVER_FRONT_SIZE, COVER_ROW_SIZE, free_creep_at
 from .evaluate import body_moments, length_and_moment, locate_row, moment_factor
@@ -25,7 +33,7 @@ from .record import PARTS_PER_ROW, ROW_SIZE, Law
 #: Largest kappa |V|: beyond it zeta is 0 in doubles, or nearly, and the status is not 0.
 MAX_U = 1e300
 #: Numbers that the function writes.
-RESULTS = 8
+RESULTS = 10
 #: User data.  function: address of the C function.  slopes: whether slopes are asked for.  unlike: whether the bodies
 #: differ.  rows, marks: addresses of the arrays of the law.  row_count: rows with the head.  cover_rows: address of the
 #: numbers that only a cover has.  kappa, mu: of the scene.  V, omega, Q, M: 1 of each in the units of the caller.
@@ -34,7 +42,7 @@ SCENE = record_type("function slopes unlike rows marks row_count cover_rows", "k
 
 @inline_kernel
 def refuse(out):
-    """Fill ``out``, the RESULTS = 8 numbers of a C function, with NaN, and return 1, the int that is the status of a
+    """Fill ``out``, the RESULTS numbers of a C function, with NaN, and return 1, the int that is the status of a
     state at which the law is not defined.
     """
     for n in range(RESULTS):
@@ -78,17 +86,18 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     """Evaluate the law at one state and write the results in the units of the caller.
 
     caller_V, caller_omega : floats, speed and angular velocity in the units of the caller, of any sign.
-    pointer : address of RESULTS = 8 doubles, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``, dQ/dV
-        at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV.  Without slopes numbers 4 and 5 stay as
-        they were, and numbers 6 and 7 are overwritten by numbers without meaning.
+    pointer : address of RESULTS doubles, written: Q, M, M_half_space, M_cylinder; then, if ``scene.slopes``, dQ/dV at
+        fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, dM_half_space/domega, dM_cylinder/domega.  Without slopes numbers 4 and 5 stay as
+        they were, and the others are overwritten by numbers without meaning.
     scene : a SCENE record, of which all fields but ``function`` and ``cover_rows`` are read: rows and marks of the law,
         kappa, mu > 0 and the units of the caller.
     cover_rows : vector of the numbers that only a cover has, as in :class:`Law`; None of half-spaces.
 
-    Returns the status, an int: 0; or 1, and all eight results are NaN, if the dimensionless V or omega is not finite or
+    Returns the status, an int: 0; or 1, and all results are NaN, if the dimensionless V or omega is not finite or
     kappa |V| exceeds MAX_U.
 
-    If ``scene.unlike`` is 0, each body has half of M and of its slope.  At V = 0 M is 0; there omega other than 0 is
+    If ``scene.unlike`` is 0, each body has half of M and of its slope.  At V = 0 M is 0 but for that by traction on a
+    cover; there omega other than 0 is
     full slip, with the slopes of Q 0.  At V = omega = 0 dQ/domega and dQ/dV are infinite, but 0 in full slip (a cover).
     """
     out = carray(pointer, RESULTS)
@@ -107,18 +116,24 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     D = signed_creep(functions.L, free_creep, state, law)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
-    out[1] = factor * functions.m
+    change = traction_on_moments(position, u, functions, out[0], state, cover_rows)
+    out[1] = factor * functions.m + (change.half_space + change.cylinder)
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um
+    out[8] = out[9] = 0.0
     if scene.unlike:
         half_space, cylinder, out[6], out[7] = body_moments(position, u, law)
-        out[2] = factor * half_space
-        out[3] = factor * cylinder
+        out[2] = factor * half_space + change.half_space
+        out[3] = factor * cylinder + change.cylinder
     if scene.slopes:
         out[4], _, out[5] = Q_slopes(u, functions.L, functions.dL, D, state, law)
+        out[6] += moment_slope_over_V(change.half_space_du, change.half_space_dQ, out[4], state)
+        out[7] += moment_slope_over_V(change.cylinder_du, change.cylinder_dQ, out[4], state)
+        out[8] = moment_slope(change.half_space_dQ, out[5]) * scene.M / scene.omega
+        out[9] = moment_slope(change.cylinder_dQ, out[5]) * scene.M / scene.omega
         out[4] = out[4] * scene.Q / scene.V
         out[5] = out[5] * scene.Q / scene.omega
-        for n in range(6, RESULTS):
+        for n in range(6, 8):
             out[n] = out[n] * scene.M / scene.V
     out[0] *= scene.Q
     for n in range(1, 4):

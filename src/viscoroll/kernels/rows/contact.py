@@ -31,7 +31,15 @@ import numpy as np
 from ..compile.intrinsics import bits_to_float, float_to_bits
 from ..compile.jit import inline_kernel, kernel
 from .contact_states import TOGETHER, State, read_state, slip_and_creepage, write_field
-from .cover import free_creep_at, sliding_creep, slope_over_speed
+from .cover import (
+    MomentChange,
+    free_creep_at,
+    length_change,
+    moment_change,
+    shear_reaction,
+    sliding_creep,
+    slope_over_speed,
+)  # fmt: skip
 from .evaluate import (
     H_over_F2,
     H_over_F2_secants,
@@ -72,6 +80,8 @@ _STICK = np.uint64(8 * TOGETHER)
 _POSITION = np.uint64(9 * TOGETHER)
 #: Place in the scratch of :func:`contact_loop` of rows of the positions of v; t and dt/dx follow.
 _STICK_POSITION = np.uint64(12 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of Q, where it is needed.
+_Q = np.uint64(15 * TOGETHER)
 #: Distance of t from the row of a position in the scratch.
 _T = np.uint64(TOGETHER)
 #: Distance of dt/dx from that row.
@@ -274,6 +284,44 @@ def Q_slopes(u, L, dL, D, state, law):
 
 
 @inline_kernel
+def traction_on_moments(position, u, functions, Q, state, cover_rows):
+    """Return what the traction changes in the rolling moments of a state, as :class:`.cover.MomentChange`.
+
+    position : :class:`RowPosition` of u.
+    u : float, kappa |V|, dimensionless, >= 0.
+    functions : :class:`LengthAndMoment` at u, of which L and dL are read.
+    Q : float, traction of the state, dimensionless.
+    state : :class:`State` of numbers, of which kappa and mu are read.
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover`); None for half-spaces: all changes are 0.
+    """
+    if cover_rows is None:
+        return MomentChange(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    reaction = shear_reaction(position, u, state.kappa, state.mu, functions.L, functions.dL, cover_rows)
+    return moment_change(Q, state.mu, reaction)
+
+
+@inline_kernel
+def moment_slope(change_dQ, slope):
+    """Return the slope of a moment over creepage or omega at fixed speed, dimensionless; 0 where it does not depend on Q.
+
+    change_dQ : float, derivative of :class:`.cover.MomentChange` in Q; 0 of half-spaces.
+    slope : float, slope of Q over the same variable; it may be infinite at rest.
+    """
+    return change_dQ * slope if change_dQ != 0.0 else 0.0
+
+
+@inline_kernel
+def moment_slope_over_V(change_du, change_dQ, dQ_dV, state):
+    """Return what the traction adds to dM/dV of a body, dimensionless.
+
+    change_du, change_dQ : floats, derivatives of :class:`.cover.MomentChange` of the body over u and in Q.
+    dQ_dV : float, slope of the traction, at fixed creepage or omega.
+    state : :class:`State` of numbers, of which kappa and the sign of V are read.
+    """
+    return np.copysign(state.kappa, state.V) * change_du + moment_slope(change_dQ, dQ_dV)
+
+
+@inline_kernel
 def _index(k, request):
     """Return the index of the state at a position in the order of evaluation, an int.
 
@@ -370,25 +418,103 @@ def _write_other_fields(n, c, law, scratch, request):
         write_field(to.grip, friction_reserve(stick_position, v, L, abs(D), law), n, request)
     if max(to.lam, to.zeta, to.epsilon, to.beta) >= 0:
         lam, epsilon = lam_and_epsilon(position, u, law)
+        write_field(to.beta, stick_fraction(stick_position, v, lam, L, abs(D), law), n, request)
+        lam_change, epsilon_change = length_change(scratch[_Q + c], position, u, law.cover_rows)
+        lam = lam + lam_change
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / u, n, request)
-        write_field(to.epsilon, epsilon, n, request)
-        write_field(to.beta, stick_fraction(stick_position, v, lam, L, abs(D), law), n, request)
-    if max(to.dM_dV, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0:
-        slopes = length_and_moment(position, u, law)
-        write_field(to.dM_dV, slopes.d_um, n, request)
-        if max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0:
-            over_V, over_delta, over_omega = Q_slopes(u, L, slopes.dL, D, state, law)
-            write_field(to.dQ_dV, over_V, n, request)
-            write_field(to.dQ_ddelta, over_delta, n, request)
-            write_field(to.dQ_domega, over_omega, n, request)
-    if max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0:
-        factor = moment_factor(position, u, length_and_moment(position, u, law).scale, state)
+        write_field(to.epsilon, epsilon + epsilon_change, n, request)
+    slopes = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
+    bodies = max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
+    bodies = bodies or max(to.dM_half_space_domega, to.dM_cylinder_domega) >= 0
+    if slopes or bodies:
+        slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
+        _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
+
+
+@inline_kernel
+def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
+    """Write the moments of the bodies, and the slopes of Q and of the moments, of those that are requested.
+
+    n, c, law, scratch, request : as of :func:`_write_other_fields`.
+    bodies : bool, whether a quantity of one body is requested.
+    slopes_of_Q : bool, whether a slope of Q is requested; the moments of a cover need them in any case.
+    Returns nothing.  Of half-spaces M depends on the speed alone: its slopes in delta and omega are 0.
+    """
+    to = request.to
+    state = _state(c, scratch, request)
+    u = scratch[_U + c]
+    position = _position(_POSITION, c, scratch)
+    functions = length_and_moment(position, u, law)
+    change = traction_on_moments(position, u, functions, scratch[_Q + c], state, law.cover_rows)
+    over_V = 0.0
+    over_delta = 0.0
+    over_omega = 0.0
+    if slopes_of_Q or _is_cover(law.cover_rows):
+        over_V, over_delta, over_omega = Q_slopes(u, functions.L, functions.dL, scratch[_D + c], state, law)
+        write_field(to.dQ_dV, over_V, n, request)
+        write_field(to.dQ_ddelta, over_delta, n, request)
+        write_field(to.dQ_domega, over_omega, n, request)
+    change_dQ = change.half_space_dQ + change.cylinder_dQ
+    write_field(to.dM_ddelta, moment_slope(change_dQ, over_delta), n, request)
+    write_field(to.dM_domega, moment_slope(change_dQ, over_omega), n, request)
+    change_du = change.half_space_du + change.cylinder_du
+    write_field(to.dM_dV, functions.d_um + moment_slope_over_V(change_du, change_dQ, over_V, state), n, request)
+    if bodies:
+        factor = moment_factor(position, u, functions.scale, state)
         half_space, cylinder, half_space_slope, cylinder_slope = body_moments(position, u, law)
-        write_field(to.M_half_space, factor * half_space, n, request)
-        write_field(to.M_cylinder, factor * cylinder, n, request)
+        write_field(to.M_half_space, factor * half_space + change.half_space, n, request)
+        write_field(to.M_cylinder, factor * cylinder + change.cylinder, n, request)
+        half_space_slope += moment_slope_over_V(change.half_space_du, change.half_space_dQ, over_V, state)
+        cylinder_slope += moment_slope_over_V(change.cylinder_du, change.cylinder_dQ, over_V, state)
         write_field(to.dM_half_space_dV, half_space_slope, n, request)
         write_field(to.dM_cylinder_dV, cylinder_slope, n, request)
+        write_field(to.dM_half_space_domega, moment_slope(change.half_space_dQ, over_omega), n, request)
+        write_field(to.dM_cylinder_domega, moment_slope(change.cylinder_dQ, over_omega), n, request)
+
+
+@inline_kernel
+def _is_cover(cover_rows):
+    """Return whether a law is that of a cover, a bool that numba knows when it compiles.
+
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover`); None for half-spaces.
+    """
+    return cover_rows is not None
+
+
+@inline_kernel
+def _write_moment_of_half_space(n, c, position, functions, cover_rows, scratch, request):
+    """Write M of a state on half-spaces, which depends on the speed alone, if it is requested.
+
+    n, c, scratch, request : as of :func:`_write_other_fields`.
+    position, functions : :class:`RowPosition` of u, and :class:`LengthAndMoment` there.
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover`), and then nothing is written; None for
+        half-spaces.
+    Returns nothing.
+    """
+    if cover_rows is None:
+        factor = moment_factor(position, scratch[_U + c], functions.scale, _state(c, scratch, request))
+        write_field(request.to.M, factor * functions.m, n, request)
+
+
+@inline_kernel
+def _write_moment_of_cover(Q, n, c, law, cover_rows, scratch, request):
+    """Store Q of a state on a cover in the scratch, and write M, which depends on it, if that is requested.
+
+    Q : float, traction, dimensionless.
+    n, c, law, scratch, request : as of :func:`_write_other_fields`; the entry of Q is written.
+    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written.
+    Returns nothing.
+    """
+    if cover_rows is not None:
+        scratch[_Q + c] = Q
+        state = _state(c, scratch, request)
+        u = scratch[_U + c]
+        position = _position(_POSITION, c, scratch)
+        functions = length_and_moment(position, u, law)
+        change = traction_on_moments(position, u, functions, Q, state, cover_rows)
+        M = moment_factor(position, u, functions.scale, state) * functions.m
+        write_field(request.to.M, M + (change.half_space + change.cylinder), n, request)
 
 
 @kernel
@@ -441,8 +567,9 @@ def contact_loop(laws, request, scratch, count):
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
                 scratch[_FREE_CREEP + c] = free_creep_at(position, u, law.cover_rows)[0]
-                factor = moment_factor(position, u, functions.scale, _state(c, scratch, request))
-                write_field(to.M, factor * functions.m, _index(first + k, request), request)
+                _write_moment_of_half_space(
+                    _index(first + k, request), c, position, functions, law.cover_rows, scratch, request
+                )  # fmt: skip
             for k in range(begin, end):
                 c = np.uint64(k)
                 L = scratch[_L + c]
@@ -450,7 +577,7 @@ def contact_loop(laws, request, scratch, count):
                 scratch[_D + c] = D
                 scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
             _write_positions(_STICK, _STICK_POSITION, begin, end, laws, scratch)
-            if to.Q >= 0:
+            if to.Q >= 0 or _is_cover(laws[0].cover_rows):
                 for k in range(begin, end):
                     c = np.uint64(k)
                     Q = signed_traction(
@@ -458,6 +585,8 @@ def contact_loop(laws, request, scratch, count):
                         scratch[_D + c], scratch[_MU + c], laws[k % len(laws)],
                     )  # fmt: skip
                     write_field(to.Q, Q, _index(first + k, request), request)
+                    law = laws[k % len(laws)]
+                    _write_moment_of_cover(Q, _index(first + k, request), c, law, law.cover_rows, scratch, request)
             if others:
                 for k in range(begin, end):
                     n = _index(first + k, request)

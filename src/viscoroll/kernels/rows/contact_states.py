@@ -12,15 +12,16 @@ from ..compile.jit import inline_kernel
 Fields = namedtuple(
     "Fields",
     "lam zeta epsilon delta_star delta full_slip beta grip Q M dQ_dV dQ_ddelta dQ_domega dM_dV "
-    "M_half_space M_cylinder dM_half_space_dV dM_cylinder_dV delta_0",
-    defaults=[-1] * 19,
+    "M_half_space M_cylinder dM_half_space_dV dM_cylinder_dV delta_0 "
+    "dM_ddelta dM_domega dM_half_space_domega dM_cylinder_domega",
+    defaults=[-1] * 23,
 )
 
 #: States that pass through the stages of the evaluation together: enough that a loop over them costs little for each,
 #: and few enough that their scratch stays in the first cache.
 TOGETHER = 64
 #: Numbers of the scratch of :func:`.contact.contact_loop`.
-SCRATCH_SIZE = 15 * TOGETHER
+SCRATCH_SIZE = 16 * TOGETHER
 
 
 class State(NamedTuple):

@@ -1,9 +1,19 @@
-"""What the law of a cover of finite thickness has besides its rows: the creep of free rolling and its own fast limit.
+"""What the law of a cover of finite thickness has besides its rows, and how shear acts back on its rolling moment.
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0, and numba compiles
-nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, and then for each row of the law 2
-kappa delta_0 over u = kappa |V| (:mod:`simd_polynomial`), twice as a pair, which has the second derivative.  The fast
-limit holds beyond the last row of the law.
+nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE` numbers, the limits of fast rolling, and
+then for each row of the law three pairs of functions of u = kappa |V| (:mod:`simd_polynomial`).  The limits hold beyond
+the last row of the law.
+
+With the traction Q, |Q| <= mu, and delta_f = (f_b + f_c)/(2 kappa), the creepage of free rolling with stick,
+
+    M_half_space = V m_half_space - Q [f_b + g_b |Q|/mu]/(2 kappa)
+    M_cylinder = V m_cylinder - Q [f_c + g_c |Q|/mu]/(2 kappa + f_b + f_c)
+    lam = lam_0 + lam_Q Q        epsilon = epsilon_0 + epsilon_Q Q
+
+f_b and f_c are what the stretched surface of the base and of the cylinder adds to 2 kappa delta_f; g_b and g_c change
+the moment of full slip to that of the mirrored strain (docs/theory_covers.md).  A body without a layer has f = g = 0.
+|g_b + g_c| is limited to mu L/2 by a smooth function, so that the loss in slip is never below 0.
 
 Letters: kappa = R/l0, mu the coefficient of friction; L = 2 kappa delta_star/mu; lam, length of the contact divided by
 l0, and epsilon, its shift in half contact lengths, functions of u; eta, half the transit time of the stick zone, and
@@ -19,20 +29,38 @@ import numpy as np
 from ..compile.jit import inline_kernel
 from .simd_polynomial import TERMS, evaluate_pair
 
-#: Index in the head: lam as u -> infinity; after it the coefficient of 1/u.
-_LAM = 0
-#: Index in the head: 2 kappa delta_0 as u -> infinity; after it the coefficient of 1/u.
-_FREE = 2
-#: Index in the head: epsilon u as u -> infinity.
-_EPSILON = 4
-#: Index in the head: 2 M u^2/(V L) as u -> infinity.
-_MOMENT = 5
+#: Index in the head: lam as u -> infinity; after it the coefficient of 1/u, as after each of the next six.
+LAM_LIMIT = 0
+#: Index in the head: f_b, the part of 2 kappa delta_f by the base, as u -> infinity.
+FREE_HALF_SPACE_LIMIT = 2
+#: Index in the head: f_c, the part of 2 kappa delta_f by the cylinder, as u -> infinity.
+FREE_CYLINDER_LIMIT = 4
+#: Index in the head: g_b as u -> infinity.
+EXCESS_HALF_SPACE_LIMIT = 6
+#: Index in the head: g_c as u -> infinity.
+EXCESS_CYLINDER_LIMIT = 8
+#: Index in the head: lam_Q as u -> infinity.
+LAM_SLOPE_LIMIT = 10
+#: Index in the head: epsilon_Q as u -> infinity.
+EPSILON_SLOPE_LIMIT = 12
 #: Index in the head: eta/F as v -> infinity; after it the coefficient of 1/v.
-_SHARE = 6
+ETA_OVER_F_LIMIT = 14
+#: Index in the head: epsilon u as u -> infinity.
+EPSILON_LIMIT = 16
+#: Index in the head: 2 M u^2/(V L) as u -> infinity, of both bodies together.
+MOMENT_LIMIT = 17
 #: Numbers of the head.
-COVER_FRONT_SIZE = 8
+COVER_FRONT_SIZE = 18
+#: Numbers of a pair of functions in a row.
+_PAIR_SIZE = 2 * TERMS
+#: Offset in a row of f_b and f_c, interleaved.
+FREE = 0
+#: Offset in a row of g_b and g_c, interleaved.
+EXCESS = _PAIR_SIZE
+#: Offset in a row of lam_Q and epsilon_Q, interleaved.
+TILT = 2 * _PAIR_SIZE
 #: Numbers of a row.
-COVER_ROW_SIZE = 2 * TERMS
+COVER_ROW_SIZE = 3 * _PAIR_SIZE
 
 
 class FreeCreep(NamedTuple):
@@ -65,7 +93,7 @@ def fast_moment(shift, u, cover_rows):
     """
     if cover_rows is None:
         return shift
-    return cover_rows[_MOMENT] / u
+    return cover_rows[MOMENT_LIMIT] / u
 
 
 @inline_kernel
@@ -80,7 +108,7 @@ def fast_lengths(lam, shift, u, cover_rows):
     """
     if cover_rows is None:
         return lam, shift
-    return cover_rows[_LAM] + cover_rows[_LAM + 1] / u, cover_rows[_EPSILON] / u
+    return cover_rows[LAM_LIMIT] + cover_rows[LAM_LIMIT + 1] / u, cover_rows[EPSILON_LIMIT] / u
 
 
 @inline_kernel
@@ -95,7 +123,49 @@ def fast_eta_over_F(eta_over_F, v, cover_rows):
     """
     if cover_rows is None:
         return eta_over_F
-    return cover_rows[_SHARE] + cover_rows[_SHARE + 1] / v
+    return cover_rows[ETA_OVER_F_LIMIT] + cover_rows[ETA_OVER_F_LIMIT + 1] / v
+
+
+class PairOverSpeed(NamedTuple):
+    """Two functions of u = kappa |V| at one speed, with their first and second derivatives over u, dimensionless."""
+
+    first: float
+    second: float
+    first_slope: float
+    second_slope: float
+    first_curvature: float
+    second_curvature: float
+
+
+@inline_kernel
+def _pair_at(offset, limit, position, u, cover_rows):
+    """Return two functions of a cover at one speed, with their derivatives over u, as :class:`PairOverSpeed`.
+
+    offset : int, offset of the pair in a row: FREE, EXCESS or TILT.
+    limit : int, index in the head of the limit of the first function for u -> infinity; its coefficient of 1/u and the
+        two numbers of the second function follow.
+    position : :class:`.evaluate.RowPosition` of u in the rows of the law; beyond the last row a function is its limit
+        and a term in 1/u.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
+    """
+    if position.row < 0:
+        first_change = cover_rows[limit + 1] / u
+        second_change = cover_rows[limit + 3] / u
+        return PairOverSpeed(
+            cover_rows[limit] + first_change, cover_rows[limit + 2] + second_change, -first_change / u,
+            -second_change / u, 2.0 * first_change / (u * u), 2.0 * second_change / (u * u),
+        )  # fmt: skip
+    start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + offset
+    first, second, first_slope, second_slope, first_curvature, second_curvature = evaluate_pair(
+        cover_rows, start, position.t
+    )
+    slope = position.dt_dx
+    curvature = slope * slope
+    return PairOverSpeed(
+        first, second, first_slope * slope, second_slope * slope, first_curvature * curvature,
+        second_curvature * curvature,
+    )  # fmt: skip
 
 
 @inline_kernel
@@ -111,12 +181,123 @@ def free_creep_at(position, u, cover_rows):
     """
     if cover_rows is None:
         return 0.0, 0.0, 0.0
-    if position.row < 0:
-        change = cover_rows[_FREE + 1] / u
-        return cover_rows[_FREE] + change, -change / u, 2.0 * change / (u * u)
-    start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row
-    value, _, slope, _, second_derivative, _ = evaluate_pair(cover_rows, start, position.t)
-    return value, slope * position.dt_dx, second_derivative * position.dt_dx * position.dt_dx
+    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
+    return (
+        free.first + free.second,
+        free.first_slope + free.second_slope,
+        free.first_curvature + free.second_curvature,
+    )
+
+
+class Reaction(NamedTuple):
+    """How shear acts back on the rolling moments at one speed: M of a body is that without traction less
+
+        Q (factor + excess |Q|/mu)
+
+    half_space, cylinder : the factors, dimensionless, of either sign.
+    half_space_excess, cylinder_excess : the excesses, dimensionless, of either sign.
+    half_space_slope, cylinder_slope, half_space_excess_slope, cylinder_excess_slope : derivatives of these four over u.
+    """
+
+    half_space: float
+    cylinder: float
+    half_space_excess: float
+    cylinder_excess: float
+    half_space_slope: float
+    cylinder_slope: float
+    half_space_excess_slope: float
+    cylinder_excess_slope: float
+
+
+@inline_kernel
+def shear_reaction(position, u, kappa, mu, L, dL, cover_rows):
+    """Return how shear acts back on the rolling moments at one speed, as :class:`Reaction`, by the module's equations.
+
+    The excess g = g_b + g_c is limited by g/(1 + (g/s)^4)^(1/4) with s = mu L/2, both parts in proportion.
+
+    position : :class:`.evaluate.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    mu : float, coefficient of friction, > 0.
+    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope over u, dimensionless.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces: all is 0.
+    """
+    if cover_rows is None:
+        return Reaction(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
+    excess = _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
+    on_base = 0.5 / kappa
+    on_cylinder = 1.0 / (2.0 * kappa + free.first + free.second)
+    on_cylinder_slope = -on_cylinder * on_cylinder * (free.first_slope + free.second_slope)
+    bound = 2.0 / (mu * L)
+    ratio = bound * (excess.first + excess.second)
+    ratio_slope = bound * (excess.first_slope + excess.second_slope) - ratio * dL / L
+    cube = ratio * ratio * ratio
+    rest = 1.0 / (1.0 + cube * ratio)
+    limiter = np.sqrt(np.sqrt(rest))
+    limiter_slope = -limiter * rest * cube * ratio_slope
+    excess_slope = limiter * excess.second_slope + limiter_slope * excess.second
+    return Reaction(
+        half_space=on_base * free.first,
+        cylinder=on_cylinder * free.second,
+        half_space_excess=on_base * limiter * excess.first,
+        cylinder_excess=on_cylinder * limiter * excess.second,
+        half_space_slope=on_base * free.first_slope,
+        cylinder_slope=on_cylinder * free.second_slope + on_cylinder_slope * free.second,
+        half_space_excess_slope=on_base * (limiter * excess.first_slope + limiter_slope * excess.first),
+        cylinder_excess_slope=on_cylinder * excess_slope + on_cylinder_slope * limiter * excess.second,
+    )
+
+
+class MomentChange(NamedTuple):
+    """What the traction changes in the rolling moments, dimensionless: to be added to those without traction.
+
+    half_space, cylinder : the changes of M_half_space and M_cylinder.
+    half_space_dQ, cylinder_dQ : their derivatives in Q at fixed speed.
+    half_space_du, cylinder_du : their derivatives over u = kappa |V| at fixed Q.
+    """
+
+    half_space: float
+    cylinder: float
+    half_space_dQ: float
+    cylinder_dQ: float
+    half_space_du: float
+    cylinder_du: float
+
+
+@inline_kernel
+def moment_change(Q, mu, reaction):
+    """Return what the traction changes in the rolling moments, as :class:`MomentChange`.
+
+    Q : float, traction, dimensionless, |Q| <= mu.
+    mu : float, coefficient of friction, > 0.
+    reaction : :class:`Reaction` at the speed.
+    """
+    used = abs(Q) / mu
+    return MomentChange(
+        half_space=-Q * (reaction.half_space + reaction.half_space_excess * used),
+        cylinder=-Q * (reaction.cylinder + reaction.cylinder_excess * used),
+        half_space_dQ=-(reaction.half_space + 2.0 * reaction.half_space_excess * used),
+        cylinder_dQ=-(reaction.cylinder + 2.0 * reaction.cylinder_excess * used),
+        half_space_du=-Q * (reaction.half_space_slope + reaction.half_space_excess_slope * used),
+        cylinder_du=-Q * (reaction.cylinder_slope + reaction.cylinder_excess_slope * used),
+    )
+
+
+@inline_kernel
+def length_change(Q, position, u, cover_rows):
+    """Return what the traction changes in length and shift of the contact, to first order.
+
+    Q : float, traction, dimensionless, |Q| <= mu.
+    position : :class:`.evaluate.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
+    Returns (change of lam, change of epsilon), floats, dimensionless; 0.0 each of half-spaces.
+    """
+    if cover_rows is None:
+        return 0.0, 0.0
+    tilt = _pair_at(TILT, LAM_SLOPE_LIMIT, position, u, cover_rows)
+    return Q * tilt.first, Q * tilt.second
 
 
 @inline_kernel
@@ -131,13 +312,13 @@ def sliding_creep(slip, delta, free_creep, state, cover_rows):
     state : :class:`.contact_states.State`, of which kappa and the sign of V are read, of a cover alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
     Returns (a float with the sign of the traction, delta - delta_0), dimensionless.  Of a cover the first is delta -
-    delta_0 with the sign of V, where V = 0.0 counts as V > 0; of half-spaces the two are ``slip`` and ``delta`` as
+    delta_0 with the sign of V, where V = 0.0 and -0.0 count as V > 0; of half-spaces the two are ``slip`` and ``delta`` as
     given.
     """
     if cover_rows is None:
         return slip, delta
     own = delta - 0.5 * free_creep / state.kappa
-    return own * np.copysign(1.0, state.V), own
+    return -own if state.V < 0.0 else own, own
 
 
 @inline_kernel

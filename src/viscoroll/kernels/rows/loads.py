@@ -18,8 +18,8 @@ class Loads(NamedTuple, Generic[T]):
 
 
 class LoadsAndSlopes(NamedTuple, Generic[T]):
-    """As :class:`Loads`, in the same units; then dQ/dV at fixed omega, dQ/domega at fixed V, and the slopes over V of
-    the two parts of M.
+    """As :class:`Loads`, in the same units; then dQ/dV at fixed omega, dQ/domega at fixed V, and the slopes of the two
+    parts of M over V at fixed omega and over omega at fixed V.  Of half-spaces M does not depend on omega.
     """
 
     Q: T
@@ -30,3 +30,5 @@ class LoadsAndSlopes(NamedTuple, Generic[T]):
     dQ_domega: T
     dM_half_space_dV: T
     dM_cylinder_dV: T
+    dM_half_space_domega: T
+    dM_cylinder_domega: T

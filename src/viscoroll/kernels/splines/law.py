@@ -30,15 +30,15 @@ def _grid_law(V, omega, pointer, grids):
     """Evaluate the splines of a grid at one state and write the results; it is the C function of the grid.
 
     V, omega : speed of the axis and angular velocity in the units of the grid, of any sign.
-    pointer : address of RESULTS = 8 numbers, of which the first four are written: Q, M, M_half_space, M_cylinder; then,
-        if ``grid.slopes``, dQ/dV at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV, else the last
-        four stay; all in the units of the grid.
+    pointer : address of RESULTS numbers, of which the first four are written: Q, M, M_half_space, M_cylinder; then,
+        if ``grid.slopes``, dQ/dV at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV and 0, 0 (M does not
+        depend on omega), else these stay; all in the units of the grid.
     grids : pointer to a GRID record: addresses of the splines and the bounds of the grid.
 
     Both slopes of Q are 0 where Q does not depend on the creepage: beyond the ends of delta, and where it is clipped to
     +-mu P.  At rest (V = omega = 0) they are infinite.  V = 0 counts as rolling in the direction V > 0.
 
-    Returns the status, an int: 0; or 1, and all eight results are NaN, where |V| is above the grid, V or omega is not
+    Returns the status, an int: 0; or 1, and all results are NaN, where |V| is above the grid, V or omega is not
     finite, or delta is outside a grid that does not slip fully at its ends.
     """
     out = carray(pointer, RESULTS)
@@ -64,7 +64,7 @@ def _grid_law(V, omega, pointer, grids):
     out[3] = sign * part * cylinder.value
     out[1] = out[2] + out[3]
     if grid.slopes:
-        out[4] = out[5] = 0.0
+        out[4] = out[5] = out[8] = out[9] = 0.0
         if ddelta != 0.0:  # at rest infinite, like those of the law
             out[4] = (0.0 if slow else traction.dV) - ddelta * (1.0 + delta) / speed
             out[5] = ddelta * grid.R / speed
@@ -81,7 +81,7 @@ def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Ji
     numbers : fields of :data:`GRID` by name, in the units of the grid: slips (1 if the grid slips fully at both ends of
         delta, else 0), slowest (least V), low and high (ends of delta), R (radius, which turns omega into a speed).
 
-    Returns the :class:`Jitted` law: (V, omega) -> :class:`LoadsAndSlopes`, eight floats in the units of the grid: Q, M,
+    Returns the :class:`Jitted` law: (V, omega) -> :class:`LoadsAndSlopes`, ten floats in the units of the grid: Q, M,
     M_half_space, M_cylinder and the slopes of :func:`_grid_law`; all NaN where the law of the grid is not defined.
     Raises ValueError of numpy if a name is no field of GRID; that all are given is not checked.
     """

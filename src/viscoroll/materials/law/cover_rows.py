@@ -7,9 +7,9 @@ octave there is a polynomial of u, beyond the last one a polynomial of 1/u, both
 Beside a half-space that relaxes too, that of 1/u has a second one times ln u: long waves then have a memory of their
 own, which the core does not cut off.
 
-The five quantities of a node, in the order of the indices below, are lam, L = 2 kappa delta_star/mu, 2 kappa delta_0,
-epsilon and M/V, dimensionless, with M in units of P R, V in units of R/T_ref, and T_ref the unit of time of the cover's
-series.  Until :func:`cover_rows` has set its sign, delta_0 is that of a cover on the base.
+The quantities of a node, in the order of the indices below, are lam, L = 2 kappa delta_star/mu, epsilon, M/V of the
+base and of the cylinder, f of both, g of both, lam_Q and epsilon_Q, dimensionless, with M in units of P R, V in units
+of R/T_ref, and T_ref the unit of time of the cover's series (:mod:`...kernels.rows.cover` has f, g and the slopes).
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ import numpy as np
 from ...core.array_types import Floats
 from ...core.errors import ParameterError
 from ..cover import Cover
-from .cover_pressure import local_strain
-from .cover_solve import LARGEST_THETA, CoverModes, solve
+from .cover_shear import shear_of
+from .cover_solve import LARGEST_THETA, LEAST_TERMS, CoverModes, CoverState, solve, term_count
 from .pack import CoverRows, constant_rows, steady_table
 from .rows import NODES, Rows, row_range
 
@@ -34,16 +34,26 @@ PER_OCTAVE = 12
 _ASIDE = 18
 #: imaginary step for derivatives, relative or of log2 u; its square is far below rounding, dimensionless
 _TINY = 1e-30
-#: index of lam among the quantities that are computed at the nodes
+#: quantities of a node
+_COUNT = 11
+#: index of lam among them
 _LAM = 0
 #: index of L = 2 kappa delta_star/mu
 _LIMIT = 1
-#: index of 2 kappa delta_0 of a cover on the base
-_FREE = 2
 #: index of epsilon
-_EPSILON = 3
-#: index of M/V
-_MOMENT = 4
+_EPSILON = 2
+#: indices of M/V
+_MOMENTS = slice(3, 5)
+#: indices of f, of which the sum is 2 kappa delta_f
+_FREE = slice(5, 7)
+#: indices of g, of which the sum is 2 kappa (delta_0* - delta_f)
+_EXCESS = slice(7, 9)
+#: indices of the slopes of lam and epsilon in Q
+_TILT = slice(9, 11)
+#: functions that have a row each beside those of a table: L, f, g and the slopes
+_BESIDE = [_LIMIT, *range(5, _COUNT)]
+#: offset of the first of two solves in ln z, whose difference is the slope of load and shift over z
+_OFFSET = 3e-5
 #: octaves between the fastest rate (times the thickness divided by l0 for thick covers) and the row in 1/u
 _FAST_OCTAVES = 4
 #: octaves of rows beyond those, after which the first order in 1/u is accurate to rounding
@@ -53,15 +63,16 @@ _BEYOND = 42
 _END_NODES = 52
 #: degree of these polynomials
 _END_DEGREE = 12
-#: degree of that of delta_0, which for nu < 1/2 has a term u^2 ln u at low speed, from the memory of the pressure near
-#: the edges: with 12 delta_0 jumped by 2e-10 of delta_star/mu where the first octave begins, with 18 by 3e-13
-_STRAIN_DEGREE = 18
+#: degree of those by shear, which for nu < 1/2 have terms in ln u at low speed, from the memory of the pressure near the
+#: edges: where the first octave begins they jump by 4e-12 of 2 kappa delta_star/mu, and by 4e-10 with 12; with 18 the
+#: noise of the solve makes their slopes jump by 1e-4, with 14 by 1e-6
+_STRAIN_DEGREE = 14
 #: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too: without them M was
 #: wrong by 1 % at a thousand times the fastest rate, with two it is by 1e-9; more terms amplify the noise of the solve
 _LOG_TERMS = 2
 #: the secant method ends where the product of the last two relative errors of the load is below this: the next step
 #: then leaves an error below rounding
-_LOAD_ERRORS = 1e-14
+_LOAD_ERRORS = 1e-13
 #: least distance of two points of the secant method in ln z, for which rounding does not dominate the slope
 _LEAST_STEP = 1e-8
 #: most steps of the secant method; it needs 4 to 6
@@ -78,48 +89,49 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     cover: one :class:`..cover.Cover`, of a single thickness and Poisson's ratio.
     thickest: thickness divided by l0 that determines the number of rows in place of that of the cover, for several
         covers to have as many; None: that of the cover.  It has no effect for elastic bodies.
-    Returns :class:`.pack.CoverRows`: e0, exponent of the end of the first row; coefficients of the law, (rows, 24
-    powers, 7 functions); creep, rows of L = 2 kappa delta_star/mu and of 2 kappa delta_0, (2, rows, 24 powers); limits
-    of the functions for u -> infinity, (8,).  Of elastic bodies it is a single row of constants, with epsilon = M = 0.
+    Returns :class:`.pack.CoverRows`; of elastic bodies it is a single row of constants, with epsilon = M = 0.
     Raises ParameterError for a cover so thin that the half contact at rest is longer than six thicknesses, and where at
     some speed no contact length that carries the load is found.
     """
-    # a stretched surface makes delta_0 positive on the base, which then has all of M, and negative on the cylinder
-    modes, thickness, side = CoverModes(cover), cover.thickness, 1.0 if cover.on == "base" else -1.0
-    slow_limit = _solve_elastic(modes, modes.share, 1.0) if thickness > _THINNEST else None
+    modes, thickness = CoverModes(cover), cover.thinnest
+    slow_limit = _solve_elastic(modes, modes.cover.share, 1.0) if thickness > _THINNEST else None
     if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
         allowed = f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
         raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
     if not modes.series.a.size:
-        lam, L, free = slow_limit[_LAM], slow_limit[_LIMIT], side * slow_limit[_FREE]
+        lam, L = slow_limit[_LAM], slow_limit[_LIMIT]
         table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
-        return CoverRows(0, table, constant_rows(L, free), np.array([L, lam, free, *np.zeros(5)]))
-    fast_limit = _solve_elastic(modes, min(modes.layer_instant * modes.alpha, 1.0), modes.alpha)
-    slow_limit[_MOMENT] = float(modes.series.e @ modes.series.e) if modes.share == 1.0 else math.nan
-    # the solve loses digits of delta_0: its limits are extrapolated, to join the values at the nodes
-    slow_limit[_FREE] = fast_limit[_FREE] = math.nan
+        limits = np.concatenate([[L, lam], slow_limit[_BESIDE[1:]], np.zeros(_COUNT)])
+        return CoverRows(0, table, constant_rows(*slow_limit[_BESIDE]), limits)
+    instant = modes.bodies[1].instant * modes.alpha
+    fast_limit = _solve_elastic(modes, min(instant, 1.0), modes.alpha)
+    # the solve loses digits of what shear does: its limits are extrapolated, to join the values at the nodes
+    slow_limit[3:] = fast_limit[5:] = math.nan
+    if 1.0 in modes.shares:
+        slow_limit[_MOMENTS] = modes.shares * float(modes.series.e @ modes.series.e)
+    orders = max(LEAST_TERMS, term_count(0.5 * slow_limit[_LAM] / thickness))
     e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
-    last = math.frexp(modes.series.a[-1] * max(1.0, thickest or thickness))[1] + _FAST_OCTAVES
+    widest = cover.thickness if cover.other_thickness is None else max(cover.thickness, cover.other_thickness)
+    widest *= 1.0 if thickest is None else thickest / cover.thickness
+    last = math.frexp(modes.series.a[-1] * max(1.0, widest))[1] + _FAST_OCTAVES
     first_node = e0 * PER_OCTAVE - _END_NODES + 1
     u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
-    values = _solve_nodes(modes, u)
-    values[_FREE] *= side
+    values = _solve_nodes(modes, u, orders)
     rows = Rows(e0, last - e0 + 1 + _BEYOND)
     y = np.ldexp(u[:_END_NODES], -e0)
     slow_limit, _, slow = _fit_end(y, values[:, :_END_NODES], slow_limit, rows.t[0])
     inside = _interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
     x = rows.x[last - e0 + 1 :]
-    log_terms = _LOG_TERMS if cover.other.alpha > 1.0 else 0
+    half_space_relaxes = cover.other_thickness is None and cover.other.alpha > 1.0 and cover.part < 1.0
     fast, limits = _fit_fast_rows(
-        u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, x, math.ldexp(1.0, last), log_terms
-    )
+        u[-_END_NODES:], values[:, -_END_NODES:], fast_limit, x, math.ldexp(1.0, last),
+        _LOG_TERMS if half_space_relaxes else 0,
+    )  # fmt: skip
     powers = rows.fit_slopes(*np.concatenate([slow[:, :, None], inside, fast], axis=2))
     powers[:, 0, 0] = slow_limit
     share, press = rows.fit_slopes(*_stick_functions(rows, powers, limits))
-    nothing = np.zeros_like(press)
-    bodies = (powers[_MOMENT], nothing) if side > 0.0 else (nothing, powers[_MOMENT])
-    table = steady_table([powers[_LAM], powers[_EPSILON], *bodies, share, press])
-    return CoverRows(e0, table, powers[[_LIMIT, _FREE]], limits)
+    table = steady_table([powers[_LAM], powers[_EPSILON], *powers[_MOMENTS], share, press])
+    return CoverRows(e0, table, powers[_BESIDE], limits)
 
 
 def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floats:
@@ -128,12 +140,11 @@ def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floa
     cover: one :class:`..cover.Cover`.
     u: kappa |V|, dimensionless, > 0.
     orders: number of terms of the pressure; None: as many as rows are made with (:func:`.cover_solve.solve`).
-    Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, dimensionless,
-    (5,).  For a cover on the cylinder delta_0 has the other sign.
+    Returns the quantities of a node (module), dimensionless, (11,).
     Raises ParameterError where no contact length that carries the load is found; a contact that is longer than rows
     allow, half of it beyond six thicknesses, is not refused.
     """
-    return _solve_node(CoverModes(cover), u, orders=orders)[0]
+    return _solve_node(CoverModes(cover), u, orders=orders or LEAST_TERMS)[0]
 
 
 def _solve_node(
@@ -147,59 +158,94 @@ def _solve_node(
     """Solve for the half contact length that carries the load at one speed, by the secant method.
 
     The unknown is ln z, z the half contact length divided by V T_ref; the equation is ln H = -ln(4 stiffness u^2) with
-    the load H of :class:`.cover_solve.CoverState`.  At the end all quantities are extrapolated by the last secant step.
-    modes: :class:`CoverModes` of the cover and the other body.
+    the load H of :class:`.cover_solve.CoverState`.  At the end lam, L and epsilon are extrapolated by the last secant
+    step.
+    modes: :class:`CoverModes` of the bodies.
     u: kappa |V|, dimensionless, > 0.
-    start: first approximation of ln z; None: that of a half-space of a stiffness between slow and fast, shortened for a
-        thin cover.
+    start: first approximation of ln z, near enough for the first two solves to give slopes over z; None: that of a
+        half-space of a stiffness between slow and fast, shortened for a thin cover, from which one is found first.
     slope: first approximation of d ln H/d ln z, > 0; 2 is that of a half-space.
     orders: number of terms of the pressure; None: the default of the solve.
     stiffness: instantaneous divided by long-time stiffness, to solve fast rolling with the ``modes`` of elastic bodies;
         1: the modes have their own stiffness.
-    Returns (lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,),
-    dimensionless; ln z after the last secant step; d ln H/d ln z of that step, limited to [0.5, 8]).
+    Returns (the quantities of a node, (11,), dimensionless; ln z after the last secant step; d ln H/d ln z of the first
+    one).
     Raises ParameterError where the secant method has not ended after 40 solves.
     """
-    goal, previous, thickness = -math.log(4.0 * stiffness * u * u), None, modes.cover.thickness
+    goal, thickness = -math.log(4.0 * stiffness * u * u), modes.cover.thinnest
     if start is None:
-        start = 0.5 * goal - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0)) - math.log1p(0.2 / thickness)
-    y = start
+        rough = 0.5 * goal - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0)) - math.log1p(0.2 / thickness)
+        start = _find_length(modes, u, rough, slope, orders, goal)[0][-1]
+        # a slope as good as one that is extrapolated, for errors to be smooth over u
+        lengths, errors, _ = _find_length(modes, u, start + _OFFSET, slope, orders, goal)
+        start, slope = lengths[-1], (errors[1] - errors[0]) / (lengths[1] - lengths[0])
+    y, errors, states = _find_length(modes, u, start + _OFFSET, slope, orders, goal)
+    slope = (errors[1] - errors[0]) / (y[1] - y[0])
+    shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
+    shift_slope = (shifts[1] - shifts[0]) / (y[1] - y[0])
+    lengths = [
+        np.array([2.0 * math.exp(each) * u, 2.0 * u * state.creep_limit, shift])
+        for each, state, shift in zip(y, states, shifts)
+    ]
+    part = (y[-1] - y[-2]) / (y[-2] - y[-3])
+    lam, L, epsilon = lengths[-1] + (lengths[-1] - lengths[-2]) * part
+    z = math.exp(y[-2])
+    shear = shear_of(modes, z, states[-1])
+    tilt = -shear.load / slope
+    slopes = lam * tilt, shear.shift / z + shift_slope * tilt
+    free = 2.0 * u * shear.free
+    values = np.array([lam, L, epsilon, *shear.moments, *free, *(2.0 * u * shear.mirrored - free), *slopes])
+    return values, y[-1], slope
+
+
+def _find_length(
+    modes: CoverModes, u: float, y: float, slope: float, orders: int | None, goal: float
+) -> tuple[list[float], list[float], list[CoverState]]:
+    """Find the half contact length that carries a load, by the secant method in ln z.
+
+    modes: :class:`CoverModes` of the bodies.
+    u: kappa |V|, dimensionless, > 0.
+    y: first ln z.
+    slope: first approximation of d ln H/d ln z, > 0.
+    orders: number of terms of the pressure; None: the default of the solve.
+    goal: ln H of the load.
+    Returns (ln z of each solve, then that after the last step; ln H - goal of each solve; their states), at least two
+    solves.
+    Raises ParameterError where it has not ended after 40 solves.
+    """
+    lengths: list[float] = []
+    errors: list[float] = []
+    states: list[CoverState] = []
     for _ in range(_MOST_STEPS):
         z = math.exp(y)
-        state = solve(modes, z, z * u / thickness, orders)
-        error = math.log(state.load) - goal
-        lengths = 2.0 * z * u, 2.0 * u * state.creep_limit, 2.0 * u * state.strain
-        values = np.array([*lengths, state.shift / z, state.moment])
-        if previous is not None:
-            slope = min(max((error - previous[1]) / (y - previous[0]), 0.5), 8.0)
-        step = -error / slope
-        if previous is not None and abs(error * previous[1]) < _LOAD_ERRORS:
-            # also the local strain is extrapolated by the last step, lest it jump from node to node
-            part = step / (y - previous[0])
-            values = values + (values - previous[2]) * part
-            local, before = (local_strain(modes, *each) for each in ((z, state), previous[3]))
-            values[_FREE] += 2.0 * u * (local + (local - before) * part)
-            return values, y + step, slope
-        previous = y, error, values, (z, state)
+        states.append(solve(modes, z, z * u, orders))
+        lengths.append(y)
+        errors.append(math.log(states[-1].load) - goal)
+        if len(errors) > 1:
+            slope = min(max((errors[-1] - errors[-2]) / (lengths[-1] - lengths[-2]), 0.5), 8.0)
+        step = -errors[-1] / slope
+        if len(errors) > 1 and abs(errors[-1] * errors[-2]) < _LOAD_ERRORS:
+            return [*lengths, y + step], errors, states
         y += min(max(step, -0.7), 0.7) if abs(step) > _LEAST_STEP else math.copysign(_LEAST_STEP, step)
-    raise ParameterError("thickness/l0", f"{thickness:g}", "larger: no contact length with this load was found")
+    found = f"{modes.cover.thinnest:g}"
+    raise ParameterError("thickness/l0", found, "larger: no contact length with this load was found")
 
 
-def _solve_nodes(modes: CoverModes, u: Floats) -> Floats:
-    """Solve the states of a cover at increasing speeds, each from a start that is extrapolated from the eight before.
+def _solve_nodes(modes: CoverModes, u: Floats, orders: int) -> Floats:
+    """Solve the states of a cover at increasing speeds, from starts and slopes extrapolated from the eight before.
 
-    The first eight nodes have no extrapolation and take the start of :func:`_solve_node`; the slope of the secant
-    method is passed from node to node.
-    modes: :class:`CoverModes` of the cover and the other body.
+    The first eight nodes have no extrapolation and take the start of :func:`_solve_node`.
+    modes: :class:`CoverModes` of the bodies.
     u: kappa |V|, dimensionless, evenly spaced in ln u, ascending, (n,).
-    Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V at each node, (5,
-    n), dimensionless.
+    orders: number of terms of the pressure.
+    Returns the quantities at each node, (11, n), dimensionless.
     Raises ParameterError where no contact length that carries the load is found.
     """
-    values, logs, slope = np.empty((5, u.size)), np.empty(u.size), 2.0
+    values, known = np.empty((_COUNT, u.size)), np.empty((u.size, 2))
+    count = _EXTRAPOLATION.size
     for n, speed in enumerate(u.tolist()):
-        start = float(_EXTRAPOLATION @ logs[n - _EXTRAPOLATION.size : n]) if n >= _EXTRAPOLATION.size else None
-        values[:, n], logs[n], slope = _solve_node(modes, speed, start, slope)
+        start, slope = (_EXTRAPOLATION @ known[n - count : n]).tolist() if n >= count else (None, 2.0)
+        values[:, n], *known[n] = _solve_node(modes, speed, start, slope, orders)
     return values
 
 
@@ -213,43 +259,42 @@ def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
     stiffness, and the slopes and creep of elastic bodies depend on that length and the layer's part of the compliance
     alone: bodies of the long-time stiffness are solved in both limits, under a load that ``stiffness`` divides.
     modes: :class:`CoverModes` of the viscoelastic bodies, of which the Poisson's ratios and the thickness are taken.
-    share: the layer's part of the compliance of both bodies, in (0, 1]: of long times for slow rolling, of the
+    share: the cylinder's part of the compliance of both bodies, in [0, 1]: of long times for slow rolling, of the
         instantaneous compliance for fast rolling.
     stiffness: stiffness of the bodies divided by their long-time stiffness: 1 for slow rolling, alpha for fast rolling.
-    Returns lam, L = 2 kappa delta_star/mu, 2 kappa delta_0 of a cover on the base, epsilon and M/V, (5,),
-    dimensionless, the last two exactly 0.
+    Returns the quantities of a node, (11,), dimensionless, epsilon and M/V exactly 0.
     Raises ParameterError where no contact length that carries the load is found.
     """
-    values = _solve_node(modes.elastic(share), 0.5, stiffness=stiffness)[0]
-    values[[_EPSILON, _MOMENT]] = 0.0
+    values = _solve_node(modes.elastic(share), 0.5, orders=LEAST_TERMS, stiffness=stiffness)[0]
+    values[_EPSILON : _MOMENTS.stop] = 0.0
     return values
 
 
 def _fit_fast_rows(
     u: Floats, values: Floats, limits: Floats, x: Floats, begin: float, log_terms: int
 ) -> tuple[Floats, Floats]:
-    """Fit the rows beyond the last octave, where lam, L, 2 kappa delta_0, epsilon and M u/V are polynomials of 1/u.
+    """Fit the rows beyond the last octave, where all quantities, M u/V in place of M/V, are polynomials of 1/u.
 
     Beside a half-space that relaxes too, a second polynomial of 1/u, of ``log_terms`` terms, times ln u is added.
     u: last nodes of the solve, ascending, from ``begin`` to at most 20 ``begin``, (n,), dimensionless.
-    values: lam, L, 2 kappa delta_0, epsilon and M/V there, (5, n); not changed.
-    limits: of these for u -> infinity, (5,); NaN (delta_0): not known, then the value of a fitted polynomial at 1/u = 0
-        is taken.  Those of epsilon and M/V are 0.
+    values: the quantities there, (11, n); not changed.
+    limits: of these for u -> infinity, (11,); NaN: not known, then the value of a fitted polynomial at 1/u = 0 is
+        taken.  Those of epsilon and M/V are 0.
     x: nodes of these rows in u, ascending, >= ``begin``, (rows, nodes).
     begin: u where these rows begin, the end of the last octave.
     log_terms: number of terms in ln u, as of :func:`_fit_end`.
-    Returns (values and slopes over ln u at x, of the five quantities, (2, 5, rows, nodes);
-    :attr:`.pack.CoverRows.limits`, (8,), of which the last five, factors of 1/u, are those at the last node of x).
+    Returns (values and slopes over ln u at x, of the quantities, (2, 11, rows, nodes); :attr:`.pack.CoverRows.limits`,
+        (19,), of which the last eleven, factors of 1/u, are those at the last node of x).
     """
     y, x_inverse = begin / u, (begin / x).ravel()
     values = values.copy()
-    values[_MOMENT] /= y
+    values[_MOMENTS] /= y
     limits, first, (fitted, slopes) = _fit_end(y, values, limits, x_inverse, log_terms)
-    fitted[_MOMENT], slopes[_MOMENT] = fitted[_MOMENT] * x_inverse, (slopes[_MOMENT] + fitted[_MOMENT]) * x_inverse
+    fitted[_MOMENTS], slopes[_MOMENTS] = fitted[_MOMENTS] * x_inverse, (slopes[_MOMENTS] + fitted[_MOMENTS]) * x_inverse
     first *= begin
-    first[_MOMENT] *= begin
-    order = [_LIMIT, _LAM, _FREE]
-    packed = np.array([*limits[order], *first[order], *first[[_EPSILON, _MOMENT]]])
+    first[_MOMENTS] *= begin
+    order = [_LIMIT, _LAM, *_BESIDE[1:]]
+    packed = np.concatenate([limits[order], first[order], first[[_EPSILON]], first[_MOMENTS]])
     return np.stack([fitted, -slopes]).reshape(2, len(values), *x.shape), packed
 
 
@@ -258,30 +303,33 @@ def _fit_end(
 ) -> tuple[Floats, Floats, Floats]:
     """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares, at one end of the speeds.
 
-    The degree of P is 18 for 2 kappa delta_0 and 12 for the others.
+    The degree of P is 14 for what shear does and 12 for the others.
     y: nodes, proportional to u at the slow end and to 1/u at the fast end, in [0.05, 1], (n,).
-    values: lam, L, 2 kappa delta_0, epsilon and M/V at the nodes (at the fast end M/(V y)), (5, n).
-    limits: values for y -> 0, (5,); for NaN the value at 0 of a polynomial through the values is taken.
+    values: the quantities at the nodes (at the fast end M/(V y)), (11, n).
+    limits: values for y -> 0, (11,); for NaN the value at 0 of a polynomial through the values is taken.
     wanted: points in (0, 1], (m,), m >= 1.
     log_terms: number of terms of R; 0: none.
-    Returns (limits, (5,), with the values at 0 in place of NaN; P + R ln y at the last of the points, (5,); values and
-    derivatives with respect to ln y at the points, (2, 5, m)).
+    Returns (limits, (11,), with the values at 0 in place of NaN; P + R ln y at the last of the points, (11,); values
+    and derivatives with respect to ln y at the points, (2, 11, m)).
     """
     from numpy.polynomial.chebyshev import chebvander
 
-    def basis(y: Any, n: int, log_terms: int) -> Any:
-        """Return the terms of quantity ``n`` at points ``y``, (points,), real or complex, (points, terms): Chebyshev
-        polynomials of 2 y - 1, then the first ``log_terms`` of them times ln y.
+    def basis(y: Any, degree: int, log_terms: int) -> Any:
+        """Return the terms at points ``y``, (points,), real or complex, (points, terms): Chebyshev polynomials of 2 y -
+        1 up to ``degree``, then the first ``log_terms`` of them times ln y.
         """
-        terms = chebvander(2.0 * y - 1.0, _STRAIN_DEGREE if n == _FREE else _END_DEGREE)
+        terms = chebvander(2.0 * y - 1.0, degree)
         return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
 
     def fit(values: Floats, at: Any, log_terms: int) -> Any:
-        """Fit each quantity to its ``values`` at the nodes y, (5, n), by its :func:`basis` with ``log_terms``, and
-        return the fits at the points ``at``, (points,), as (5, points), complex where ``at`` is.
+        """Fit each quantity to its ``values`` at the nodes y, (11, n), by its :func:`basis` with ``log_terms``, and
+        return the fits at the points ``at``, (points,), as (11, points), complex where ``at`` is.
         """
-        fits = (np.linalg.lstsq(basis(y, n, log_terms), row, rcond=None)[0] for n, row in enumerate(values))
-        return np.array([basis(at, n, log_terms) @ terms for n, terms in enumerate(fits)])
+        parts = (values[: _FREE.start], _END_DEGREE), (values[_FREE.start :], _STRAIN_DEGREE)
+        return np.concatenate([
+            (basis(at, n, log_terms) @ np.linalg.lstsq(basis(y, n, log_terms), part.T, rcond=None)[0]).T
+            for part, n in parts
+        ])  # fmt: skip
 
     limits = np.where(np.isnan(limits), fit(values, np.array([_TINY]), 0)[:, 0], limits)[:, None]
     # slopes by a step in the imaginary direction, which cancels no digits
@@ -293,12 +341,11 @@ def _fit_end(
 def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
     """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes, barycentric.
 
-    values: lam, L, 2 kappa delta_0, epsilon and M/V at the nodes of the solve, which are evenly spaced in log2 u, 12 an
-        octave, (5, n).
+    values: the quantities at the nodes of the solve, which are evenly spaced in log2 u, 12 an octave, (11, n).
     begin: index of the node where the first octave begins, at least 18; 18 nodes before each octave and 18 after it
         are used.
     count: number of octaves.
-    Returns values and slopes over ln u at the 24 nodes of each octave, (2, 5, octaves, 24).
+    Returns values and slopes over ln u at the 24 nodes of each octave, (2, 11, octaves, 24).
     """
     points = PER_OCTAVE + 2 * _ASIDE + 1
     nodes = (np.arange(points) - _ASIDE) / PER_OCTAVE
@@ -321,14 +368,14 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
 
     rows: octaves of u and of v, as :class:`.rows.Rows`.
     powers: coefficients of lam, L, 2 kappa delta_0, epsilon and M/V over u, (5, rows, 24); lam and L are read.
-    limits: :attr:`.pack.CoverRows.limits`, (8,), which with the first order in 1/u give lam and L beyond the last row.
+    limits: :attr:`.pack.CoverRows.limits`, which with the first order in 1/u give lam and L beyond the last row.
     Returns two arrays (2, rows, 24 nodes), dimensionless: (eta/F, H/F^2), and their derivatives.
     """
     v = rows.x.ravel()
     u, end = v.copy(), math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
     for _ in range(60):
         values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
-        first = limits[3:5, None] / u
+        first = limits[8:10, None] / u
         (L, lam), (d_L, d_lam) = np.where(u > end, [limits[:2, None] + first, -first], [values, slopes])
         dlnu_dlnv, share, press = 1.0 / (1.0 - d_L / L), lam / L, 1.0 / (L * L)
         step = np.log(v * L / (2.0 * u)) * dlnu_dlnv

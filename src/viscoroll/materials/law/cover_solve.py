@@ -1,23 +1,25 @@
-"""Steady rolling on a bonded viscoelastic layer of finite thickness, solved by Chebyshev polynomials.
+"""Steady rolling on bonded viscoelastic layers of finite thickness, solved by Chebyshev polynomials.
 
-Plane strain, a constant Poisson's ratio, one Prony series; the layer is bonded to a rigid core or bed and the other
-body is rigid or a half-space.  The pressure is not changed by shear, as everywhere in this package.
+Plane strain, constant Poisson's ratios, a Prony series for each body.  Each body is a layer that is bonded to a rigid
+core or bed, or a half-space; one of them may be rigid.  The pressure here is that without shear, from which
+:mod:`.cover_shear` finds what shear does.
 
-Notation.  All quantities are dimensionless.  T_ref is the unit of time of the material, in which its rates are given;
-kappa = R/l0, with l0 the contact length at rest of the same bodies as half-spaces.  z is the half length of the contact
-over V T_ref (zeta of the paper, > 0), theta the half length over the thickness h, u = k h the wave number times the
-thickness, v = u theta.  Slopes and creep are over V T_ref/R.  The pressure over E'/(4 pi) is sqrt(1 - x^2) sum q_m
-U_{m-1}(x) for x in [-1, 1], positive x towards the front edge.  With relaxation rates a_i and creep rates b_j, in
-1/T_ref, the exponents on the contact are alpha_i = a_i z and beta_j = b_j z.
+Notation.  All quantities are dimensionless.  T_ref is the unit of time of the materials, in which their rates are
+given; kappa = R/l0, with l0 the contact length at rest of the same bodies as half-spaces.  z is the half length of the
+contact over V T_ref (zeta of the paper, > 0), w that over l0, and theta = w l0/h that over the thickness h of a layer,
+k the wave number and v = k times the half length, so that k h = v/theta.  Slopes and creep are over V T_ref/R.  The
+pressure over E'/(4 pi) is sqrt(1 - x^2) sum q_m U_{m-1}(x) for x in [-1, 1], positive x towards the front edge.  With
+relaxation rates a_i and creep rates b_j of both bodies together, in 1/T_ref, the exponents on the contact are alpha_i =
+a_i z and beta_j = b_j z.
 
-The transforms of the surface displacements of the layer are those of a half-space times L (normal displacement by
-pressure), T (tangential displacement by shear) and C (tangential displacement by pressure).  L - 1 decays like exp(-2
-u): the layer adds a smooth operator S to the Hilbert transform, and to the memory of each creep mode an excess c.  The
+The transforms of the surface displacements of a layer are those of a half-space times L (normal displacement by
+pressure), T (tangential displacement by shear) and C (tangential displacement by pressure).  L - 1 decays like exp(-2 k
+h): the layers add a smooth operator S to the Hilbert transform, and to the memory of each creep mode an excess c.  The
 unknowns are the coefficients q up to order N = 14 + 6 theta; the exponentials of the relaxation modes enter by their
 first N coefficients, so that alpha may be arbitrarily large.
 
-Sources of the method: the law of the half-space in closed form (:mod:`.evaluate`), and the layer's kernels as in
-Johnson, Contact Mechanics (1985), Sect. 5.8.
+Sources of the method: the law of the half-space in closed form (:mod:`...kernels.rows.series`), and the layer's kernels
+as in Johnson, Contact Mechanics (1985), Sect. 5.8.
 """
 
 from __future__ import annotations
@@ -32,10 +34,15 @@ from ...core.array_types import Floats
 from ..cover import Cover
 from .evaluate import modes_record
 
+#: bodies in the order of all arrays that have one entry for each
+BODIES = ("base", "cylinder")
 #: terms of the pressure for theta -> 0
 _TERMS = 14
 #: further terms for each unit of theta; found by doubling all: results change by 3e-14 up to theta = 1
 _TERMS_PER_THETA = 6
+#: least number of terms with which :func:`solve` is called where shear matters: for nu < 1/2 its coupling has terms of
+#: all orders, and a number that changes with the speed would make it jump
+LEAST_TERMS = 30
 #: largest half contact length divided by the thickness; there doubling the terms still changes results by less than
 #: 1e-10
 LARGEST_THETA = 6.0
@@ -63,87 +70,133 @@ _LARGE_BETA = 1e12
 class LayerNodes(NamedTuple):
     """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on Poisson's ratio alone.
 
-    All are dimensionless, (n,) each but ``local``; "the weights" are those of the integral over u.
+    All are dimensionless, (n,) each; "the weights" are those of the integral over u.
 
     u : nodes, wave number times thickness, > 0, ascending.
     L : (L - 1)/u times the weights.
     shear : (T - L)/u times the weights.
-    C : C less its limit for short waves, times the weights.
-    local : that limit, the coupling of a half-space, (1 - 2 nu)/(2 - 2 nu), a float.
+    C : C less its limit for short waves, over u, times the weights.
     """
 
     u: Floats
     L: Floats
     shear: Floats
     C: Floats
-    local: float
 
 
 class CoverState(NamedTuple):
-    """The contact at one half length z and one theta, dimensionless; slopes and creep in units of V T_ref/R.
+    """The contact at one half length z, dimensionless; slopes and creep in units of V T_ref/R.
 
     load : H = z q_1, the integral of the pressure over the contact divided by pi/2, in the unit of the pressure and
         with lengths over V T_ref; z^2 for an elastic half-space.  At the speed u' = kappa |V| the contact carries the
         load where H = 1/(4 u'^2).
     shift : g = epsilon z, the shift of the contact ahead of the axis divided by V T_ref.
-    moment : M/V, with M divided by P R and V by R/T_ref.
     creep_limit : delta_star/mu in units of V T_ref/R: the creep from which on the whole contact slips.
-    strain : part of the mean strain of the layer's surface by the pressure (weighted with the pressure) that is due to
-        the finite thickness; positive where the surface is stretched.  :func:`.cover_pressure.local_strain` is the
-        rest.
     q : terms of the pressure q_1 ... q_N, (N,).
     X : amplitudes of the relaxation modes, (modes,); from them follow terms of any higher order.
+    work : :class:`SolveWork`, what further results of this state are computed from.
     """
 
     load: float
     shift: float
-    moment: float
     creep_limit: float
-    strain: float
     q: Floats
     X: Floats
+    work: SolveWork
+
+
+class SolveWork(NamedTuple):
+    """What :func:`solve` has computed at one half length, for results that not every solve needs; dimensionless.
+
+    v : wave numbers times half the contact length at the nodes of the rule, (n,).
+    A : signed Bessel functions there, (N + 1, n).
+    compliance : complex compliance of each body there, (2, n); own : that of the body to which a node belongs, (n,).
+    odd, even : terms of the transform of the pressure, divided by pi z, times v, (n,).
+    decays : memory D_n of each creep mode, (N + 1, modes); memory : excess memory of exp(i v x), (modes, n).
+    exponentials : :class:`Exponentials`.
+    matrix : of the system for q, (N, N).
+    Xi : amplitudes of the relaxation modes by the excess memory of each creep mode, with the other sign, (modes,
+        modes).
+    shares : part of the shift g that each creep mode makes at the front edge, times t_j, (modes,).
+    """
+
+    v: Floats
+    A: Floats
+    compliance: Any
+    own: Any
+    odd: Floats
+    even: Floats
+    decays: Floats
+    memory: Any
+    exponentials: Exponentials
+    matrix: Floats
+    Xi: Floats
+    shares: Floats
+
+
+class BodyModes(NamedTuple):
+    """One body of a contact; compliances are parts of the long-time compliance of both bodies as half-spaces.
+
+    instant : instantaneous compliance; J, b : strengths and rates of creep, in 1/T_ref, (its modes,).  Of a rigid body
+        all are 0 or empty.
+    local : coupling C for short waves, (1 - 2 nu)/(2 - 2 nu), with the sign of the body: positive on the base.
+    """
+
+    instant: float
+    J: Floats
+    b: Floats
+    local: float
 
 
 class CoverModes:
-    """The series of a cover and its Poisson's ratio in the form that :func:`solve` uses.
+    """The bodies of a cover in the form that :func:`solve` uses; arrays have the base first, then the cylinder.
 
     Compliances are parts of the long-time compliance of both bodies as half-spaces.
 
     series : record of the modes of both bodies together (:func:`.evaluate.modes_record`); its rates are in 1/T_ref.
     J : creep strengths of both bodies together, (modes,).
     alpha : instantaneous divided by long-time stiffness of both together, float >= 1.
+    gap : relaxation rates less creep rates of both together, [creep, relaxation], in 1/T_ref.
     cover : the :class:`..cover.Cover`.
-    share : the layer's part of the long-time compliance, in (0, 1].
-    nodes : :class:`LayerNodes` of the layer's Poisson's ratio.
-    layer_J, layer_b : creep strengths and rates of the layer alone, (its modes,).
-    layer_instant : instantaneous compliance of the layer.
-    other_local : coupling C of the other body as a half-space times its part of the compliance; 0 beside a rigid body.
+    bodies : :class:`BodyModes` of both.
+    shares : part of each in the long-time compliance, (2,).
+    weights : part of each in the strength of each creep mode, (2, modes).
+    wave : nodes of the integrals over the wave number, as wave numbers times l0, of all layers one after another, (n,).
+    mine : 1 where a node belongs to a layer of that body, else 0, (2, n).
+    L, shear, C : kernels of :class:`LayerNodes` at the nodes; C has the sign of its body, positive on the base.
     """
 
     def __init__(self, cover: Cover) -> None:
-        """Compute the modes of a cover and of the body beside it; its thickness is not needed for them.
+        """Compute the modes of the bodies of a cover.
 
-        cover: :class:`..cover.Cover` of one thickness and one Poisson's ratio.  Its fields ``total`` (series of both
-            bodies together), ``layer`` (series of the layer), ``part`` (part of the layer in the long-time compliance,
-            here ``share``), ``nu``, and if ``part`` is below 1 ``other_nu``, are read.
+        cover: :class:`..cover.Cover` of one thickness and one Poisson's ratio.
         All attributes of the class are set.
         """
-        modes, layer = cover.total.modes, cover.layer
+        modes = cover.total.modes
         self.series, self.J, self.alpha = modes_record(modes), modes.J, float(cover.total.alpha)
-        self.cover, self.share, self.nodes = cover, cover.part, layer_nodes(cover.nu)
-        self.layer_J, self.layer_b = self.share * layer.J, 1.0 / layer.T
-        self.layer_instant = self.share / float(layer.alpha)
-        self.other_local = (1.0 - self.share) * _half_space_coupling(cover.other_nu)
+        self.gap = modes.gap
+        self.cover, self.shares = cover, np.array([1.0 - cover.share, cover.share])
+        self.weights = np.stack([cover.half_space_weights, 1.0 - cover.half_space_weights])
+        bodies, kernels = [], []
+        for name, share, sign in zip(BODIES, self.shares.tolist(), (1.0, -1.0)):
+            series, nu, thickness = cover.body(name)
+            local = sign * (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu) if share else 0.0
+            bodies.append(BodyModes(share / float(series.alpha), share * series.J, 1.0 / series.T, local))
+            if thickness is not None:
+                nodes = layer_nodes(nu)
+                mine = np.full(nodes.u.size, name == "base", np.float64)
+                kernels.append([nodes.u / thickness, nodes.L, nodes.shear, sign * nodes.C, mine, 1.0 - mine])
+        self.bodies = tuple(bodies)
+        self.wave, self.L, self.shear, self.C, *mine = np.concatenate(kernels, axis=1)
+        self.mine = np.array(mine)
 
     def elastic(self, share: float) -> CoverModes:
-        """Return the same bodies without relaxation: both elastic, with the Poisson's ratios and the thickness of this
-        cover.
+        """Return the same bodies without relaxation: both elastic, with their Poisson's ratios and thicknesses.
 
-        share: the layer's part of the compliance of both bodies, in (0, 1].
+        share: the cylinder's part of the compliance of both bodies, in [0, 1].
         Returns a new :class:`CoverModes` without modes, of alpha = 1.
         """
-        cover = self.cover
-        return CoverModes(Cover(1.0, nu=cover.nu, thickness=cover.thickness, part=share, other_nu=cover.other_nu))
+        return CoverModes(self.cover.elastic(share))
 
 
 def _compliance(instant: float, J: Floats, b: Floats, k: Floats) -> Any:
@@ -155,11 +208,6 @@ def _compliance(instant: float, J: Floats, b: Floats, k: Floats) -> Any:
     Returns complex numbers (n,) in the unit of ``instant``; without modes they all are ``instant``.
     """
     return instant + (J * b / (b - 1j * k[:, None])).sum(axis=1)
-
-
-def _half_space_coupling(nu: float) -> float:
-    """Return the coupling C = (1 - 2 nu)/(2 - 2 nu) of a half-space, in [0, 1/2]; nu: Poisson's ratio in [0, 0.5]."""
-    return (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
 
 
 def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
@@ -183,17 +231,16 @@ def layer_nodes(nu: float) -> LayerNodes:
 
     Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
     nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
-    Returns :class:`LayerNodes` of some 245 nodes ``u``: its field ``L`` is (L - 1)/u, ``shear`` is (T - L)/u, ``C`` is
-    C less its limit for short waves, each times the weights of the rule, (n,); ``local`` is that limit, a float.
+    Returns :class:`LayerNodes` of some 245 nodes.
     """
     u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
     kap, e = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
     denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
-    local = _half_space_coupling(nu)
+    local = (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
     coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / ((kap + 1.0) * denominator) - local
     rest = 2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap + 4.0 * u
     shear = du * e / denominator
-    return LayerNodes(u, -shear * rest / u, 8.0 * shear, du * coupling, local)
+    return LayerNodes(u, -shear * rest / u, 8.0 * shear, du * coupling / u)
 
 
 def bessel(v: Floats, order: int) -> Floats:
@@ -217,17 +264,17 @@ def bessel(v: Floats, order: int) -> Floats:
 
 @lru_cache(maxsize=1)
 def _decay_nodes() -> tuple[Floats, Floats]:
-    """Return the rule of the integrals D_n of :func:`_decays`, kept for all calls.
+    """Return the rule of the integrals D_n of :func:`decays`, kept for all calls.
 
     Returns (x - 1 = 2 sinh^2(t/2) at the nodes of t, (n,); the weights times sinh(t) exp(-n t), [order, node], for
     orders from 0 to 100).
     """
     t, weights = _half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
-    orders = np.arange(_term_count(LARGEST_THETA) * 2 + 1)[:, None]
+    orders = np.arange(term_count(LARGEST_THETA) * 2 + 1)[:, None]
     return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * (weights * np.sinh(t))
 
 
-def _decays(beta: Floats, order: int) -> Floats:
+def decays(beta: Floats, order: int) -> Floats:
     """Return the memory that each creep mode has of the surface ahead of the front edge, for each term of the series.
 
     It is D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx.  The power is the n-th term of the
@@ -243,12 +290,12 @@ def _decays(beta: Floats, order: int) -> Floats:
     return weights[: order + 1] @ np.exp(-x[:, None] * beta) * beta
 
 
-def _term_count(theta: float) -> int:
+def term_count(theta: float) -> int:
     """Return the number of terms of the pressure, 14 + 6 theta rounded up; theta: half length over thickness, >= 0."""
     return math.ceil(_TERMS + _TERMS_PER_THETA * theta)
 
 
-class _Exponentials(NamedTuple):
+class Exponentials(NamedTuple):
     """The relaxation and creep modes on a contact of half length z, as for a half-space; dimensionless.
 
     ratio : I_n/I_0 of alpha_i, [order, mode].
@@ -266,13 +313,13 @@ class _Exponentials(NamedTuple):
     sigma: Floats
 
 
-def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
+def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
     """Evaluate the relaxation and creep modes on a contact, as for a half-space.
 
     modes: :class:`CoverModes` of the cover and the other body; without modes all arrays are empty along that axis.
     z: half contact length divided by V T_ref, dimensionless, > 0.
     N: highest order of the Bessel functions, the number of terms of the pressure, >= 1.
-    Returns ratios of Bessel functions, (N + 1, modes), and the matching at the front edge, as :class:`_Exponentials`
+    Returns ratios of Bessel functions, (N + 1, modes), and the matching at the front edge, as :class:`Exponentials`
     (ratio, root, k, x, sigma).
     For a_i z above 1e8 the ratios are those at 1e8, corrected to first order, as scipy has no values there.
     """
@@ -285,17 +332,30 @@ def _exponentials(modes: CoverModes, z: float, N: int) -> _Exponentials:
     root, k = np.sqrt(ratio[1]), k0e(beta) / k1e(beta)
     B = np.eye(root.size) + root[:, None] * ((Q.T * k) @ Q) * root
     x = np.linalg.solve(B, np.column_stack([root * e, root[:, None] * Q.T]))
-    return _Exponentials(ratio, root, k, x, np.sqrt(modes.J * b) / (beta * k1e(beta)))
+    return Exponentials(ratio, root, k, x, np.sqrt(modes.J * b) / (beta * k1e(beta)))
 
 
-def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[Floats, Floats]:
-    """Return the contributions of the layer to the slope and to the memory, beyond those of a half-space.
+def _excess_memory(v: Floats, A: Floats, beta: Floats, D: Floats) -> Any:
+    """Return the memory of exp(i v x) at the front edge, less that of its Chebyshev series, which decays beyond it.
 
-    v: u theta at the nodes of the rule, wave number times half contact length, dimensionless, (n,).
+    v: wave numbers times half contact length, dimensionless, (n,).
     A: signed Bessel functions there, as of :func:`bessel`, (N + 1, n).
     beta: b_j z of the creep modes of both bodies together, dimensionless, (modes,).
-    weights: (L - 1)/u times the weights of the rule and times the complex compliance of the layer divided by that of
-        both bodies, (n,).
+    D: memory of the terms of the series, as of :func:`decays`, (N + 1, modes).
+    Returns complex numbers (modes, n).
+    """
+    memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
+    memory -= 2.0 * (D[2::2].T @ A[2::2]) + 2j * (D[1::2].T @ A[1::2])
+    return memory
+
+
+def layer_operator(A: Floats, memory: Any, weights: Any) -> tuple[Floats, Floats]:
+    """Return the contributions of layers to the slope and to the memory, beyond those of a half-space.
+
+    A: signed Bessel functions at the nodes of the rule, as of :func:`bessel`, (N + 1, n).
+    memory: excess memory there (:func:`_excess_memory`), (modes, n).
+    weights: the layers' multiplier over u, as (L - 1)/u, times the weights of the rule and times the complex compliance
+        of the layer divided by that of both bodies, (n,).
     Returns (S, c).  S (N + 1, N) maps the coefficients q to those of the slope: the slope is sum (S q)_n T_n(x), n from
     0.  c (modes, N): c q is the excess memory of that slope in each creep mode.
     """
@@ -305,50 +365,47 @@ def _layer_operator(v: Floats, A: Floats, beta: Floats, weights: Any) -> tuple[F
     even_part, odd_part = (2.0 * (A @ (A[1:] * part).T) for part in (weights.real, weights.imag))
     S = np.where((n[:, None] + m) % 2 == 1, odd_part * np.where(odd, m, -m), even_part * m)
     S[0] *= 0.5
-    # excess memory of exp(i v x): its own less that of its Chebyshev series, which decays
-    D = _decays(beta, N)
-    memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
-    memory -= 2.0 * (D[2::2].T @ A[2::2]) + 2j * (D[1::2].T @ A[1::2])
     weighted = memory * weights
     return S, np.where(odd, weighted.imag @ A[1:].T, weighted.real @ A[1:].T) * m
 
 
-def solve(modes: CoverModes, z: float, theta: float, orders: int | None = None) -> CoverState:
+def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -> CoverState:
     """Solve the contact of a given half length, by one linear system of N unknowns, the terms of the pressure.
 
-    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For theta -> 0 the contact is that of a
-    half-space.
-    modes: :class:`CoverModes` of the cover and the other body; with those of :meth:`CoverModes.elastic` the result is
-        that of elastic bodies: ``X`` is empty, and shift and moment are 0 to rounding.
+    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For thick layers the contact is that of
+    half-spaces.
+    modes: :class:`CoverModes`; with those of :meth:`CoverModes.elastic` the result is that of elastic bodies: ``X`` is
+        empty, and the shift is 0 to rounding.
     z: half contact length divided by V T_ref, dimensionless, > 0 and finite.
-    theta: half contact length divided by the thickness, dimensionless, in (0, 6]; not checked.
-    orders: number of terms of the pressure, at most 100; None (or 0): 14 + 6 theta, rounded up.
-    Returns a :class:`CoverState` of floats ``load`` = z q_1, ``shift`` = epsilon z, ``moment`` = M/V, ``creep_limit``
-    = delta_star/mu and ``strain`` without its local part, and arrays ``q``, terms of the pressure, (N,), and ``X``,
-    amplitudes of the relaxation modes, (modes,); slopes and creep are over V T_ref/R.
+    half: half contact length divided by l0, dimensionless, > 0; at most six times the thickness of each layer; not
+        checked.
+    orders: number of terms of the pressure, at most 100; None (or 0): 14 + 6 theta of the thinner layer, rounded up.
+    Returns a :class:`CoverState`; slopes and creep are over V T_ref/R.
     """
-    nodes, N = modes.nodes, orders or _term_count(theta)
-    v = nodes.u * theta
-    A, J = bessel(v, N), _compliance(1.0 / modes.alpha, modes.J, modes.series.b, v / z)
-    own = _compliance(modes.layer_instant, modes.layer_J, modes.layer_b, v / z)
-    part = own / J
-    ratio, root, k, x, sigma = _exponentials(modes, z, N)
+    N = orders or term_count(half / modes.cover.thinnest)
+    v = half * modes.wave
+    A, k = bessel(v, N), v / z
+    compliance = np.array([_compliance(body.instant, body.J, body.b, k) for body in modes.bodies])
+    own, J = (modes.mine * compliance).sum(axis=0), compliance.sum(axis=0)
+    exponentials = evaluate_exponentials(modes, z, N)
+    ratio, root, edge, x, sigma = exponentials
     _, b, e, t, _, Q = modes.series
     X0, Xi = e / root * x[:, 0], (e / root)[:, None] * x[:, 1:] * sigma
-    S, c = _layer_operator(v, A, b * z, nodes.L * part)
+    D = decays(b * z, N)
+    memory = _excess_memory(v, A, b * z, D)
+    S, c = layer_operator(A, memory, modes.L * own / J)
     Phi = 2.0 * ratio[1:]
     right = Phi @ X0
     right[0] += z
-    q: Any = np.linalg.solve(np.eye(N) + S[1:] + Phi @ (Xi @ c), right)
+    matrix = np.eye(N) + S[1:] + Phi @ (Xi @ c)
+    q: Any = np.linalg.solve(matrix, right)
     excess = sigma * (c @ q)
     # T_mean - sum X + s_0 without cancellation
-    shift: Any = t @ (k * (Q @ (root * (x[:, 0] - x[:, 1:] @ excess)))) + t @ excess + S[0] @ q
-    moment = shift + z * q[1] / (2.0 * q[0])
+    shares = t * (edge * (Q @ (root * (x[:, 0] - x[:, 1:] @ excess))) + excess)
+    shift: Any = shares.sum() + S[0] @ q
     # transform of the pressure divided by pi z, times v: its even and odd terms
     mq = np.arange(1, N + 1) * q
     odd, even = mq[::2] @ A[1::2], mq[1::2] @ A[2::2]
-    source = nodes.shear * part * (even - 1j * odd)
-    limit = z + shift + np.sum((source * np.exp(1j * v) * J).real)
-    power = (even**2 + odd**2) / v**2
-    strain = -2.0 * theta * np.sum(nodes.C * own.real * power) / q[0]
-    return CoverState(z * q[0], shift, moment, limit, strain, q, X0 - Xi @ (c @ q))
+    limit = z + shift + np.sum((modes.shear * own * (even - 1j * odd) * np.exp(1j * v)).real)
+    work = SolveWork(v, A, compliance, own, odd, even, D, memory, exponentials, matrix, Xi, shares)
+    return CoverState(z * q[0], shift, limit, q, X0 - Xi @ (c @ q), work)

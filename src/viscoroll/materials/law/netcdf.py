@@ -27,14 +27,14 @@ from ..prony import Prony, lock_array
 from ..prony_forms import HIGHEST_ALPHA
 from .alpha_axis import LawAxis
 from .grid import load_grid
-from .pack import CoverRows, steady_columns, steady_table
+from .pack import COVER_FUNCTIONS, CoverRows, steady_columns, steady_table
 from .table import LawTable, law_table, make_table
 
 if TYPE_CHECKING:
     import xarray as xr
 
-#: attributes of a cover that its file states besides the series
-_COVER_ATTRIBUTES = ("nu", "thickness", "on", "part", "other_nu")
+#: attributes of a cover that its file states besides the series; the last one where the other body is a layer
+_COVER_ATTRIBUTES = ("nu", "thickness", "on", "part", "other_nu", "other_thickness")
 #: attributes of a table that the file of a cover states
 _COVER_NUMBERS = ("e0", "alpha", "T_ref")
 
@@ -74,15 +74,12 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
     :func:`load_law` needs to make the law again, of a table the text of its material as attribute ``material``
     (:func:`bodies_as_toml`); of half-spaces also ``bodies``, "unlike" or "alike".  Of these N is computed if it was not
     yet.
-    Raises ParameterError for a layer beside a body that relaxes too.
     """
     if isinstance(law, LawAxis):
         return make_dataset(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
     if law.cover is None:
         bodies, material = "unlike" if law.unlike else "alike", bodies_as_toml(law.pair or law.material)
         return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
-    cover: Any = law.material
-    cover.refuse_unknown_split("a file")
     creep = np.moveaxis(law.cover.creep, 0, -1)
     numbers = SimpleNamespace(
         coefficients=np.concatenate([steady_columns(law.steady_coefficients), creep], axis=-1), limits=law.cover.limits,
@@ -174,8 +171,8 @@ def parse_law(content: Content, path: Any) -> LawTable:
         given, pair = _parse_bodies(attributes["material"], path)
         coefficients, e0 = _coefficients(content), int(numbers["e0"])
         if kind == COVER:
-            table = steady_table(np.moveaxis(coefficients[..., :-2], -1, 0))
-            creep = np.moveaxis(coefficients[..., -2:], -1, 0)
+            functions = np.moveaxis(coefficients, -1, 0)
+            table, creep = steady_table(functions[: -len(COVER_FUNCTIONS)]), functions[-len(COVER_FUNCTIONS) :]
             law = make_table(given, cover=CoverRows(e0, table, creep, numbers["limits"]))
         else:
             law = law_table(given, coefficients=coefficients)
@@ -226,8 +223,7 @@ def bodies_as_toml(given: Any) -> str:
     """Return TOML that :func:`_parse_bodies` reads back to the bit.
 
     given: :class:`..pair.Pair` (in SI units, as in scene files), or :class:`..cover.Cover`, :class:`..bodies.Bodies`,
-        :class:`..prony.Prony` or alpha as a float (dimensionless), each of one material.  Of a cover the series of the
-        other body is not written: it must be elastic.
+        :class:`..prony.Prony` or alpha as a float (dimensionless), each of one material.
     Returns a text with the key plane and the sections [material] and, unless the base is that of the cylinder, [base];
     or with the section [cover], [bodies] or, of a Prony or alpha, [scene].
     """
@@ -236,7 +232,10 @@ def bodies_as_toml(given: Any) -> str:
         text += "" if given.base is None else f"\n{material_as_toml(given.base, 'base')}"
         return f'plane = "{given.plane}"\n{text}'
     if isinstance(given, Cover):
-        lines = (f"{name} = {json.dumps(getattr(given, name))}" for name in _COVER_ATTRIBUTES)
+        values = {name: getattr(given, name) for name in _COVER_ATTRIBUTES}
+        lines = [f"{name} = {json.dumps(value)}" for name, value in values.items() if value is not None]
+        if given.other.alpha > 1.0:
+            lines.append(f"other = {{ {series_as_toml(given.other)} }}")
         return "\n".join(["[cover]", series_as_toml(given.layer), *lines, ""])
     if isinstance(given, Bodies):
         parts = (f"{name} = {{ {series_as_toml(getattr(given, name))} }}" for name in ("cylinder", "base"))
@@ -262,7 +261,10 @@ def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
         pair = Pair(bodies["material"], bodies.get("base"), content["plane"])
     if "cover" in content:
         given = content["cover"]
-        return Cover(parse_series(path, "cover", given), **{name: given[name] for name in _COVER_ATTRIBUTES}), pair
+        more = {name: given[name] for name in _COVER_ATTRIBUTES if name in given}
+        if "other" in given:
+            more["other"] = parse_series(path, "cover", given["other"])
+        return Cover(parse_series(path, "cover", given), **more), pair
     if pair is not None:
         return pair.law, pair
     if "bodies" in content:

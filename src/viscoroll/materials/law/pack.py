@@ -32,6 +32,13 @@ from .rows import TERMS, Rows, row_range
 
 #: functions of a table in their order: the first five depend on u = kappa |V|, the others on v = 1/F(eta)
 FUNCTIONS = ("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
+#: functions that only covers have (:mod:`...kernels.rows.cover`): L = 2 kappa delta_star/mu; f, whose sum over both
+#: bodies is 2 kappa delta_f; g, whose sum is 2 kappa (delta_0* - delta_f); slopes of lam and epsilon in Q
+COVER_FUNCTIONS = (
+    "limit", "free_half_space", "free_cylinder", "excess_half_space", "excess_cylinder", "lam_Q", "epsilon_Q",
+)  # fmt: skip
+#: functions of a cover with limits for u -> infinity: lam and these
+_LIMITED = 1 + len(COVER_FUNCTIONS)
 #: columns of the functions of steady rolling, all but N
 _STEADY = [n for n, name in enumerate(FUNCTIONS) if name != "N"]
 #: functions of a table over alpha in their order; m is M/V of both bodies, which are alike
@@ -59,10 +66,10 @@ class CoverRows(NamedTuple):
 
     e0 : exponent of the end of the first row, which is [0, 2^e0); 0 for elastic bodies, which have a single row.
     coefficients : table (rows, 24 powers, 7 functions) with NaN for N, which is not known for covers.
-    creep : rows of L = 2 kappa delta_star/mu and of 2 kappa delta_0 (positive on the base, negative on the cylinder
-        where the surface is stretched), shape (2, rows, 24 powers).
-    limits : shape (8,): limits of L, lam and 2 kappa delta_0 for u -> infinity; then the factors of 1/u in their first
-        order; then the limits of epsilon u and M u^2/V.  The last five are 0 for elastic bodies.
+    creep : rows of the functions that only covers have, in the order of :data:`COVER_FUNCTIONS`, (7, rows, 24 powers).
+    limits : shape (19,): limits of L, lam and the other six of these functions for u -> infinity; then the factors of
+        1/u in their first order; then the limits of epsilon u, and of M u^2/V of half-space and cylinder.  The last
+        eleven are 0 for elastic bodies.
     """
 
     e0: int
@@ -280,14 +287,12 @@ def _pack_cover_front(cover: CoverRows) -> Floats:
 
     They are chosen so that the formulas of the fast limit of half-spaces give that of the cover, without logarithms:
     L = L_1 (1 + a/u) and M = b V/u^2, with limits L_1, L_1 a and b of the cover.
-    cover: :class:`CoverRows`, law of the cover, of which ``limits`` and the value of m_half_space at rest are read; the
-        latter, if it is not 0, says that the cover is on the base.
+    cover: :class:`CoverRows`, law of the cover, of which ``limits`` are read.
     Returns shape (8,), in place of alpha, lam, and W and C of both bodies, of the half-space and of the cylinder:
-    1/L_1^2, L_1, 0, 4 L_1 a; then 0, 8 b for the body with the cover and 0, 0 for the other one.
+    1/L_1^2, L_1, 0, 4 L_1 a; then 0, 8 b for each body.
     """
-    L, _, _, L_slope, _, _, _, moment = cover.limits
-    on_base = bool(cover.coefficients[0, 0, FUNCTIONS.index("m_half_space")])
-    half_space, cylinder = (moment, 0.0) if on_base else (0.0, moment)
+    L, L_slope = cover.limits[[0, _LIMITED]]
+    half_space, cylinder = cover.limits[-2:]
     return np.array([1.0 / (L * L), L, 0.0, 4.0 * L_slope, 0.0, 8.0 * half_space, 0.0, 8.0 * cylinder])
 
 
@@ -295,14 +300,15 @@ def _pack_cover(cover: CoverRows) -> Floats:
     """Return the numbers of a cover that kernels read in addition to its rows (:mod:`...kernels.rows.cover`).
 
     cover: law of the cover, as :class:`CoverRows`.
-    Returns one vector of 8 + 48 rows numbers: limits for u -> infinity of lam and 2 kappa delta_0, each with its factor
-    of 1/u after it, of epsilon u and of 2 M u^2/(V L), limit of eta/F for v -> infinity with its factor of 1/v; then
-    for each row the 24 coefficients of 2 kappa delta_0 twice, interleaved.
+    Returns one vector of 18 + 144 rows numbers: the head of :mod:`...kernels.rows.cover`, limits for u -> infinity; then
+    for each row the 24 coefficients of f of both bodies, of g of both, and of both slopes, each pair interleaved.
     """
-    L, lam, free, L_slope, lam_slope, free_slope, epsilon, moment = cover.limits
-    share_slope = 2.0 * (lam_slope * L - lam * L_slope) / L**3
-    front = [lam, lam_slope, free, free_slope, epsilon, 2.0 * moment / L, lam / L, share_slope]
-    return np.append(front, interleave_pairs(cover.creep[1], cover.creep[1]))
+    limits, slopes = cover.limits[: 2 * _LIMITED].reshape(2, _LIMITED)
+    L, lam, L_slope, lam_slope = *limits[:2], *slopes[:2]
+    share = lam / L, 2.0 * (lam_slope * L - lam * L_slope) / L**3
+    front = [*np.stack([limits, slopes], axis=1)[1:].ravel(), *share, cover.limits[-3], 2.0 * sum(cover.limits[-2:]) / L]
+    pairs = (interleave_pairs(*cover.creep[n : n + 2]) for n in (1, 3, 5))
+    return np.append(front, np.concatenate([*pairs], axis=1))
 
 
 class AxisRows(NamedTuple):
