@@ -19,10 +19,12 @@ from ..core.array_types import Floats
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.prony import Prony, series_of_alpha
-from .coupled_kernels import body_table, edge_layer
+from .coupled_kernels import body_kernels, edge_layer
 
 #: Elements of a state.
 ELEMENTS = 64
+#: Coupling over the largest kernel that counts as rounding.
+_ROUNDING = 1e-14
 
 
 class CoupledBody(NamedTuple):
@@ -123,13 +125,16 @@ class CoupledRow:
         self.u = u
         self.mu = mu
         self.n = n
-        tables = {body.side: body_table(body, u) for body in pair.bodies}
-        total = sum(table for table, _ in tables.values())
-        instant = math.fsum(own for _, own in tables.values())
-        own, own_instant = tables.get("cylinder", (total, instant))
-        coupled = bool(np.abs(total[:, :, 2]).max() > 1e-14 * np.abs(total).max())
-        arrays = np.ascontiguousarray(total), np.ascontiguousarray(own)
-        self._row = loop.Row(*arrays, instant, own_instant, coupled, len(tables) == 2, "cylinder" in tables, edge_layer(pair.bodies, u))
+        kernels = {body.side: body_kernels(body, u) for body in pair.bodies}
+        table = np.ascontiguousarray(sum(each.table for each in kernels.values()))
+        instant = math.fsum(each.instant for each in kernels.values())
+        local = np.concatenate([each.local for each in kernels.values()])
+        own = kernels.get("cylinder", next(iter(kernels.values())))
+        coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
+        self._row = loop.Row(
+            table, np.ascontiguousarray(own.table), instant, own.instant, coupled, len(kernels) == 2,
+            "cylinder" in kernels, local, own.local, edge_layer(pair.bodies, u),
+        )  # fmt: skip
         self._full = np.zeros((2, loop.COLUMNS))
         length = 0.5 * math.sqrt(max(instant, 1e-3))
         self._ends = [loop.full_slip(self._row, mu, sign, n, length, out) for sign, out in zip((-1.0, 1.0), self._full)]

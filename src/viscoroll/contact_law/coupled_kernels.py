@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from functools import cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from scipy.special import exp1, expi
@@ -111,13 +111,24 @@ def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float,
     return found * size**2
 
 
-def body_table(body: Any, u: float) -> tuple[Floats, float]:
-    """Return (second antiderivatives of one body as polynomials; instantaneous compliance), at one speed.
+class BodyKernels(NamedTuple):
+    """Kernels of one body at one speed, times its share of the compliance, the coupling with the sign of the body.
+
+    table : second antiderivatives as polynomials, (BINS, 2 signs, 3 kernels, DEGREE + 1).
+    instant : instantaneous compliance.
+    local : (modes + 1, 2): strength and length of each part of the local coupling.
+    """
+
+    table: Floats
+    instant: float
+    local: Floats
+
+
+def body_kernels(body: Any, u: float) -> BodyKernels:
+    """Return the kernels of one body at one speed.
 
     body: :class:`.coupled.CoupledBody`.
     u: kappa |V|, >= 0 or infinite: elastic at rest, and with the instantaneous compliance.
-    Returns (coefficients, (BINS, 2 signs, 3 kernels, DEGREE + 1), as :func:`..kernels.coupled.elements.assemble` takes
-    them, the coupling with the sign of the body; the compliance times the body's share).
     """
     size, fit = _fit()
     instant = 1.0 if u == 0.0 else max(1.0 - math.fsum(body.J), 0.0)
@@ -132,7 +143,9 @@ def body_table(body: Any, u: float) -> tuple[Floats, float]:
         values += _layer(body.nu, body.thickness, instant, modes, size)
     values[:, 2] *= 1.0 if body.side == "base" else -1.0
     table = values.reshape(2, 3, BINS, DEGREE + 1) @ fit.T
-    return body.share * table.transpose(2, 0, 1, 3), body.share * instant
+    sign = body.share if body.side == "base" else -body.share
+    parts = [(sign * local * strength, length) for strength, length in [(instant, 0.0), *modes]]
+    return BodyKernels(body.share * table.transpose(2, 0, 1, 3), body.share * instant, np.array(parts))
 
 
 def edge_layer(bodies: Any, u: float) -> float:

@@ -209,13 +209,15 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
     name = path.stem
     if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
         raise ParameterError("path", path, "a file name that is a valid C identifier, for example rubber.h")
+    from ...kernels.rows.cover import COVER_FRONT_SIZE
+
     table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))
     front = table.record.rows[:8]
     arrays = {f"{name}_coefficients": table.coefficients}
     fields, of_cover = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays], ["0", "{0.0}"]
     if table.cover is not None:
         arrays[f"{name}_creep"] = np.moveaxis(table.cover.creep, 0, -1)
-        of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:8])]
+        of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:COVER_FRONT_SIZE])]
     constants = "".join(
         f"static const double {array}[{len(rows)}][VR_TERMS][{rows.shape[-1]}] = {_initializer(rows)};\n"
         for array, rows in arrays.items()

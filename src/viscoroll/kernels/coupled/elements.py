@@ -22,6 +22,8 @@ WIDTH = 0.35
 BINS = 74
 #: largest part of the elements that gather at spots
 _SPOTS_PART = 0.7
+#: element over twice the length of a mode below and above which its local part is taken from a series
+_SMALL_RATIO, _LARGE_RATIO = 1e-4, 40.0
 #: error of a node in units of elements, and largest number of steps that find it
 _MESH_ERROR, _MOST_STEPS = 1e-9, 60
 
@@ -96,6 +98,54 @@ def make_mesh(c, spots, used, nodes, at, place):
         else:
             nodes[n // 2] = x
             place[n // 2] = t
+
+
+@inline_kernel
+def _local_part(local, h):
+    """Return the part of the coupling that acts at the middle of an element of length h as if at once.
+
+    local : (modes, 2), strength and length of each, with 0 for the length of the instantaneous one.
+    It is the integral of the memory times what linear tractions leave out: the parabola that is 1 there and 0 at the
+    ends of the element, less its mean 2/3, which the values at the nodes make up for.
+    """
+    found = 0.0
+    for k in range(local.shape[0]):
+        length = local[k, 1]
+        r = 0.5 * h / length if length > 0.0 else np.inf
+        if r < _SMALL_RATIO:
+            found += local[k, 0] * r * r / 12.0
+        elif r > _LARGE_RATIO:
+            found += local[k, 0] * (1.0 / 3.0 - (2.0 / r) / r)
+        else:
+            decay = math.exp(-r)
+            found += local[k, 0] * ((1.0 - decay) / 3.0 - (2.0 - decay * (r * (r + 2.0) + 2.0)) / (r * r))
+    return found
+
+
+@kernel
+def add_local(local, nodes, at, C):
+    """Add to the local part of the coupling what linear tractions leave out, by the values at four nodes.
+
+    local : as of :func:`_local_part`; nodes, at : mesh; C : matrix of :func:`assemble`, changed.
+    The tractions are odd about the two outer nodes, in the parameter of the mesh.
+    """
+    last = at.size - 1
+    for e in range(last + 1):
+        h = nodes[e + 1] - nodes[e]
+        part = _local_part(local, h)
+        ahead = (at[e] - nodes[e]) / h
+        if e > 0:
+            C[e, e - 1] += part * (0.5625 - (1.0 - ahead))
+        if e < last:
+            C[e, e] += part * (0.5625 - ahead)
+        if e > 1:
+            C[e, e - 2] -= part * 0.0625
+        elif e == 0:
+            C[e, 0] += part * 0.0625
+        if e < last - 1:
+            C[e, e + 1] -= part * 0.0625
+        elif e == last:
+            C[e, last - 1] += part * 0.0625
 
 
 @kernel(allocates=True)

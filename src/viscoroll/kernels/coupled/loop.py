@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compile.jit import inline_kernel, kernel
-from .elements import assemble, make_mesh, moments, node_value, product
+from .elements import add_local, assemble, make_mesh, moments, node_value, product
 from .zones import eliminate, find_zones, pressure_and_strain, solve_zones, strain_by_shear
 
 #: load in units of the elements
@@ -52,6 +52,7 @@ class Row(NamedTuple):
     coupled : whether shear acts on the pressure.
     split : whether both bodies deform; else all losses are in one.
     cylinder : whether that one is the cylinder.
+    local, own_local : local coupling of both, and of the cylinder, by modes (:func:`.elements.add_local`).
     layer : length of the layer at the front edge in which the material is stiff; infinite without one.
     """
 
@@ -62,6 +63,8 @@ class Row(NamedTuple):
     coupled: bool
     split: bool
     cylinder: bool
+    local: Any
+    own_local: Any
     layer: float
 
 
@@ -152,6 +155,7 @@ def solve_contact(row, contact, c, mu, d):
     if used > 0:
         carry_zones(zone, place, contact.place, contact.zone)
     assemble(row.table, row.instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
+    add_local(row.local, contact.nodes, contact.at, contact.C)
     good, B = eliminate(contact.H, contact.C, contact.at, row.coupled)
     if not good:
         return SINGULAR, 0.0, True
@@ -209,6 +213,7 @@ def split_powers(row, contact):
     The matrices of ``contact`` are overwritten by those of the cylinder.
     """
     assemble(row.own, row.own_instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
+    add_local(row.own_local, contact.nodes, contact.at, contact.C)
     N = contact.at.size
     slope = np.empty(N)
     strain = np.empty(N)

@@ -312,13 +312,13 @@ def sliding_creep(slip, delta, free_creep, state, cover_rows):
     state : :class:`.contact_states.State`, of which kappa and the sign of V are read, of a cover alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
     Returns (a float with the sign of the traction, delta - delta_0), dimensionless.  Of a cover the first is delta -
-    delta_0 with the sign of V, where V = 0.0 counts as V > 0; of half-spaces the two are ``slip`` and ``delta`` as
+    delta_0 with the sign of V, where V = 0.0 and -0.0 count as V > 0; of half-spaces the two are ``slip`` and ``delta`` as
     given.
     """
     if cover_rows is None:
         return slip, delta
     own = delta - 0.5 * free_creep / state.kappa
-    return own * np.copysign(1.0, state.V), own
+    return -own if state.V < 0.0 else own, own
 
 
 @inline_kernel

@@ -1,7 +1,8 @@
 /* The contact law of viscoelastic cylinders that roll with partial slip, from the table of one material or pair, or of
  * a cover (a layer of finite thickness) at one ratio of thickness and contact length.
  *
- * C99 and C++, one header, no allocation, no state, thread safe; of libm: frexp, log, log1p, sqrt, fabs, fmin, fmax.
+ * C99 and C++, one header, no allocation, no state, thread safe; of libm: copysign, frexp, ldexp, log, log1p, sqrt, fabs,
+ * fmin, fmax.
  * Dimensionless: V in R/T_ref, forces over the load P, moments over P R.  V and slip = omega - V have any sign.
  * All values are NaN where one of these is NaN or infinite, kappa or mu is not above 0, or kappa |V| is above 1e300.
  * Of a cover N is not known: it is NaN.
@@ -17,21 +18,25 @@
 enum { VR_TERMS = 24, VR_FUNCTIONS = 7 };
 /* functions of kappa |V|, then of v = 1/F(eta) */
 enum { VR_LAM, VR_EPSILON, VR_M_HALF_SPACE, VR_M_CYLINDER, VR_N, VR_SHARE, VR_PRESS };
+/* what a cover has besides: L = 2 kappa delta_star/mu, f and g of half-space and cylinder, slopes of lam and epsilon in
+ * Q; 2 kappa delta_0 is the sum of f, and g changes M of full slip */
+enum { VR_LIMIT, VR_FREE, VR_EXCESS = 3, VR_TILT = 5, VR_CREEP_FUNCTIONS = 7 };
 
 typedef struct {
   int rows, e0;                /* row 0: x in [0, 2^e0); row n: x in [2^(e0+n-1), 2^(e0+n)); beyond: the fast limit */
   double alpha, limit[3][2];   /* sum J_j/T_j and sum J_j/T_j (ln 2 T_j - 0.5772...): of all, half-space, cylinder */
   const double (*c)[VR_TERMS][VR_FUNCTIONS]; /* coefficients of powers of t */
-  const double (*creep)[VR_TERMS][2]; /* of a cover, over kappa |V|: 2 kappa delta_star/mu and 2 kappa delta_0;
-                                         a null pointer of half-spaces */
-  double fast[8]; /* of a cover as kappa |V| -> infinity, each with its factor of 1/(kappa |V|): lam, 2 kappa delta_0;
-                     epsilon kappa |V|; unused; share, with its factor of F */
+  const double (*creep)[VR_TERMS][VR_CREEP_FUNCTIONS]; /* of a cover, over kappa |V|; a null pointer of half-spaces */
+  double fast[18]; /* of a cover as kappa |V| -> infinity, each with its factor of 1/(kappa |V|): lam and functions of
+                      creep from the second on; share, with its factor of F; epsilon kappa |V|; unused */
 } vr_law;
 
-/* delta_0: creep of free rolling on a cover by the strain that the pressure makes; 0 of half-spaces */
+/* delta_0: creep of free rolling on a cover; 0 of half-spaces */
 typedef struct { double lam, epsilon, delta_star, delta_0, beta, Q, M, M_half_space, M_cylinder, N; } vr_state;
-/* dQ_dV at fixed omega, dQ_domega at fixed V; at V = 0 they are not finite */
-typedef struct { double dQ_dV, dQ_domega, dM_dV, dM_half_space_dV, dM_cylinder_dV; } vr_slopes;
+/* over V at fixed omega, over omega at fixed V; at V = 0 those of Q, and of M of a cover, are not finite */
+typedef struct {
+  double dQ_dV, dQ_domega, dM_dV, dM_half_space_dV, dM_cylinder_dV, dM_half_space_domega, dM_cylinder_domega;
+} vr_slopes;
 
 typedef struct { int row; double t, dt_dx; } vr_place; /* polynomial and its argument; row -1: the fast limit */
 
@@ -86,33 +91,61 @@ static inline void vr_speed(const vr_law *law, double u, double out[5], double *
   }
   out[VR_N] = 0.25 * (law->alpha - 1.0) * z * z;
   if (law->creep)
-    out[VR_LAM] = law->fast[0] + law->fast[1] / u, out[VR_EPSILON] = law->fast[4] / u, out[VR_N] = NAN;
+    out[VR_LAM] = law->fast[0] + law->fast[1] / u, out[VR_EPSILON] = law->fast[16] / u, out[VR_N] = NAN;
 }
 
-/* 2 kappa delta_star/mu, 2 kappa delta_0 and d(2 kappa delta_0)/du at u = kappa |V|, of a cover */
-static inline void vr_creep(const vr_law *law, double u, double out[3]) {
+/* the functions that a cover has besides at u = kappa |V|, and their slopes over u */
+static inline void vr_creep(const vr_law *law, double u, double out[VR_CREEP_FUNCTIONS],
+                            double slope[VR_CREEP_FUNCTIONS]) {
   vr_place p = vr_at(law, u);
-  const double(*c)[2];
-  int k;
-  if (p.row < 0) { /* L = L_1 + C/4u, as L_1 = alpha^-1/2 */
-    double L = 1.0 / sqrt(law->alpha);
-    out[0] = L + 0.25 * law->limit[0][1] / u;
-    out[1] = law->fast[2] + law->fast[3] / u, out[2] = -law->fast[3] / (u * u);
-    return;
+  int k, f;
+  for (f = 0; f < VR_CREEP_FUNCTIONS; f++) {
+    if (p.row < 0) { /* L = L_1 + C/4u, as L_1 = alpha^-1/2 */
+      double limit = f ? law->fast[2 * f] : 1.0 / sqrt(law->alpha);
+      double change = (f ? law->fast[2 * f + 1] : 0.25 * law->limit[0][1]) / u;
+      out[f] = limit + change, slope[f] = -change / u;
+      continue;
+    }
+    for (out[f] = slope[f] = 0.0, k = VR_TERMS - 1; k >= 0; k--)
+      slope[f] = slope[f] * p.t + out[f], out[f] = out[f] * p.t + law->creep[p.row][k][f];
+    slope[f] *= p.dt_dx;
   }
-  c = law->creep[p.row];
-  for (out[0] = out[1] = out[2] = 0.0, k = VR_TERMS - 1; k >= 0; k--)
-    out[0] = out[0] * p.t + c[k][0], out[2] = out[2] * p.t + out[1], out[1] = out[1] * p.t + c[k][1];
-  out[2] *= p.dt_dx;
 }
 
 /* delta_0 at a speed and its slope over |V|; 0 of half-spaces */
 static inline double vr_free_creep(const vr_law *law, double kappa, double V, double *slope) {
-  double creep[3];
+  double f[VR_CREEP_FUNCTIONS], d[VR_CREEP_FUNCTIONS];
   *slope = 0.0;
   if (!law->creep || !(kappa * fabs(V) <= 1e300)) return 0.0;
-  vr_creep(law, kappa * fabs(V), creep);
-  return *slope = 0.5 * creep[2], 0.5 * creep[1] / kappa;
+  vr_creep(law, kappa * fabs(V), f, d);
+  return *slope = 0.5 * (d[VR_FREE] + d[VR_FREE + 1]), 0.5 * (f[VR_FREE] + f[VR_FREE + 1]) / kappa;
+}
+
+/* Add what shear does on a cover at u = kappa |V| to lam, epsilon and M, and with d, where not NULL, to the slopes, of
+ * which those of Q are known; du_dV: kappa with the sign of V. */
+static inline void vr_shear(const vr_law *law, double kappa, double mu, double u, double du_dV, vr_state *s,
+                            vr_slopes *d) {
+  double f[VR_CREEP_FUNCTIONS], e[VR_CREEP_FUNCTIONS], M[2], M_Q[2], M_u[2], used = fabs(s->Q) / mu;
+  int n;
+  if (!law->creep || !(s->Q == s->Q)) return;
+  vr_creep(law, u, f, e);
+  double of_L = 2.0 / (mu * f[VR_LIMIT]), r = of_L * (f[VR_EXCESS] + f[VR_EXCESS + 1]);
+  double dr = of_L * (e[VR_EXCESS] + e[VR_EXCESS + 1]) - r * e[VR_LIMIT] / f[VR_LIMIT];
+  double rest = 1.0 / (1.0 + r * r * r * r), k = sqrt(sqrt(rest)), dk = -k * rest * r * r * r * dr;
+  for (n = 0; n < 2; n++) { /* half-space, cylinder */
+    double a = n ? 1.0 / (2.0 * kappa + f[VR_FREE] + f[VR_FREE + 1]) : 0.5 / kappa, g = f[VR_EXCESS + n];
+    double da = n ? -a * a * (e[VR_FREE] + e[VR_FREE + 1]) : 0.0, bracket = f[VR_FREE + n] + k * g * used;
+    M[n] = -s->Q * a * bracket, M_Q[n] = -a * (bracket + k * g * used);
+    M_u[n] = -s->Q * (da * bracket + a * (e[VR_FREE + n] + (k * e[VR_EXCESS + n] + dk * g) * used));
+  }
+  s->lam += s->Q * f[VR_TILT], s->epsilon += s->Q * f[VR_TILT + 1];
+  s->M_half_space += M[0], s->M_cylinder += M[1], s->M += M[0] + M[1];
+  if (!d) return;
+  d->dM_half_space_domega = M_Q[0] != 0.0 ? M_Q[0] * d->dQ_domega : 0.0;
+  d->dM_cylinder_domega = M_Q[1] != 0.0 ? M_Q[1] * d->dQ_domega : 0.0;
+  d->dM_half_space_dV += du_dV * M_u[0] + (M_Q[0] != 0.0 ? M_Q[0] * d->dQ_dV : 0.0);
+  d->dM_cylinder_dV += du_dV * M_u[1] + (M_Q[1] != 0.0 ? M_Q[1] * d->dQ_dV : 0.0);
+  d->dM_dV = d->dM_half_space_dV + d->dM_cylinder_dV;
 }
 
 /* eta/F and H/F^2 at v = 1/F; slope, if not NULL: d/dv of the second */
@@ -126,7 +159,7 @@ static inline void vr_stick(const vr_law *law, double v, double out[2], double *
   double y = 1.0 / v, b = law->limit[0][1] - law->limit[0][0] * log(y);
   out[0] = 1.0 - 0.5 * law->alpha * y * b, out[1] = law->alpha * out[0] * out[0];
   if (slope) *slope = law->alpha * out[0] * (law->alpha * y) * y * (b - law->limit[0][0]);
-  if (law->creep) out[0] = law->fast[6] + law->fast[7] / v;
+  if (law->creep) out[0] = law->fast[14] + law->fast[15] / v;
 }
 
 /* (H/F^2 at v2 less that at v1)/(v2 - v1), v1 <= v2 < 2 v1, without cancellation */
@@ -160,22 +193,23 @@ static inline void vr_nothing(vr_state *s, vr_slopes *d) {
   s->lam = s->epsilon = s->delta_star = s->beta = s->Q = s->M = s->M_half_space = s->M_cylinder = s->N = NAN;
   s->delta_0 = NAN;
   if (d) d->dQ_dV = d->dQ_domega = d->dM_dV = d->dM_half_space_dV = d->dM_cylinder_dV = NAN;
+  if (d) d->dM_half_space_domega = d->dM_cylinder_domega = NAN;
 }
 
-/* The state at a slip less that of free rolling, V delta_0, which the caller has taken off, and the slopes at fixed
- * delta_0.  slip: that difference; d: the slopes, or a null pointer. */
-static inline void vr_solve(const vr_law *law, double kappa, double mu, double V, double slip, double delta_0,
+/* The state at a creepage less that of free rolling, delta_0, which the caller has taken off, and the slopes at fixed
+ * delta_0, without what shear does; the creepage may be infinite.  d: the slopes, or a null pointer. */
+static inline void vr_solve(const vr_law *law, double kappa, double mu, double V, double creepage, double delta_0,
                             vr_state *s, vr_slopes *d) {
-  double u = kappa * fabs(V), f[5], m[2] = {0.0, 0.0}, a[2], b[2], p1, p2, q;
-  double sign = (slip > 0.0) - (slip < 0.0), delta = slip == 0.0 ? 0.0 : fabs(slip / V);
-  if (!(kappa > 0.0 && mu > 0.0 && mu < HUGE_VAL && u <= 1e300 && fabs(slip) < HUGE_VAL)) {
+  double u = kappa * fabs(V), f[5], m[2] = {0.0, 0.0}, a[2], b[2], p1, p2, q, delta = fabs(creepage);
+  double sign = ((creepage > 0.0) - (creepage < 0.0)) * (V < 0.0 ? -1.0 : 1.0);
+  if (!(kappa > 0.0 && mu > 0.0 && mu < HUGE_VAL && u <= 1e300 && delta >= 0.0)) {
     vr_nothing(s, d);
     return;
   }
   vr_speed(law, u, f, d ? m : (double *)0);
-  double creep[3] = {f[VR_LAM] * (1.0 + f[VR_EPSILON])};
-  if (law->creep) vr_creep(law, u, creep);
-  double L = creep[0], D = 2.0 * kappa * delta / mu, w = L - D;
+  double creep[VR_CREEP_FUNCTIONS] = {f[VR_LAM] * (1.0 + f[VR_EPSILON])}, slope[VR_CREEP_FUNCTIONS];
+  if (law->creep) vr_creep(law, u, creep, slope);
+  double L = creep[VR_LIMIT], D = 2.0 * kappa * delta / mu, w = L - D;
   s->lam = f[VR_LAM], s->epsilon = f[VR_EPSILON], s->N = f[VR_N], s->delta_star = 0.5 * mu * L / kappa;
   s->delta_0 = delta_0;
   s->M_half_space = V * f[VR_M_HALF_SPACE], s->M_cylinder = V * f[VR_M_CYLINDER];
@@ -183,6 +217,7 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
   if (d) {
     d->dM_half_space_dV = f[VR_M_HALF_SPACE] + u * m[0], d->dM_cylinder_dV = f[VR_M_CYLINDER] + u * m[1];
     d->dM_dV = d->dM_half_space_dV + d->dM_cylinder_dV, d->dQ_dV = d->dQ_domega = 0.0;
+    d->dM_half_space_domega = d->dM_cylinder_domega = 0.0;
   }
   s->beta = 0.0, s->Q = sign * mu;
   if (!(delta < s->delta_star && w > 0.0)) return; /* full slip */
@@ -195,21 +230,28 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
     vr_stick(law, v1, a, &p1);
     double A1 = a[1] - 0.5 * v1 * p1, A2 = b[1] - 0.5 * v2 * p2;
     d->dQ_domega = 4.0 * kappa * w * A2 / fabs(V); /* then dQ_dV at fixed delta, and what delta changes */
-    d->dQ_dV = sign * (V < 0.0 ? -2.0 : 2.0) * mu * kappa * w * (A2 * p1 / A1 - p2) - (1.0 + slip / V) * d->dQ_domega;
+    d->dQ_dV = sign * (V < 0.0 ? -2.0 : 2.0) * mu * kappa * w * (A2 * p1 / A1 - p2) - (1.0 + creepage) * d->dQ_domega;
   }
 }
 
-static inline vr_state vr_contact(const vr_law *law, double kappa, double mu, double V, double slip) {
-  double slope, delta_0 = vr_free_creep(law, kappa, V, &slope);
-  vr_state s;
-  vr_solve(law, kappa, mu, V, slip - V * delta_0, delta_0, &s, (vr_slopes *)0);
-  return s;
+/* creepage at a speed; at V = 0 it is 0 or infinite */
+static inline double vr_creepage(double V, double slip) {
+  return V != 0.0 ? slip / V : slip == 0.0 ? 0.0 : slip == slip ? copysign(HUGE_VAL, slip) : NAN;
 }
 
 static inline void vr_contact_slopes(const vr_law *law, double kappa, double mu, double V, double slip,
                                      vr_state *s, vr_slopes *d) {
   double slope, delta_0 = vr_free_creep(law, kappa, V, &slope);
-  vr_solve(law, kappa, mu, V, slip - V * delta_0, delta_0, s, d);
-  if (law->creep) d->dQ_dV -= (delta_0 + fabs(V) * slope) * d->dQ_domega; /* d(V delta_0)/dV */
+  double creepage = fabs(slip) < HUGE_VAL ? vr_creepage(V, slip) - delta_0 : NAN;
+  vr_solve(law, kappa, mu, V, creepage, delta_0, s, d);
+  if (law->creep && d && d->dQ_domega > 0.0) /* d(V delta_0)/dV */
+    d->dQ_dV -= (delta_0 + fabs(V) * slope) * d->dQ_domega;
+  vr_shear(law, kappa, mu, kappa * fabs(V), V < 0.0 ? -kappa : kappa, s, d);
+}
+
+static inline vr_state vr_contact(const vr_law *law, double kappa, double mu, double V, double slip) {
+  vr_state s;
+  vr_contact_slopes(law, kappa, mu, V, slip, &s, (vr_slopes *)0);
+  return s;
 }
 #endif

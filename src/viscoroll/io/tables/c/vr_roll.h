@@ -37,18 +37,19 @@ static inline double vr_creep_speed(double V, double rest, double *slope) {
 }
 
 /* The contact near rest too: at V = 0, force and slopes are finite.  Slopes: dQ_domega at fixed V as ever; of Q over V
- * at fixed slip, unlike in vr_contact_slopes.  Below `rest` the moments are in proportion to V. */
+ * at fixed slip, unlike in vr_contact_slopes.  Below `rest` the moments without traction are in proportion to V. */
 static inline void vr_contact_near_rest(const vr_law *law, double kappa, double mu, double V, double slip, double rest,
                                         vr_state *s, vr_slopes *d) {
   double bend, speed = vr_creep_speed(V, rest, &bend), part = V / speed, more = (1.0 - part * bend) / speed;
   double slope, delta_0 = vr_free_creep(law, kappa, speed, &slope);
-  vr_solve(law, kappa, mu, speed, slip - V * delta_0, delta_0, s, d);
+  vr_solve(law, kappa, mu, speed, (slip - V * delta_0) / speed, delta_0, s, d);
   d->dQ_dV = (d->dQ_dV + d->dQ_domega) * bend;
   if (law->creep) d->dQ_dV -= (delta_0 + V * slope * bend) * d->dQ_domega; /* d(V delta_0)/dV */
   d->dM_half_space_dV = part * bend * d->dM_half_space_dV + more * s->M_half_space;
   d->dM_cylinder_dV = part * bend * d->dM_cylinder_dV + more * s->M_cylinder;
   d->dM_dV = d->dM_half_space_dV + d->dM_cylinder_dV;
   s->M_half_space *= part, s->M_cylinder *= part, s->M *= part;
+  vr_shear(law, kappa, mu, kappa * speed, kappa * bend, s, d);
 }
 
 /* dV/dt and d(slip)/dt at y = (V, slip), and their slopes where J is not NULL */
@@ -60,8 +61,9 @@ static inline void vr_rates(const vr_roller *r, const double y[2], double f[2], 
   f[0] = g * (s.Q - s.M_half_space + r->force);
   f[1] = g * (-a * s.Q - b * s.M_cylinder + s.M_half_space - r->force + b * r->torque);
   if (!J) return;
-  J[0][0] = g * (d.dQ_dV - d.dM_half_space_dV), J[0][1] = g * d.dQ_domega;
-  J[1][0] = g * (-a * d.dQ_dV - b * d.dM_cylinder_dV + d.dM_half_space_dV), J[1][1] = -g * a * d.dQ_domega;
+  J[0][0] = g * (d.dQ_dV - d.dM_half_space_dV), J[0][1] = g * (d.dQ_domega - d.dM_half_space_domega);
+  J[1][0] = g * (-a * d.dQ_dV - b * d.dM_cylinder_dV + d.dM_half_space_dV);
+  J[1][1] = g * (-a * d.dQ_domega - b * d.dM_cylinder_domega + d.dM_half_space_domega);
 }
 
 /* One step of RODAS from y and x, of which J holds the slopes at y and f the rates; error: of V and slip. */
