@@ -377,8 +377,6 @@ def scale_of(roller: Any) -> Scale:
     return roller.scale if isinstance(roller, Roller) else DIMENSIONLESS
 
 
-
-
 def resolve_model(
     roller: Any, call: str, *, moves: bool = False, slope: Any = None
 ) -> tuple[Roller, Parameters, Scale]:

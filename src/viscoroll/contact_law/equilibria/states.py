@@ -26,7 +26,7 @@ from ...core.array_types import Floats, Integers
 from ...core.blocks import run_blocks
 from ...materials.law.table import LawTable
 from ..contact_table import evaluate_law
-from .cover_shear import shear_at
+from .cover_balance import creep_at_rest, shear_at
 from .loads import Gains, Loads
 from .resistance import branches
 
@@ -132,7 +132,7 @@ class States(NamedTuple):
         does not suffice, |Q| >= mu.
         """
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
-        limit, free = (1.0, 0.0) if law.cover is None else law.cover.creep[:, 0, 0]
+        limit, free = creep_at_rest(law)
         kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
         shear = shear_at(law, kappa, mu, np.zeros(load.size))
         Q = shear.traction_of_torque(loads.torque[load])

@@ -19,7 +19,7 @@ from ...core.labels import strip_labels
 from ...materials.law.table import LawTable
 from ..parameters import Roller, refuse_arrays, refuse_cover, resolve_model, scale_of
 from ..validity.model_warnings import warn_of_contact
-from .cover_shear import find_speeds_of_cover, is_balanced_at_rest
+from .cover_balance import find_speeds_of_cover, is_balanced_at_rest
 from .loads import Loads, loads_of
 from .resistance import LEAST_LOAD, MOST_LOAD, branches
 from .result import Diagnosis, Steady, pack_result

@@ -163,4 +163,3 @@ def _edge_weights(modes: CoverModes, z: float, state: CoverState) -> Floats:
     weights = -2.0 / alpha * (m[:, None] * ratio[1:])
     weights[0] = i2
     return (z * i2 + sums @ state.X + rest @ weights) / state.q[0]
-

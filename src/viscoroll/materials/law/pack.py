@@ -306,7 +306,12 @@ def _pack_cover(cover: CoverRows) -> Floats:
     limits, slopes = cover.limits[: 2 * _LIMITED].reshape(2, _LIMITED)
     L, lam, L_slope, lam_slope = *limits[:2], *slopes[:2]
     share = lam / L, 2.0 * (lam_slope * L - lam * L_slope) / L**3
-    front = [*np.stack([limits, slopes], axis=1)[1:].ravel(), *share, cover.limits[-3], 2.0 * sum(cover.limits[-2:]) / L]
+    front = [
+        *np.stack([limits, slopes], axis=1)[1:].ravel(),
+        *share,
+        cover.limits[-3],
+        2.0 * sum(cover.limits[-2:]) / L,
+    ]
     pairs = (interleave_pairs(*cover.creep[n : n + 2]) for n in (1, 3, 5))
     return np.append(front, np.concatenate([*pairs], axis=1))
 

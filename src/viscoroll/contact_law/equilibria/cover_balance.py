@@ -73,7 +73,7 @@ class Shear(NamedTuple):
         if law.cover is None:
             half_space, cylinder = law.coefficients[0, 0, 2:4, None] * np.ones(Q.size)
             return on_axis, on_spin, half_space, cylinder
-        limit, free = law.cover.creep[:, 0, 0]
+        limit, free = creep_at_rest(law)
         part = np.where(used < 1.0, used, 0.0)
         delta = 0.5 * (limit * self.mu * np.sign(Q) * (1.0 - np.sqrt(1.0 - part)) + free) / self.kappa
         names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
@@ -89,6 +89,17 @@ def _solve_quadratic(factor: Floats, excess: Floats, rest: Floats) -> Floats:
     """
     root = np.sqrt(np.maximum(factor * factor + 4.0 * excess * np.abs(rest), 0.0))
     return 2.0 * rest / (factor + root)
+
+
+def creep_at_rest(law: LawTable) -> tuple[float, float]:
+    """Return 2 kappa delta_star/mu and 2 kappa delta_0 in the limit V -> 0, dimensionless; 1 and 0 of half-spaces.
+
+    law : table of the material.
+    """
+    if law.cover is None:
+        return 1.0, 0.0
+    limit, half_space, cylinder = law.cover.creep[:3, 0, 0]
+    return float(limit), float(half_space + cylinder)
 
 
 def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:
