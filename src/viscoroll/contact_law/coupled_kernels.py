@@ -24,8 +24,9 @@ _FAR, _FAR_TERMS = 50.0, 30
 _NEAR_TERMS = 22
 #: k |x| below which the transforms of second antiderivatives are taken from two terms of their series
 _SMALL_PHASE = 0.02
-#: scales, over l0, at which the growth of the compliance is looked at
-_SCALES = np.geomspace(1e-14, 1.0, 300)
+#: scales, over l0, at which the growth of the compliance is looked at; a part of the load of the root of a scale lies
+#: within it at most
+_SCALES = np.geomspace(1e-8, 1.0, 200)
 #: growth d ln J/d ln x of the compliance over distance x from the front edge from which on pressure gathers there; the
 #: pressure of half-spaces grows like the distance to the power of 1/2 less it
 _GROWTH = 0.4
@@ -100,7 +101,7 @@ def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float,
     safe = np.where(small, 1.0, phase)
     even = np.where(small, 0.5 - phase**2 / 24.0, 2.0 * (np.sin(0.5 * safe) / safe) ** 2)
     odd = np.where(small, phase / 6.0 - phase**3 / 120.0, (safe - np.sin(safe)) / safe**2)
-    excess = np.array([nodes.L * nodes.u, (nodes.L + nodes.shear) * nodes.u, nodes.C])
+    excess = np.array([nodes.L, nodes.L + nodes.shear, nodes.C]) * nodes.u
     weights = (excess * compliance / (np.pi * thickness)).T
     e_real, e_imag = even @ weights.real, even @ weights.imag
     o_real, o_imag = odd @ weights.real, odd @ weights.imag
