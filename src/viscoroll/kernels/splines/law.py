@@ -21,6 +21,7 @@ from .table import (
     HALF_SPACE,
     LENGTH,
     LIMIT,
+    MIDDLE,
     MOST,
     ONSET,
     SHIFT,
@@ -37,6 +38,10 @@ from .table import (
 #: User data.  function: address of the C function.  slopes: whether slopes are asked for.  table, size: address and
 #: length of the table.  kappa, mu: of the scene.  V, omega, Q, M: 1 of each in the units of the caller.
 TABLE = record_type("function slopes table size", "kappa mu V omega Q M")
+
+
+#: Bisections of d in [-1, 1], to rounding.
+_HALVINGS = 53
 
 
 class Load(NamedTuple):
@@ -226,3 +231,38 @@ def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
     function = c_function_address(_table_law, TABLE)
     numbers = table.ctypes.data, table.size, kappa, mu, *(scale[name] for name in ("V", "omega", "Q", "M"))
     return Jitted(np.array([(function, slopes, *numbers) for slopes in (0, 1)], TABLE), (table, owner))
+
+
+@kernel
+def balance_loop(table, kappa, mu, u, load, of_spin, out):
+    """Find the creeps at which friction is in balance with a load at given speeds V >= 0, by bisection of d = sigma w.
+
+    kappa, mu, u : slenderness, friction, kappa V, (n,) each.
+    load : value of Q - M_half_space, or where ``of_spin`` of Q + M_cylinder, (n,).
+    out : (n, 2), written: 2 kappa delta, within the onsets; what of ``load`` is not balanced, 0 but at an onset.
+    """
+    for n in range(u.size):
+        speed = locate_speed(u[n], table)
+        low = -1.0
+        high = 1.0
+        d = 0.0
+        found = 0.0
+        for step in range(_HALVINGS + 2):
+            d = -1.0 if step == 0 else 1.0 if step == 1 else 0.5 * (low + high)
+            sigma = 1.0 if d >= 0.0 else -1.0
+            place = locate_creep(abs(d), sigma, table)
+            found = mu[n] * field_at(TRACTION, abs(d), speed, place, table).value
+            if of_spin:
+                found += field_at(CYLINDER, abs(d), speed, place, table).value / kappa[n]
+            else:
+                found -= field_at(HALF_SPACE, abs(d), speed, place, table).value / kappa[n]
+            if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
+                break
+            if step > 1 and found < load[n]:
+                low = d
+            elif step > 1:
+                high = d
+        middle = edge_at(MIDDLE, u[n], speed, table).value
+        onset = edge_at(ONSET + np.int64(d >= 0.0), u[n], speed, table).value
+        out[n, 0] = middle + abs(d) * (onset - middle)
+        out[n, 1] = load[n] - found if abs(d) == 1.0 else 0.0
