@@ -17,6 +17,7 @@ from .core.errors import ParameterError, described_error, exactly_one_error, sha
 from .core.results import Result, SummaryRow, format_value
 from .core.scale import SI, Scale
 from .core.symbols import MEASURED
+from .materials.cover import Cover
 from .materials.law.table import LawTable
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
@@ -346,7 +347,7 @@ class Cylinder(Methods):
         Raises ParameterError as :meth:`scene` states.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None
-        if law is not None and law.cover is not None:
+        if law is not None and isinstance(law.material, Cover):
             self._refuse_other_load(law)
         if self._sls_parameters:
             slow, fast = (np.asarray(T, np.float64) for T in (self.T_epsilon, self.T_sigma))

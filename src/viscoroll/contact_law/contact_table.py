@@ -139,6 +139,7 @@ def evaluate_law(
     rows = kernel_rows(names)
     out = np.empty((len(names), count))
     record = material.record if isinstance(material, LawTable) else None
+    coupled = record is not None and record.table is not None
 
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
         """Evaluate the states ``start`` to ``stop`` - 1 and write them into these columns of ``out``.
@@ -152,7 +153,11 @@ def evaluate_law(
         laws, order = ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
         scratch = np.empty(states.SCRATCH_SIZE)
-        if direct:
+        if coupled:
+            from ..kernels.splines.law import table_loop
+
+            table_loop(record.table, request, stop - start)
+        elif direct:
             if loop(laws, request, stop - start):
                 raise ConvergenceError(
                     f"contact: an iteration reached its limit near element {start} (method 'direct')"

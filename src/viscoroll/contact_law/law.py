@@ -72,6 +72,11 @@ class Law:
         self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])
         #: (lowest, highest) |V| between which nothing is warned of, in the unit of V
         self._covered = (roller.body_data and roller.body_data.covered_speeds) or _EVERY_SPEED
+        if table.coupled is not None:
+            from ..kernels.splines.law import jitted_table
+
+            self._use(jitted_table(table.record.table, table, scene.kappa, scene.mu, scale))
+            return
         scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
         self._use(Jitted(scenes, table))
 
@@ -219,14 +224,14 @@ class _LawOfGrid(Law):
     def __init__(self, grid: LawGrid) -> None:
         """Compile the splines of a ``grid`` of loads over V and delta; V and omega then have the units of the grid.
 
-        Of the :class:`LawGrid`, which becomes ``roller``, ``splines``, ``slips``, ``V``, ``delta`` and ``R`` are read.
+        Of the :class:`LawGrid`, which becomes ``roller``, ``rows``, ``most`` and ``R`` are read.
         """
-        from ..kernels.splines.law import jitted_grid
+        from ..kernels.splines.law import jitted_table
 
         self.roller: Any = grid
         self._covered = _EVERY_SPEED
-        (low, high), slowest = grid.delta, grid.V[0]
-        self._use(jitted_grid(grid.splines, slips=grid.slips, slowest=slowest, low=low, high=high, R=grid.R))
+        scale = {"V": 1.0, "omega": 1.0 / grid.R, "Q": 1.0, "M": 1.0}
+        self._use(jitted_table(grid.rows.vector, grid, 1.0, grid.most, scale))
 
     def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
         """Return the law at arrays, one state after another, because the compiled law takes one state.

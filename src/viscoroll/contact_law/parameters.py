@@ -156,6 +156,7 @@ class Parameters(Roller):
         check_one_given(alpha=values["alpha"], material=material)
         if isinstance(material, LawTable):
             object.__setattr__(self, "_law", material)
+            refuse_other_friction(material, values["mu"])
             material = material.material
             if not isinstance(material, Prony | Bodies):
                 values["alpha"], material = material, None
@@ -300,6 +301,11 @@ class Parameters(Roller):
         return self.material if isinstance(self.material, Cover) else None
 
     @property
+    def tabulated(self) -> bool:
+        """Whether the law was given as a table of the coupled solution."""
+        return self._law is not None and self._law.coupled is not None
+
+    @property
     def like_bodies(self) -> bool:
         """Whether cylinder and half-space deform alike, each taking half of M."""
         return not isinstance(self.material, Bodies) or self.material.like
@@ -358,6 +364,12 @@ def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
     unit, of an elastic series, which has no modes.
     """
     return series.in_own_time() if series.E.size else (1.0, 1.0)
+
+
+def refuse_other_friction(law: LawTable, mu: Any) -> None:
+    """Raise ParameterError where ``mu`` is not that of a coupled table ``law``, which holds for one alone."""
+    if law.coupled is not None and not np.all(np.asarray(mu) == law.coupled.mu):
+        raise ParameterError("mu", format_value(mu), f"{law.coupled.mu!r}, for which the table was computed")
 
 
 def scale_of(roller: Any) -> Scale:

@@ -42,6 +42,8 @@ LAW = "law"
 AXIS = "axis"
 #: kind: the law of a layer of finite thickness
 COVER = "cover"
+#: kind: the coupled solution of one scene at nodes of speed and creep
+COUPLED = "coupled"
 
 
 class Kind(NamedTuple):
@@ -50,9 +52,10 @@ class Kind(NamedTuple):
     summary : beginning of the summary of the file.
     functions : name of each function in the order of its coefficients -> meaning.
     dims : dimensions of the coefficients.
-    terms : functions whose coefficients these are, in words.
+    terms : what the numbers of a function are, in words.
     others : name of each other variable -> (dimensions, meaning).
     comment : how the numbers are evaluated.
+    error : attribute of a function with its largest error.
     """
 
     summary: str
@@ -61,6 +64,7 @@ class Kind(NamedTuple):
     terms: str
     others: dict[str, tuple[tuple[str, ...], str]]
     comment: str
+    error: str = "largest_relative_error"
 
 
 _ROW = (
@@ -68,8 +72,10 @@ _ROW = (
     "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. "
 )
 _E0 = (), "row 0 covers [0, 2^e0)"
+#: end of a summary
+_ANY = "any speed, creep, kappa and mu, by two look-ups and no iteration."
 _LAW = Kind(
-    "The contact law of one material or pair as polynomials, one for each octave of speed: ",
+    "The contact law of one material or pair as polynomials, one for each octave of speed: " + _ANY,
     {
         "lam": "contact length divided by contact length at rest, as a function of kappa |V|",
         "epsilon": "shift of the contact divided by half its length, as a function of kappa |V|",
@@ -80,7 +86,7 @@ _LAW = Kind(
         "press": "H(eta)/F(eta)^2, as a function of v = 1/F(eta)",
     },
     ("octave", "power"),
-    "powers of t",
+    "coefficients of powers of t",
     {
         "e0": _E0,
         "alpha": ((), "instantaneous modulus divided by long-time modulus"),
@@ -108,8 +114,36 @@ _LAW = Kind(
 _OF_SPEED = ("lam", "epsilon", "m_half_space", "m_cylinder", "share", "press")
 KINDS = {
     LAW: _LAW,
+    COUPLED: Kind(
+        "The coupled solution of rolling with partial slip of one scene, at nodes of speed and creep: ",
+        {
+            "Q_over_mu": "traction divided by mu and load",
+            "M_half_space": "kappa M_half_space",
+            "M_cylinder": "kappa M_cylinder",
+            "lam": "contact length divided by l0",
+            "epsilon": "shift of the contact divided by half its length",
+            "beta": "length of the stick zone divided by that of the contact",
+            "work_half_space": "2 kappa times the integral of traction and strain of the half-space",
+            "work_cylinder": "2 kappa times the integral of traction and strain of the cylinder",
+        },
+        ("row", "place"),
+        "values at nodes",
+        {
+            "u": (("speed",), "nodes of kappa |V|"),
+            "t": (("place",), "nodes of the place in creep"),
+            "edges": (("row", "edge"), "2 kappa times the creepages: middle, onset of negative slip, of positive, free"),
+            "mu": ((), "coefficient of friction"),
+            "alpha": _LAW.others["alpha"],
+            "T_ref": _LAW.others["T_ref"],
+        },
+        "Rows: u = 0, the nodes of u, u infinite; between nodes cubic splines in ln u, below the first one linear in u, "
+        "beyond the last one linear in 1/u, joined smoothly. D = 2 kappa delta; onset: that of positive slip where "
+        "D > middle, else of negative; w = (D - middle)/(onset - middle), at most 1; t = +-(1 - (1 - w)^(2/3))^(1/2), "
+        "the sign of D - middle; clamped cubic splines in t on either side of t = 0. For V < 0 Q and M change sign.",
+        "largest_error",
+    ),
     COVER: Kind(
-        "The contact law of a layer of finite thickness at one l0/h as polynomials, one for each octave of speed: ",
+        "The contact law of a layer of finite thickness at one l0/h as polynomials, one for each octave of speed: " + _ANY,
         {name: _LAW.functions[name] for name in _OF_SPEED}
         | {
             "limit": "2 kappa delta_star/mu, as a function of kappa |V|",
@@ -121,7 +155,7 @@ KINDS = {
             "epsilon_Q": "slope of epsilon in Q, as a function of kappa |V|",
         },
         ("octave", "power"),
-        "powers of t",
+        "coefficients of powers of t",
         {
             "e0": _E0,
             "alpha": _LAW.others["alpha"],
@@ -143,7 +177,7 @@ KINDS = {
         "share = lam/L and in first order 2 (b L_1 - lam a)/(L_1^3 v) more, b that of lam.",
     ),
     AXIS: Kind(
-        "The contact law of one relaxation time as polynomials of speed and of ln alpha: ",
+        "The contact law of one relaxation time as polynomials of speed and of ln alpha: " + _ANY,
         {
             "lam": _LAW.functions["lam"],
             "epsilon": "shift of the contact divided by half its length and by c, as a function of kappa |V|",
@@ -153,7 +187,7 @@ KINDS = {
             "press": _LAW.functions["press"],
         },
         ("octave_of_alpha", "degree", "octave", "power"),
-        "T_j(s) and of powers of t",
+        "coefficients of T_j(s) and of powers of t",
         {
             "first": ((), "log2 of the lowest alpha"),
             "rows": (
@@ -224,7 +258,7 @@ def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], *
     about = KINDS[kind]
     data = {}
     for n, (name, meaning) in enumerate(about.functions.items()):
-        labels = {"long_name": f"coefficients of {about.terms}: {meaning}", "largest_relative_error": errors[name]}
+        labels = {"long_name": f"{about.terms}: {meaning}", about.error: errors[name]}
         data[name] = xr.Variable(about.dims, law.coefficients[..., n], labels)
     for name, (dims, meaning) in about.others.items():
         value = np.asarray(getattr(law, name))
@@ -233,7 +267,7 @@ def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], *
         data[name] = xr.Variable(dims, value, {"long_name": meaning, **unit})
     dataset = xr.Dataset(data, attrs={
         "Conventions": "CF-1.11, ACDD-1.3", "title": f"Contact law of rolling with partial slip: {title}",
-        "summary": about.summary + "any speed, creep, kappa and mu, by two look-ups and no iteration.",
+        "summary": about.summary,
         "keywords": "rolling contact, viscoelasticity, rolling resistance", KIND: kind, SCHEMA: np.int32(VERSION),
         **attributes, "comment": about.comment, "references": PAPER, "source": f"viscoroll {__version__}",
         "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}", "license": "BSD-3-Clause",
@@ -242,9 +276,9 @@ def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], *
 
 
 def stated_errors(dataset: Any) -> dict[str, float]:
-    """Return the largest relative error of every function that the ``dataset`` of a law states."""
-    functions = KINDS[dataset.attrs[KIND]].functions
-    return {name: float(dataset[name].attrs["largest_relative_error"]) for name in functions}
+    """Return the largest error of every function that the ``dataset`` of a law states: relative, of a table absolute."""
+    kind = KINDS[dataset.attrs[KIND]]
+    return {name: float(dataset[name].attrs[kind.error]) for name in kind.functions}
 
 
 def is_law(path: str | PathLike[str]) -> bool:
@@ -261,7 +295,7 @@ def is_law(path: str | PathLike[str]) -> bool:
         content = read_content(path, "material or law of viscoroll", "write it again")
     except OSError:  # no HDF5: the reader of materials reports that
         return False
-    return str(content.attributes.get(KIND)) in (LAW, COVER)
+    return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
 
 
 def read_law(path: str | PathLike[str]) -> Content:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 import warnings
 from argparse import ArgumentTypeError, Namespace
 from pathlib import Path
@@ -90,6 +91,31 @@ def build(arguments: Namespace) -> None:
     """
     axes = {name: getattr(arguments, name) for name in ("V", "delta", "alpha", "method")}
     vr.tables.export(vr.tables.build(roller_of_argument(arguments.scene), **axes), arguments.output)
+    _print_size(arguments.output)
+
+
+@command(
+    "tables grid", SCENE,
+    option("--method", default="coupled", choices=("coupled",), help="coupled (default): pressure and shear are solved "
+           "together"),
+    option("--nodes", type=int, nargs=2, metavar=("SPEEDS", "CREEPS"), help="numbers of nodes (default: 32 for five "
+           "decades of speed, 33)"),
+    output(".nc", ".cdf"),
+)  # fmt: skip
+def grid(arguments: Namespace) -> None:
+    """Compute the coupled solution of a roller over speed and creep as a law, write it, and print the size of the file.
+
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        method, "coupled";
+        nodes, [over speed, over creep], or None;
+        output, path that is written; its suffix is the format: .nc or .cdf.
+    Raises ParameterError for numbers of nodes, FileError for a file that cannot be read or written.
+    """
+    nodes = None if arguments.nodes is None else tuple(arguments.nodes)
+    roller = roller_of_argument(arguments.scene)
+    table = vr.tables.build(roller, method="coupled", nodes=nodes, progress=sys.stderr.isatty())
+    vr.tables.export(table, arguments.output)
     _print_size(arguments.output)
 
 

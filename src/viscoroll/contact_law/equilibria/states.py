@@ -29,6 +29,7 @@ from ..contact_table import evaluate_law
 from .cover_balance import creep_at_rest, shear_at
 from .loads import Gains, Loads
 from .resistance import branches
+from .table_balance import balance, moments_of_losses, rest_on_table
 
 #: loads of one block of work: some milliseconds
 _BLOCK = 1 << 12
@@ -131,6 +132,8 @@ class States(NamedTuple):
         of the less stable direction, 0 for elastic bodies without gains; delta and omega are NaN where the friction
         does not suffice, |Q| >= mu.
         """
+        if law.coupled is not None:
+            return cls._at_rest_on_table(loads, load, law)
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
         limit, free = creep_at_rest(law)
         kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
@@ -155,6 +158,17 @@ class States(NamedTuple):
             turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
             rate = on_spin * push + on_axis * turn
             rows[Field.SLOW] = np.maximum(rows[Field.SLOW], -rate / (on_spin + j * on_axis * (1.0 + creep)))
+        return cls(load, rows)
+
+    @classmethod
+    def _at_rest_on_table(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
+        """Return the states of rest on a table; arguments as of :meth:`at_rest`."""
+        rows = np.zeros((2 + len(_ROWS), load.size))
+        rows[Field.DELTA], found, rate = rest_on_table(law, loads, load)
+        rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.BETA]] = found
+        rows[Field.OMEGA] = 0.0 * rows[Field.DELTA]
+        rows[Field.FAST] = -np.inf
+        rows[Field.SLOW] = -rate
         return cls(load, rows)
 
     @classmethod
@@ -292,6 +306,14 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     """
     gains, kappa, mu = loads.gains, loads.kappa[load], loads.mu[load]
     force, torque = sign * loads.force[load] + gains.force_V * V, sign * loads.torque[load] + gains.torque_V * V
+    if law.coupled is not None:
+        spin = loads.given == "torque"
+        delta, rest = balance(law, kappa, mu, V, torque if spin else -force, spin)
+        rows = state_rows(law, kappa, mu, V, delta)
+        losses = moments_of_losses(law, kappa, V, delta)
+        rows[Field.DELTA, rest != 0.0] = np.nan
+        rows[Field.Q] += rest
+        return States.of(loads, load, sign, rows, losses)
     delta_0 = free_creep(law, kappa, mu, V)
     free = contact_fields_at(law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta")
     if law.cover is None:

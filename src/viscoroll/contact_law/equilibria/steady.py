@@ -25,6 +25,7 @@ from .resistance import LEAST_LOAD, MOST_LOAD, branches
 from .result import Diagnosis, Steady, pack_result
 from .scan import scan_states
 from .states import Field, States, find_crossings, states_at
+from .table_balance import find_speeds_on_table, rests_on_table
 
 
 def steady(
@@ -129,7 +130,7 @@ def steady(
         rolling = States.joined(rolling, States.at_rest(loads, resting, law))
     existing = rolling.existing()
     count = np.bincount(existing.load, minlength=loads.mu.size)
-    maximum = (math.nan, math.nan) if gained or elastic else branches(law, 0.0).maximum
+    maximum = (math.nan, math.nan) if gained or elastic or law.coupled is not None else branches(law, 0.0).maximum
     states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
     reasons = Diagnosis(loads, states, count, maximum, neutral)
     found = pack_result(loads, existing, reasons, scale, labels)
@@ -148,7 +149,7 @@ def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
-    rests = is_balanced_at_rest(law, loads)
+    rests = rests_on_table(law, loads) if law.coupled is not None else is_balanced_at_rest(law, loads)
     return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 
@@ -171,6 +172,9 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
     if not gain and law.alpha == 1.0:
         return States.none()
+    if law.coupled is not None:
+        load, sign, V = find_speeds_on_table(law, loads)
+        return states_at(law, loads, load, sign, V)
     if law.cover is not None:
         load, sign, V = find_speeds_of_cover(law, loads)
         return states_at(law, loads, load, sign, V)

@@ -9,6 +9,7 @@ which a point passes through half the contact.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -16,9 +17,10 @@ from numpy.typing import ArrayLike
 
 from ...contact_law.contact import contact
 from ...core.array_types import Floats
-from ...core.errors import described_error
+from ...contact_law.coupled_table import coupled_law
+from ...core.errors import ParameterError, described_error
 from ...cylinder import Cylinder
-from ...materials.law.netcdf import bodies_as_toml
+from ...materials.law.netcdf import bodies_as_toml, law_as_dataset
 from ...materials.law.table import LawTable
 from ...materials.prony_forms import HIGHEST_ALPHA
 from ...scene import Scene
@@ -44,11 +46,13 @@ _CYLINDER_NUMBERS = ("R", "m", "mu", "load")
 
 def build(
     what: Scene | Cylinder | LawTable | xr.Dataset,
-    V: ArrayLike,
+    V: ArrayLike | None = None,
     *,
-    delta: ArrayLike,
+    delta: ArrayLike | None = None,
     alpha: ArrayLike | None = None,
-    method: Literal["table", "direct"] = "table",
+    method: Literal["table", "direct", "coupled"] = "table",
+    nodes: tuple[int, int] | None = None,
+    progress: bool = False,
     command: str | None = None,
 ) -> xr.Dataset:
     """Compute a table of the contact over (V, delta) or (V, delta, alpha), and its errors of interpolation.
@@ -68,7 +72,12 @@ def build(
         None: no such axis.
     method : "table": fields are evaluated from the rows of the law.  "direct": they are found by root solves of the
         equations as the paper prints them, which have one relaxation time; the rows are evaluated too, and the
-        attribute ``difference_from_rows`` of each field is the largest difference (:func:`differences`).
+        attribute ``difference_from_rows`` of each field is the largest difference (:func:`differences`).  "coupled":
+        pressure and shear are solved together, at nodes of speed and creepage that the package chooses, so that V,
+        delta and alpha are left out; the table is a law at this mu, which :func:`viscoroll.load_law` reads.
+    nodes : of method "coupled", numbers of nodes over speed and over creepage, the second odd; None: 32 for each five
+        decades between the rates of the bodies, and 33.
+    progress : of method "coupled", whether to draw a progress bar on standard error, after one second.
     command : recorded in ``history``; default: the command line of this process.
 
     Returns
@@ -113,6 +122,15 @@ def build(
     """
     import xarray as xr
 
+    if method == "coupled":
+        axes = {"V": V, "delta": delta, "alpha": alpha}
+        for name, given in axes.items():
+            if given is not None:
+                raise described_error(name, "is given", "left out: the method 'coupled' has nodes of its own")
+        return _coupled_dataset(roller_of(what, None), nodes, progress)
+    for name, given in {"V": V, "delta": delta}.items():
+        if given is None:
+            raise ParameterError(name, None, "given: the nodes of the axis")
     what = roller_of(what, alpha)
     si = isinstance(what, Cylinder)
     axes = {"V": increasing("V", V, unit=what.scale, above=0.0), "delta": increasing("delta", delta)}
@@ -140,6 +158,14 @@ def build(
         for name, difference in differences(table, what).items():
             table[name].attrs["difference_from_rows"] = difference
     return table
+
+
+def _coupled_dataset(roller: Scene | Cylinder, nodes: tuple[int, int] | None, progress: bool) -> xr.Dataset:
+    """Return the table of the coupled solution of one roller; arguments as of :func:`build`."""
+    law = coupled_law(roller.scene(), nodes=nodes, progress=progress)
+    if isinstance(roller, Cylinder):
+        law = replace(law, T_ref=roller.T_ref, pair=roller.pair)
+    return law_as_dataset(law, {})
 
 
 def _evaluate_nodes(roller: Scene | Cylinder, axes: dict[str, Floats], method: str) -> dict[str, Floats]:

@@ -208,7 +208,8 @@ def is_coasting(state, regime, step_state, work):
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
     return (
-        free_decay(work).rate > 0.0
+        by_value(work.scene.law).table is None  # that of a table comes to rest by the slip that remains
+        and free_decay(work).rate > 0.0
         and abs(state.omega_or_d) < _COASTING_D * rtol
         and is_unloaded(step_state.segment, work.drive)
     )

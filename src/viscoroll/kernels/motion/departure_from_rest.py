@@ -35,6 +35,7 @@ from ..compile.jit import inline_kernel, kernel
 from .drive import evaluate_load, has_brake, is_constant, segment_end
 from .law import added_inertia, reaction_at_rest, rest_limits
 from .records import REGIME_AT_REST, Load, Regime
+from .table_law import balance_of_table, pull_of_table
 
 #: Code of a departure: the cylinder stays at rest for a time.
 STAYS_AT_REST = 0
@@ -84,6 +85,21 @@ def _leverage(used, scene):
 
 
 @inline_kernel
+def _pull(d, scene):
+    """Return what friction does at V = 0: force on the axis, torque against the spin, and their derivatives in d.
+
+    d: float, in [-1, 1].
+    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
+    """
+    used = abs(d) * (2.0 - abs(d))
+    Q = scene.mu * d * (2.0 - abs(d))
+    dQ_dd = 2.0 * scene.mu * (1.0 - abs(d))
+    on_axis, on_spin, axis_dQ, spin_dQ = _leverage(used, scene)
+    rows = Q * on_axis, Q * on_spin, axis_dQ * dQ_dd, spin_dQ * dQ_dd
+    return pull_of_table(d, scene.kappa, scene.mu, rows, by_value(scene.law).table)
+
+
+@inline_kernel
 def _residual_of_d(d, load, scene):
     """Evaluate the equation of d at V = 0, of the module: its left side less its right side, divided by L.
 
@@ -92,16 +108,14 @@ def _residual_of_d(d, load, scene):
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
     Returns (residual, its slope in d, V'), floats, dimensionless; V' is in the direction of ``load``, of either sign.
     """
-    Q = scene.mu * d * (2.0 - abs(d))
-    dQ_dd = 2.0 * scene.mu * (1.0 - abs(d))
-    on_axis, on_spin, axis_dQ, spin_dQ = _leverage(abs(d) * (2.0 - abs(d)), scene)
-    V_rate = load.inverse_mass * (Q * on_axis + load.force) + load.prescribed_V_rate
-    omega_rate = load.inverse_inertia * (load.torque - Q * on_spin) + load.prescribed_omega_rate
-    L, delta_0 = rest_limits(scene)
+    axis, spin, axis_dd, spin_dd = _pull(d, scene)
+    V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
+    omega_rate = load.inverse_inertia * (load.torque - spin) + load.prescribed_omega_rate
+    L, delta_0 = rest_limits(scene, np.copysign(1.0, d))
     inverse_k = 2.0 * scene.kappa / scene.mu / L
     d_total = d + delta_0 * inverse_k
-    slope = -(load.inverse_inertia * spin_dQ + load.inverse_mass * axis_dQ) * dQ_dd * inverse_k
-    slope = slope - V_rate - d_total * load.inverse_mass * axis_dQ * dQ_dd
+    slope = -(load.inverse_inertia * spin_dd + load.inverse_mass * axis_dd) * inverse_k
+    slope = slope - V_rate - d_total * load.inverse_mass * axis_dd
     return (omega_rate - V_rate) * inverse_k - d_total * V_rate, slope, V_rate
 
 
@@ -114,7 +128,7 @@ def _d_at_zero_omega(scene):
 
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
     """
-    L, delta_0 = rest_limits(scene)
+    L, delta_0 = rest_limits(scene, -1.0)
     return -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
 
 
@@ -134,8 +148,7 @@ def _spin_against_brake(load, scene):
     d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
         return 1.0, False
-    on_spin = _leverage(-d_zero * (2.0 + d_zero), scene)[1]
-    torque = load.torque - scene.mu * d_zero * (2.0 + d_zero) * on_spin
+    torque = load.torque - _pull(d_zero, scene)[1]
     return np.sign(torque), abs(torque) <= load.brake
 
 
@@ -301,7 +314,8 @@ def holding_margin(load, scene):
     if load.inverse_inertia == 0.0:
         return mu - Q
     rest = abs(np.copysign(torque, load.force) + load.torque)
-    return min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE else 0.0))
+    margin = min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE else 0.0))
+    return balance_of_table(load, scene.kappa, mu, margin, by_value(scene.law).table)
 
 
 @kernel
@@ -371,13 +385,12 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
     The third entry, 0.0, is omega.
     """
     scene = work.scene
-    L, free_creep = rest_limits(scene)
     load = evaluate_load(tau, segment, Regime(True, 1.0, 1.0, 0.0, False), work)
-    on_axis, on_spin, _, _ = _leverage(1.0, scene)
     for sigma in (1.0, -1.0):
-        Q = sigma * scene.mu
-        V_rate = load.inverse_mass * (Q * on_axis + load.force) + load.prescribed_V_rate
-        torque = load.torque - Q * on_spin
+        L, free_creep = rest_limits(scene, sigma)
+        axis, spin, _, _ = _pull(sigma, scene)
+        V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
+        torque = load.torque - spin
         spin_sign = np.sign(torque) if braked and abs(torque) > load.brake else 0.0
         locked = braked and spin_sign == 0.0
         omega_rate = load.inverse_inertia * (torque - spin_sign * load.brake) + load.prescribed_omega_rate

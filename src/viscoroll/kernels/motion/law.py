@@ -24,6 +24,7 @@ from ..compile.jit import inline_kernel, kernel
 from ..rows.added_mass import added_mass
 from ..rows.cover import MomentChange, moment_change, shear_reaction
 from ..rows.evaluate import body_moments, free_creep_and_slopes, length_and_moment, limits_at_rest, locate_row
+from .table_law import Width, strain_power, width_at
 
 
 @inline_kernel
@@ -121,6 +122,7 @@ def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
     """
     change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
     by_shear = V * change.half_space + omega * change.cylinder
+    by_shear -= strain_power(V, omega, scene.kappa, by_value(scene.law).table)
     return (omega - V) * Q + by_shear, V * M_half_space + omega * M_cylinder - by_shear
 
 
@@ -137,15 +139,20 @@ def reaction_at_rest(scene):
 
 
 @inline_kernel
-def rest_limits(scene):
+def rest_limits(scene, sigma=1.0):
     """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for half-spaces.
 
     L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.  Departure from rest and exponential decay
     are decided with these limits; :func:`.evaluate.limits_at_rest` gives them for a law.
 
-    scene: Scene, of which kappa and ``law`` are read.
+    scene: Scene, of which kappa and ``law`` are read, and mu of a table.
+    sigma: float, side of d, 1.0 or -1.0, on which L of a table depends; its delta_0 is the creepage of d = 0.
     """
-    return limits_at_rest(scene.kappa, by_value(scene.law))
+    law = by_value(scene.law)
+    L, delta_0 = limits_at_rest(scene.kappa, law)
+    rows = Width(L, 0.0, 0.0, 2.0 * scene.kappa * delta_0, 0.0, 0.0)
+    width = width_at(0.0, sigma, scene.mu, rows, law.table)
+    return width.L, 0.5 / scene.kappa * width.middle
 
 
 @kernel
@@ -203,17 +210,26 @@ def free_decay(work):
 
 
 @inline_kernel
-def critical_creepage(V, scene):
+def _width(V, sigma, scene):
+    """Return the :class:`.table_law.Width` at a speed V of either sign on the side sigma, without derivatives."""
+    u, law = scene.kappa * abs(V), by_value(scene.law)
+    L = length_and_moment(locate_row(u, law), u, law).L
+    rows = Width(L, 0.0, 0.0, free_creep_and_slopes(u, law)[0], 0.0, 0.0)
+    return width_at(u, sigma, scene.mu, rows, law.table)
+
+
+@inline_kernel
+def critical_creepage(V, sigma, scene):
     """Return the critical creepage delta_star, Eq. (9), at which the whole contact slips, dimensionless.
 
     On a cover it is the excess over the creepage of free rolling.  It is above 0, even in V, and mu L/(2 kappa) with L
     of :func:`rest_limits` at V = 0.
 
     V: float, speed of the axis of either sign, finite, dimensionless.
+    sigma: float, sign of the slip, 1.0 or -1.0, on which that of a table depends.
     scene: Scene, of which kappa, mu and ``law`` are read.
     """
-    u, law = scene.kappa * abs(V), by_value(scene.law)
-    return 0.5 * scene.mu / scene.kappa * length_and_moment(locate_row(u, law), u, law).L
+    return 0.5 * scene.mu / scene.kappa * _width(V, sigma, scene).L
 
 
 @inline_kernel
@@ -226,9 +242,8 @@ def creepage(V, d, scene):
     scene: Scene, of which kappa, mu and ``law`` are read.
     Returns a float, dimensionless; omega = V (1 + delta) follows from it.
     """
-    u, law = scene.kappa * abs(V), by_value(scene.law)
-    delta = critical_creepage(V, scene) * d
-    return delta if law.cover_rows is None else delta + 0.5 / scene.kappa * free_creep_and_slopes(u, law)[0]
+    width = _width(V, np.copysign(1.0, d), scene)
+    return 0.5 * scene.mu / scene.kappa * width.L * d + 0.5 / scene.kappa * width.middle
 
 
 @inline_kernel
@@ -241,10 +256,7 @@ def excess_slip(slip, V, scene):
     Returns a float, signed, dimensionless; full slip begins where its modulus is delta_star |V|.  At V = 0 it is
     ``slip``.
     """
-    law = by_value(scene.law)
-    if law.cover_rows is None:
-        return slip
-    return slip - V * (0.5 / scene.kappa * free_creep_and_slopes(scene.kappa * abs(V), law)[0])
+    return slip - V * (0.5 / scene.kappa * _width(V, 1.0, scene).middle)
 
 
 @inline_kernel
@@ -314,4 +326,4 @@ def stick_edge_function(V, omega_or_d, regime, scene):
     if not regime.full_slip:
         n, _, _ = added_inertia(V, scene)
         return (1.0 - regime.sigma * omega_or_d) * added_mass_margin(n, scene.j)
-    return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(V, scene) * abs(V)
+    return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(V, regime.sigma, scene) * abs(V)

@@ -294,8 +294,9 @@ def initial_regime(V, omega, step_state, work):
         omega = V * omega_over_V
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V, omega = direction * V, direction * omega
-    slip, limit = excess_slip(omega - V, V, work.scene), critical_creepage(V, work.scene) * V
+    slip = excess_slip(omega - V, V, work.scene)
     sigma = 1.0 if slip >= 0.0 else -1.0
+    limit = critical_creepage(V, sigma, work.scene) * V
     state, regime = State(V, omega), Regime(True, direction, sigma, 0.0, False)
     if V == 0.0:
         return state, regime, False

@@ -55,6 +55,7 @@ from ..rows.evaluate import H_over_F2, H_over_F2_secants, locate_row
 from .drive import current_load, load_at_node
 from .law import added_inertia, evaluate_moments, loaded_moments
 from .records import State
+from .table_law import Width, free_creep_of_table, loads_on_rows, table_state, width_at
 from .workspace import ROW_OMEGA_OR_D, ROW_V
 
 #: k relative to the smallest k at which dp/dV may vanish at d = -1, above which V is collocated, dimensionless: below
@@ -204,14 +205,19 @@ def partial_slip_rates(V, d, load, regime, scene):
             value, _, secant, _ = H_over_F2_secants(index, locate_row(2.0 * u / L, law), v, D / w, law)
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * secant)
         Q_V, Q_d = -2.0 * sign * mu * w * (A * stick * dL + slope) * du_dV, 2.0 * mu * w * L * A
+    width = width_at(u, sign, mu, Width(L, dL, ddL, 0.0, 0.0, 0.0), law.table)
+    L, dL, ddL = width.L, width.dL, width.ddL
     dVdelta_star = L + u * dL
     cover = free_kinematics(locate_row(u, law), u, scene.kappa, k, dVdelta_star, law.cover_rows)
+    cover = free_creep_of_table(width, u, scene.kappa, k, cover, law.table)
     d_total = d + cover.aside
     omega, omega_V, omega_d = V * (1.0 + k * L * d + cover.creep), 1.0 + k * d_total * dVdelta_star, k * V * L
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
-    moments = loaded_moments(V, du_dV, Q, Q_V, Q_d, free, scene)
+    on_rows = loads_on_rows(Q, Q_V, Q_d, loaded_moments(V, du_dV, Q, Q_V, Q_d, free, scene))
+    moments = table_state(V, d, sign, scene.kappa, mu, on_rows, law.table)
+    Q, Q_V, Q_d = moments.Q, moments.Q_dV, moments.Q_dd
     M_half_space = moments.half_space
     M_cylinder = moments.cylinder
     inverse_mass, inverse_inertia = load.inverse_mass, load.inverse_inertia
@@ -273,6 +279,8 @@ def full_slip_rates(V, omega, load, regime, scene):
     gains = load.gains
     free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
     moments = loaded_moments(V, scene.kappa if V >= 0.0 else -scene.kappa, Q, 0.0, 0.0, free, scene)
+    on_rows = loads_on_rows(Q, 0.0, 0.0, moments)
+    moments = table_state(V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table)
     M_half_space = moments.half_space
     M_cylinder = moments.cylinder
     V_rate = load.inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate

@@ -75,6 +75,8 @@ class Law(NamedTuple):
     source : address of the record that these two kernels read, SOURCE of their module; 0 if all rows are complete.
     cover_rows : vector of the numbers that only a cover has (:mod:`cover`); None of half-spaces, whose kernels are
         compiled without.
+    table : vector of the law as a table of one scene (:mod:`..splines.table`), which is then the law; None without,
+        and kernels are compiled without.
     """
 
     rows: Any
@@ -84,6 +86,7 @@ class Law(NamedTuple):
     maker: int
     source: int
     cover_rows: Any = None
+    table: Any = None
 
 
 @inline_kernel

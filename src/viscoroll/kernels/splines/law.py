@@ -1,97 +1,268 @@
-"""The law of a grid at one alpha as a C function, like :mod:`..rows.c_function`: splines in ln |V| and delta.
+"""The law of a table (:mod:`.table`) at states: many at a time, and as a C function like :mod:`..rows.c_function`.
 
-``int law(double V, double omega, double out[8], void *grid)``; ``grid`` is its user data, a :data:`GRID`.
-
-Below the slowest speed of the grid Q is that of the slowest at the same creepage, and M is in proportion to V, so that
-it is 0 at V = 0.  Beyond both ends of delta |Q| is mu P, if the grid slips fully there.  In all other states outside of
-the grid the status is not 0.  The creepage is delta = (omega R - V)/V, infinite for V = 0 with omega not 0.
+Loads are odd in (V, omega), so that the table is read at |V|; V = 0 counts as V > 0.  In full slip Q does not depend on
+the creep.  Symbols are those of :mod:`.table`; all is dimensionless but what is said to be in units of a caller.
 """
+
+from typing import NamedTuple
 
 import numpy as np
 from numba import carray
-from numpy.typing import NDArray
 
 from ..compile.intrinsics import floats_at, record_at, record_type
-from ..compile.jit import kernel
+from ..compile.jit import inline_kernel, kernel
 from ..rows.c_function import RESULTS, c_function_address, refuse
+from ..rows.contact_states import read_state, slip_and_creepage, write_field
 from ..rows.jitted_law import Jitted
-from .spline import HIGH, evaluate
-
-#: User data.  function: address of the C function.  slopes: whether slopes are asked for.  Of each spline its address
-#: and size.  slips: whether the grid slips fully at both ends of delta.  slowest: least V.  low, high: ends of delta.
-#: R: radius, which turns omega into a speed.
-GRID = record_type(
-    "function slopes Q M_half_space M_cylinder Q_size M_half_space_size M_cylinder_size slips", "slowest low high R"
+from .table import (
+    CYLINDER,
+    FIELD_COUNT,
+    FREE,
+    HALF_SPACE,
+    LENGTH,
+    LIMIT,
+    MIDDLE,
+    MOST,
+    ONSET,
+    SHIFT,
+    SLIPS,
+    STICK,
+    TRACTION,
+    edge_at,
+    field_at,
+    locate_creep,
+    locate_speed,
+    place_of,
 )
+
+#: User data.  function: address of the C function.  slopes: whether slopes are asked for.  table, size: address and
+#: length of the table.  kappa, mu: of the scene.  V, omega, Q, M: 1 of each in the units of the caller.
+TABLE = record_type("function slopes table size", "kappa mu V omega Q M")
+
+
+#: Bisections of d in [-1, 1], to rounding.
+_HALVINGS = 53
+
+
+class Load(NamedTuple):
+    """A load of a state: its value; dV, its slope over V at fixed creepage; ddelta, that over the creepage."""
+
+    value: float
+    dV: float
+    ddelta: float
+
+
+@inline_kernel
+def _load(name, factor, V, kappa, u, state, speed, place, table):
+    """Return a field times a factor as a :class:`Load`, which is odd in V.
+
+    name : TRACTION, HALF_SPACE or CYLINDER.
+    factor : mu of Q, 1/kappa of a moment.
+    V, kappa, u : speed of the axis, slenderness, kappa |V|.
+    state, speed, place : of :func:`.table.place_of`, :func:`.table.locate_speed` and :func:`.table.locate_creep`.
+    """
+    found = field_at(name, state.w, speed, place, table)
+    sign = np.copysign(1.0, V)
+    dV = factor * kappa * (found.du + found.dw * state.dw_du)
+    return Load(sign * factor * found.value, dV, sign * factor * 2.0 * kappa * found.dw * state.dw_dD)
+
+
+@inline_kernel
+def _traction(mu, V, kappa, u, state, speed, place, table):
+    """Return Q as a :class:`Load`; arguments as of :func:`_load`.  It is at most mu LIMIT, with slopes 0 there."""
+    limit = mu * table[LIMIT]
+    found = _load(TRACTION, mu, V, kappa, u, state, speed, place, table)
+    if state.w < 1.0 and abs(found.value) <= limit:
+        return found
+    sign = np.copysign(1.0, V)
+    full = sign * state.sigma * limit
+    if abs(full) < np.inf:
+        return Load(full, 0.0, 0.0)
+    return found
+
+
+@inline_kernel
+def _at_fixed_omega(load, V, delta):
+    """Return (slope of a load over V at fixed omega, that over omega), floats; infinite at V = 0 where it depends on
+    the creepage.
+    """
+    if load.ddelta == 0.0:
+        return load.dV, 0.0
+    return load.dV - load.ddelta * (1.0 + delta) / V, load.ddelta / V
 
 
 @kernel(allocates=True)
-def _grid_law(V, omega, pointer, grids):
-    """Evaluate the splines of a grid at one state and write the results; it is the C function of the grid.
+def look_up(table, u, D):
+    """Return all fields of a table at speeds kappa |V| and creeps 2 kappa delta, both (n,), as (n, fields)."""
+    out = np.empty((u.size, np.int64(table[FIELD_COUNT])))
+    for n in range(u.size):
+        speed = locate_speed(u[n], table)
+        state = place_of(D[n], u[n], speed, table)
+        place = locate_creep(state.w, state.sigma, table)
+        for name in range(out.shape[1]):
+            out[n, name] = field_at(name, state.w, speed, place, table).value
+    return out
 
-    V, omega : speed of the axis and angular velocity in the units of the grid, of any sign.
-    pointer : address of RESULTS numbers, of which the first four are written: Q, M, M_half_space, M_cylinder; then,
-        if ``grid.slopes``, dQ/dV at fixed omega, dQ/domega at fixed V, dM_half_space/dV, dM_cylinder/dV and 0, 0 (M
-        does not
-        depend on omega), else these stay; all in the units of the grid.
-    grids : pointer to a GRID record: addresses of the splines and the bounds of the grid.
 
-    Both slopes of Q are 0 where Q does not depend on the creepage: beyond the ends of delta, and where it is clipped to
-    +-mu P.  At rest (V = omega = 0) they are infinite.  V = 0 counts as rolling in the direction V > 0.
+@kernel
+def table_loop(table, request, count):
+    """Write the requested fields of states.
 
-    Returns the status, an int: 0; or 1, and all results are NaN, where |V| is above the grid, V or omega is not
-    finite, or delta is outside a grid that does not slip fully at its ends.
+    table : vector of :mod:`.table`, with all fields.
+    request : :class:`..rows.contact_states.Request`, of which ``order`` is not read; its ``out`` is written.
+    count : number of states.
+    """
+    for n in range(count):
+        _write_state(table, read_state(request.states, n), n, request)
+
+
+@inline_kernel
+def _write_state(table, given, n, request):
+    """Write the requested fields of one state, number ``n``; ``given``: :class:`..rows.contact_states.State`."""
+    to = request.to
+    kappa = given.kappa
+    V = given.V
+    u = kappa * abs(V)
+    _, delta = slip_and_creepage(given)
+    D = 2.0 * kappa * delta
+    speed = locate_speed(u, table)
+    state = place_of(D, u, speed, table)
+    place = locate_creep(state.w, state.sigma, table)
+    write_field(to.delta, delta, n, request)
+    write_field(to.full_slip, np.float64(state.w >= 1.0), n, request)
+    if max(to.lam, to.zeta) >= 0:
+        lam = field_at(LENGTH, state.w, speed, place, table).value
+        write_field(to.lam, lam, n, request)
+        write_field(to.zeta, 0.5 * lam / u, n, request)
+    if to.epsilon >= 0:
+        write_field(to.epsilon, field_at(SHIFT, state.w, speed, place, table).value, n, request)
+    if to.beta >= 0:
+        stick = field_at(STICK, state.w, speed, place, table).value
+        write_field(to.beta, min(max(stick, 0.0), 1.0), n, request)
+    if max(to.delta_star, to.delta_0) >= 0:
+        free = edge_at(FREE, u, speed, table).value
+        onset = edge_at(ONSET + np.int64(D >= free), u, speed, table).value
+        write_field(to.delta_star, 0.5 * abs(onset - free) / kappa, n, request)
+        write_field(to.delta_0, 0.5 * free / kappa, n, request)
+    Q = _traction(given.mu, V, kappa, u, state, speed, place, table)
+    half_space = _load(HALF_SPACE, 1.0 / kappa, V, kappa, u, state, speed, place, table)
+    cylinder = _load(CYLINDER, 1.0 / kappa, V, kappa, u, state, speed, place, table)
+    write_field(to.Q, Q.value, n, request)
+    write_field(to.grip, 1.0 - abs(Q.value) / given.mu, n, request)
+    write_field(to.M, half_space.value + cylinder.value, n, request)
+    write_field(to.M_half_space, half_space.value, n, request)
+    write_field(to.M_cylinder, cylinder.value, n, request)
+    if max(to.dQ_ddelta, to.dQ_dV, to.dQ_domega, to.dM_ddelta, to.dM_dV, to.dM_domega) >= 0:
+        _write_slopes(Q, half_space, cylinder, given, delta, n, request)
+
+
+@inline_kernel
+def _write_slopes(Q, half_space, cylinder, given, delta, n, request):
+    """Write the requested slopes of one state, number ``n``: of Q and of the moments, each a :class:`Load`."""
+    to = request.to
+    V = given.V
+    M = Load(half_space.value + cylinder.value, half_space.dV + cylinder.dV, half_space.ddelta + cylinder.ddelta)
+    write_field(to.dQ_ddelta, Q.ddelta, n, request)
+    write_field(to.dM_ddelta, M.ddelta, n, request)
+    fixed = given.creep_is_omega
+    for load, over_V, over_omega in (
+        (Q, to.dQ_dV, to.dQ_domega), (M, to.dM_dV, to.dM_domega),
+        (half_space, to.dM_half_space_dV, to.dM_half_space_domega),
+        (cylinder, to.dM_cylinder_dV, to.dM_cylinder_domega),
+    ):  # fmt: skip
+        dV, domega = _at_fixed_omega(load, V, delta)
+        write_field(over_V, dV if fixed else load.dV, n, request)
+        write_field(over_omega, domega, n, request)
+
+
+@kernel(allocates=True)
+def _table_law(caller_V, caller_omega, pointer, scenes):
+    """Evaluate a table at one state and write the results; it is the C function of a table.
+
+    caller_V, caller_omega : speed of the axis and angular velocity in the units of the caller, of any sign.
+    pointer : address of RESULTS numbers, which are written in the units of the caller as by
+        :func:`..rows.c_function._evaluate`: without ``slopes`` the first four alone.
+    scenes : pointer to a TABLE record.
+    Returns the status, an int: 0; or 1, and all results are NaN, where |V| is above the table, V or omega is not finite,
+    or the creepage is outside of a table that does not slip fully at its ends.
     """
     out = carray(pointer, RESULTS)
-    grid = record_at(grids)
-    Q = floats_at(grid.Q, grid.Q_size)
-    sign = 1.0 if V >= 0.0 else -1.0
-    slip = omega * grid.R - V
-    speed = abs(V)
-    grid_V = max(speed, grid.slowest)
-    delta = sign * slip / speed if slip != 0.0 else 0.0
-    traction = evaluate(Q, grid_V, min(max(delta, grid.low), grid.high), 0.0)
-    half_space = evaluate(floats_at(grid.M_half_space, grid.M_half_space_size), grid_V, 0.0, 0.0)
-    cylinder = evaluate(floats_at(grid.M_cylinder, grid.M_cylinder_size), grid_V, 0.0, 0.0)
-    beyond = not grid.low <= delta <= grid.high
-    defined = abs(slip) < np.inf and speed < np.inf and half_space.value == half_space.value
-    if not defined or (beyond and not grid.slips):
+    scene = record_at(scenes)
+    table = floats_at(scene.table, scene.size)
+    V = caller_V / scene.V
+    slip = caller_omega / scene.omega - V
+    kappa = scene.kappa
+    u = kappa * abs(V)
+    if not (u <= table[MOST] and abs(slip) < np.inf):
         return refuse(out)
-    slow = speed < grid.slowest
-    part = speed / grid_V
-    ddelta = 0.0 if beyond else traction.ddelta
-    out[0] = sign * (np.copysign(Q[HIGH], delta) if beyond else traction.value)
-    out[2] = sign * part * half_space.value
-    out[3] = sign * part * cylinder.value
-    out[1] = out[2] + out[3]
-    if grid.slopes:
-        out[4] = out[5] = out[8] = out[9] = 0.0
-        if ddelta != 0.0:  # at rest infinite, like those of the law
-            out[4] = (0.0 if slow else traction.dV) - ddelta * (1.0 + delta) / speed
-            out[5] = ddelta * grid.R / speed
-        out[6] = half_space.value / grid_V if slow else half_space.dV
-        out[7] = cylinder.value / grid_V if slow else cylinder.dV
+    delta = slip / V if V != 0.0 else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
+    speed = locate_speed(u, table)
+    state = place_of(2.0 * kappa * delta, u, speed, table)
+    if state.w > 1.0 and table[SLIPS] == 0.0:
+        return refuse(out)
+    place = locate_creep(state.w, state.sigma, table)
+    Q = _traction(scene.mu, V, kappa, u, state, speed, place, table)
+    half_space = _load(HALF_SPACE, 1.0 / kappa, V, kappa, u, state, speed, place, table)
+    cylinder = _load(CYLINDER, 1.0 / kappa, V, kappa, u, state, speed, place, table)
+    out[0] = scene.Q * Q.value
+    out[1] = scene.M * (half_space.value + cylinder.value)
+    out[2] = scene.M * half_space.value
+    out[3] = scene.M * cylinder.value
+    if scene.slopes:
+        dQ_dV, dQ_domega = _at_fixed_omega(Q, V, delta)
+        half_space_dV, half_space_domega = _at_fixed_omega(half_space, V, delta)
+        cylinder_dV, cylinder_domega = _at_fixed_omega(cylinder, V, delta)
+        out[4] = scene.Q / scene.V * dQ_dV
+        out[5] = scene.Q / scene.omega * dQ_domega
+        out[6] = scene.M / scene.V * half_space_dV
+        out[7] = scene.M / scene.V * cylinder_dV
+        out[8] = scene.M / scene.omega * half_space_domega
+        out[9] = scene.M / scene.omega * cylinder_domega
     return 0
 
 
-def jitted_grid(splines: dict[str, NDArray[np.float64]], **numbers: float) -> Jitted:
-    """Return the law of a grid, tables of Q and M over V and delta, as a function for jitted code.
+def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
+    """Return the law of a table as a function for jitted code, :class:`Jitted`.
 
-    splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline (:mod:`.spline`), doubles, (numbers,), which
-        the law keeps alive.
-    numbers : fields of :data:`GRID` by name, in the units of the grid: slips (1 if the grid slips fully at both ends of
-        delta, else 0), slowest (least V), low and high (ends of delta), R (radius, which turns omega into a speed).
-
-    Returns the :class:`Jitted` law: (V, omega) -> :class:`LoadsAndSlopes`, ten floats in the units of the grid: Q, M,
-    M_half_space, M_cylinder and the slopes of :func:`_grid_law`; all NaN where the law of the grid is not defined.
-    Raises ValueError of numpy if a name is no field of GRID; that all are given is not checked.
+    table : vector of :mod:`.table`, which the law keeps alive with ``owner``.
+    kappa, mu : of the scene.
+    scale : "V", "omega", "Q" and "M" -> the unit of this dimensionless quantity in the units of the caller.
     """
-    grids = np.zeros(2, GRID)
-    grids["slopes"] = 0, 1
-    grids["function"] = c_function_address(_grid_law, GRID)
-    for name, spline in splines.items():
-        grids[name] = spline.ctypes.data
-        grids[f"{name}_size"] = spline.size
-    for name, number in numbers.items():
-        grids[name] = number
-    return Jitted(grids, splines)
+    function = c_function_address(_table_law, TABLE)
+    numbers = table.ctypes.data, table.size, kappa, mu, *(scale[name] for name in ("V", "omega", "Q", "M"))
+    return Jitted(np.array([(function, slopes, *numbers) for slopes in (0, 1)], TABLE), (table, owner))
+
+
+@kernel
+def balance_loop(table, kappa, mu, u, load, of_spin, out):
+    """Find the creeps at which friction is in balance with a load at given speeds V >= 0, by bisection of d = sigma w.
+
+    kappa, mu, u : slenderness, friction, kappa V, (n,) each.
+    load : value of Q - M_half_space, or where ``of_spin`` of Q + M_cylinder, (n,).
+    out : (n, 2), written: 2 kappa delta, within the onsets; what of ``load`` is not balanced, 0 but at an onset.
+    """
+    for n in range(u.size):
+        speed = locate_speed(u[n], table)
+        low = -1.0
+        high = 1.0
+        d = 0.0
+        found = 0.0
+        for step in range(_HALVINGS + 2):
+            d = -1.0 if step == 0 else 1.0 if step == 1 else 0.5 * (low + high)
+            sigma = 1.0 if d >= 0.0 else -1.0
+            place = locate_creep(abs(d), sigma, table)
+            found = mu[n] * field_at(TRACTION, abs(d), speed, place, table).value
+            if of_spin:
+                found += field_at(CYLINDER, abs(d), speed, place, table).value / kappa[n]
+            else:
+                found -= field_at(HALF_SPACE, abs(d), speed, place, table).value / kappa[n]
+            if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
+                break
+            if step > 1 and found < load[n]:
+                low = d
+            elif step > 1:
+                high = d
+        middle = edge_at(MIDDLE, u[n], speed, table).value
+        onset = edge_at(ONSET + np.int64(d >= 0.0), u[n], speed, table).value
+        out[n, 0] = middle + abs(d) * (onset - middle)
+        out[n, 1] = load[n] - found if abs(d) == 1.0 else 0.0

@@ -20,7 +20,7 @@ from ...core.checks import check_array, check_number
 from ...core.errors import FileError, OutOfTableError, ParameterError, describe_value, described_error
 from ...core.files import read_sealed
 from ...core.units import conversion_factor
-from .splines import fit_spline, pack_spline
+from .coupled_rows import CoupledRows
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -51,9 +51,9 @@ class LawGrid:
 
     Attributes
     ----------
-    splines : "Q", "M_half_space" and "M_cylinder" -> vector of a spline, as
-        :func:`viscoroll.materials.law.splines.pack_spline` writes it; Q divided by the load and M divided by load times
-        radius, or Q in N/m and M in N (N m per m of length).
+    rows : :class:`.coupled_rows.CoupledRows` over V and delta, of kappa = 1: Q over its limit, or itself without one,
+        and M, in the units of the grid.
+    most : largest abs(Q); 1 where it is not known.
     V : slowest and fastest speed, > 0; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
     slips : whether the contact slips fully at both ends of delta, at every speed: abs(Q) is at least 1 - 1e-5 of its
@@ -62,7 +62,8 @@ class LawGrid:
     title : title of the file; "of another program" without one.
     """
 
-    splines: dict[str, Floats]
+    rows: CoupledRows
+    most: float
     V: tuple[float, float]
     delta: tuple[float, float]
     slips: bool
@@ -292,16 +293,27 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     finite, speeds that are not positive, axes that do not increase or have a single node, other dimensions, or an R,
     or a mu and load, that are no finite numbers > 0.
     """
-    V, delta = check_array("V", table["V"].values, above=0.0), table["delta"].values
-    axes, splines = {"V": np.log(V), "delta": delta}, {}
-    most = friction_limit(table.attrs)
-    for name, over in {"Q": ("V", "delta"), "M_half_space": ("V",), "M_cylinder": ("V",)}.items():
-        field = table[name] if name in table else 0.5 * table["M"]
-        found = fit_spline(field.transpose(*over).values, [axes[each] for each in over], 3)
-        splines[name] = pack_spline(found, over, ("V",), (-most, most) if name == "Q" else (-np.inf, np.inf))
+    V = check_array("V", table["V"].values, above=0.0)
+    delta = table["delta"].values.astype(np.float64)
+    for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
+        if name not in table.attrs:
+            raise described_error(f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit")
+    limit = friction_limit(table.attrs)
+    most = limit if limit < np.inf else 1.0
+    Q = table["Q"].transpose("V", "delta").values
+    slips = bool((abs(Q[:, [0, -1]]) >= _FULL_SLIP * limit).all())
+    bodies = [table[name] if name in table else 0.5 * table["M"] for name in ("M_half_space", "M_cylinder")]
+    over_V = [np.broadcast_to(field.transpose("V").values[:, np.newaxis], Q.shape) for field in bodies]
+    fields = np.stack([Q / most, *over_V], axis=-1)
+    # at V = 0 Q as at the slowest speed, M = 0
+    fields = np.concatenate([fields[:1] * [1.0, 0.0, 0.0], fields, fields[-1:]])
+    middle, half = 0.5 * (delta[0] + delta[-1]), 0.5 * (delta[-1] - delta[0])
+    edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
+    t = np.concatenate([[-1.0], (delta[1:-1] - middle) / half, [1.0]])
+    rows = CoupledRows(
+        most, V, t, edges, fields, graded=False, fastest=V[-1], slips=slips, limit=1.0 if limit < np.inf else np.inf
+    )
     return LawGrid(
-        splines, V=(V[0], V[-1]), delta=(delta[0], delta[-1]),
-        slips=bool((abs(table["Q"].isel(delta=[0, -1])) >= (1.0 - _ROUNDING) * most).all()),
-        R=check_number("R", table.attrs["R"], above=0.0),
-        title=str(table.attrs.get("title", "of another program")),
+        rows, most, V=(V[0], V[-1]), delta=(delta[0], delta[-1]), slips=slips,
+        R=check_number("R", table.attrs["R"], above=0.0), title=str(table.attrs.get("title", "of another program")),
     )  # fmt: skip

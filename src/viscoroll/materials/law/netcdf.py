@@ -19,16 +19,17 @@ from ...core.errors import FileError, ParameterError, described_error
 from ...core.quantities import is_real
 from ..bodies import Bodies
 from ..cover import Cover
-from ..law_file import AXIS, COVER, KIND, KINDS, LAW, REMEDY, Content, make_dataset, read_law
+from ..law_file import AXIS, COUPLED, COVER, KIND, KINDS, LAW, REMEDY, Content, make_dataset, read_law
 from ..material import Material
 from ..material_toml import material_as_toml, parse_materials, parse_series, series_as_toml
 from ..pair import Pair
 from ..prony import Prony, lock_array
 from ..prony_forms import HIGHEST_ALPHA
 from .alpha_axis import LawAxis
+from .coupled_rows import FIELDS, CoupledRows
 from .grid import load_grid
 from .pack import COVER_FUNCTIONS, CoverRows, steady_columns, steady_table
-from .table import LawTable, law_table, make_table
+from .table import LawTable, coupled_table, law_table, make_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -77,6 +78,13 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
     """
     if isinstance(law, LawAxis):
         return make_dataset(law, AXIS, "alpha = {:g} to {:g}".format(*law.alpha), errors)
+    text = ("" if law.pair is None else f"{bodies_as_toml(law.pair)}\n") + bodies_as_toml(law.material)
+    if law.coupled is not None:
+        rows = law.coupled
+        numbers = SimpleNamespace(
+            coefficients=rows.fields, u=rows.u, t=rows.t, edges=rows.edges, mu=rows.mu, alpha=law.alpha, T_ref=law.T_ref
+        )
+        return make_dataset(numbers, COUPLED, f"{_title(law)}, mu = {rows.mu:g}", rows.errors, material=text)
     if law.cover is None:
         bodies, material = "unlike" if law.unlike else "alike", bodies_as_toml(law.pair or law.material)
         return make_dataset(law, LAW, _title(law), errors, bodies=bodies, material=material)
@@ -85,7 +93,6 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
         coefficients=np.concatenate([steady_columns(law.steady_coefficients), creep], axis=-1), limits=law.cover.limits,
         **{name: getattr(law, name) for name in _COVER_NUMBERS},
     )  # fmt: skip
-    text = ("" if law.pair is None else f"{bodies_as_toml(law.pair)}\n") + bodies_as_toml(law.material)
     return make_dataset(numbers, COVER, _title(law), errors, material=text)
 
 
@@ -169,7 +176,11 @@ def parse_law(content: Content, path: Any) -> LawTable:
         )
     with _refuse_incomplete(path):
         given, pair = _parse_bodies(attributes["material"], path)
-        coefficients, e0 = _coefficients(content), int(numbers["e0"])
+        coefficients = _coefficients(content)
+        if kind == COUPLED:
+            law = coupled_table(given, _parse_rows(coefficients, numbers))
+            return replace(law, T_ref=float(numbers["T_ref"]), pair=pair)
+        e0 = int(numbers["e0"])
         if kind == COVER:
             functions = np.moveaxis(coefficients, -1, 0)
             table, creep = steady_table(functions[: -len(COVER_FUNCTIONS)]), functions[-len(COVER_FUNCTIONS) :]
@@ -177,6 +188,19 @@ def parse_law(content: Content, path: Any) -> LawTable:
         else:
             law = law_table(given, coefficients=coefficients)
         return replace(law, e0=e0, T_ref=float(numbers["T_ref"]), pair=pair)
+
+
+def _parse_rows(fields: Floats, numbers: Mapping[str, Any]) -> CoupledRows:
+    """Return the rows of a coupled table.
+
+    fields: of shape (rows, places, 8).
+    numbers: other variables of the file, of which u, t, edges and mu are read.
+    Raises ValueError for shapes that do not go together, KeyError for a variable that is missing.
+    """
+    u, t, edges = (lock_array(np.array(numbers[name], dtype=np.float64)) for name in ("u", "t", "edges"))
+    if fields.shape != (u.size + 2, t.size, len(FIELDS)) or edges.shape != (u.size + 2, 4):
+        raise ValueError(f"functions of shape {fields.shape[:-1]}")
+    return CoupledRows(float(numbers["mu"]), u, t, edges, fields)
 
 
 def parse_axis(content: Content, path: Any) -> LawAxis:

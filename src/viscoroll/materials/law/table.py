@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import threading
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -20,6 +20,7 @@ from ..bodies import Bodies, total_series
 from ..cover import Cover
 from ..pair import Pair
 from ..prony import Prony, lock_array
+from .coupled_rows import CoupledRows
 from .cover_rows import cover_rows
 from .evaluate import refuse_distant_times
 from .fit import fit_rows, fit_unsteady
@@ -58,6 +59,8 @@ class LawTable:
     T_ref : unit of time, s; 1 where the material was given without units.
     pair : the bodies in SI units, if the table was made of such; else None.
     cover : rows that a cover of finite thickness has in addition, :class:`.pack.CoverRows`; None for half-spaces.
+    coupled : the solution in which shear acts on pressure, at one mu, :class:`.coupled_rows.CoupledRows`, which is then
+        the law; None without.  All but ``material``, ``unlike``, ``pair`` and ``T_ref`` are those of half-spaces then.
     """
 
     material: float | Prony | Bodies
@@ -75,6 +78,7 @@ class LawTable:
     T_ref: float = 1.0
     pair: Pair | None = None
     cover: CoverRows | None = None
+    coupled: CoupledRows | None = None
 
     def __repr__(self) -> str:
         return f"LawTable({self.pair or self.material!r})"
@@ -94,7 +98,8 @@ class LawTable:
     @cached_property
     def record(self) -> Any:
         """Record of the law that kernels read (:class:`...kernels.rows.record.Law`)."""
-        return pack_record(self.steady_coefficients, self.e0, self.alpha, self.fast_limit, self.cover)
+        made = pack_record(self.steady_coefficients, self.e0, self.alpha, self.fast_limit, self.cover)
+        return made if self.coupled is None else made._replace(table=self.coupled.vector)
 
     @cached_property
     def unsteady_record(self) -> Any:
@@ -138,6 +143,17 @@ def law_table(material: float | Prony | Bodies | LawTable, coefficients: Floats 
         return make_table(material, coefficients)
     with _lock:
         return _made(material)
+
+
+def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
+    """Return the law of coupled rows as a :class:`LawTable`.
+
+    material: alpha, a series, bodies or a cover, of one scene.
+    rows: :class:`.coupled_rows.CoupledRows` of it.
+    """
+    total = total_series(material)
+    base = law_table(total if total.E.size else 1.0)
+    return replace(base, material=material, unlike=True, coupled=rows)
 
 
 _lock = threading.Lock()

@@ -1,0 +1,178 @@
+"""Tables of the coupled solution: rows of states over speed and creep, at nodes where cubic splines hold them.
+
+Speeds run from a thousandth of the slowest rate of the bodies to ten times the fastest, in equal steps of ln u, with
+the elastic limits at both ends; creeps from one onset of full slip over the creep at which slip of the other sign opens
+to the other onset, in equal steps of the graded place t (:mod:`..kernels.splines.table`).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from ..core.array_types import Floats
+from ..core.blocks import run_blocks
+from ..core.checks import check_integer
+from ..core.errors import ConvergenceError, ParameterError
+from ..materials.law.coupled_rows import FIELDS, CoupledRows
+from ..materials.law.table import LawTable, coupled_table
+from ..materials.prony import lock_array
+from .coupled import CoupledPair, CoupledRow, CoupledStates
+
+#: Nodes over speed for five decades, and over creep.
+NODES = (32, 33)
+#: Decades of speed that the nodes of :data:`NODES` cover.
+_DECADES = 5.0
+#: First node of speed times the longest retardation time, and last node times the shortest relaxation time.
+_SPEED_RANGE = (1e-3, 10.0)
+#: Nodes of speed of elastic bodies, whose law does not depend on it.
+_ELASTIC = np.array([0.5, 1.0, 2.0])
+#: Points beside the nodes at which the error of a table is measured, and their seed.
+_CHECKED = 24
+_SEED = 20260103
+
+
+def coupled_law(scene: Any, *, nodes: tuple[int, int] | None = None, progress: bool = False) -> LawTable:
+    """Compute the table of the coupled solution of one scene, as a law.
+
+    scene: dimensionless parameters of one material, alpha, kappa and mu, numbers.
+    nodes: numbers of nodes over speed and over creep, the second odd; None: 32 for each five decades of speed between
+        the rates of the bodies, and 33.
+    progress: whether a progress bar is drawn on standard error, after one second.
+    Returns the :class:`LawTable`, whose ``coupled`` rows state their errors.
+    Raises ConvergenceError for a state that is not solved, and ParameterError for too few nodes.
+    """
+    rows = tabulate(CoupledPair.of_scene(scene), scene.mu, nodes, progress)
+    return coupled_table(scene.alpha if scene.material is None else scene.material, rows)
+
+
+def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
+    """Return the nodes of u = kappa |V| of a table of a pair, (n,); ``count``: their number, None: the default."""
+    times = np.array([time for body in pair.bodies for time in body.T])
+    if not times.size:
+        return _ELASTIC
+    shortest = min(min(body.T) * (1.0 - math.fsum(body.J)) for body in pair.bodies if body.T)
+    low = _SPEED_RANGE[0] / times.max()
+    high = _SPEED_RANGE[1] / shortest
+    default = math.ceil(NODES[0] * max(math.log10(high / low) / _DECADES, 1.0))
+    return np.geomspace(low, high, default if count is None else count)
+
+
+def tabulate(
+    pair: CoupledPair, mu: float, nodes: tuple[int, int] | None = None, progress: bool = False
+) -> CoupledRows:
+    """Solve the rows of a table, on threads, and measure its errors.
+
+    pair: the bodies.
+    mu: coefficient of friction.
+    nodes, progress: as of :func:`coupled_law`.
+    Returns :class:`CoupledRows` with ``errors``.
+    Raises ConvergenceError for a state that is not solved, and ParameterError for ``nodes``.
+    """
+    count, across = (None, NODES[1]) if nodes is None else nodes
+    if count is not None:
+        check_integer("nodes", count, 4, 1000)
+    if check_integer("nodes", across, 9, 1001) % 2 == 0:
+        raise ParameterError("nodes", across, "odd over creep: the nodes are symmetric")
+    u = speed_nodes(pair, count)
+    t = np.linspace(-1.0, 1.0, across)
+    speeds = np.concatenate([[0.0], u, [math.inf]])
+    edges = np.empty((speeds.size, 4))
+    fields = np.empty((speeds.size, across, len(FIELDS)))
+    # the rows of elastic bodies are one
+    work = range(1) if u is _ELASTIC else range(speeds.size)
+
+    def solve(start: int, stop: int) -> None:
+        for n in range(start, stop):
+            edges[n], fields[n] = _solve_row(pair, float(speeds[n]), mu, t)
+
+    run_blocks(solve, len(work), 1, progress="coupled table" if progress else None)
+    edges[len(work) :] = edges[0]
+    fields[len(work) :] = fields[0]
+    rows = CoupledRows(mu, lock_array(u), lock_array(t), lock_array(edges), lock_array(fields))
+    rows.errors.update(measure_errors(rows, pair))
+    return rows
+
+
+def grade(t: Any) -> Any:
+    """Return w = 1 - (1 - t^2)^(3/2), the place at t of a graded table."""
+    return 1.0 - (1.0 - np.square(t)) ** 1.5
+
+
+def _solve_row(pair: CoupledPair, u: float, mu: float, t: Floats) -> tuple[list[float], Floats]:
+    """Solve one row of a table.
+
+    pair, mu: as of :func:`tabulate`.
+    u: speed, 0 or infinite in the limits.
+    t: nodes, (m,).
+    Returns (its edges, its fields (m, 8)).
+    Raises ConvergenceError for a state that is not solved.
+    """
+    row = CoupledRow(pair, u, mu)
+    low, high = row.onsets()
+    middle = row.touch()
+    creeps = middle + np.where(t < 0.0, low - middle, high - middle) * grade(t)
+    fields = _fields(row.states(creeps), creeps, u, mu)
+    return [middle, low, high, _free_creep(t, fields[:, 0], middle, low, high)], fields
+
+
+def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Floats:
+    """Return fields of states in the order of :data:`FIELDS`, (n, 8).
+
+    Raises ConvergenceError for the first state that is not solved, with its ``creeps``, ``u`` and ``mu``.
+    """
+    if not states.converged.all():
+        n = int(np.argmin(states.converged))
+        where = f"kappa |V| = {u:.6g}, 2 kappa delta = {creeps[n]:.6g}, mu = {mu:g}"
+        raise ConvergenceError(f"coupled solution: no state was found at {where} (status {int(states.status[n])})")
+    own = (states.Q_over_mu, states.kM_base, states.kM_cylinder, states.lam, states.epsilon, states.beta)
+    return np.stack([*own, states.work_base, states.work_cylinder], axis=-1)
+
+
+def _free_creep(t: Floats, Q: Floats, middle: float, low: float, high: float) -> float:
+    """Return the creep at which Q = 0, by the spline of one row.
+
+    t: nodes, (m,), with 0 in the middle.  Q: at nodes, (m,).
+    middle, low, high: creeps of t = 0, -1, 1.
+    """
+    from scipy.interpolate import CubicSpline
+    from scipy.optimize import brentq
+
+    half = t.size // 2
+    side = slice(0, half + 1) if Q[half] > 0.0 else slice(half, None)
+    spline = CubicSpline(t[side], Q[side], bc_type="clamped")
+    place = brentq(spline, *t[side][[0, -1]], xtol=1e-14)
+    return middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
+
+
+def measure_errors(rows: CoupledRows, pair: CoupledPair, count: int = _CHECKED, seed: int = _SEED) -> dict[str, float]:
+    """Compare a table with states at random points that are no nodes: a third near the middle creep, others anywhere.
+
+    rows: the table; ``errors`` are not read.
+    pair: its bodies.
+    count: number of points, in rows of eight at one speed.
+    seed: of the random points.
+    Returns field -> largest absolute error, with 2 kappa times that of the work.
+    """
+    from ..kernels.splines.law import look_up
+
+    random = np.random.default_rng(seed)
+    speeds = np.exp(random.uniform(*np.log(rows.u[[0, -1]]), -(-count // 8)))
+    worst = np.zeros(len(FIELDS))
+
+    def compare(start: int, stop: int) -> None:
+        for u, draw in zip(speeds[start:stop], draws[start:stop], strict=True):
+            row = CoupledRow(pair, float(u), rows.mu)
+            low, high = row.onsets()
+            middle = row.touch()
+            near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
+            creeps = np.concatenate([near, low + (high - low) * draw[3:]])
+            exact = _fields(row.states(creeps), creeps, float(u), rows.mu)
+            found = look_up(rows.vector, np.full(creeps.size, u), creeps)
+            np.maximum(worst, np.abs(found - exact).max(axis=0), out=worst)
+
+    draws = random.random((speeds.size, 8))
+    run_blocks(compare, speeds.size, 1)
+    return dict(zip(FIELDS, worst.tolist(), strict=True))
