@@ -29,14 +29,17 @@ ONE_FREQUENCY = 1e-3
 _REPEATED = 1.25
 #: advice where columns are not understood
 _NAME_THEM = "name the columns by columns={...} (`viscoroll material fit`: --column NAME=HEADING)"
-#: a number in degrees Celsius or kelvin, which is no rate, and none that a comma in a row of cells may have cut
+#: a number in degrees Celsius, or of three digits in kelvin, which is no rate, and none that a comma in a row of cells
+#: may have cut; before it what makes it the end of a range, as "20 to "
 _IN_DEGREES = re.compile(
-    r"(?<!\d[.,])(?<![\d.])([+-]?\d+(?:[.,]\d+)?)[\s;,|\"]*(℃|(?:[°º]\s*|deg\s*)?[CKF]\b)(?!\s*[/·*])"
+    r"(\d\s*(?:[-–~]|to|bis|à)\s*)?(?<!\d[.,])(?<![\d.])"
+    r"(\d{3}(?:[.,]\d+)?(?=[\s;,|\"]*K\b)|[+-]?\d+(?:[.,]\d+)?(?![\s;,|\"]*K\b))"
+    r"[\s;,|\"]*(℃|(?:[°º]\s*|deg\s*)?[CKF]\b)(?!\s*[/·*])"
 )
 #: a temperature without a unit behind it, at the end of a line
 _NAMED = re.compile(
     r"(?:(?i:temp[^\W\d_]*\.?)|温度|\bT(?=\s*[:=;,\t]))\s*(?:[\[(]\s*(?:[°º]|deg)?\s*C\s*[\])])?[\s:：=;,|\"]*"
-    r"([+-]?\d+(?:[.,]\d+)?)()[\s;,|\"]*$"
+    r"()([+-]?\d+(?:[.,]\d+)?)()[\s;,|\"]*$"
 )
 #: a heading of a temperature that is not understood, as "Ts" or "Chamber temp."
 _LIKE_TEMPERATURE = re.compile(r".*(?i:temp(?!o\b|s\b|l))|.*温度|T[^\W_]{0,2}(?![^\W_])")
@@ -248,12 +251,12 @@ def temperatures_of_lines(table: Table) -> Floats | None:
     Raises FileError for a block above which not exactly one temperature is stated, as also in "20 to 60 °C".
     """
     numbers = np.array([row.number for row in table.rows])
-    in_doubt = table.decimal != "," and "," in table.rows[0].text
+    commas = table.decimal != "," and "," in table.rows[0].text
     lines: dict[int, dict[str, float]] = {}
     for n, text in table.titles.items():
         found = _IN_DEGREES.findall(text) or _NAMED.findall(text)
         if found and n < numbers[-1]:
-            values = {_celsius(number, unit, in_doubt) for number, unit in found}
+            values = {_celsius(number, unit, bool(low) or (commas and "," in number)) for low, number, unit in found}
             wording = re.sub(r"[\d.,+-]", "", text)
             lines.setdefault(int(np.searchsorted(numbers, n)), {})[wording] = (
                 values.pop() if len(values) == 1 else np.nan
@@ -278,10 +281,10 @@ def _celsius(number: str, unit: str, in_doubt: bool) -> float:
 
     number : digits, with a decimal point or comma.
     unit : its unit as the file spells it, "" without, which is degrees Celsius unless the number is above 200.
-    in_doubt : whether a comma may part cells in place of decimals.
+    in_doubt : whether the text around it makes it so.
     """
     value = float(number.replace(",", "."))
-    if ("," in number and in_doubt) or (not unit and value > _KELVIN):
+    if in_doubt or (not unit and value > _KELVIN):
         return np.nan
     factor, offset = conversion(unit or "degC", "degC")
     return factor * value + offset

@@ -192,8 +192,8 @@ class _Layout:
         is a row of units.  If there is none either, ``lines`` is changed: a new line "column 0", "column 1" and so on
         replaces all lines above the numbers, and [0] is returned.
 
-        Raises FileError for rows of numbers above the headings, and for a comment with names of columns whose
-        separators are not those of the numbers.
+        Raises FileError for rows of numbers above the headings, for a line above the numbers of a file without headings
+        that has as many cells, and for a comment with names of columns whose separators are not those of the numbers.
         """
         lines, width = self.lines, self.width
         heads = [n for n, line in enumerate(lines) if not line.numeric and self.is_heading_line(self.headings(line))]
@@ -213,6 +213,9 @@ class _Layout:
             *others, last = above
             is_units = others and self.units_of(self.headings(lines[last]))
             return [last - 1] if is_units and len(lines[last - 1].cells) == len(lines[last].cells) else [last]
+        for line in lines[:first]:
+            if not line.comment and len(line.cells) == width:
+                raise self.fault(line, "is neither headings nor numbers: remove it or begin it with #")
         for line in lines:
             if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
                 raise self.fault(line, f"contains column names, but does not have {width} columns, {self.cut}")
