@@ -123,7 +123,7 @@ STORED = (
         0.5,
         vr.Prony([2.0], [1e-3]),
         thickness=0.02 / 3.0,
-        measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f"),
+        measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f", ((0.1, 0.3), (1.0, 0.1))),
         temperature=-1.0 / 3.0,
     ),
 )

@@ -144,7 +144,7 @@ class LeastSquares:
         order = np.argsort(-self.tau, kind="stable")
         part = unknowns[1:][order]
         order = order[
-            (part > _NOTHING * np.sqrt(self.tau.size)) & (part >= np.sort(part)[::-1][:most].min(initial=0.0))
+            (part > _NOTHING * np.sqrt(self.tau.size)) & (part >= np.sort(part)[::-1][:most].min(initial=np.inf))
         ]
         found = unknowns / self.size
         return Spectrum(self.floor + float(found[0]), found[1:][order], self.tau[order])

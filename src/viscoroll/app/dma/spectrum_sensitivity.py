@@ -101,7 +101,7 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
             changes.append(_moments(series, math.sqrt(found.E / fit.E), V) / M - 1.0)
             E.append(found.E)
             alpha.append(series.alpha)
-    return AdmissibleSpectra(rate, V, M, np.reshape(changes, (-1, n)), np.array(E), np.array(alpha))
+    return AdmissibleSpectra(rate, V, M, np.reshape(changes, (2 * n, n)), np.array(E), np.array(alpha))
 
 
 def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Floats:
