@@ -72,12 +72,12 @@ def test_a_window_of_two_decades(seed):
     assert fit.misfit.storage <= tol.DMA_WINDOW[0]
     assert fit.misfit.loss <= tol.DMA_WINDOW[1]
     assert fit.prony.E.size <= 6
-    first = fit.wider[0]
-    speeds = first.V / fit.T_ref
-    true = moment(vr.Prony(STRENGTHS / E, tau), np.sqrt(E / fit.E), speeds)
-    assert close(first.M_fit, true, tol.DMA_WINDOW_MOMENT)
-    changes = (first.M / first.M_fit - 1.0)[[0, speeds.size // 2, -1]]
-    assert f"M: {', '.join(f'{change:+.2%}' for change in changes)}" in str(fit)
+    found = fit.admissible
+    true = moment(vr.Prony(STRENGTHS / E, tau), np.sqrt(E / fit.E), found.V / fit.T_ref)
+    assert close(found.M, true, tol.DMA_WINDOW_MOMENT)
+    assert (np.abs(true / found.M - 1.0) < found.error).all()
+    ends = found.error[[0, found.error.size // 2, -1]]
+    assert f"M: {', '.join(f'+-{error:.2%}' for error in ends)}, at the lowest" in str(fit)
 
 
 def test_data_of_less_than_an_octave_tell_of_no_speed():
@@ -452,6 +452,37 @@ def test_what_the_contact_sees_of_the_data():
     assert not found.holds[[0, -1]].any()
 
 
+@pytest.mark.parametrize("noise", [0.0, 0.01])
+@pytest.mark.parametrize("seed", range(3))
+def test_the_accuracy_of_M_bounds_its_error_and_contact_states_it(noise, seed):
+    """Rubbers of two modes, one of them at an end of the data: the misfit is met, and M is off by up to 30 %.
+
+    Over 200 random rubbers 0.7 % of the errors are above it (pipeline/evidence/measure/fits.py).
+    """
+    rng, omega = np.random.default_rng(seed), np.geomspace(1.0, 1e3, 25)
+    rubber = vr.Material(3e6, 0.49, vr.Prony(10.0 ** rng.uniform(-0.5, 1.0, 2), [5.0, 0.01]))
+    moduli = [y * (1.0 + noise * rng.standard_normal(25)) for y in (rubber.storage(omega), rubber.loss(omega))]
+    fit = vr.fit_prony(omega, *moduli, misfit=max(0.01, 1.2 * noise))
+    true, found = (
+        vr.Cylinder(R=0.1, m=35.5, mu=0.5, load=1e3, material=each, base=vr.Material.rigid())
+        for each in (rubber, fit.material(0.49))
+    )
+    low, high = found.body_data.measured_speeds
+    V = np.geomspace(1.01 * low, 0.99 * high, 12)
+    state = found.contact(V, delta=0.0, fields=("M", "M_error"))
+    assert (np.abs(true.contact(V, delta=0.0, fields="M").M / state.M - 1.0) < state.M_error).all()
+    assert f"+-{state.M_error.max():.2g} (relative)" in found.validity(V).measured.sentence
+    with pytest.warns(vr.ModelWarning):
+        assert found.contact(2.0 * high, delta=0.0, fields="M_error").M_error == np.inf
+    there = fit.measured.shifted(10.0)
+    rates = fit.admissible.rate[1:-1]
+    assert close(there.moment_error(0.1 * rates), fit.measured.moment_error(rates), tol.DMA_SHIFTED_TIMES)
+    unknown = found.replace(material=rubber).contact(V[0], delta=0.0, fields="M_error").M_error
+    assert np.isnan(unknown)
+    with pytest.raises(vr.ParameterError, match="M_error"):
+        vr.contact(vr.Scene(alpha=2.0, kappa=10.0, mu=0.5), 1.0, delta=0.0, fields="M_error")
+
+
 def test_a_search_ends_where_every_logarithm_is_at_its_bound():
     start = np.log([E, STRENGTHS[0], TAU[0]])
     assert np.array_equal(_minimize(Curve(*curve(WHOLE)), start, start, start, 10), start)
@@ -460,7 +491,8 @@ def test_a_search_ends_where_every_logarithm_is_at_its_bound():
 def test_what_was_measured_stays_with_the_material():
     data = vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv")
     fit = vr.fit_prony(*data, source="dma.csv")
-    assert fit.material(0.5).measured == vr.Measured(data[0].min(), data[0].max(), max(fit.misfit), "dma.csv")
+    errors = tuple(zip(fit.admissible.rate.tolist(), fit.admissible.error.tolist(), strict=True))
+    assert fit.material(0.5).measured == vr.Measured(data[0].min(), data[0].max(), max(fit.misfit), "dma.csv", errors)
     with pytest.warns(vr.ModelWarning, match=r"the misfit of 1.00% was not reached \(\d"):
         rubber = vr.fit_prony(*data, 1).material(0.5)
     poor = vr.Cylinder(R=0.1, m=30.0, material=rubber, mu=0.5).validity(0.1).measured

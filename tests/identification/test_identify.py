@@ -20,6 +20,7 @@ from experiments import (
     thrown,
     traction,
 )
+from scipy.signal import lfilter
 
 import viscoroll as vr
 from viscoroll.app.identification.problem import Minimum
@@ -339,3 +340,29 @@ def test_a_walk_does_not_stop_just_below_the_bound(rate, end):
         assert ends == [None, None]
     else:
         assert close(ends, [-end, end], tol.INTERVAL, scale=2.0 * end)
+
+
+def test_intervals_of_autocorrelated_residuals_cover_the_truth():
+    """Noise of an autoregression with 0.6: by all points 70 % of the intervals would; the report states the points."""
+    V, rng = np.geomspace(0.02, 20.0, 200), np.random.default_rng(7)
+    M, inside, narrow = resistance(V).M, [], []
+    for _ in range(40):
+        noise = lfilter([0.8], [1.0, -0.6], rng.standard_normal(250))[50:]
+        data = vr.Resistance(V, M + 0.01 * noise, sigma=0.01)
+        fit = vr.identify(roller(), ranges("E", "T_ref"), [data], starts=1)
+        far = np.array([abs(fit.values[name] - TRUTH[name]) / fit.stderr[name] for name in fit.values])
+        inside += [*(far < 1.96)]
+        narrow += [*(far * np.sqrt(fit.noise["M of resistance"].repeats) < 1.96)]
+    assert np.mean(inside) > tol.IDENTIFY_COVERAGE
+    assert np.mean(narrow) < tol.IDENTIFY_COVERAGE_NARROW
+    assert "points in place of 200" in str(fit)
+    wide, one = (fit.intervals()["E"], fit.values["E"])
+    assert wide[0] < one - 1.5 * fit.stderr["E"] < one + 1.5 * fit.stderr["E"] < wide[1]
+
+
+def test_residuals_that_are_only_large_are_named_as_such():
+    """White noise of three times the sigma that is given: the cause is its size, and no correlation is named."""
+    data = resistance(seed=1, sigma=0.03)
+    fit = vr.identify(roller(), ranges("E", "T_ref"), [vr.Resistance(data.V, data.M, sigma=0.01)], starts=1)
+    assert "are larger than noise (rms 2.77 sigma)" in str(fit)
+    assert "autocorrelated" not in str(fit)

@@ -139,7 +139,7 @@ STORED = (
         0.5,
         vr.Prony([2.0], [1e-3]),
         thickness=0.02 / 3.0,
-        measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f"),
+        measured=vr.Measured(0.1, 1e3 / 3.0, 0.2, "ä\x7f", ((0.1, 0.3), (1.0, 0.1))),
         temperature=-1.0 / 3.0,
     ),
     vr.Material.ansys(1e7, 0.4, [0.5, 0.4], [0.1, 10.0], k=[0.0, 0.0]),

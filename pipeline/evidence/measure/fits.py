@@ -42,15 +42,15 @@ def measure(sizes: dict[str, Any]) -> dict[str, Any]:
             refused += 1
     errors = np.concatenate(found)
     inside = (errors[:, 0] >= 5.0) & (errors[:, 1] >= 5.0)
-    parts = {"ends": errors[~inside], "inside": errors[inside]}
+    parts = {"within a factor of 5 of an end of the band": errors[~inside], "farther inside": errors[inside]}
     return {"sizes": sizes, "refused": refused, "rows": [row(name, *part.T[2:]) for name, part in parts.items()]}
 
 
-def row(part: str, error: np.ndarray, stated: np.ndarray) -> dict[str, Any]:
+def row(place: str, error: np.ndarray, stated: np.ndarray) -> dict[str, Any]:
     """Statistics of one part of the speeds."""
     beyond = float(np.mean(error > stated * (1.0 + 1e-3) + 1e-6))
     return {
-        "part": part, "speeds": error.size, "beyond": beyond,
+        "place": place, "speeds": error.size, "beyond": beyond,
         "median": float(np.median(error)), "most": float(np.quantile(error, 0.95)), "largest": float(error.max()),
         "stated_median": float(np.median(stated)), "stated_most": float(np.quantile(stated, 0.95)),
         "ratio": float(np.quantile(error / (stated + 1e-6), 0.95)),

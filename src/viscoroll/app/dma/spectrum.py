@@ -108,7 +108,7 @@ class LeastSquares:
     def __init__(self, data: Data, tau: Floats) -> None:
         """Compute the matrix for ``data``, a :class:`Curve` or a :class:`Relaxation`, and times ``tau`` > 0, s."""
         columns = _relative_columns(data, 1.0, data.responses(tau))
-        self.data, self.tau, self.floor = data, tau, _least_modulus(data)
+        self.tau, self.floor = tau, _least_modulus(data)
         self.size = np.sqrt((columns * columns).sum(axis=0))
         self.left, self.right = columns / self.size, 1.0 - self.floor * columns[:, 0]
 
@@ -131,11 +131,6 @@ class LeastSquares:
         errors = self.left @ unknowns - self.right
         return float(errors @ errors)
 
-    def sum_of_squares(self, spectrum: Spectrum) -> float:
-        """Return the sum of the squared residuals of any :class:`Spectrum`, dimensionless."""
-        errors = spectrum.modulus(self.data) / np.array(self.data[1:]) - 1.0
-        return float((errors * errors).sum())
-
     def spectrum(self, unknowns: Floats, most: int) -> Spectrum:
         """Return the :class:`Spectrum` of unknowns, (1 + modes,): of its modes those with a strength, times descending.
 
@@ -144,7 +139,7 @@ class LeastSquares:
         order = np.argsort(-self.tau, kind="stable")
         part = unknowns[1:][order]
         order = order[
-            (part > _NOTHING * np.sqrt(self.tau.size)) & (part >= np.sort(part)[::-1][:most].min(initial=0.0))
+            (part > _NOTHING * np.sqrt(self.tau.size)) & (part >= np.sort(part)[::-1][:most].min(initial=np.inf))
         ]
         found = unknowns / self.size
         return Spectrum(self.floor + float(found[0]), found[1:][order], self.tau[order])

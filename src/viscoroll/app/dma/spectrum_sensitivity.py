@@ -23,7 +23,7 @@ from ...materials.prony import Prony
 from ...materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
 from ...scene import Scene
 from .mode_selection import grid_of_times
-from .spectrum import Data, LeastSquares, Spectrum
+from .spectrum import Data, LeastSquares, Spectrum, misfits
 
 #: factor beyond the data on either side up to which times are allowed: slower and faster modes act as a constant and as
 #: a dashpot there
@@ -91,7 +91,8 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     problem = LeastSquares(data, np.concatenate([times, fit.tau]))
     best = problem.solve()
     freedom = max(1, problem.right.size - int(np.count_nonzero(best)))
-    allowed = max(problem.sum_of_squares(fit), problem.cost(best) * (1.0 + _RISE / freedom))
+    own = data[0].size * sum(misfit * misfit for misfit in misfits(data, fit))
+    allowed = max(own, problem.cost(best) * (1.0 + _RISE / freedom))
     changes, E, alpha = [], [], []
     for at in rate.tolist():
         pull = _slopes_of_moment(problem, best, at)
@@ -101,7 +102,7 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
             changes.append(_moments(series, math.sqrt(found.E / fit.E), V) / M - 1.0)
             E.append(found.E)
             alpha.append(series.alpha)
-    return AdmissibleSpectra(rate, V, M, np.reshape(changes, (-1, n)), np.array(E), np.array(alpha))
+    return AdmissibleSpectra(rate, V, M, np.reshape(changes, (2 * n, n)), np.array(E), np.array(alpha))
 
 
 def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Floats:

@@ -77,7 +77,7 @@ class Identification(Result):
         changes them little.
     misfit : names "QUANTITY of RECORD" whose residuals are no noise: lag-1 beyond 3/sqrt(n), or rms that far above 1,
         or, of robust fits, above what noise and a tenth of outliers give.  Where it is the lag, standard deviations and
-        intervals are those of the effective number of points, (1 - lag)/(1 + lag) of all; where the model is inadequate
+        intervals are those of the effective number of points (``.repeats`` of ``noise``); where the model is inadequate
         they mean nothing.
     predicted : name of each record -> :class:`Prediction` of the best fit.
     records : the data: name -> record, with arrays in SI units.

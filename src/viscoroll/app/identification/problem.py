@@ -87,11 +87,15 @@ class Noise(NamedTuple):
 
     @property
     def repeats(self) -> float:
-        """Points that count as one, by the lag-1 correlation of an autoregressive noise: (1 + lag)/(1 - lag).
+        """Points that count as one: (1 + c)/(1 - c), of an autoregressive noise with the lag-1 correlation c.
 
-        It is 1 where lag rms^2 is at most ``allowed``.
+        c is ``lag`` without its bias by few points, -(1 + 4 c)/points, at most 0.95; 1.0 is returned where lag, or
+        lag rms^2, is at most ``allowed``.
         """
-        return (1.0 + self.lag) / (1.0 - self.lag) if self.lag * self.rms**2 > self.allowed else 1.0
+        if self.lag * min(1.0, self.rms**2) <= self.allowed:
+            return 1.0
+        c = min(self.lag + (1.0 + 4.0 * self.lag) * self.allowed**2 / 9.0, 0.95)
+        return (1.0 + c) / (1.0 - c)
 
 
 class Minimum(NamedTuple):

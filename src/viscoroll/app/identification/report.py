@@ -91,9 +91,9 @@ def _noise(fit: Any) -> Iterator[str]:
             continue
         points = 9.0 / allowed**2
         yield (
-            f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most {allowed:.2f} for noise; "
-            f"{size}): {points / noise.repeats:.0f} of {points:.0f} points count, and intervals are widened by that; or "
-            f"{_INADEQUATE}"
+            f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most {allowed:.2f} "
+            f"for noise; {size}): intervals are those of {points / noise.repeats:.0f} points in place of {points:.0f}, "
+            f"or {_INADEQUATE}"
         )
 
 
