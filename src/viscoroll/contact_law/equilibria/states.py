@@ -150,19 +150,23 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
     Returns rows, (3, n): real part of the faster eigenvalue (the smaller number) and of the slower one, imaginary part
     of the slower (>= 0; the faster has its negative).  Of a complex pair both real parts are equal, of real eigenvalues
     the imaginary part is 0.  The determinant is b (M'(V) - gain)/j without a gain on omega, where b = dQ/domega; it is
-    computed without the cancellation of the large slopes of Q.
+    computed without the cancellation of the large slopes of Q.  The equation is that of min(j, 1) times an eigenvalue,
+    in units of a power of 2, so that no square overflows; an eigenvalue beyond the doubles is infinite.
     """
     a, b, d_half_space, d_cylinder = slopes
-    with np.errstate(invalid="ignore"):
+    unit = np.minimum(j, 1.0)
+    with np.errstate(invalid="ignore", over="ignore"):
         det = b * (d_half_space + d_cylinder - gains.V)
         det += gains.torque_omega * (a - d_half_space + gains.force_V)
-        det = (det + gains.force_omega * (a + d_cylinder - gains.torque_V)) / j
-        half = 0.5 * (a - d_half_space + gains.force_V + (gains.torque_omega - b) / j)
-        spread = half * half - det
-        root = np.sqrt(np.abs(spread))
+        det = (det + gains.force_omega * (a + d_cylinder - gains.torque_V)) / (j / unit)
+        half = 0.5 * (unit * (a - d_half_space + gains.force_V) + (gains.torque_omega - b) / (j / unit))
+        power = np.frexp(np.maximum(np.abs(half), np.sqrt(np.abs(det))))[1]
+        spread = np.ldexp(half, -power) ** 2 - np.ldexp(det * unit, -2 * power)
+        root = np.ldexp(np.sqrt(np.abs(spread)), power)
         larger = half + np.copysign(root, half)
         other = np.divide(det, larger, out=0.0 * det, where=larger != 0.0)
         real = spread >= 0.0
+        larger, half, root = larger / unit, half / unit, root / unit
         return np.array([
             np.where(real, np.minimum(larger, other), half), np.where(real, np.maximum(larger, other), half),
             np.where(real, 0.0, root),
@@ -271,6 +275,6 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     rows[Field.Q], rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = Q, share * M, (1.0 - share) * M
     rows[Field.BETA] = root * less_lam / lam
     if not exists.all():
-        rows[[Field.BETA, Field.DQ_DV, Field.DQ_DOMEGA]] *= exists
+        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], (~exists).nonzero()[0]] = 0.0
         rows[Field.DELTA, ~exists] = np.nan
     return States.of(loads, load, sign, rows)
