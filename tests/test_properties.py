@@ -3,6 +3,7 @@
 Short here; ``make fuzz`` runs it for ten minutes (``FUZZ_SECONDS``).
 """
 
+import contextlib
 import os
 import time
 
@@ -121,6 +122,29 @@ def test_motion(scene, V0, omega0, t, rtol, rest, method):
         assert np.isfinite(getattr(many, name)).all(), name
     one = vr.roll(scene, V0, omega0, t, **options)
     assert one.status == many.status[0] or method != "integrate"
+
+
+#: parameters at the ends of the doubles, where most are refused
+widest = {"kappa": tens(-1.0, 300.0), "mu": tens(-30.0, 0.0), "gamma": tens(-300.0, 300.0), "j": tens(-300.0, 300.0)}
+far = st.builds(vr.Scene, alphas, **widest) | st.builds(vr.Scene, material=series, **widest)
+
+
+@long_or_short(60)
+@given(far, st.builds(np.multiply, signs, tens(-300.0, 300.0)), creeps, tens(-300.0, 0.0))
+def test_the_ends_of_the_ranges(scene, V, creep, share):
+    """An answer or a refusal without a warning of numpy, which the suite takes as an error."""
+    calls = (
+        lambda: vr.contact(scene, V, delta=creep, slopes=True),
+        lambda: vr.contact(scene, V, omega=V * (1.0 + share)),
+        lambda: vr.law(scene)(V, V * (1.0 + share), slopes=True),
+        lambda: vr.steady(scene, V=V, torque=share * scene.mu),
+        lambda: vr.steady(scene, force=share * scene.mu),
+        lambda: str(vr.validity(scene, V)),
+        lambda: vr.stress(scene, [-1.0, 0.0, 1e-3], V, delta=creep),
+    )
+    for call in calls:
+        with contextlib.suppress(vr.ParameterError):
+            call()
 
 
 # --- refusals ---

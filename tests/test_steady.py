@@ -285,3 +285,18 @@ def test_many_loads_are_single_calls_bit_for_bit():
         assert one.count == s.count[n]
         for name in ("V", "omega", "delta", "Q", "M", "beta", "grip", "eigenvalues", "stable"):
             np.testing.assert_array_equal(getattr(one, name), getattr(s, name)[n][held])
+
+
+def test_eigenvalues_at_the_least_and_largest_numbers():
+    """The slope over slip, mu kappa/V, exceeds the square root of the doubles; that over V is -T_mean/(1 + j) still."""
+    scene = series_scene(TWO)
+    known = vr.steady(scene, V=1e-6, torque=0.0).eigenvalues[0]
+    for V in (1e-153, 1e-290):
+        found = vr.steady(scene, V=V, torque=0.0)
+        assert found.stable.all()
+        assert close(found.eigenvalues[0].real.max(), known.real.max(), tol.SLOWEST)
+    for j in (1e-300, 1e300):
+        found = vr.steady(scene.replace(j=j), V=1e-30, torque=0.0)
+        assert found.stable.all()
+        exact = -scene.material.T_mean / (1.0 + j)
+        assert close(found.eigenvalues[0].real.max(), exact, tol.SLOWEST)

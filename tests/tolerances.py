@@ -20,7 +20,13 @@ STRESS_ELLIPSE = 1e-15
 #: measured 7e-15.
 STRESS_CARTER = 1e-13
 
+# --- steady states (test_steady.py) ---
+#: Slow eigenvalue at rest against that at V = 1e-6 and the limit -T_mean/(1 + j): of the order of V and of roundings.
+SLOWEST = 1e-4
+
 # --- tables (test_law.py, test_grids.py) ---
+#: Q of a stick zone of some roundings of the contact against mu: their square.
+FULL_SLIP_EDGE = 1e-15
 #: Largest error that a law states of any function, against formulas in doubles; measured 1.1e-14 (epsilon, N).
 LAW_STATED = 2e-14
 #: A spline at its own nodes: the banded solves round at 1e-16 times their condition, below 10 an axis.

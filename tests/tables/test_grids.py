@@ -286,6 +286,13 @@ def test_a_declared_fill_value_is_refused_and_six_digits_are_read(tmp_path):
     refused(partial(vr.load_law, path), "Q = nan at V[1], delta[2]", error=vr.FileError)
 
 
+@pytest.mark.parametrize("V", [0.5 * (1.0 - 1e-15), 3.0000001, 3.0 * (1.0 + 1e-15)])
+def test_a_refused_value_is_told_with_all_digits_that_it_needs(V):
+    grid = vr.tables.build(vr.presets.RUBBER_CYLINDER, [0.5, 1.0, 3.0], delta=[-0.02, 0.0, 0.02])
+    words = f"V = {V!r}: must be within the table's range [0.5, 3]"
+    refused(partial(vr.tables.interpolate, grid, "Q", V=V, delta=0.0), words)
+
+
 # --- formats of other programs ---
 
 

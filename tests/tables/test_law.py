@@ -1,6 +1,9 @@
 """Laws as files: the bits of their material, wherever a material stands, and damage that is told."""
 
+import ctypes
 import json
+import shutil
+import subprocess
 from dataclasses import fields
 from functools import partial
 
@@ -9,6 +12,7 @@ import numpy as np
 import pytest
 import tolerances as tol
 import xarray as xr
+from closeness import close
 from refusals import refused
 
 import viscoroll as vr
@@ -157,3 +161,31 @@ def test_refused_exports(saved, tmp_path):
     refused(partial(vr.tables.export, wrong, tmp_path / "rubber.h"), "its numbers are not those", error=vr.FileError)
     refused(partial(vr.tables.save, wrong, tmp_path / "rubber.nc"), "its numbers are not those", error=vr.FileError)
     assert not list(tmp_path.iterdir())
+
+
+#: evaluates the header beside full slip, where the stick zone is a rounding of the contact
+C_EDGE = """#include "rubber.h"
+void edge(double kappa, double mu, double V, double slip, double *out) {
+  vr_state s; vr_slopes d;
+  vr_contact_slopes(&rubber, kappa, mu, V, slip, &s, &d);
+  out[0] = s.beta, out[1] = s.Q, out[2] = d.dQ_domega;
+}
+"""
+
+
+@pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
+def test_the_header_beside_full_slip_at_the_largest_speeds(tmp_path):
+    material = vr.Prony([2.0, 6.0], [1.0, 0.01])
+    vr.tables.export(vr.tables.law(material), tmp_path / "rubber.h")
+    (tmp_path / "edge.c").write_text(C_EDGE)
+    subprocess.run(
+        ["cc", "-std=c99", "-O2", "-shared", "-fPIC", "edge.c", "-lm", "-o", "edge.so"], cwd=tmp_path, check=True
+    )
+    edge, out = ctypes.CDLL(str(tmp_path / "edge.so")).edge, np.empty(3)
+    for V in (1e293, 1e296, 1e298):
+        star = float(vr.contact(vr.Scene(material=material, kappa=10.0, mu=0.3), V, delta=0.0).delta_star)
+        for ulps in (1, 2, 5):
+            slip = V * star * (1.0 - ulps * 2.0**-53)
+            edge(*map(ctypes.c_double, (10.0, 0.3, V, slip)), ctypes.c_void_p(out.ctypes.data))
+            assert np.isfinite(out).all()
+            assert close(out[1], 0.3, tol.FULL_SLIP_EDGE)

@@ -97,6 +97,22 @@ def describe_value(value: Any) -> str:
     return f"{text} ({kind or ('a function' if callable(value) else f'of type {type(value).__name__}')})"
 
 
+def digits_beside(value: Any, *others: Any) -> str:
+    """Return a number for a message in six digits, or in all that it has where another one has the same six.
+
+    A refused number would else be printed as one that is allowed.
+
+    value: the number.
+    others: numbers beside it in the message, as the ends of a range.
+    """
+    text = f"{value:g}"
+    return (
+        repr(float(value)).removesuffix(".0")
+        if any(value != other and text == f"{other:g}" for other in others)
+        else text
+    )
+
+
 def described_error(name: str, found: str, allowed: str) -> ParameterError:
     """Return the error, not raised, of a parameter that a property describes better than its value.
 
@@ -201,7 +217,8 @@ class OutOfTableError(ParameterError):
 
     def __init__(self, name: str, value: float, low: float, high: float) -> None:
         self.low, self.high = low, high
-        super().__init__(name, f"{value:.6g}", f"within the table's range [{low:.6g}, {high:.6g}]")
+        ends = f"[{digits_beside(low, value)}, {digits_beside(high, value)}]"
+        super().__init__(name, digits_beside(value, low, high), f"within the table's range {ends}")
 
 
 class FileError(ViscorollError):

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike
 
 from ..core.array_types import Floats
 from ..core.checks import broadcast_shape, check_array, check_integer, check_number, extent
-from ..core.errors import ParameterError, mark_dimensionless, shape_error
+from ..core.errors import ParameterError, digits_beside, mark_dimensionless, shape_error
 from ..core.scale import Scale, Units
 
 #: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no longer proportional.
@@ -38,7 +38,8 @@ def output_times(t: ArrayLike, units: Units = "1") -> Floats:
     falls = times[1:] < times[:-1]
     if falls.any():
         n = int(np.argmax(falls))
-        found = f"{times[n]:.6g}, {times[n + 1]:.6g} at rows {n}, {n + 1}"
+        pair = times[n : n + 2]
+        found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at rows {n}, {n + 1}"
         raise ParameterError("t", found, "in ascending order")
     return times
 

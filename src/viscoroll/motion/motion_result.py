@@ -15,7 +15,7 @@ from ..contact_law.validity.assumptions import Validity
 from ..contact_law.validity.validity import validity
 from ..core.array_types import Floats
 from ..core.drive import Feedback, Schedule
-from ..core.errors import MotionStatus, ParameterError
+from ..core.errors import MotionStatus, ParameterError, digits_beside
 from ..core.results import SummaryRow, Values
 from .checks import SPEED_RANGE, output_times
 from .drive import ROWS
@@ -281,7 +281,7 @@ class Motion(RollResult):
         times = output_times(t, self.scale)
         end = self._problem.end * self.scale["t"]
         if times[-1] > end and float(times[-1]) / self.scale["t"] > self._problem.end:
-            raise ParameterError("t", times[-1], f"within the motion, [0, {end:.6g}]")
+            raise ParameterError("t", times[-1], f"within the motion, [0, {digits_beside(end, times[-1])}]")
         return integrate_motion(self._problem, times)
 
     @cached_property

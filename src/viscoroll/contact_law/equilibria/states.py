@@ -201,10 +201,13 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
     of the slower (>= 0; the faster has its negative).  Of a complex pair both real parts are equal, of real eigenvalues
     the imaginary part is 0.  The determinant is b (M'(V) - gain)/j without a gain on omega, where b = dQ/domega; it is
     computed without the cancellation of the large slopes of Q.  Where M depends on Q too, as of a cover, M' is that at
-    fixed Q, and Q acts on the axis and on the cylinder with the factors ``on_axis`` and ``on_spin``.
+    fixed Q, and Q acts on the axis and on the cylinder with the factors ``on_axis`` and ``on_spin``.  The equation is
+    that of min(j, 1) times an eigenvalue, in units of a power of 2, so that no square overflows; an eigenvalue beyond
+    the doubles is infinite.
     """
     a, b, d_half_space, d_cylinder, half_space_b, cylinder_b = slopes
-    with np.errstate(invalid="ignore", divide="ignore"):
+    unit = np.minimum(j, 1.0)
+    with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
         on_axis = 1.0 - np.where(half_space_b == 0.0, 0.0, half_space_b / b)
         on_spin = 1.0 + np.where(cylinder_b == 0.0, 0.0, cylinder_b / b)
         d_half_space = d_half_space - (1.0 - on_axis) * a
@@ -212,13 +215,16 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
         det = on_spin * d_half_space + on_axis * d_cylinder
         det = b * (det - (on_spin * gains.force_V + on_axis * gains.torque_V))
         det += gains.torque_omega * (on_axis * a - d_half_space + gains.force_V)
-        det = (det + gains.force_omega * (on_spin * a + d_cylinder - gains.torque_V)) / j
-        half = 0.5 * (on_axis * a - d_half_space + gains.force_V + (gains.torque_omega - on_spin * b) / j)
-        spread = half * half - det
-        root = np.sqrt(np.abs(spread))
+        det = (det + gains.force_omega * (on_spin * a + d_cylinder - gains.torque_V)) / (j / unit)
+        half = unit * (on_axis * a - d_half_space + gains.force_V)
+        half = 0.5 * (half + (gains.torque_omega - on_spin * b) / (j / unit))
+        power = np.frexp(np.maximum(np.abs(half), np.sqrt(np.abs(det))))[1]
+        spread = np.ldexp(half, -power) ** 2 - np.ldexp(det * unit, -2 * power)
+        root = np.ldexp(np.sqrt(np.abs(spread)), power)
         larger = half + np.copysign(root, half)
         other = np.divide(det, larger, out=0.0 * det, where=larger != 0.0)
         real = spread >= 0.0
+        larger, half, root = larger / unit, half / unit, root / unit
         return np.array([
             np.where(real, np.minimum(larger, other), half), np.where(real, np.maximum(larger, other), half),
             np.where(real, 0.0, root),
@@ -339,7 +345,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     rows[[Field.M_HALF_SPACE, Field.M_CYLINDER]] = moments
     rows[Field.BETA] = root * less_lam / lam
     if not exists.all():
-        rows[[Field.BETA, Field.DQ_DV, Field.DQ_DOMEGA]] *= exists
+        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], (~exists).nonzero()[0]] = 0.0
         rows[Field.DELTA, ~exists] = np.nan
     return States.of(loads, load, sign, rows, None if law.cover is None else free[:2])
 

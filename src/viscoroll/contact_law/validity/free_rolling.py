@@ -216,6 +216,7 @@ class FreeRolling:
         """g |N|, dimensionless, >= 0, in the shape of u; 0 at rest and for elastic bodies, NaN without gamma."""
         return self._evaluate(lambda curve, u, g: [np.where(u > 0.0, g * np.abs(curve.N(u)), 0.0)], [0.0])[0]
 
+    @np.errstate(over="ignore")  # beyond the doubles it is infinite
     def distance(self) -> Any:
         """Return the distance to rest by the law of steady rolling, in the unit of the caller and the shape of u.
 
@@ -223,6 +224,7 @@ class FreeRolling:
         """
         return self._evaluate(lambda curve, u, g: [curve.distance(u) / g], [np.inf])[0] * self.length
 
+    @np.errstate(over="ignore")  # beyond the doubles it is infinite
     def reach(self, level: float) -> Reach:
         """Return the part of free rolling in which the unsteadiness is below a level.
 
@@ -256,6 +258,7 @@ class FreeRolling:
         end, time, distance, left = self._evaluate(evaluate, [0.0, np.inf, np.inf, 0.0])
         return Reach(end * self.speed, time * self.time, distance * self.length, left * self.length)
 
+    @np.errstate(over="ignore")  # beyond the doubles it is infinite
     def start(self, rested: float = math.inf) -> Start:
         """Return the losses of a start after a standstill, compared with a start from steady contact.
 

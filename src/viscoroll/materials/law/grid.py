@@ -246,7 +246,7 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
         raise FileError(path, "coordinate 'alpha' must be > 0 and increase strictly")
     low, high = nodes[[0, -1]]
     if alpha is None or not low <= check_number("alpha", alpha) <= high:
-        raise ParameterError("alpha", alpha, f"in [{low:g}, {high:g}], the range of {path}")
+        raise ParameterError("alpha", alpha, f"in [{low:.15g}, {high:.15g}], the range of {path}")
     if low == high:
         return table.squeeze("alpha")
     method: Any = _METHODS[min(table.sizes["alpha"], len(_METHODS)) - 1]

@@ -155,7 +155,7 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     low, high = axis.alpha
     if alpha is None or not low <= check_number("alpha", alpha, low=1.0, high=HIGHEST_ALPHA) <= high:
         wider = "`viscoroll tables law --alpha LOW:HIGH` writes another range"
-        raise ParameterError("alpha", alpha, f"in [{low:g}, {high:g}], the range of {path} ({wider})")
+        raise ParameterError("alpha", alpha, f"in [{low:.15g}, {high:.15g}], the range of {path} ({wider})")
     return axis.at(alpha)
 
 

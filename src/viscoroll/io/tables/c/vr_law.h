@@ -221,7 +221,7 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
   }
   s->beta = 0.0, s->Q = sign * mu;
   if (!(delta < s->delta_star && w > 0.0)) return; /* full slip */
-  double v1 = 2.0 * u / L, v2 = 2.0 * u / w;
+  double v1 = 2.0 * u / L, v2 = fmin(2.0 * u / w, 1.7e308); /* beside full slip w may be 1e-16 */
   vr_stick(law, v2, b, d ? &p2 : (double *)0);
   if (D < 0.125 * L) q = D * ((2.0 * L - D) * b[1] - (2.0 * u * L / w) * vr_secant(law, v1, v2));
   else q = 1.0 - w * w * b[1];
