@@ -264,3 +264,14 @@ def test_strain_of_the_contact():
     on = roller.replace(material=ROLLER.base, base=rubber)
     assert close(belt.validity(0.0).strain.value, on.validity(0.0).strain.value, tol.THICK_STRAIN)
     assert ROLLER.validity(1.0).strain.holds is None
+
+
+def test_heat_of_a_motion():
+    """A free motion that loses nearly all of its energy warms a body by that over the capacity."""
+    motion = ROLLER.roll(3.0, 30.0, [1.0, 2000.0])
+    heat = motion.validity(capacity=9e3).heat
+    energy = 0.5 * 60.0 * 1.5 * (9.0 - motion.V**2)
+    assert close(heat.value, energy / 9e3, 1e-4)
+    assert heat.holds.all()
+    assert not motion.validity(capacity=100.0).heat.holds[-1]
+    assert motion.validity().heat.holds is None
