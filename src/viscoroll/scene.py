@@ -11,6 +11,7 @@ from .contact_law.stress import stress
 from .contact_law.validity.validity import validity
 from .core.renamed import warn_renamed
 from .heat.limits import heat_limit, turning_points
+from .heat.pairs import pair_temperatures
 from .heat.temperature import temperature
 from .heat.warming import warming
 from .motion.ensemble import ensemble
@@ -34,6 +35,7 @@ class Methods(Roller):
     warming = warming
     heat_limit = heat_limit
     turning_points = turning_points
+    pair_temperatures = pair_temperatures
 
     def humps(self) -> ResistanceExtrema:
         """Old name of ``resistance_extrema``: gives a DeprecationWarning, and its result.
