@@ -115,6 +115,25 @@ def test_cover_follows_its_own_law():
     assert close(found.C_rr[0], at.contact(2.0, delta=0.0).C_rr, 1e-12)
 
 
+def test_two_bodies_with_a_temperature_each():
+    """Like bodies in like surroundings have the temperatures that both share; others balance by the law of both."""
+    like = ROLLER.replace(base=None)
+    both = like.pair_temperatures(1.0, ambient=(-30.0, -30.0), conductance=(6.0, 6.0))
+    shared = like.temperature(1.0, **COLD)
+    same = np.abs(np.diff(both.temperature)[:, 0]) < 1e-6
+    assert close(both.temperature[same, 0], shared.temperature, 1e-8)
+    assert both.stable[same].tolist() == shared.stable.tolist()
+    base = vr.Material(
+        5e6, 0.49, vr.Prony([9.0], [1.0]), 1e-4, temperature=0.0, shift=vr.Arrhenius(energy=9e4, T0=10.0)
+    )
+    pair = ROLLER.replace(base=base)
+    found = pair.pair_temperatures(2.0, ambient=(0.0, 20.0), conductance=(6.0, 30.0))
+    one, other = found.temperature[0].tolist()
+    warm = pair.replace(material=RUBBER.at(one), base=base.at(other)).contact(2.0, delta=0.0)
+    assert close(2.0 * np.array([warm.M_cylinder, warm.M_half_space]) / 0.1, found.loss[0], 1e-12)
+    assert close(found.loss[0], [6.0 * one, 30.0 * (other - 20.0)], 1e-8)
+
+
 # --- warming ---
 
 
@@ -264,3 +283,14 @@ def test_strain_of_the_contact():
     on = roller.replace(material=ROLLER.base, base=rubber)
     assert close(belt.validity(0.0).strain.value, on.validity(0.0).strain.value, tol.THICK_STRAIN)
     assert ROLLER.validity(1.0).strain.holds is None
+
+
+def test_heat_of_a_motion():
+    """A free motion that loses nearly all of its energy warms a body by that over the capacity."""
+    motion = ROLLER.roll(3.0, 30.0, [1.0, 2000.0])
+    heat = motion.validity(capacity=9e3).heat
+    energy = 0.5 * 60.0 * 1.5 * (9.0 - motion.V**2)
+    assert close(heat.value, energy / 9e3, 1e-4)
+    assert heat.holds.all()
+    assert not motion.validity(capacity=100.0).heat.holds[-1]
+    assert motion.validity().heat.holds is None

@@ -39,6 +39,7 @@ from .heat.limits import conductance as conductance
 from .heat.limits import heat_limit as heat_limit
 from .heat.limits import turning_points as turning_points
 from .heat.limits import uniform_temperature as uniform_temperature
+from .heat.pairs import pair_temperatures as pair_temperatures
 from .heat.temperature import Temperatures as Temperatures
 from .heat.temperature import temperature as temperature
 from .heat.warming import warming as warming

@@ -10,6 +10,7 @@ from .contact_law.parameters import Parameters, Roller
 from .contact_law.stress import stress
 from .contact_law.validity.validity import validity
 from .heat.limits import heat_limit, turning_points
+from .heat.pairs import pair_temperatures
 from .heat.temperature import temperature
 from .heat.warming import warming
 from .motion.ensemble import ensemble
@@ -33,6 +34,7 @@ class Methods(Roller):
     warming = warming
     heat_limit = heat_limit
     turning_points = turning_points
+    pair_temperatures = pair_temperatures
 
 
 class Scene(Methods, Parameters):

@@ -116,7 +116,7 @@ def heat_states(
     """
     heated = heated_bodies(roller, call, slip_share)
     if len(heated) > 1:
-        allowed = "elastic, rigid or of the same material: two bodies with a temperature each are not available here"
+        allowed = "elastic, rigid or of the same material; pair_temperatures has a temperature for each body"
         raise described_error("base", "relaxes too", allowed)
     (body,) = heated
     curve = shift_curve(body.material)

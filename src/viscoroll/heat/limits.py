@@ -212,7 +212,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0, 40.0], [1.0, 0.01]), 0.02, temperature=20.0,
     ...                      shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0))
     >>> roller = vr.Cylinder(R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=2e4)
-    >>> vr.turning_points(roller, ambient=-30.0, conductance=6.0).is_runaway.tolist()
+    >>> vr.turning_points(roller, ambient=-20.0, conductance=6.0).is_runaway.tolist()
     [True, False]
 
     Notes
@@ -283,21 +283,21 @@ def conductance(
     arrays = {name: check_array(name, x, unit=SI, above=0.0)[()] for name, x in given.items() if x is not None}
     broadcast_shape(**{name: np.asarray(array) for name, array in arrays.items()})
     R, film = arrays["R"], arrays["film"]
-    h, k = arrays.get("thickness"), arrays.get("conductivity")
+    h: Any = arrays.get("thickness")
+    k: Any = arrays.get("conductivity")
     if core == "cooled" and (h is None or k is None):
         raise described_error("core", "is 'cooled'", "'insulated' without a thickness and a conductivity")
-    if h is None:
-        inside = 0.0 if k is None else 1.0 / (8.0 * math.pi * k)
-        return 1.0 / (1.0 / (2.0 * math.pi * R * film) + inside)
-    if np.any(h >= R):
+    if h is not None and np.any(h >= R):
         raise ParameterError("thickness", h, f"below R = {R}")
-    width = 2.0 * math.pi * (R - 0.5 * h)
-    if k is None:
-        return width * film
-    biot = film * h / k
-    if core == "insulated":
-        return width * film / (1.0 + biot / 3.0)
-    return width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
+    width = 2.0 * math.pi * (R if h is None else R - 0.5 * h)
+    found = width * film
+    if h is None and k is not None:
+        found = 1.0 / (1.0 / found + 1.0 / (8.0 * math.pi * k))
+    elif k is not None:
+        biot = film * h / k
+        insulated = found / (1.0 + biot / 3.0)
+        found = insulated if core == "insulated" else width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
+    return found if np.ndim(found) else float(found)
 
 
 def uniform_temperature(film: float, thickness: float, conductivity: float) -> Assumption:

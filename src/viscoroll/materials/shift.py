@@ -89,22 +89,73 @@ class WLF:
         return _shift(temperature, -math.log(10.0) * self.C1 * above / (self.C2 + above))
 
     def log(self, temperature: Floats) -> Floats:
-        """Return ln a_T, dimensionless, at temperatures in degrees Celsius, any shape; +inf at and below the pole."""
-        above = np.maximum(self.C2 + temperature - self.T0, 0.0)
+        """Return ln a_T at temperatures, for arrays and without checks.
+
+        Parameters
+        ----------
+        temperature : degrees Celsius, an array of any shape.
+
+        Returns
+        -------
+        array
+            ln a_T, dimensionless; +inf where a_T is infinite.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.WLF(T0=20.0)
+        >>> shift.log(np.array([20.0]))
+        array([0.])
+        """
+        above = np.maximum(temperature - self.T0 + self.C2, 0.0)
         with np.errstate(divide="ignore"):
             return math.log(10.0) * self.C1 * (self.C2 / above - 1.0)
 
     def temperature_of(self, log: Floats) -> Floats:
-        """Return the temperatures, degrees Celsius, at which ln a_T has given values, any shape; +inf where none has.
+        """Return the temperatures at which ln a_T has given values, for arrays and without checks.
 
-        a_T stays above 10^-C1 at any temperature.
+        Parameters
+        ----------
+        log : ln a_T, dimensionless, an array of any shape.
+
+        Returns
+        -------
+        array
+            Degrees Celsius; +inf where a_T is smaller at no temperature.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.WLF(T0=20.0)
+        >>> shift.temperature_of(np.array([0.0]))
+        array([20.])
         """
         above_least = np.maximum(math.log(10.0) * self.C1 + log, 0.0)
         with np.errstate(divide="ignore"):
             return self.T0 - self.C2 + math.log(10.0) * self.C1 * self.C2 / above_least
 
     def slope(self, temperature: Floats) -> Floats:
-        """Return d ln a_T/d temperature, 1/K, at temperatures in degrees Celsius, any shape."""
+        """Return d ln a_T/d temperature, for arrays and without checks.
+
+        Parameters
+        ----------
+        temperature : degrees Celsius, an array of any shape.
+
+        Returns
+        -------
+        array
+            1/K, below 0.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.WLF(T0=20.0)
+        >>> bool(shift.slope(np.array([20.0])) < 0.0)
+        True
+        """
         return -math.log(10.0) * self.C1 * self.C2 / (self.C2 + temperature - self.T0) ** 2
 
 
@@ -153,22 +204,73 @@ class Arrhenius:
         return _shift(temperature, self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)))
 
     def log(self, temperature: Floats) -> Floats:
-        """Return ln a_T, dimensionless, at temperatures in degrees Celsius, any shape; +inf at absolute zero."""
+        """Return ln a_T at temperatures, for arrays and without checks.
+
+        Parameters
+        ----------
+        temperature : degrees Celsius, an array of any shape.
+
+        Returns
+        -------
+        array
+            ln a_T, dimensionless; +inf where a_T is infinite.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+        >>> shift.log(np.array([20.0]))
+        array([0.])
+        """
         kelvin = np.maximum(temperature - ABSOLUTE_ZERO, 0.0)
         with np.errstate(divide="ignore"):
             return self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO))
 
     def temperature_of(self, log: Floats) -> Floats:
-        """Return the temperatures, degrees Celsius, at which ln a_T has given values, any shape; +inf where none has.
+        """Return the temperatures at which ln a_T has given values, for arrays and without checks.
 
-        a_T stays above exp(-energy/(R_gas T0)) at any temperature.
+        Parameters
+        ----------
+        log : ln a_T, dimensionless, an array of any shape.
+
+        Returns
+        -------
+        array
+            Degrees Celsius; +inf where a_T is smaller at no temperature.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+        >>> shift.temperature_of(np.array([0.0]))
+        array([20.])
         """
         inverse = np.maximum(log * GAS_CONSTANT / self.energy + 1.0 / (self.T0 - ABSOLUTE_ZERO), 0.0)
         with np.errstate(divide="ignore"):
             return ABSOLUTE_ZERO + 1.0 / inverse
 
     def slope(self, temperature: Floats) -> Floats:
-        """Return d ln a_T/d temperature, 1/K, at temperatures in degrees Celsius, any shape."""
+        """Return d ln a_T/d temperature, for arrays and without checks.
+
+        Parameters
+        ----------
+        temperature : degrees Celsius, an array of any shape.
+
+        Returns
+        -------
+        array
+            1/K, below 0.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+        >>> bool(shift.slope(np.array([20.0])) < 0.0)
+        True
+        """
         return -self.energy / GAS_CONSTANT / (temperature - ABSOLUTE_ZERO) ** 2
 
 

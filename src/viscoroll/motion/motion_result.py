@@ -11,11 +11,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ..contact_law.contact import contact
-from ..contact_law.validity.assumptions import Validity
+from ..contact_law.validity.assumptions import Validity, assess_heat
 from ..contact_law.validity.validity import validity
 from ..core.array_types import Floats
+from ..core.checks import check_number
 from ..core.drive import Feedback, Schedule
-from ..core.errors import MotionStatus, ParameterError, digits_beside
+from ..core.errors import MotionStatus, ParameterError, described_error, digits_beside
 from ..core.results import SummaryRow, Values
 from .checks import SPEED_RANGE, output_times
 from .drive import ROWS
@@ -189,12 +190,17 @@ class Motion(RollResult):
             whole[name][reached] = values
         return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
 
-    def validity(self) -> Validity:
+    def validity(self, capacity: float | None = None) -> Validity:
         """Report which assumptions of the model the motion violates, at the ends of its steps and at its output times.
 
         See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its speeds so far; of
         a cover it is not decided.  States at rest count as the last state before them, as the model has nothing to
         compute at rest.
+
+        Parameters
+        ----------
+        capacity : heat that a body stores per kelvin, J/(m K), > 0, of a Cylinder; default: the heat of the motion is
+            not examined.
 
         Returns
         -------
@@ -203,6 +209,11 @@ class Motion(RollResult):
             has the value of the first violation since the output time before (for the first one since t = 0), or, if
             there is none, that at the output time.  The report is that of the same motion with more output times
             (``tests/test_steadiness.py``).
+
+        Raises
+        ------
+        ParameterError
+            A capacity that is not one number > 0, or that is given for a Scene.
 
         Examples
         --------
@@ -217,6 +228,11 @@ class Motion(RollResult):
         t, V, omega = whole.t[reached], whole.V[reached], whole.omega[reached]
         moving = np.maximum.accumulate(np.where((V != 0.0) | (omega != 0.0), np.arange(V.size), 0))
         report = validity(self.roller, V[moving], omega=omega[moving])
+        if capacity is not None:
+            if not self.scale.si:
+                raise described_error("capacity", "is given for a Scene", "left out: a Scene has no temperature")
+            capacity = check_number("capacity", capacity, unit=self.scale, above=0.0)
+            report = report._replace(heat=assess_heat((whole.slip_loss + whole.rolling_loss)[reached], capacity))
         if not outputs.size:
             return report
         if self.scene.cover is None:

@@ -40,6 +40,8 @@ NOT_SMALL = (
     "kappa = R/l0 is below 1: at rest the contact is longer than the radius, and the half-space model does not apply "
     "(are moduli in Pa and the load in N/m?)"
 )
+#: Largest rise of temperature by a motion, K: a_T of rubber changes by 10 % a kelvin at the most.
+HEAT_LIMIT = 1.0
 #: Largest root mean square of the relative errors of a fit, dimensionless, at which the fitted material counts as the
 #: measured one.
 MISFIT_LIMIT = 0.05
@@ -123,6 +125,8 @@ class Validity(NamedTuple):
     plane : plane strain or plane stress, which V does not decide.
     strain : of a Cylinder; value: amplitude of engineering shear strain at the axis, of the softest body, compared with
         the strain of the data, of which a third to three times is allowed.  ``holds`` is None without the latter.
+    heat : of a Motion; value: rise of the temperature by its losses since t = 0, K, if all of them stay in one body of
+        the capacity that was given; up to 1 K one temperature stands for the motion.
 
     Examples
     --------
@@ -143,6 +147,7 @@ class Validity(NamedTuple):
     thick: Assumption
     plane: Assumption
     strain: Assumption
+    heat: Assumption
 
     @property
     def failed(self) -> tuple[str, ...]:
@@ -174,6 +179,8 @@ UNKNOWN = Validity(*(Assumption(None, None, sentence) for sentence in (
     f"{THICK_LIMIT:.2g} times as long as the layer is thick (contact length within 5 %)",
     "the state must be plane strain (a long cylinder, or one between walls) or plane stress (a thin disc)",
     "the strain of the contact is not compared with that of the data: a scene does not state the materials",
+    "the bodies have one temperature: roller.temperature finds that of long rolling; give motion.validity a capacity= "
+    "to compare the heat of a motion",
 )))  # fmt: skip
 
 #: The assumption ``steady`` of a cover.
@@ -244,6 +251,20 @@ def assess_position(epsilon: Any) -> Assumption:
         "the whole contact lies ahead of the axis, which is allowed" if ahead > 1.0 else "the axis is above the contact"
     )
     return Assumption(epsilon <= 1.0, epsilon, f"epsilon = {ahead:.2g}: {where}")
+
+
+def assess_heat(losses: Any, capacity: float) -> Assumption:
+    """Compare the rise of temperature by the losses of a motion with :data:`HEAT_LIMIT`.
+
+    losses: energy lost since t = 0, J/m, >= 0, any shape; capacity: J/(m K), > 0.
+    Returns the assumption ``heat``, whose value is the rise, K; it holds where that is at most 1 K.
+    """
+    rise = losses / capacity
+    return Assumption(
+        rise <= HEAT_LIMIT, rise,
+        f"the losses of the motion warm a body by up to {largest(rise):.2g} K; up to {HEAT_LIMIT:g} K is allowed, as a "
+        "motion has one temperature",
+    )  # fmt: skip
 
 
 def assess_creep(delta: Any, full_slip: Any) -> Assumption:
