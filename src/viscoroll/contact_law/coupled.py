@@ -152,6 +152,11 @@ class CoupledRow:
         length = 0.5 * math.sqrt(max(instant, 1e-3))
         self._ends = [loop.full_slip(self._row, mu, sign, n, length, out) for sign, out in zip((-1.0, 1.0), self._full)]
 
+    @property
+    def full_slip_status(self) -> Floats:
+        """Status of full slip of the negative and of the positive sign, (2,); 0 where solved."""
+        return self._full[:, 8]
+
     def onsets(self) -> tuple[float, float]:
         """Return the creeps 2 kappa delta at which full slip begins, (of the negative, of the positive sign)."""
         return 2.0 * self._ends[0], 2.0 * self._ends[1]
