@@ -51,6 +51,8 @@ DEMO_MOTION = 5.0
 #: Readers of a law's file against ``contact`` with the same coefficients; other orders of summation, beta a thousandth
 #: away from full slip.
 INTEROP = 1e-12
+#: The same of covers, whose creepage is less by that of free rolling: beta and Q of small differences.
+INTEROP_OF_COVERS = 1e-9
 #: and slopes: those of the grip over their condition likewise.
 INTEROP_SLOPES = 1e-11
 #: The program of docs/loading/README.md, which takes steel as rigid, against ``roll``: 1/E' of steel is 1.2e-5 of
