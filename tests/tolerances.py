@@ -57,6 +57,8 @@ DEMO_MOTION = 5.0
 #: Readers of a law's file against ``contact`` with the same coefficients; other orders of summation, beta a thousandth
 #: away from full slip.
 INTEROP = 1e-12
+#: The same of covers, whose creepage is less by that of free rolling: beta and Q of small differences.
+INTEROP_OF_COVERS = 1e-9
 #: and slopes: those of the grip over their condition likewise.
 INTEROP_SLOPES = 1e-11
 #: The program of docs/loading/README.md, which takes steel as rigid, against ``roll``: 1/E' of steel is 1.2e-5 of
@@ -495,6 +497,8 @@ COVER_THICK = 1e-12
 COVER_ROWS = 1e-11
 #: On either side of an octave's end, delta_0 over delta_star/mu: a hundred roundings of the node nearest to it.
 COVER_JOIN = 1e-12
+#: The same of what shear does: the fit of the slow end, where nu < 1/2.
+COVER_JOIN_SHEAR = 1e-10
 #: M beside a body that relaxes too, up to a million millions of its fastest rate: the terms in ln u are extrapolated.
 COVER_LOGARITHMS = 1e-7
 #: What shear does where nu < 1/2, of 2 kappa delta_star/mu: sums along the contact between points.

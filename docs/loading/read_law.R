@@ -104,7 +104,6 @@ contact_state <- function(law, kappa, mu, V, slip) {
   L <- h[1]
   creepage <- if (slip == 0) 0 else if (V == 0) sign(slip) * Inf else slip / V
   own <- creepage - 0.5 * (h[2] + h[3]) / kappa
-  turn <- if (V < 0) -sign(own) else sign(own)
   delta <- abs(own)
   D <- 2 * kappa * delta / mu
   w <- L - D
@@ -117,10 +116,11 @@ contact_state <- function(law, kappa, mu, V, slip) {
     beta <- min(at[1] * w / f$lam, 1)
     used <- min(q, 1)
   }
-  Q <- turn * mu * used
+  along <- sign(own) * mu * used
+  Q <- if (V < 0) -along else along
   more <- used * (1 + (2 * (h[4] + h[5]) / (mu * L))^4)^-0.25
   Mh <- V * f$m_half_space - Q * (h[2] + more * h[4]) / (2 * kappa)
   Mc <- V * f$m_cylinder - Q * (h[3] + more * h[5]) / (2 * kappa + h[2] + h[3])
-  list(lam = f$lam + h[6] * Q, epsilon = f$epsilon + h[7] * Q, delta_star = delta_star, beta = beta, Q = Q,
+  list(lam = f$lam + h[6] * along, epsilon = f$epsilon + h[7] * along, delta_star = delta_star, beta = beta, Q = Q,
        M = Mh + Mc, M_half_space = Mh, M_cylinder = Mc, N = f$N)
 }

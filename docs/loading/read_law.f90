@@ -119,7 +119,7 @@ contains
     type(law), intent(in) :: a
     real(8), intent(in) :: kappa, mu, V, slip
     type(place) :: p
-    real(8) :: u, f(7), h(7), z, L, own, delta, D, w, used, turn, share, more, beta, Q, Mh, Mc
+    real(8) :: u, f(7), h(7), z, L, own, delta, D, w, used, along, share, more, beta, Q, Mh, Mc
     integer :: k
     u = kappa*abs(V)
     if (.not. (kappa > 0 .and. mu > 0 .and. ieee_is_finite(mu) .and. u <= 1d300 .and. ieee_is_finite(slip))) then
@@ -149,7 +149,6 @@ contains
     if (slip /= 0) own = slip/V ! at V = 0 infinite
     if (slip /= 0 .and. V == 0) own = sign(huge(own), slip)
     own = own - 0.5d0*(h(2) + h(3))/kappa
-    turn = merge(0d0, sign(1d0, own), own == 0)*merge(-1, 1, V < 0)
     delta = abs(own)
     D = 2*kappa*delta/mu
     w = L - D
@@ -169,10 +168,11 @@ contains
       used = min(used, 1d0)
       beta = min(f(6)*w/f(1), 1d0)
     end if
-    Q = turn*mu*used
+    along = merge(0d0, sign(mu*used, own), own == 0)
+    Q = merge(-along, along, V < 0)
     more = used*(1 + (2*(h(4) + h(5))/(mu*L))**4)**(-0.25d0)
     Mh = V*f(3) - Q*(h(2) + more*h(4))/(2*kappa)
     Mc = V*f(4) - Q*(h(3) + more*h(5))/(2*kappa + h(2) + h(3))
-    s = state(f(1) + h(6)*Q, f(2) + h(7)*Q, mu*L/(2*kappa), beta, Q, Mh + Mc, Mh, Mc, f(5))
+    s = state(f(1) + h(6)*along, f(2) + h(7)*along, mu*L/(2*kappa), beta, Q, Mh + Mc, Mh, Mc, f(5))
   end function
 end module

@@ -70,7 +70,7 @@ function law(file) {
     const [lam, epsilon, mh, mc, N] = speed(u);
     const [L, fh, fc, gh, gc, lam_Q, epsilon_Q] = limits ? shear(u) : [lam * (1 + epsilon), 0, 0, 0, 0, 0, 0];
     const creepage = slip === 0 ? 0 : V === 0 ? Math.sign(slip) * Infinity : slip / V;
-    const own = creepage - 0.5 * (fh + fc) / kappa, sign = Math.sign(own) * (V < 0 ? -1 : 1);
+    const own = creepage - 0.5 * (fh + fc) / kappa, side = V < 0 ? -1 : 1;
     const delta = Math.abs(own), D = 2 * kappa * delta / mu, w = L - D, delta_star = 0.5 * mu * L / kappa;
     let beta = 0, used = 1;
     if (delta < delta_star && w > 0) {
@@ -79,10 +79,10 @@ function law(file) {
       beta = Math.min(s * w / lam, 1);
       used = Math.min(q, 1);
     }
-    const Q = sign * mu * used, more = used * (1 + (2 * (gh + gc) / (mu * L)) ** 4) ** -0.25;
+    const along = Math.sign(own) * mu * used, Q = side * along, more = used * (1 + (2 * (gh + gc) / (mu * L)) ** 4) ** -0.25;
     const ch = Q * (fh + more * gh) / (2 * kappa), cc = Q * (fc + more * gc) / (2 * kappa + fh + fc);
     return {
-      lam: lam + lam_Q * Q, epsilon: epsilon + epsilon_Q * Q, delta_star, beta, Q,
+      lam: lam + lam_Q * along, epsilon: epsilon + epsilon_Q * along, delta_star, beta, Q,
       M: V * (mh + mc) - (ch + cc), M_half_space: V * mh - ch, M_cylinder: V * mc - cc, N,
     };
   };

@@ -68,7 +68,7 @@ def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
     f_h, f_c, g_h, g_c, lam_Q, epsilon_Q = shear
     f = f_h + f_c
     delta = np.where(slip == 0.0, 0.0, np.where(V == 0.0, np.copysign(np.inf, slip), slip / V)) - 0.5 * f / kappa
-    turn, delta = np.sign(delta) * np.where(V < 0.0, -1.0, 1.0), np.abs(delta)
+    side, sign, delta = np.where(V < 0.0, -1.0, 1.0), np.sign(delta), np.abs(delta)
     D = 2.0 * kappa * delta / mu
     slips = ~((delta < 0.5 * mu * L / kappa) & (D < L))
     w = np.where(slips, L, L - D)
@@ -88,11 +88,11 @@ def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
     S = np.where(r2 >= rows, beyond, np.where(r1 == r2, chord(c[6], r1, t1, t2) * p1, two))
     q = np.where(D < L / 8.0, D * ((2.0 * L - D) * press - 2.0 * u * L / w * S), 1.0 - w * w * press)
     used = np.where(slips, 1.0, np.minimum(q, 1.0))
-    Q = turn * mu * used
+    Q, along = side * sign * mu * used, sign * mu * used
     more = used * (1.0 + (2.0 * (g_h + g_c) / (mu * L)) ** 4) ** -0.25
     change_h, change_c = Q * (f_h + more * g_h) / (2.0 * kappa), Q * (f_c + more * g_c) / (2.0 * kappa + f)
     found = {
-        "lam": lam + lam_Q * Q, "epsilon": epsilon + epsilon_Q * Q, "delta_star": 0.5 * mu * L / kappa,
+        "lam": lam + lam_Q * along, "epsilon": epsilon + epsilon_Q * along, "delta_star": 0.5 * mu * L / kappa,
         "beta": np.where(slips, 0.0, np.minimum(share * w / lam, 1.0)), "Q": Q,
         "M": V * (half_space + cylinder) - (change_h + change_c), "M_half_space": V * half_space - change_h,
         "M_cylinder": V * cylinder - change_c, "N": N,

@@ -117,16 +117,26 @@ def need(command):
         pytest.skip(f"not installed (make interop): {command}")
 
 
-@pytest.fixture(scope="module", params=[RUBBER, PAIR], ids=["rubber", "pair"])
-def folder(request, tmp_path_factory):
-    """The readers, the headers of C, a law in every format, and states of it."""
-    place, law = tmp_path_factory.mktemp("law"), vr.tables.law(request.param)
+NIP = vr.Cover(RUBBER, nu=0.45, thickness=0.5, on="base", part=0.6, other=RUBBER, other_nu=0.3, other_thickness=0.8)
+LINING = vr.Cover(1.0, nu=0.5, thickness=1.0)
+
+
+def folder_of(material, place):
+    """The readers, the headers of C, and a law in every format."""
+    law = vr.tables.law(material)
     for path in (*LOADING.glob("read_law.*"), *HEADERS.glob("*.h")):
         shutil.copy(path, place)
     for name in ("law.nc", "law.json", "rubber.h"):
         vr.tables.export(law, place / name)
-    np.savetxt(place / "moving.csv", states(request.param), fmt="%.17g", delimiter=",")
     vr.tables.save(law, place / "law.nc")
+    return place
+
+
+@pytest.fixture(scope="module", params=[RUBBER, PAIR], ids=["rubber", "pair"])
+def folder(request, tmp_path_factory):
+    """A folder of a law of half-spaces, with states of it."""
+    place = folder_of(request.param, tmp_path_factory.mktemp("law"))
+    np.savetxt(place / "moving.csv", states(request.param), fmt="%.17g", delimiter=",")
     return place
 
 
@@ -163,6 +173,26 @@ nan,0.3,0.1,0.01
 
 #: A language -> how it reads NaN and infinity, where not as "nan" and "inf".
 SPELLED = {"node": ("NaN", "Infinity"), "R": ("NaN", "Inf")}
+
+
+@pytest.mark.parametrize("name", PROGRAMS)
+@pytest.mark.parametrize("material", [NIP, LINING], ids=["nip", "lining"])
+def test_programs_have_the_contact_of_covers(name, material, tmp_path):
+    """Where shear acts back, at rest too, also at V = -0."""
+    program, command, needed = PROGRAMS[name]
+    need(needed)
+    kappa, mu, V, slip = states(material).T
+    scene = vr.Scene(kappa=kappa, mu=mu, material=material)
+    slip = slip + V * vr.contact(scene, V, delta=0.0).delta_0
+    V[1:5], slip[3:5] = -0.0, 0.0
+    folder = folder_of(material, tmp_path)
+    (folder / "program").write_text(program)
+    np.savetxt(folder / "states.csv", np.column_stack([kappa, mu, V, slip]), fmt="%.17g", delimiter=",")
+    found = np.array([row for row in csv.reader(io.StringIO(output(command, folder))) if row], dtype=float)
+    exact = vr.contact(scene, V, omega=V + slip, fields=FIELDS[:-1])
+    scales = {"beta": 1.0, "Q": mu, "epsilon": 1.0} | dict.fromkeys(FIELDS[5:8], mu / kappa)
+    for n, field in enumerate(FIELDS[:-1]):
+        assert close(found[:, n], exact[field], tol.INTEROP_OF_COVERS, scale=scales.get(field, 0.0)), (name, field)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)

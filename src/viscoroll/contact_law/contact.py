@@ -99,9 +99,9 @@ def contact(
     slopes : whether ``dQ_dV``, ``dQ_ddelta``, ``dQ_domega`` and ``dM_dV`` are computed in addition, and of bodies that
         differ ``dM_half_space_dV`` and ``dM_cylinder_dV``; of a layer also ``dM_ddelta``, ``dM_domega`` and those over
         omega of either body.  ``dQ_dV``, and of a layer slopes of M over V, are at fixed delta or fixed omega,
-        whichever was given, the others are at fixed V.  In full slip the slopes of Q are 0.  Where full slip begins Q has a corner
-        over V, and the slopes there are those of full slip.  In partial slip at V = 0 ``dQ_domega`` is infinite, and
-        where omega = 0 was given ``dQ_dV`` is -infinite.
+        whichever was given, the others are at fixed V.  In full slip the slopes of Q are 0.  Where full slip begins Q
+        has a corner over V, and the slopes there are those of full slip.  In partial slip at V = 0 ``dQ_domega`` is
+        infinite, and where omega = 0 was given ``dQ_dV`` is -infinite.
     method : "table" (from the rows of the law: no equation is solved) or "direct" (the equations as the paper prints
         them, solved by Brent-Dekker), which has no slopes, N, grip and delta_0, and takes an alpha alone, no material.
         Or "coupled": pressure and shear are solved together by boundary elements, for any two bodies, layers or

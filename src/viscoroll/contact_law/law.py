@@ -58,8 +58,8 @@ class Law:
 
         roller: a scene or a cylinder whose alpha or material, kappa and mu are single; gamma and j are not used.
         Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape (1,)), for an array
-        of materials, for times of a material beyond 1e-100 to 1e100 T_ref, and for a layer beside a body that relaxes
-        too or too thin for its law.  Sets ``roller``, ``scene``, ``_kappa`` (kappa over the unit of V), ``_covered``,
+        of materials, for times of a material beyond 1e-100 to 1e100 T_ref, and for a layer too thin for its law.  Sets
+        ``roller``, ``scene``, ``_kappa`` (kappa over the unit of V), ``_covered``,
         and the attributes of :meth:`_use`.
         """
         from ..kernels.rows.c_function import pack_scenes
@@ -273,8 +273,7 @@ def law(roller: Roller | LawGrid) -> Law:
     ------
     ParameterError
         What is no scene, cylinder or grid; arrays for alpha, kappa or mu; an array of materials; times of a material
-        beyond 1e-100 to 1e100 T_ref; a layer beside a body that relaxes too, since its slip is not known, or too thin
-        for its law.
+        beyond 1e-100 to 1e100 T_ref; a layer too thin for its law.
 
     Notes
     -----

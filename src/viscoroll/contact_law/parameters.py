@@ -390,7 +390,8 @@ def resolve_model(
     dimensionless parameters; its :class:`Scale`: the factor by which each dimensionless quantity is multiplied to get
     the units of the roller, 1 for a Scene).
     Raises ParameterError for what is no scene and no cylinder (for a LawGrid with a message of its own), a slope out of
-    range, a scene without gamma where ``moves``, a slope of a shape that does not broadcast, and what the scene of a Cylinder does not allow.
+    range, a scene without gamma where ``moves``, a slope of a shape that does not broadcast, and what the scene of a
+    Cylinder does not allow.
     """
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"

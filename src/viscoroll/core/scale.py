@@ -45,7 +45,10 @@ _TABLE = (
     Dimension("P T", "N s m-1", ", divided by P T_epsilon", "dM_dV dM_half_space_dV dM_cylinder_dV dQ_domega"),
     Dimension("P T/R", "N s m-2", ", divided by P T_epsilon/R", "dQ_dV"),
     Dimension("P T2", "N s2 m-1", ", divided by P T_epsilon^2", "N"),
-    Dimension("P R T", "N m s m-1", ", divided by P R T_epsilon", "drag dM_domega dM_half_space_domega dM_cylinder_domega"),
+    Dimension(
+        "P R T", "N m s m-1", ", divided by P R T_epsilon",
+        "drag dM_domega dM_half_space_domega dM_cylinder_domega",
+    ),
     Dimension("P R/T", "W m-1", ", divided by P R/T_epsilon", "loss loss_slip loss_half_space loss_cylinder"),
     Dimension("P T/m R", "s-1", ", divided by gamma/T_epsilon", "rate_fast rate_slow"),
     Dimension(

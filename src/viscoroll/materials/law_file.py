@@ -171,9 +171,9 @@ KINDS = {
         "w = L - D, v = 2 u/w: beta = share(v) w/lam(u), |Q| = mu (1 - w^2 press(v)). Q has the sign of "
         "(delta - delta_0) V. r = (g_h + g_c)/(mu L/2) with g of excess; k = (1 + r^4)^(-1/4)/mu; "
         "M_half_space = V m_half_space - Q (f_h + k g_h |Q|)/(2 kappa); "
-        "M_cylinder = V m_cylinder - Q (f_c + k g_c |Q|)/(2 kappa + f); lam = lam(u) + lam_Q Q; "
-        "epsilon = epsilon(u) + epsilon_Q Q. Fast limit: the limits and their first order in 1/u; with L_1 and a the "
-        "limit of L and its coefficient: press = (1 - 2 a/(L_1 v))^2/L_1^2, "
+        "M_cylinder = V m_cylinder - Q (f_c + k g_c |Q|)/(2 kappa + f); lam = lam(u) + lam_Q Q, "
+        "epsilon = epsilon(u) + epsilon_Q Q, for V < 0 with -Q. Fast limit: the limits and their first order in 1/u; "
+        "with L_1 and a the limit of L and its coefficient: press = (1 - 2 a/(L_1 v))^2/L_1^2, "
         "share = lam/L and in first order 2 (b L_1 - lam a)/(L_1^3 v) more, b that of lam.",
     ),
     AXIS: Kind(

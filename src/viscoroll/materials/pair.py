@@ -52,7 +52,7 @@ class Pair:
     Raises
     ------
     ParameterError
-        A body that is no :class:`Material` or :class:`Solid`; two rigid bodies; a body with a thickness in plane stress.
+        A body that is no :class:`Material` or :class:`Solid`; two rigid bodies; a layer in plane stress.
     """
 
     cylinder: Any
@@ -169,7 +169,7 @@ class Pair:
         return Bodies(one, other, self.share, (strain[0], strain[1]))
 
     def cover(self, l0: Any) -> Cover:
-        """Return the layer of finite thickness and the other body, which may be one too, as a dimensionless :class:`Cover`.
+        """Return the layer of finite thickness and the other body, a layer or not, as a dimensionless :class:`Cover`.
 
         One of the bodies must have a thickness (:attr:`covered`).
 

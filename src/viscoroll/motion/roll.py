@@ -110,7 +110,7 @@ def roll(
         a prescribed speed that jumps or does not match its start, a callable that
         polynomials do not follow; ``rest`` where something drives to the end; ``unsteady`` with bodies that differ
         or with a cover; ``rested`` below 0, with a prescribed speed, with a cover, or at a start in full slip; a scene
-        without gamma, a layer beside a body that relaxes too or too thin for its law; a unit of another dimension.
+        without gamma, a layer too thin for its law; a unit of another dimension.
     Exception
         What a callable raises.
 

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from ...core.checks import check_choice, check_integer
-from ...core.errors import FileError, MissingDependencyError, ParameterError, shape_error
+from ...core.errors import FileError, MissingDependencyError, shape_error
 from ...core.extras import import_extra
 from ...core.files import replace_file
 from ...cylinder import Cylinder
@@ -47,7 +47,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     Raises
     ------
     ParameterError
-        Another model or version, a material without a law, arrays in the cylinder; ContactElement of a cover.
+        Another model or version, a material without a law, arrays in the cylinder.
     MissingDependencyError
         No fmpy, which brings the headers of the standard, or no C compiler ``cc``.
     FileError
@@ -64,14 +64,12 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     Both models give exact slopes as directional derivatives, and in FMI 3 as adjoint derivatives.  As co-simulation a
     roller that starts with slip follows :func:`viscoroll.roll` to 1e-9 of its speed (``tests/fmu/test_fmu.py``).  The
     law of a cover holds at one contact length at rest: the FMU refuses values of R, load, width and E_prime that
-    make another one.
+    make another one; the slopes of a ContactElement over the load are those at that length.
     """
     check_choice("model", model, *MODELS)
     version = check_integer("version", version, 2, 3)
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)
-    if table.cover is not None and not MODELS[model].states:
-        raise ParameterError("model", repr(model), "'Roller' for a cover, whose law holds at one load")
     l0 = _contact_length_of_cover(table)
     starts = _start_values(MODELS[model].variables, given, table, l0)
     fmpy = import_extra("fmpy", "fmu")

@@ -104,6 +104,9 @@ static int in_range(const instance *m) {
   }
   for (int n = FIRST_STATE; n < FIRST_STATE + STATES; n++)
     if (!isfinite(m->x[n])) return refuse(m, NAMES[n], m->x[n], "finite");
+#if !ROLLER
+  if (!(m->x[n_load] > 0.0)) return OK; /* no contact */
+#endif
   double l0 = m->x[n_R] / kappa_of(m->x);
   char text[120];
   snprintf(text, sizeof text, "%.9g, at which the law of the cover holds: set R, load, width and E_prime for it", L0);
@@ -177,8 +180,8 @@ static double nominal(const instance *m, size_t state) {
   return state == 1 ? 0.5 * x[n_mu] / kappa_of(x) * x[n_v_smooth] : x[n_R];
 }
 #else
-/* Below v_min the law is evaluated at v_min with the same slip, and the moments are proportional to v: the slopes stay
- * finite, and there is no moment at rest. */
+/* Below v_min the law is evaluated at v_min with the same slip, and the moments without traction are proportional to v:
+ * the slopes stay finite, and without traction there is no moment at rest. */
 static int evaluate(instance *m) {
   double *x = m->x, P = x[n_load], R = x[n_R], unit = x[n_T_ref] / R, floor = copysign(fmax(fabs(x[n_v]), x[n_v_min]),
       x[n_v]);
@@ -187,18 +190,24 @@ static int evaluate(instance *m) {
   double kappa = kappa_of(x), V = floor * unit, slip = (x[n_omega] * R - x[n_v]) * unit, keep = x[n_v] / floor;
   vr_state s;
   vr_slopes d;
-  vr_contact_slopes(&law, kappa, x[n_mu], V, slip, &s, &d);
-  double Mh = s.M_half_space * keep, Mc = s.M_cylinder * keep;
+  double delta_0_V, delta_0 = vr_free_creep(&law, kappa, V, &delta_0_V);
+  vr_solve(&law, kappa, x[n_mu], V, (slip - keep * V * delta_0) / V, delta_0, &s, &d);
   int slow = fabs(keep) < 1.0;
-  double Q_V = slow ? -d.dQ_domega : d.dQ_dV, h_V = slow ? s.M_half_space / V : d.dM_half_space_dV;
-  double c_V = slow ? s.M_cylinder / V : d.dM_cylinder_dV;
   /* by the load over P: Q is a function of kappa V and kappa^2 slip, kappa M of kappa V,
       and kappa goes like load^(-1/2) */
   double Q_P = -0.5 * (V * (d.dQ_dV + d.dQ_domega) + 2.0 * slip * d.dQ_domega);
   double h_P = 0.5 * keep * (s.M_half_space - V * d.dM_half_space_dV),
       c_P = 0.5 * keep * (s.M_cylinder - V * d.dM_cylinder_dV);
+  if (law.creep) Q_P = h_P = c_P = 0.0; /* its law holds at one kappa */
+  if (slow) d.dM_half_space_dV = s.M_half_space / V, d.dM_cylinder_dV = s.M_cylinder / V;
+  s.M_half_space *= keep, s.M_cylinder *= keep;
+  if (slow) d.dQ_dV = -(1.0 + delta_0) * d.dQ_domega;
+  else if (law.creep) d.dQ_dV -= (delta_0 + fabs(V) * delta_0_V) * d.dQ_domega;
+  vr_shear(&law, kappa, x[n_mu], kappa * fabs(V), slow ? 0.0 : V < 0.0 ? -kappa : kappa, &s, &d);
+  double Mh = s.M_half_space, Mc = s.M_cylinder, Q_V = d.dQ_dV, h_V = d.dM_half_space_dV, c_V = d.dM_cylinder_dV;
+  double Q_o = d.dQ_domega, h_o = d.dM_half_space_domega, c_o = d.dM_cylinder_domega;
   const double value[4] = {s.Q - Mh, -s.Q - Mc, Mh, Mc}, by_V[4] = {Q_V - h_V, -Q_V - c_V, h_V, c_V};
-  const double by_omega[4] = {d.dQ_domega, -d.dQ_domega, 0.0, 0.0}, by_P[4] = {Q_P - h_P, -Q_P - c_P, h_P, c_P};
+  const double by_omega[4] = {Q_o - h_o, -Q_o - c_o, h_o, c_o}, by_P[4] = {Q_P - h_P, -Q_P - c_P, h_P, c_P};
   for (int n = 0; n < 4; n++) { /* force, torque, moment_half_space, moment_cylinder */
     double arm = n ? R : 1.0;
     x[n_force + n] = P * arm * value[n];

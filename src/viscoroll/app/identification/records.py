@@ -350,7 +350,7 @@ class Traction(Record):
         Raises
         ------
         ParameterError
-            As of :meth:`Resistance.model`; a layer beside a body that relaxes too, whose Q is not known.
+            As of :meth:`Resistance.model`.
 
         Warns
         -----

@@ -122,6 +122,8 @@ class Validity(NamedTuple):
         body; needs a material's ``measured``.
     thick : for a layer of known thickness; value: half the contact length divided by the thickness.  Up to its limit
         one stick zone in front with slip behind is right.
+    traction : for a layer, where shear acts back on the pressure; value: 2 |delta_0* - delta_0|/delta_star, with the
+        mean strain delta_0* of full slip.  Up to 1 one end of the contact slips, as the law assumes.
     plane : plane strain or plane stress, which V does not decide.
     strain : of a Cylinder; value: amplitude of engineering shear strain at the axis, of the softest body, compared with
         the strain of the data, of which a third to three times is allowed.  ``holds`` is None without the latter.
@@ -145,6 +147,7 @@ class Validity(NamedTuple):
     bodies: Assumption
     measured: Assumption
     thick: Assumption
+    traction: Assumption
     plane: Assumption
     strain: Assumption
     heat: Assumption
@@ -177,6 +180,7 @@ UNKNOWN = Validity(*(Assumption(None, None, sentence) for sentence in (
     "the transit frequency is not compared with the measured band of the material: give the Material measured=",
     "no thickness is given: the law is that of a half-space.  It applies to a layer if the contact is at most "
     f"{THICK_LIMIT:.2g} times as long as the layer is thick (contact length within 5 %)",
+    "shear does not change the pressure on half-spaces whose Dundurs' constant is 0",
     "the state must be plane strain (a long cylinder, or one between walls) or plane stress (a thin disc)",
     "the strain of the contact is not compared with that of the data: a scene does not state the materials",
     "the bodies have one temperature: roller.temperature finds that of long rolling; give motion.validity a capacity= "

@@ -19,7 +19,7 @@ from .assumptions import (
     assess_position,
     assess_small_contact,
 )  # fmt: skip
-from .cover import assess_cover
+from .cover import assess_cover, assess_traction
 from .free_rolling import FreeRolling
 from .steadiness import Steadiness
 
@@ -43,11 +43,11 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
         For each assumption a number, whether it holds (both in the broadcast shape, None where nothing decides), and a
         sentence; ``print`` shows them, and ``failed`` names those that fail.  A Scene decides ``small_contact`` and
         ``under_axis``; ``steady`` if it has a gamma, a V other than 0 and no layer of finite thickness; ``creep`` with
-        omega, unless the body beside a layer relaxes too; of a layer ``thick``, with half the contact length divided by
-        its thickness.  For a Cylinder ``quasistatic`` compares the speed of the axis, and that of the circumference
-        where omega is given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long times, of the
-        bodies whose density is known, and is undecided without that of the softer one; ``bodies`` has Dundurs'
-        constant, ``measured`` the transit frequency in 1/s if a material has measured data.  ``plane`` is not decided.
+        omega; of a layer ``thick``, with half the contact length divided by its thickness, and ``traction``.  For a
+        Cylinder ``quasistatic`` compares the speed of the axis, and that of the circumference where omega is given,
+        with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long times, of the bodies whose density is
+        known, and is undecided without that of the softer one; ``bodies`` has Dundurs' constant, ``measured`` the
+        transit frequency in 1/s if a material has measured data.  ``plane`` is not decided.
 
     Raises
     ------
@@ -77,7 +77,7 @@ def validity(roller: Roller, V: Numbers, *, omega: Numbers | None = None, densit
         report = UNKNOWN._replace(steady=steady)
     else:
         lengths, thick = assess_cover(scene, speed)
-        report = UNKNOWN._replace(steady=UNKNOWN_OF_COVERS, thick=thick)
+        report = UNKNOWN._replace(steady=UNKNOWN_OF_COVERS, thick=thick, traction=assess_traction(scene, speed))
     report = report._replace(
         small_contact=assess_small_contact(lengths.reach), under_axis=assess_position(lengths.epsilon)
     )

@@ -420,7 +420,8 @@ def _write_other_fields(n, c, law, scratch, request):
     if max(to.lam, to.zeta, to.epsilon, to.beta) >= 0:
         lam, epsilon = lam_and_epsilon(position, u, law)
         write_field(to.beta, stick_fraction(stick_position, v, lam, L, abs(D), law), n, request)
-        lam_change, epsilon_change = length_change(scratch[_Q + c], position, u, law.cover_rows)
+        Q = -scratch[_Q + c] if scratch[_V + c] < 0.0 else scratch[_Q + c]  # as of the mirror image
+        lam_change, epsilon_change = length_change(Q, position, u, law.cover_rows)
         lam = lam + lam_change
         write_field(to.lam, lam, n, request)
         write_field(to.zeta, 0.5 * lam / u, n, request)

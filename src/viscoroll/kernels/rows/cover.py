@@ -288,7 +288,7 @@ def moment_change(Q, mu, reaction):
 def length_change(Q, position, u, cover_rows):
     """Return what the traction changes in length and shift of the contact, to first order.
 
-    Q : float, traction, dimensionless, |Q| <= mu.
+    Q : float, traction in the direction of V, dimensionless, |Q| <= mu.
     position : :class:`.evaluate.RowPosition` of u in the rows of the law.
     u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
@@ -312,8 +312,8 @@ def sliding_creep(slip, delta, free_creep, state, cover_rows):
     state : :class:`.contact_states.State`, of which kappa and the sign of V are read, of a cover alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for half-spaces.
     Returns (a float with the sign of the traction, delta - delta_0), dimensionless.  Of a cover the first is delta -
-    delta_0 with the sign of V, where V = 0.0 and -0.0 count as V > 0; of half-spaces the two are ``slip`` and ``delta`` as
-    given.
+    delta_0 with the sign of V, where V = 0.0 and -0.0 count as V > 0; of half-spaces the two are ``slip`` and ``delta``
+    as given.
     """
     if cover_rows is None:
         return slip, delta

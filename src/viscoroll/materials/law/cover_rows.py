@@ -63,9 +63,9 @@ _BEYOND = 42
 _END_NODES = 52
 #: degree of these polynomials
 _END_DEGREE = 12
-#: degree of those by shear, which for nu < 1/2 have terms in ln u at low speed, from the memory of the pressure near the
-#: edges: where the first octave begins they jump by 4e-12 of 2 kappa delta_star/mu, and by 4e-10 with 12; with 18 the
-#: noise of the solve makes their slopes jump by 1e-4, with 14 by 1e-6
+#: degree of those by shear, which for nu < 1/2 have terms in ln u at low speed, from the memory of the pressure near
+#: the edges.  Where the first octave begins they jump by 4e-12 of 2 kappa delta_star/mu, and by 4e-10 with 12; with 18
+#: the noise of the solve makes their slopes jump by 1e-4, with 14 by 1e-6
 _STRAIN_DEGREE = 14
 #: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too: without them M was
 #: wrong by 1 % at a thousand times the fastest rate, with two it is by 1e-9; more terms amplify the noise of the solve
@@ -158,8 +158,8 @@ def _solve_node(
     """Solve for the half contact length that carries the load at one speed, by the secant method.
 
     The unknown is ln z, z the half contact length divided by V T_ref; the equation is ln H = -ln(4 stiffness u^2) with
-    the load H of :class:`.cover_solve.CoverState`.  At the end lam, L, epsilon and M are extrapolated by the last secant
-    step.
+    the load H of :class:`.cover_solve.CoverState`.  At the end lam, L, epsilon and M are extrapolated by the last
+    secant step.
     modes: :class:`CoverModes` of the bodies.
     u: kappa |V|, dimensionless, > 0.
     start: first approximation of ln z, near enough for the first two solves to give slopes over z; None: that of a

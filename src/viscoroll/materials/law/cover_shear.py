@@ -13,7 +13,6 @@ All of these are linear in C, so that each body has its part.
 
 from __future__ import annotations
 
-import math
 from typing import Any, NamedTuple
 
 import numpy as np

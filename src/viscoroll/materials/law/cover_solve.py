@@ -189,8 +189,9 @@ class CoverModes:
                 mine = np.full(nodes.u.size, name == "base", np.float64)
                 kernels.append([nodes.u / thickness, nodes.L, nodes.shear, sign * nodes.C, mine, 1.0 - mine])
         self.bodies = tuple(bodies)
-        self.wave, self.L, self.shear, self.C, *mine = np.concatenate(kernels, axis=1)
-        self.mine = np.array(mine)
+        together = np.concatenate(kernels, axis=1)
+        self.wave, self.L, self.shear, self.C = together[:4]
+        self.mine = together[4:]
 
     def elastic(self, share: float) -> CoverModes:
         """Return the same bodies without relaxation: both elastic, with their Poisson's ratios and thicknesses.

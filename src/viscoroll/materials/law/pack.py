@@ -300,8 +300,8 @@ def _pack_cover(cover: CoverRows) -> Floats:
     """Return the numbers of a cover that kernels read in addition to its rows (:mod:`...kernels.rows.cover`).
 
     cover: law of the cover, as :class:`CoverRows`.
-    Returns one vector of 18 + 144 rows numbers: the head of :mod:`...kernels.rows.cover`, limits for u -> infinity; then
-    for each row the 24 coefficients of f of both bodies, of g of both, and of both slopes, each pair interleaved.
+    Returns one vector of 18 + 144 rows numbers: the head of :mod:`...kernels.rows.cover`, limits for u -> infinity;
+    then for each row the 24 coefficients of f of both bodies, of g of both, and of both slopes, each pair interleaved.
     """
     limits, slopes = cover.limits[: 2 * _LIMITED].reshape(2, _LIMITED)
     L, lam, L_slope, lam_slope = *limits[:2], *slopes[:2]

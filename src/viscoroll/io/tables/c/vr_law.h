@@ -138,7 +138,8 @@ static inline void vr_shear(const vr_law *law, double kappa, double mu, double u
     M[n] = -s->Q * a * bracket, M_Q[n] = -a * (bracket + k * g * used);
     M_u[n] = -s->Q * (da * bracket + a * (e[VR_FREE + n] + (k * e[VR_EXCESS + n] + dk * g) * used));
   }
-  s->lam += s->Q * f[VR_TILT], s->epsilon += s->Q * f[VR_TILT + 1];
+  double along = du_dV < 0.0 ? -s->Q : s->Q; /* in the direction of V */
+  s->lam += along * f[VR_TILT], s->epsilon += along * f[VR_TILT + 1];
   s->M_half_space += M[0], s->M_cylinder += M[1], s->M += M[0] + M[1];
   if (!d) return;
   d->dM_half_space_domega = M_Q[0] != 0.0 ? M_Q[0] * d->dQ_domega : 0.0;
