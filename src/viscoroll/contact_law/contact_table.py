@@ -138,7 +138,7 @@ def evaluate_law(
     loop, states = _kernel(direct)
     rows = kernel_rows(names)
     out = np.empty((len(names), count))
-    record = material.record if isinstance(material, LawTable) else None
+    record: Any = material.record if isinstance(material, LawTable) else None
     coupled = record is not None and record.table is not None
 
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
