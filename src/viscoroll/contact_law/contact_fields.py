@@ -37,13 +37,17 @@ UNSTEADY = "N"
 GRIP = "grip"
 #: Creepage of free rolling of a cover, in which stick and the strain by the pressure balance; 0 for half-spaces.
 FREE_CREEP = "delta_0"
+#: Approach of the bodies, of layers on rigid ground.
+DEPTH = "depth"
+#: Fields that method "coupled" alone has, with the default ones first.
+OF_COUPLED = ("delta_minus", "delta_plus", "loss_slip", "loss_half_space", "loss_cylinder", DEPTH)
 #: Field -> the field of which it is a multiple: the length is lam times l0, C_rr is M/(P R).
 _MULTIPLES = {"length": "lam", "C_rr": "M"}
 #: Field of like bodies -> the field of which it is half.
 _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
-_KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, *SLOPES_OF_COVERS, UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES)
+_KNOWN = (*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, *SLOPES_OF_COVERS, UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES, *OF_COUPLED)
 
 
 def field_names(
@@ -56,8 +60,8 @@ def field_names(
     fields : a name or names of fields; None: the default fields of such a roller.  A name may occur twice; of no names
         there are no fields.
     slopes : whether the slopes are added to these fields.
-    method : "table", which has every field, or "direct" (the printed equations), which has no slopes, N, grip and
-        delta_0.
+    method : "table"; "direct" (the printed equations), which has no slopes, N, grip and delta_0; or "coupled", which
+        has no slopes and no N, and alone has :data:`OF_COUPLED`, of which all but the depth are default fields.
     like : whether both bodies are of one material; if not, the parts of M in either body are default fields, and
         ``slopes`` adds their slopes.
     si : whether the roller is a cylinder, in SI units; ``length``, ``C_rr`` and the parts of M are then default fields.
@@ -73,9 +77,10 @@ def field_names(
     Raises
     ------
     ParameterError
-        An unknown field or method; slopes, N, grip or delta_0 with method "direct"; N of a cover.
+        An unknown field or method; slopes, N, grip or delta_0 with method "direct"; slopes or N with "coupled", and its
+        own fields without it; N of a cover.
     """
-    check_choice("method", method, "table", "direct")
+    check_choice("method", method, "table", "direct", "coupled")
     if fields is not None:
         names = check_names("fields", fields, _KNOWN, "a field")
     elif si:
@@ -85,6 +90,11 @@ def field_names(
     if slopes:
         more = SLOPES + (() if like else SLOPES_OF_BODIES) + (SLOPES_OF_COVERS if cover else ())
         names += tuple(name for name in more if name not in names)
+    if method == "coupled":
+        return _coupled_names(names, fields is None)
+    only = next((name for name in names if name in OF_COUPLED), None)
+    if only is not None:
+        raise ParameterError("fields", repr(only), "left out, or computed with method='coupled'")
     if method == "direct":
         if set(names) & set(SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS):
             raise ParameterError("method", "'direct'", "'table' for slopes: the equations of the paper give none")
@@ -97,6 +107,21 @@ def field_names(
         allowed = "left out for a cover: N of a layer of finite thickness is not available"
         raise ParameterError("fields", repr(UNSTEADY), allowed)
     return (*names, FREE_CREEP) if fields is None else names
+
+
+def _coupled_names(names: tuple[str, ...], default: bool) -> tuple[str, ...]:
+    """Return the fields of a call with method "coupled".
+
+    names: fields of the call; default: whether they are the default ones, to which those of the method are added.
+    Raises ParameterError for slopes and N.
+    """
+    for name in names:
+        if name in SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS + (UNSTEADY,):
+            raise ParameterError("fields", repr(name), "left out: method 'coupled' has no slopes and no N")
+    if not default:
+        return names
+    extra = (*OF_BODIES, *OF_COUPLED[:-1])
+    return names + tuple(name for name in extra if name not in names)
 
 
 @lru_cache(maxsize=64)

@@ -14,15 +14,18 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
+from scipy.optimize import brentq
 
 from ..core.array_types import Floats
+from ..core.errors import ParameterError
 from ..materials.bodies import Bodies
-from ..materials.cover import Cover
 from ..materials.prony import Prony, series_of_alpha
 from .coupled_kernels import body_kernels, edge_layer
 
 #: Elements of a state.
-ELEMENTS = 64
+ELEMENTS = 72
+#: Error of the creep of free rolling, times 2 kappa.
+_FREE_CREEP_ERROR = 1e-9
 #: Coupling over the largest kernel that counts as rounding.
 _ROUNDING = 1e-14
 
@@ -52,33 +55,27 @@ class CoupledPair(NamedTuple):
 
     @classmethod
     def of_scene(cls, scene: Any) -> CoupledPair:
-        """Return the pair of a dimensionless scene of one material."""
+        """Return the pair of dimensionless parameters, :class:`.parameters.Parameters`, of one material.
+
+        Raises ParameterError for several materials.
+        """
         material = scene.material
         if material is None:
-            material = series_of_alpha(float(scene.alpha))
-        if isinstance(material, Cover):
-            return cls(_bodies_of_cover(material))
+            material = series_of_alpha(float(np.asarray(scene.alpha).item()))
+        if material.shape:
+            raise ParameterError("material", f"{material!r:.60}", "one material, as material[i], by method 'coupled'")
         if isinstance(material, Bodies):
-            sides = {"base": (material.base, 1.0 - material.share), "cylinder": (material.cylinder, material.share)}
-            made = [_body(side, series, share, 0.5) for side, (series, share) in sides.items()]
+            shares = {"base": 1.0 - material.share, "cylinder": material.share}
+            made = [_body(side, *material.body(side), share) for side, share in shares.items() if share > 0.0]
         else:
-            made = [_body(side, material, 0.5, 0.5) for side in ("base", "cylinder")]
-        return cls(tuple(body for body in made if body.share > 0.0))
+            made = [_body(side, material, 0.5, None, 0.5) for side in ("base", "cylinder")]
+        return cls(tuple(made))
 
 
-def _body(side: str, series: Prony, share: float, nu: float, thickness: float = math.inf) -> CoupledBody:
-    """Return one body; arguments as the fields of :class:`CoupledBody`, ``series`` for its modes."""
+def _body(side: str, series: Prony, nu: float, thickness: float | None, share: float) -> CoupledBody:
+    """Return one body; arguments as the fields of :class:`CoupledBody`, ``series`` for its modes, None for infinite."""
     J, T = (tuple(each.tolist()) for each in (series.J, series.T))
-    return CoupledBody(side, float(share), float(nu), float(thickness), J, T)
-
-
-def _bodies_of_cover(cover: Cover) -> tuple[CoupledBody, ...]:
-    """Return the records of a layer and of the body beside it, if that deforms."""
-    layer = _body(cover.on, cover.layer, cover.part, cover.nu, cover.thickness)
-    if cover.part == 1.0:
-        return (layer,)
-    side = "base" if cover.on == "cylinder" else "cylinder"
-    return layer, _body(side, cover.other, 1.0 - cover.part, cover.other_nu)
+    return CoupledBody(side, float(share), float(nu), math.inf if thickness is None else float(thickness), J, T)
 
 
 class CoupledStates(NamedTuple):
@@ -106,6 +103,22 @@ class CoupledStates(NamedTuple):
     def converged(self) -> Any:
         """Whether each state was solved, (n,), bool."""
         return self.status == 0.0
+
+
+class CoupledProfile(NamedTuple):
+    """Tractions of one state, linear between the nodes of the elements.
+
+    nodes : places over l0 from the middle of the contact, ascending, (n,), of a motion along +x.
+    shift : place of the middle ahead of the axis, over l0.
+    p, q : pressure and shear stress on the cylinder along +x, over E'/(4 pi kappa), (n,).
+    status : 0 where solved.
+    """
+
+    nodes: Floats
+    shift: float
+    p: Floats
+    q: Floats
+    status: int
 
 
 class CoupledRow:
@@ -139,6 +152,11 @@ class CoupledRow:
         length = 0.5 * math.sqrt(max(instant, 1e-3))
         self._ends = [loop.full_slip(self._row, mu, sign, n, length, out) for sign, out in zip((-1.0, 1.0), self._full)]
 
+    @property
+    def full_slip_status(self) -> Floats:
+        """Status of full slip of the negative and of the positive sign, (2,); 0 where solved."""
+        return self._full[:, 8]
+
     def onsets(self) -> tuple[float, float]:
         """Return the creeps 2 kappa delta at which full slip begins, (of the negative, of the positive sign)."""
         return 2.0 * self._ends[0], 2.0 * self._ends[1]
@@ -167,3 +185,22 @@ class CoupledRow:
         return CoupledStates(
             lam, epsilon, Q, moment - own_moment, own_moment, work - own_work, own_work, beta, status
         )  # fmt: skip
+
+    def free_creep(self) -> float:
+        """Return the creep 2 kappa delta of free rolling, at which there is no traction."""
+        return float(brentq(lambda creep: self.states([creep]).Q_over_mu[0], *self.onsets(), xtol=_FREE_CREEP_ERROR))
+
+    def profile(self, creep: float) -> CoupledProfile:
+        """Return the tractions at a creep 2 kappa delta of any size."""
+        from ..kernels.coupled import loop
+
+        low, high = self.onsets()
+        slips = not low < creep < high
+        out = np.zeros(loop.COLUMNS)
+        sign = 1.0 if creep >= high else -1.0
+        d = np.inf if slips else 0.5 * creep
+        found = loop.solve_one(self._row, self.mu, d, self.n, float(self._full[0, 9]), sign, out)
+        p, q = (np.concatenate([[0.0], each, [0.0]]) for each in (found.p, found.q))
+        load = np.trapezoid(p, found.nodes)
+        shift = 0.5 * out[0] * out[1]
+        return CoupledProfile(found.nodes, shift, p * (loop.LOAD / load), q * (loop.LOAD / load), int(out[8]))

@@ -30,6 +30,11 @@ _SCALES = np.geomspace(1e-8, 1.0, 200)
 #: growth d ln J/d ln x of the compliance over distance x from the front edge from which on pressure gathers there; the
 #: pressure of half-spaces grows like the distance to the power of 1/2 less it
 _GROWTH = 0.4
+#: points of Gauss's rule in an element
+_GAUSS = 5
+#: first, last and step of s, with half length times wave number ln(1 + e^s): the transform of the pressure, squared,
+#: falls like the third power
+_WAVES = -25.0, 80.0, 0.12
 
 
 @cache
@@ -167,3 +172,65 @@ def edge_layer(bodies: Any, u: float) -> float:
             growth += body.share * strength * x * np.exp(-x)
     steep = _SCALES[growth > _GROWTH * compliance]
     return float(steep[0]) if steep.size else math.inf
+
+
+def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
+    """Return the Fourier transform int f(x) exp(-i k x) dx of a function that is linear between nodes.
+
+    nodes, values: (n,).  k: wave numbers, (m,).  Returns complex numbers (m,), by Gauss's rule in each element.
+    """
+    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    lengths = np.diff(nodes)
+    part = 0.5 * (1.0 + points)
+    x = nodes[:-1, np.newaxis] + lengths[:, np.newaxis] * part
+    f = values[:-1, np.newaxis] * (1.0 - part) + values[1:, np.newaxis] * part
+    f = f * (0.5 * weights) * lengths[:, np.newaxis]
+    return np.exp(-1j * np.multiply.outer(k, x.ravel())) @ f.ravel()
+
+
+def layer_transforms(nu: float, u: Floats) -> Floats:
+    """Return L, T and C of a bonded layer over those of a half-space, C as it is, at wave numbers times the thickness.
+
+    nu: Poisson's ratio.  u: > 0, (n,).  Returns (3, n).
+    """
+    kap = 3.0 - 4.0 * nu
+    decay = np.exp(-2.0 * u)
+    denominator = kap * (1.0 + decay**2) + (4.0 * u**2 + 1.0 + kap**2) * decay
+    mean = kap * (1.0 - decay**2)
+    swing = 4.0 * u * decay
+    C = (kap * (kap - 1.0) * (1.0 - decay) ** 2 - 8.0 * u**2 * decay) / ((kap + 1.0) * denominator)
+    return np.array([(mean - swing) / denominator, (mean + swing) / denominator, C])
+
+
+def depth(bodies: Any, u: float, profile: Any) -> float:
+    """Return the approach of two bodies of which each is a layer on rigid ground or rigid, over l0^2/R.
+
+    The mean of the displacement of both surfaces with the pressure as weight, by Parseval's theorem, and that of the
+    cylinder's profile x^2/2.
+
+    bodies: :class:`.coupled.CoupledBody` of each that deforms, all of finite thickness.
+    u: kappa |V|.  profile: :class:`.coupled.CoupledProfile`.
+    """
+    half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
+    s = np.arange(*_WAVES)
+    k = np.logaddexp(0.0, s) / half
+    weights = (_WAVES[2] / half) / (1.0 + np.exp(-s))
+    p = transforms(profile.nodes, profile.p, k)
+    q = transforms(profile.nodes, profile.q, k)
+    total = 0.0
+    for body in bodies:
+        compliance = np.full(k.size, complex(max(1.0 - math.fsum(body.J), 0.0)))
+        for strength, time in zip(body.J, body.T, strict=True):
+            with np.errstate(over="ignore", invalid="ignore"):
+                compliance += strength / (1.0 - 1j * k * (time * u)) if math.isfinite(u) else 0.0
+        L, _, C = layer_transforms(body.nu, k * body.thickness)
+        side = 1.0 if body.side == "base" else -1.0
+        work = compliance / k * (L * np.abs(p) ** 2 + 1j * side * C * q * np.conj(p))
+        total += body.share * float(weights @ work.real) / np.pi
+    middle = 0.5 * (profile.nodes[:-1] + profile.nodes[1:])
+    lengths = np.diff(profile.nodes)
+    ends = profile.p * (profile.nodes + profile.shift) ** 2
+    centre = 0.5 * (profile.p[:-1] + profile.p[1:]) * (middle + profile.shift) ** 2
+    square = float(lengths @ (ends[:-1] + 4.0 * centre + ends[1:])) / 6.0
+    load = float(np.trapezoid(profile.p, profile.nodes))
+    return (total + 0.5 * square) / load

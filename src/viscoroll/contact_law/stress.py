@@ -10,13 +10,13 @@ long-time modulus.
 from __future__ import annotations
 
 from itertools import pairwise
-from typing import Any, overload
+from typing import Any, Literal, overload
 
 import numpy as np
 
 from ..core.array_types import Floats, Numbers
 from ..core.blocks import block_reader, run_blocks
-from ..core.checks import broadcast_shape, check_array, divide_by_unit
+from ..core.checks import broadcast_shape, check_array, check_choice, divide_by_unit
 from ..core.errors import check_one_given
 from ..core.labels import strip_labels
 from ..core.results import Values
@@ -25,6 +25,7 @@ from ..materials.law.cover_pressure import pressure
 from ..materials.law.cover_solve import CoverModes
 from ..materials.law.evaluate import series_record
 from .contact_table import evaluate_contact
+from .coupled_contact import coupled_stress
 from .parameters import Parameters, Roller, resolve_model
 from .validity.model_warnings import warn_of_contact
 
@@ -35,11 +36,17 @@ _FIELDS = "lam", "epsilon", "beta", "zeta", "delta"
 
 
 @overload
-def stress(roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers) -> Values: ...
+def stress(roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers, method: Literal["table", "coupled"] = "table") -> Values: ...
 @overload
-def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers) -> Values: ...
+def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers, method: Literal["table", "coupled"] = "table") -> Values: ...
 def stress(
-    roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers | None = None, omega: Numbers | None = None
+    roller: Roller,
+    x: Numbers,
+    V: Numbers,
+    *,
+    delta: Numbers | None = None,
+    omega: Numbers | None = None,
+    method: Literal["table", "coupled"] = "table",
 ) -> Values:
     """Compute pressure and shear stress along the contact of a rolling cylinder and its base, Eqs. (11)-(14).
 
@@ -56,6 +63,7 @@ def stress(
     delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity, any sign; omega of a Cylinder in rad/s,
         of a Scene multiplied by T_ref.  At V = 0 a delta means the limit V -> 0+, an omega other than 0 full slip.
         All arguments broadcast.
+    method : "table", or "coupled" (:func:`contact`), with which layers have a shear stress too.
 
     Returns
     -------
@@ -63,7 +71,7 @@ def stress(
         ``p``: pressure, >= 0.  ``tau``: shear stress on the cylinder in the direction of +x, of the sign of omega R - V
         (at V = 0 of delta), 0 for delta = 0; |tau| <= mu p, with equality in the slip zone and, in full slip, in the
         whole contact.  Both are in Pa of a Cylinder, else divided by E', and 0 outside the contact.  If a body is a
-        layer of finite thickness there is ``p`` alone: its shear stress is not known.  Both have the broadcast shape
+        layer of finite thickness there is ``p`` alone by method "table": its shear stress is not known.  Both have the broadcast shape
         of arguments and roller; they are floats if all of these are numbers.
 
     Raises
@@ -97,6 +105,7 @@ def stress(
 
     _, scene, scale = resolve_model(roller, "stress")
     creep_name = check_one_given(delta=delta, omega=omega)
+    check_choice("method", method, "table", "coupled")
     given, labels = strip_labels({"x": x, "V": V, creep_name: omega if delta is None else delta}, scale)
     given = {name: check_array(name, value) for name, value in given.items()}
     position, speed, creep = given.values()
@@ -107,6 +116,11 @@ def stress(
             position = divide_by_unit("x", position, scale["length"])
             speed = divide_by_unit("V", speed, scale["V"])
             creep = divide_by_unit(creep_name, creep, scale[creep_name])
+    if method == "coupled":
+        both = coupled_stress(scene, position, speed, creep, creep_name == "omega")
+        parts = {name: scale["p"] * value for name, value in zip(("p", "tau"), both, strict=True)}
+        parts = {name: value if value.ndim else value.item() for name, value in parts.items()}
+        return Values(parts, given, si=scale.si, title="Stresses", labels=labels)
     lam, epsilon, beta, zeta, delta = evaluate_contact(scene, speed, creep, creep_name == "omega", _FIELDS).values()
     # For V < 0 positions are mirrored, and tau changes its sign.
     mirror = np.where(speed < 0.0, -1.0, 1.0)

@@ -32,7 +32,7 @@ _TABLE = (
         "t t0 onset_time rest_time rested zeta resolve T_epsilon T_sigma T_ref",
     ),
     Dimension("R", "m", ", divided by R", "R thickness x"),
-    Dimension("l0", "m", ", divided by l0", "length"),
+    Dimension("l0", "m", ", divided by l0", "length depth"),
     Dimension("m", "kg m-1", ", divided by m", "m"),
     Dimension("m/R2", "kg m-3", ", divided by m/R^2", "density"),
     Dimension("R/T", "m s-1", ", divided by R/T_epsilon", "V V0 rest speed"),

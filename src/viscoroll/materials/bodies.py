@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core.array_types import Floats, Integers
-from ..core.checks import broadcast_shape, check_array, read_only
+from ..core.checks import broadcast_shape, check_array, check_number, read_only
 from ..core.errors import ParameterError, described_error, shape_error
 from .prony import Block, OneOrMany, Prony, series_of_alpha, sort_modes
 from .prony_forms import MOST_MODES
@@ -32,6 +32,9 @@ class Bodies(OneOrMany):
         the cylinder is rigid, 1: the half-space is rigid.
         If a body is n series, or ``share`` is an array (n,), these are n pairs: ``p[i]`` is one of them, ``p[i:k]`` are
         some; a single series or number is that of all pairs.
+    poisson : Poisson's ratios of cylinder and base in plane strain, each in (-1, 0.5], of which
+        ``contact(method="coupled")`` computes how shear and pressure couple; other calls take them as uncoupled.
+        None (default): like ratios, of bodies that do not couple.
 
     Attributes
     ----------
@@ -59,6 +62,7 @@ class Bodies(OneOrMany):
     cylinder: Prony
     base: Prony
     share: Any = 0.5
+    poisson: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         """Check the bodies, set ``shape``, and replace ``share`` by a float or a read-only copy of the array.
@@ -71,6 +75,9 @@ class Bodies(OneOrMany):
         for name, body in bodies.items():
             if not isinstance(body, Prony):
                 raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
+        if self.poisson is not None:
+            values = [check_number("poisson", value, above=-1.0, high=0.5) for value in self.poisson]
+            object.__setattr__(self, "poisson", tuple(values))
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
             raise shape_error("share", share.shape, "a number, or one for each pair, (n,)")
@@ -101,7 +108,7 @@ class Bodies(OneOrMany):
 
     def __getitem__(self, which: Any) -> Bodies:
         parts = (self.cylinder, self.base, self.share)
-        return Bodies(*(each[which] if np.shape(each) else each for each in parts))
+        return Bodies(*(each[which] if np.shape(each) else each for each in parts), self.poisson)
 
     @cached_property
     def _creep(self) -> tuple[NDArray, ...]:
@@ -131,6 +138,14 @@ class Bodies(OneOrMany):
             return Prony.creep(*self._creep[:2], alpha=self.alpha)
         one = self.cylinder
         return one if one.shape == self.shape else one.repeated(len(self))
+
+    def body(self, name: str) -> tuple[Prony, Any, Any]:
+        """Return the series of one body of a single pair, its Poisson's ratio, and None: it is a half-space.
+
+        name : "cylinder" or "base".
+        """
+        nu = 0.5 if self.poisson is None else self.poisson[name == "base"]
+        return getattr(self, name), nu, None
 
     @cached_property
     def half_space_weights(self) -> Floats:
@@ -183,13 +198,14 @@ class Bodies(OneOrMany):
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
-        return self.cylinder, self.base, np.shape(self.share), np.asarray(self.share).tobytes()
+        return self.cylinder, self.base, np.shape(self.share), np.asarray(self.share).tobytes(), self.poisson
 
     def __repr__(self) -> str:
         if self.shape:
             modes = (body.E.shape[-1] for body in (self.cylinder, self.base))
             return f"<{len(self)} pairs of {' and '.join(map(str, modes))} modes>"
-        return f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r})"
+        poisson = "" if self.poisson is None else f", poisson={self.poisson!r}"
+        return f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r}{poisson})"
 
 
 def total_series(material: float | Prony | Bodies) -> Prony:

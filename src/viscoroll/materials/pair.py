@@ -161,7 +161,12 @@ class Pair:
         if self.like:
             return self.cylinder.prony
         one, other = (body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space))
-        return Bodies(one, other, self.share)
+        ratios = [np.asarray(body.nu) for body in (self.cylinder, self.half_space)]
+        if any(nu.shape for nu in ratios):
+            return Bodies(one, other, self.share)
+        # plane stress is plane strain with another ratio
+        strain = [float(nu if self.plane == "strain" else nu / (1.0 + nu)) for nu in ratios]
+        return Bodies(one, other, self.share, (strain[0], strain[1]))
 
     def cover(self, l0: Any) -> Cover:
         """Return the layer of finite thickness and the other body, which may be one too, as a dimensionless :class:`Cover`.

@@ -100,6 +100,16 @@ def make_mesh(c, spots, used, nodes, at, place):
             place[n // 2] = t
 
 
+@kernel
+def scale_mesh(c, nodes, at):
+    """Scale a mesh to another half length, c.  nodes, at : (N + 1,) and (N,), changed."""
+    factor = 2.0 * c / (nodes[at.size] - nodes[0])
+    for n in range(at.size):
+        nodes[n] *= factor
+        at[n] *= factor
+    nodes[at.size] *= factor
+
+
 @inline_kernel
 def _local_part(local, h):
     """Return the part of the coupling that acts at the middle of an element of length h as if at once.

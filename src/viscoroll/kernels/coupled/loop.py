@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..compile.jit import inline_kernel, kernel
-from .elements import add_local, assemble, make_mesh, moments, node_value, product
+from .elements import add_local, assemble, make_mesh, moments, node_value, product, scale_mesh
 from .zones import eliminate, find_zones, pressure_and_strain, solve_zones, strain_by_shear
 
 #: load in units of the elements
@@ -22,10 +22,10 @@ COLUMNS = 10
 SOLVED, NO_ZONES, TENSION, NO_LOAD, SINGULAR = range(5)
 #: distance of an edge from its spot times the number of elements from which on the mesh is made anew
 OFF_SPOT = 0.25
-#: number of meshes after which that is not asked any more
+#: number of meshes after which the last one is kept
 _MOST_CENTRINGS = 6
 #: largest number of half lengths that are tried for one load
-_MOST_LENGTHS = 15
+_MOST_LENGTHS = 20
 #: relative error of the load, for which lam is then corrected to first order
 _LOAD_ERROR = 2e-5
 #: relative error of the load where only zones are asked
@@ -134,17 +134,15 @@ def carry_zones(zone, place, own, moved):
 
 
 @kernel(allocates=True)
-def solve_contact(row, contact, c, mu, d):
-    """Solve one contact of half length c with its zones of stick and slip.
+def gather(row, contact, c, spots):
+    """Make the mesh of a contact, which gathers at the edges of its zones and at the edge layer; return their number.
 
-    row : :class:`Row`.  contact : :class:`Contact`, written; its zones are the first guess.
-    c : half length.  mu : friction.  d : creep.
-    Returns (status; g; whether the edges found lie where the mesh gathers).
+    row : :class:`Row`.  contact : its zones are carried to the new mesh.  c : half length.
+    spots : (MOST_SPOTS, 3), written: the edges first.
     """
-    spots = np.empty((MOST_SPOTS, 3))
     count = contact.at.size
-    used = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
-    edges = used
+    edges = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
+    used = edges
     thin = math.sqrt(2.0 * row.layer / c) / math.pi
     if thin * count < 1.0 and used < MOST_SPOTS:
         spots[used, 0] = 1.0
@@ -154,8 +152,25 @@ def solve_contact(row, contact, c, mu, d):
     zone = contact.zone.copy()
     place = contact.place.copy()
     make_mesh(c, spots, used, contact.nodes, contact.at, contact.place)
-    if used > 0:
-        carry_zones(zone, place, contact.place, contact.zone)
+    carry_zones(zone, place, contact.place, contact.zone)
+    return edges
+
+
+@kernel(allocates=True)
+def solve_contact(row, contact, c, mu, d, spots, again):
+    """Solve one contact of half length c with its zones of stick and slip.
+
+    row : :class:`Row`.  contact : :class:`Contact`, written; its zones are the first guess.
+    c : half length.  mu : friction.  d : creep.
+    spots : (MOST_SPOTS, 3), where the mesh gathers; written, or read if ``again``: the mesh of the call before is kept.
+    Returns (status; g; whether the edges found lie where the mesh gathers).
+    """
+    count = contact.at.size
+    edges = 0
+    if again:
+        scale_mesh(c, contact.nodes, contact.at)
+    else:
+        edges = gather(row, contact, c, spots)
     assemble(row.table, row.instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
     add_local(row.local, contact.nodes, contact.at, contact.C)
     good, B = eliminate(contact.H, contact.C, contact.at, row.coupled)
@@ -270,13 +285,14 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
     out : (COLUMNS,), written.
     Returns (half length; slope).
     """
+    spots = np.empty((MOST_SPOTS, 3))
     y = math.log(c)
     last = 0.0
     before = 0.0
     error = 1.0
     for n in range(_MOST_LENGTHS):
         c = math.exp(y)
-        status, g, centred = solve_contact(row, contact, c, mu, d)
+        status, g, centred = solve_contact(row, contact, c, mu, d, spots, n > _MOST_CENTRINGS)
         total = write_state(row, contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
@@ -404,3 +420,16 @@ def touch_creep(row, mu, low, high, count, c):
         else:
             b = middle
     return 0.5 * (a + b)
+
+
+@kernel(allocates=True)
+def solve_one(row, mu, d, count, c, sign, out):
+    """Solve one state and return its :class:`Contact`.
+
+    d : creep; infinite: full slip of the sign ``sign``.  c : guess of the half length.  out : (COLUMNS,), written.
+    """
+    contact = new_contact(count)
+    if math.isinf(d):
+        contact.zone[:] = sign
+    find_length(row, contact, c, 2.0, mu, d, _LOAD_ERROR, out)
+    return contact

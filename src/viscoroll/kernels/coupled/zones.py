@@ -14,8 +14,8 @@ from ..compile.jit import kernel
 
 #: choices of zones after which one node changes at a time
 _TOGETHER = 12
-#: largest number of choices of zones
-_MOST_CHOICES = 60
+#: largest number of choices of zones, beside one for each node
+_MOST_CHOICES = 40
 #: relative excess of |q| over mu p, and of slip in the wrong direction over the largest slip, that count as rounding
 _ROUNDING = 1e-10
 
@@ -216,7 +216,7 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
     n = zone.size
     new = np.empty(n)
     g = 0.0
-    for choice in range(_MOST_CHOICES):
+    for choice in range(_MOST_CHOICES + n):
         if not solve_zones(S, B, mu, zone, d, q):
             return False, g
         g = pressure_and_strain(S, B, q, p, strain)
