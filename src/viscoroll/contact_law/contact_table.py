@@ -87,7 +87,7 @@ def evaluate_contact(
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and direct:
         raise ParameterError("method", "'direct'", "'table': the equations of the paper have one relaxation time")
-    material = None if direct else scene.table or scene.material_array
+    material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):
         if UNSTEADY in names:
             allowed = "left out for many materials in one call: compute it for one of them, material[i]"

@@ -111,7 +111,7 @@ def steady(
     torque = make_dimensionless("torque", plain["torque"], scale)
     V = make_dimensionless("V", plain["V"], scale)
     loads = loads_of(scene, force, torque, slope, V)
-    law = scene.table
+    law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
     elastic = law.alpha == 1.0
     gained = bool(loads.gains.V or loads.gains.omega)
