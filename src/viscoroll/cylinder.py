@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .contact_law.validity.cylinder import BodyData
-from .core.checks import broadcast_shape, check_array, check_choice, read_only
+from .core.checks import broadcast_shape, check_array, check_bool, check_choice, read_only
 from .core.drive import slope_tan_cos
 from .core.errors import ParameterError, described_error, exactly_one_error, shape_error
 from .core.results import Result, SummaryRow, format_value
@@ -59,6 +59,8 @@ class Cylinder(Methods):
         such a material, which brings its ``base`` with it.
     base : the :class:`Material` of the half-space; default: that of the cylinder.
     load : normal force P, N/m, > 0; default: the weight m g.
+    coupled : whether states with traction of a layer, and of half-spaces with Dundurs' constant above 0.05, are those
+        of the coupled solution, by a table that is made at first use; False: those of the law without a table.
 
     Raises
     ------
@@ -94,13 +96,14 @@ class Cylinder(Methods):
     base: Material | None
     #: the load as it was given: :meth:`replace` with another m makes the weight anew
     pressed: Any
+    coupled: bool
 
     def __init__(
         self, R: ArrayLike, m: ArrayLike, E: ArrayLike | None = None, nu: ArrayLike | None = None,
         T_epsilon: ArrayLike | None = None, T_sigma: ArrayLike | None = None, mu: ArrayLike | None = None,
         j: ArrayLike = 0.5, g: ArrayLike = 9.81, plane: Plane = "strain", *,
         material: Material | LawTable | None = None, base: Material | None = None, load: ArrayLike | None = None,
-        pressed: ArrayLike | None = None,
+        pressed: ArrayLike | None = None, coupled: bool = False,
     ) -> None:  # fmt: skip
         """Check and freeze the parameters, which the class describes; each number may be an array (n,), or have a unit.
 
@@ -119,11 +122,13 @@ class Cylinder(Methods):
         base: :class:`Material` of the half-space; None: that of the cylinder, or of the law.
         load: force that presses the cylinder on the base, N/m, > 0; None: the weight m g.
         pressed: the load by its name as a field, for :func:`dataclasses.replace`; not used beside ``load``.
+        coupled: whether states with traction are those of the coupled solution.
         Raises ParameterError as the class says.
         """
         values: dict[str, Any] = {
             "R": R, "m": m, "E": E, "nu": nu, "T_epsilon": T_epsilon, "T_sigma": T_sigma, "mu": mu, "j": j, "g": g,
             "plane": plane, "material": material, "base": base, "pressed": pressed if load is None else load,
+            "coupled": check_bool("coupled", coupled),
         }  # fmt: skip
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
@@ -224,7 +229,7 @@ class Cylinder(Methods):
         >>> vr.presets.RUBBER_CYLINDER.replace(mu=0.4, load=500.0).load
         500.0
         """
-        values = {name: getattr(self, name) for name in (*_NUMBERS, "plane", "material", "base")}
+        values = {name: getattr(self, name) for name in (*_NUMBERS, "plane", "material", "base", "coupled")}
         values["load"] = values.pop("pressed")
         if changes.get("material") is not None:
             values |= dict.fromkeys(_SLS)
@@ -358,7 +363,8 @@ class Cylinder(Methods):
                 law = Prony.creep((1.0 - fast / slow)[:, np.newaxis], (slow / self.T_ref)[:, np.newaxis], alpha=law)
         if law is None:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
-        return scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+        scene = scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+        return scene.replace(coupled=self.coupled)
 
     def _refuse_other_load(self, law: LawTable) -> None:
         """Raise ParameterError where the law of a layer is that of another load or radius, and for several cylinders.

@@ -170,7 +170,7 @@ def contact(
     creep_name = check_one_given(delta=delta, omega=omega)
     if slopes is not False:
         slopes = check_bool("slopes", slopes)
-    like, cover = scene.like_bodies, scene.tabulated or type(scene.material) is Cover
+    like, cover = scene.like_bodies, scene.tabulated or isinstance(scene.material, Cover)
     names = field_names(fields, slopes, method, like=like, si=scale.si, cover=cover)
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])

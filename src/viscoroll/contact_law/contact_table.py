@@ -87,7 +87,7 @@ def evaluate_contact(
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and direct:
         raise ParameterError("method", "'direct'", "'table': the equations of the paper have one relaxation time")
-    material = None if direct else scene.table or scene.material_array
+    material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):
         if UNSTEADY in names:
             allowed = "left out for many materials in one call: compute it for one of them, material[i]"
@@ -138,7 +138,7 @@ def evaluate_law(
     loop, states = _kernel(direct)
     rows = kernel_rows(names)
     out = np.empty((len(names), count))
-    record = material.record if isinstance(material, LawTable) else None
+    record: Any = material.record if isinstance(material, LawTable) else None
     coupled = record is not None and record.table is not None
 
     def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:

@@ -60,9 +60,7 @@ def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
     return np.geomspace(low, high, default if count is None else count)
 
 
-def tabulate(
-    pair: CoupledPair, mu: float, nodes: tuple[int, int] | None = None, progress: bool = False
-) -> CoupledRows:
+def tabulate(pair: CoupledPair, mu: float, nodes: tuple[int, int] | None = None, progress: bool = False) -> CoupledRows:
     """Solve the rows of a table, on threads, and measure its errors.
 
     pair: the bodies.
@@ -115,7 +113,29 @@ def _solve_row(pair: CoupledPair, u: float, mu: float, t: Floats) -> tuple[list[
     middle = row.touch()
     creeps = middle + np.where(t < 0.0, low - middle, high - middle) * grade(t)
     fields = _fields(row.states(creeps), creeps, u, mu)
-    return [middle, low, high, _free_creep(t, fields[:, 0], middle, low, high)], fields
+    place = _free_place(t, fields[:, 0])
+    free = middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
+    if not 0.0 < u < math.inf:
+        state = _fields(row.states([free]), np.array([free]), u, mu)[0]
+        friction = 0.5 * (mu * state[0] * free - state[6] - state[7])
+        _hold_friction(t, fields, place, max(friction, 0.0), {body.side for body in pair.bodies})
+    return [middle, low, high, free], fields
+
+
+def _hold_friction(t: Floats, fields: Floats, place: float, friction: float, sides: set[str]) -> None:
+    """Shift M of an elastic row by its error at free rolling, where all of M is the friction of what still slips.
+
+    Without it a cylinder would be driven, or held, at rest by the error of the spline.
+    t: nodes, (m,).  fields: of the row, (m, 8), changed.
+    place: t of free rolling.  friction: kappa times its moment there, >= 0.
+    sides: bodies that deform, "base" and "cylinder", which share the shift.
+    """
+    columns = [1 + ("base", "cylinder").index(side) for side in sorted(sides)]
+    found = float(_spline(t, fields[:, columns].sum(axis=1), place)(place))
+    shift = (friction - found) / len(columns)
+    for column in columns:
+        fields[:, column] += shift
+        fields[:, column + 5] -= 2.0 * shift
 
 
 def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Floats:
@@ -131,20 +151,21 @@ def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Float
     return np.stack([*own, states.work_base, states.work_cylinder], axis=-1)
 
 
-def _free_creep(t: Floats, Q: Floats, middle: float, low: float, high: float) -> float:
-    """Return the creep at which Q = 0, by the spline of one row.
-
-    t: nodes, (m,), with 0 in the middle.  Q: at nodes, (m,).
-    middle, low, high: creeps of t = 0, -1, 1.
-    """
+def _spline(t: Floats, values: Floats, place: float) -> Any:
+    """Return the clamped spline of one row on the side of a place in [-1, 1]; t, values: nodes, (m,)."""
     from scipy.interpolate import CubicSpline
-    from scipy.optimize import brentq
 
     half = t.size // 2
-    side = slice(0, half + 1) if Q[half] > 0.0 else slice(half, None)
-    spline = CubicSpline(t[side], Q[side], bc_type="clamped")
-    place = brentq(spline, *t[side][[0, -1]], xtol=1e-14)
-    return middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
+    side = slice(0, half + 1) if place < 0.0 else slice(half, None)
+    return CubicSpline(t[side], values[side], bc_type="clamped")
+
+
+def _free_place(t: Floats, Q: Floats) -> float:
+    """Return the t of free rolling, at which Q = 0 by the spline of one row; t, Q: nodes, (m,)."""
+    from scipy.optimize import brentq
+
+    sign = -1.0 if Q[t.size // 2] > 0.0 else 1.0
+    return float(brentq(_spline(t, Q, sign), *sorted((0.0, sign)), xtol=1e-15))
 
 
 def measure_errors(rows: CoupledRows, pair: CoupledPair, count: int = _CHECKED, seed: int = _SEED) -> dict[str, float]:
@@ -159,7 +180,7 @@ def measure_errors(rows: CoupledRows, pair: CoupledPair, count: int = _CHECKED, 
     from ..kernels.splines.law import look_up
 
     random = np.random.default_rng(seed)
-    speeds = np.exp(random.uniform(*np.log(rows.u[[0, -1]]), -(-count // 8)))
+    speeds = np.exp(random.uniform(np.log(rows.u[0]), np.log(rows.u[-1]), -(-count // 8)))
     worst = np.zeros(len(FIELDS))
 
     def compare(start: int, stop: int) -> None:

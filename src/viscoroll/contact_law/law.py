@@ -67,7 +67,7 @@ class Law:
 
         _, scene, scale = resolve_model(roller, "law")
         refuse_arrays(roller, scene, ("alpha", "kappa", "mu"), "one number: a law belongs to one scene")
-        table = scene.table
+        table = scene.rolling_law
         assert table is not None
         self.roller, self.scene, self._kappa = roller, scene, np.asarray(scene.kappa / scale["V"])
         #: (lowest, highest) |V| between which nothing is warned of, in the unit of V

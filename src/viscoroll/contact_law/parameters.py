@@ -4,22 +4,24 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
 from ..core.array_types import Floats, Integers
-from ..core.checks import broadcast_shape, check_array, check_array_extent, read_only
+from ..core.checks import broadcast_shape, check_array, check_array_extent, check_bool, read_only
 from ..core.drive import slope_tan_cos
-from ..core.errors import ParameterError, check_one_given, shape_error
+from ..core.errors import ParameterError, check_one_given, described_error, shape_error
 from ..core.results import format_value
 from ..core.scale import DIMENSIONLESS, Scale
 from ..materials.bodies import Bodies
 from ..materials.cover import Cover
 from ..materials.law.grid import LawGrid
-from ..materials.law.table import LawTable, law_table
+from ..materials.law.table import LawTable, coupled_table, law_table
 from ..materials.prony import Prony
 from ..materials.prony_forms import HIGHEST_ALPHA
+from .coupled import CoupledPair
 
 #: Names of the dimensionless numbers of a scene.
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
@@ -130,6 +132,7 @@ class Parameters(Roller):
     j : moment of inertia divided by m R^2, > 0.
     material : in place of alpha: a series, two bodies, or the rows of a law, whose material it becomes; None of an
     alpha. ``shape`` is what the parameters broadcast to; () for one scene.
+    coupled : whether states with traction are those of the coupled solution (:attr:`rolling_law`).
     """
 
     alpha: Any = None
@@ -138,6 +141,7 @@ class Parameters(Roller):
     gamma: Any = None
     j: Any = 0.5
     material: Prony | Bodies | LawTable | None = None
+    coupled: bool = False
     _law: ClassVar[LawTable | None] = None
     shape: ClassVar[tuple[int, ...]] = ()
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
@@ -154,6 +158,7 @@ class Parameters(Roller):
         values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
         check_one_given(alpha=values["alpha"], material=material)
+        check_bool("coupled", self.coupled)
         if isinstance(material, LawTable):
             object.__setattr__(self, "_law", material)
             refuse_other_friction(material, values["mu"])
@@ -300,10 +305,46 @@ class Parameters(Roller):
         """The layer of finite thickness on either body; None of half-spaces."""
         return self.material if isinstance(self.material, Cover) else None
 
-    @property
+    @cached_property
     def tabulated(self) -> bool:
-        """Whether the law was given as a table of the coupled solution."""
-        return self._law is not None and self._law.coupled is not None
+        """Whether the law with traction is a table of the coupled solution: one was given, or shear acts on pressure.
+
+        False where ``coupled`` is False, and no table was given.  Of several materials it is that of the first one.
+        """
+        if self._law is not None:
+            return self._law.coupled is not None
+        if not self.coupled or not isinstance(self.material, Bodies):
+            return False
+        from .coupled_store import is_coupled
+
+        several = bool(self.material.shape)
+        if several and not len(self.material):
+            return False
+        return is_coupled(CoupledPair.of_scene(self.replace(material=self.material[0]) if several else self))
+
+    @property
+    def rolling_law(self) -> LawTable | None:
+        """Return the law of states with traction: :attr:`table`, or where :attr:`tabulated` a table of the coupled
+        solution, which is made at first use and kept (:mod:`.coupled_store`).
+
+        Raises ParameterError where there would be a table for each of several bodies or mu, and as :attr:`table`.
+        """
+        if not self.tabulated or self._law is not None:
+            return self.table
+        from .coupled_store import SECONDS, stored_rows
+
+        mus = np.unique(self.mu)
+        several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
+        if several * mus.size != 1:
+            found = f"would need {several * mus.size} tables of the coupled solution, each some {SECONDS} s on two cores"
+            allowed = "one body and one mu in a call; or coupled=False, for the law that takes their coupling to first order"
+            raise described_error("material" if several > 1 else "mu", found, allowed)
+        mu = float(mus[0])
+        made = getattr(self, "_made", None)
+        if made is None:
+            made = coupled_table(self.material, stored_rows(CoupledPair.of_scene(self), mu))
+            object.__setattr__(self, "_made", made)
+        return made
 
     @property
     def like_bodies(self) -> bool:
@@ -420,6 +461,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             f"thickness = {format_value(scene.cover.thickness)} (divided by l0): for a layer of finite thickness {why}"
         )
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
+    if scene.tabulated:
+        raise ParameterError("coupled", True, "False", f"coupled = True: must be False, as by the coupled solution {why}")
 
 
 #: Arguments from which alpha and kappa may have their shape, each before those that it makes superfluous.

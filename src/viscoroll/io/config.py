@@ -42,6 +42,7 @@ class SceneSection(msgspec.Struct):
     mu: float | None = None
     gamma: float | None = None
     j: float | None = None
+    coupled: bool | None = None
     prony: PronySection | None = None
     creep: CreepSection | None = None
 
@@ -60,6 +61,7 @@ class CylinderSection(msgspec.Struct, kw_only=True):
     g: float | None = None
     plane: Literal["strain", "stress"] = "strain"
     load: float | None = None
+    coupled: bool | None = None
 
 
 #: Section of a roller -> its class.

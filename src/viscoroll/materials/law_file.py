@@ -131,19 +131,23 @@ KINDS = {
         {
             "u": (("speed",), "nodes of kappa |V|"),
             "t": (("place",), "nodes of the place in creep"),
-            "edges": (("row", "edge"), "2 kappa times the creepages: middle, onset of negative slip, of positive, free"),
+            "edges": (
+                ("row", "edge"),
+                "2 kappa times the creepages: middle, onset of negative slip, of positive, free",
+            ),
             "mu": ((), "coefficient of friction"),
             "alpha": _LAW.others["alpha"],
             "T_ref": _LAW.others["T_ref"],
         },
-        "Rows: u = 0, the nodes of u, u infinite; between nodes cubic splines in ln u, below the first one linear in u, "
+        "Rows: u = 0, the nodes of u, u infinite; between nodes cubic splines in ln u, below the first linear in u, "
         "beyond the last one linear in 1/u, joined smoothly. D = 2 kappa delta; onset: that of positive slip where "
         "D > middle, else of negative; w = (D - middle)/(onset - middle), at most 1; t = +-(1 - (1 - w)^(2/3))^(1/2), "
         "the sign of D - middle; clamped cubic splines in t on either side of t = 0. For V < 0 Q and M change sign.",
         "largest_error",
     ),
     COVER: Kind(
-        "The contact law of a layer of finite thickness at one l0/h as polynomials, one for each octave of speed: " + _ANY,
+        "The contact law of a layer of finite thickness at one l0/h as polynomials, one for each octave of speed: "
+        + _ANY,
         {name: _LAW.functions[name] for name in _OF_SPEED}
         | {
             "limit": "2 kappa delta_star/mu, as a function of kappa |V|",
@@ -276,7 +280,7 @@ def make_dataset(law: Any, kind: str, title: str, errors: Mapping[str, float], *
 
 
 def stated_errors(dataset: Any) -> dict[str, float]:
-    """Return the largest error of every function that the ``dataset`` of a law states: relative, of a table absolute."""
+    """Return the largest error of every function that a ``dataset`` states: relative, of a coupled table absolute."""
     kind = KINDS[dataset.attrs[KIND]]
     return {name: float(dataset[name].attrs[kind.error]) for name in kind.functions}
 

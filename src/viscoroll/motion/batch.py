@@ -97,7 +97,7 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
     at the times that it did not reach.
     """
     scene, immobile = batch.problem.scene, batch.immobile
-    free = not batch.problem.driven and scene.like_bodies
+    free = not batch.problem.driven and scene.like_bodies and not scene.tabulated
     if method == "flow" and (scene.shape or not free):
         which = "motions have different scenes" if free else "motions are driven or unsteady, or bodies differ"
         raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
@@ -205,7 +205,7 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
     """
     several: Any = scene.material_array
     if several is None and not np.ndim(scene.alpha):
-        table: Any = scene.table
+        table: Any = scene.rolling_law
         law = (table.unsteady_record if unsteady else table.record), table.unlike
         return lambda alpha, index: law
 

@@ -278,7 +278,7 @@ def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> 
     scene = problem.scene
     if problem.immobile:
         return np.full((_ALL_ROWS.size, times.size), np.nan), [MotionStatus.CAUGHT, 0, 0, np.nan, np.nan]
-    law = scene.table
+    law = scene.rolling_law
     assert law is not None
     numbers = scene.kappa, scene.mu, scene.gamma, scene.j, problem.V0, problem.omega0
     arrays = np.array(numbers, float).reshape(-1, 1)

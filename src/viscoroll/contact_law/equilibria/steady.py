@@ -14,7 +14,7 @@ import numpy as np
 
 from ...core.array_types import Integers, Numbers
 from ...core.drive import Feedback, make_dimensionless
-from ...core.errors import ParameterError
+from ...core.errors import ParameterError, described_error
 from ...core.labels import strip_labels
 from ...materials.law.table import LawTable
 from ..parameters import Roller, refuse_arrays, refuse_cover, resolve_model, scale_of
@@ -110,7 +110,7 @@ def steady(
     torque = make_dimensionless("torque", plain["torque"], scale)
     V = make_dimensionless("V", plain["V"], scale)
     loads = loads_of(scene, force, torque, slope, V)
-    law = scene.table
+    law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
     elastic = law.alpha == 1.0
     gained = bool(loads.gains.V or loads.gains.omega)
@@ -119,6 +119,8 @@ def steady(
         speed = loads.V[moving]
         rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
     elif loads.gains.omega:
+        if law.coupled is not None:
+            raise described_error("a gain on omega", "is given", "left out for a table of the coupled solution")
         refuse_cover(scene, "a feedback on omega is not examined: give one on V alone")
         rolling = scan_states(law, loads)
     else:

@@ -23,6 +23,8 @@ from .resistance import find_zeros
 _FAR_OCTAVES = 40
 #: speeds of an octave at which the balance is evaluated
 _DENSITY = 6
+#: rounding of the balance
+_NOISE = 1e-14
 #: speed over the first node at which slopes at rest are taken: there the law is linear in u
 _SLOW = 1e-3
 
@@ -71,7 +73,7 @@ def find_speeds_on_table(law: LawTable, loads: Loads) -> tuple[Integers, Floats,
     Returns (index of the load; sign of V, 1.0 or -1.0; |V|, > 0), one entry for each crossing, (crossings,) each.
     """
     rows: Any = law.coupled
-    low, high = np.log2(rows.u[[0, -1]]) + (-_FAR_OCTAVES, _FAR_OCTAVES)
+    low, high = np.log2(rows.u[0]) - _FAR_OCTAVES, np.log2(rows.u[-1]) + _FAR_OCTAVES
     nodes = np.linspace(low, high, int(_DENSITY * (high - low)))
     gains = loads.gains
     found: list[tuple[int, float, Floats]] = []
@@ -85,7 +87,7 @@ def find_speeds_on_table(law: LawTable, loads: Loads) -> tuple[Integers, Floats,
                 force = sign * loads.force[n] + gains.force_V * V
                 return _torque_left(law, kappa, mu, V, force, sign * loads.torque[n] + gains.torque_V * V)
 
-            found.append((n, sign, np.exp2(find_zeros(unbalanced, nodes)) / kappa))
+            found.append((n, sign, np.exp2(find_zeros(unbalanced, nodes, _NOISE)) / kappa))
     load = np.concatenate([np.full(V.size, n) for n, _, V in found])
     signs = np.concatenate([np.full(V.size, sign) for _, sign, V in found])
     return load, signs, np.concatenate([V for _, _, V in found])
@@ -97,9 +99,7 @@ def rests_on_table(law: LawTable, loads: Loads) -> Booleans:
     left = [
         _torque_left(law, loads.kappa, loads.mu, still, sign * loads.force, sign * loads.torque) for sign in (1.0, -1.0)
     ]
-    # without load friction of both directions is 0 where nothing slips in slow rolling, to rounding
-    noise = 4e-15 * (np.abs(loads.force) + np.abs(loads.torque))
-    return (left[0] <= noise) & (left[1] <= noise) | ((loads.force == 0.0) & (loads.torque == 0.0))
+    return (left[0] <= _NOISE) & (left[1] <= _NOISE)
 
 
 def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, Floats, Floats]:

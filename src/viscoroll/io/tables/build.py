@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...contact_law.contact import contact
-from ...core.array_types import Floats
 from ...contact_law.coupled_table import coupled_law
+from ...core.array_types import Floats
 from ...core.errors import ParameterError, described_error
 from ...cylinder import Cylinder
 from ...materials.law.netcdf import bodies_as_toml, law_as_dataset
@@ -123,8 +123,7 @@ def build(
     import xarray as xr
 
     if method == "coupled":
-        axes = {"V": V, "delta": delta, "alpha": alpha}
-        for name, given in axes.items():
+        for name, given in {"V": V, "delta": delta, "alpha": alpha}.items():
             if given is not None:
                 raise described_error(name, "is given", "left out: the method 'coupled' has nodes of its own")
         return _coupled_dataset(roller_of(what, None), nodes, progress)
@@ -136,17 +135,17 @@ def build(
     axes = {"V": increasing("V", V, unit=what.scale, above=0.0), "delta": increasing("delta", delta)}
     if alpha is not None:
         axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
-    if (nodes := math.prod(axis.size for axis in axes.values())) > MAX_NODES:
-        raise described_error("the grid", f"has {nodes:g} nodes", f"a grid of at most {MAX_NODES:g} nodes")
+    if (size := math.prod(axis.size for axis in axes.values())) > MAX_NODES:
+        raise described_error("the grid", f"has {size:g} nodes", f"a grid of at most {MAX_NODES:g} nodes")
     plane = tuple(name for name in axes if name != "delta")
     data = {
         name: schema.variable(name, plane if name in schema.PLANE else tuple(axes), values, si)
         for name, values in _evaluate_nodes(what, axes, method).items()
     }
-    coordinates = {name: schema.variable(name, (name,), nodes, si) for name, nodes in axes.items()}
+    coordinates = {name: schema.variable(name, (name,), axis, si) for name, axis in axes.items()}
     units = "in SI units, per m of length" if si else "dimensionless"
     title = f"Contact of a viscoelastic cylinder rolling with partial slip, {units}"
-    grid = ", ".join(f"{name} {nodes.size} in [{nodes[0]:g}, {nodes[-1]:g}]" for name, nodes in axes.items())
+    grid = ", ".join(f"{name} {axis.size} in [{axis[0]:g}, {axis[-1]:g}]" for name, axis in axes.items())
     table = xr.Dataset(data, coordinates, schema.global_attributes(title, grid, command) | {"method": method})
     numbers = _CYLINDER_NUMBERS if si else _SCENE_NUMBERS
     table.attrs |= {name: float(getattr(what, name)) for name in numbers if name not in axes}

@@ -123,7 +123,7 @@ def info(path: str | PathLike[str]) -> str:
     -------
     str
         Lines to print, joined by newlines: path, kind and size of the file; title; of a law a line for each function
-        with its largest relative error; of a grid a line for each axis with its nodes and range, then one for each
+        with its largest error; of a grid a line for each axis with its nodes and range, then one for each
         field with its axes and the absolute errors that it states ("spline", "linear", "stated" in old files); at the
         end those of the attributes material, comment, source, history and checksum that the file has.
 
@@ -144,7 +144,7 @@ def info(path: str | PathLike[str]) -> str:
     about, size = table.attrs, Path(path).stat().st_size / 1e3
     lines = [f"{path}: {about[schema.KIND]}, {size:.0f} kB", about["title"], ""]
     if is_law(table):
-        lines += [f"  {'function':<14}largest relative error"]
+        lines += [f"  {'function':<14}largest error"]
         lines += [f"  {name:<14}{error:.1e}" for name, error in law_file.stated_errors(table).items()]
     else:
         axes = {axis: table[axis].values for axis in schema.axes_of(table)}

@@ -183,8 +183,8 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     pointer : address of RESULTS numbers, which are written in the units of the caller as by
         :func:`..rows.c_function._evaluate`: without ``slopes`` the first four alone.
     scenes : pointer to a TABLE record.
-    Returns the status, an int: 0; or 1, and all results are NaN, where |V| is above the table, V or omega is not finite,
-    or the creepage is outside of a table that does not slip fully at its ends.
+    Returns the status, an int: 0; or 1, and all results are NaN, where |V| is above the table, V or omega is not
+    finite, or the creepage is outside of a table that does not slip fully at its ends.
     """
     out = carray(pointer, RESULTS)
     scene = record_at(scenes)

@@ -1,14 +1,15 @@
 """The law of one scene as a table: cubic splines over speed and creep, with first derivatives, one state at a time.
 
-A table is one vector of doubles: a head, nodes, edges, fields.  Its speed is u = kappa |V|; its creep D = 2 kappa delta.
+A table is one vector of doubles: a head, nodes, edges, fields.  Its speed is u = kappa |V|, its creep D = 2 kappa
+delta.
 Three creeps divide the states of a speed, each a cubic spline of ln u: the onset of full slip of negative sign, D_-, a
 creep D_0 between, and the onset of positive sign, D_+.  With sigma = 1 above D_0 and -1 below, a state has the place
 
     w = (D - D_0)/(D_sigma - D_0),   0 <= w <= 1 in partial slip,   t = sigma w   or   t = sigma sqrt(1 - (1 - w)^(2/3))
 
-and each field is a tensor spline in (ln u, t), the second form of t where the table is graded: there fields of a contact
-in which shear acts on pressure are smooth at D_0 and at the onsets.  Below the first node a field is linear in u between
-the limit of u = 0 and that node, beyond the last one linear in 1/u between it and the limit of u infinite.
+and each field is a tensor spline in (ln u, t), the second form of t where the table is graded: there fields of a
+contact in which shear acts on pressure are smooth at D_0 and at the onsets.  Below the first node a field is linear in
+u between the limit of u = 0 and that node, beyond the last one linear in 1/u between it and the limit of u infinite.
 
 ``materials.law.coupled_table`` writes the vector.  All quantities are dimensionless.
 """
@@ -115,7 +116,7 @@ class FieldValue(NamedTuple):
 
 @inline_kernel
 def _interval(begin, count, step, x, table):
-    """Return the number of the interval of a coordinate between ``count`` nodes that begin at ``begin``; 0 ... count - 2.
+    """Return the number of the interval of a coordinate, 0 ... count - 2, between nodes that begin at ``begin``.
 
     step : float, the step of equal steps, 0 where they are not equal.
     x : float, coordinate; one outside of the nodes gets the first or the last interval.
@@ -246,8 +247,8 @@ def field_at(name, w, speed, place, table):
 class Place(NamedTuple):
     """Where a creep D lies at one speed.
 
-    sigma : side, 1.0 or -1.0.  w : place, above 1 in full slip.  dw_dD, dw_du : its derivatives, at fixed u and at fixed
-    D.
+    sigma : side, 1.0 or -1.0.  w : place, above 1 in full slip.
+    dw_dD, dw_du : derivatives of w at fixed u and at fixed D.
     """
 
     sigma: float
