@@ -86,7 +86,8 @@ def _digest() -> str:
 
 
 def _load(path: Path) -> CoupledRows | None:
-    """Return the table in a file; None without one that is private, and with a RuntimeWarning for one that is damaged."""
+    """Return the table in a file; None without one that is private, and with a RuntimeWarning for one that is
+    damaged."""
     try:
         content = read_private(path)
     except OSError:

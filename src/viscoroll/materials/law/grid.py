@@ -301,7 +301,7 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     limit = friction_limit(table.attrs)
     most = limit if limit < np.inf else 1.0
     Q = table["Q"].transpose("V", "delta").values
-    slips = bool((abs(Q[:, [0, -1]]) >= _FULL_SLIP * limit).all())
+    slips = bool((abs(Q[:, [0, -1]]) >= (1.0 - _ROUNDING) * limit).all())
     bodies = [table[name] if name in table else 0.5 * table["M"] for name in ("M_half_space", "M_cylinder")]
     over_V = [np.broadcast_to(field.transpose("V").values[:, np.newaxis], Q.shape) for field in bodies]
     fields = np.stack([Q / most, *over_V], axis=-1)
