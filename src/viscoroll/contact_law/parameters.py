@@ -336,10 +336,8 @@ class Parameters(Roller):
         mus = np.unique(self.mu)
         several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
         if several * mus.size != 1:
-            found = f"would need {several * mus.size} tables of the coupled solution, each some {SECONDS} s on two
-            cores"
-            allowed = "one body and one mu in a call; or coupled=False, for the law that takes their coupling to first
-            order"
+            found = f"would need {several * mus.size} tables of the coupled solution, each some {SECONDS} s on two cores"
+            allowed = "one body and one mu in a call; or coupled=False, for the law that takes their coupling to first order"
             raise described_error("material" if several > 1 else "mu", found, allowed)
         mu = float(mus[0])
         made = getattr(self, "_made", None)
@@ -464,8 +462,7 @@ def refuse_cover(scene: Parameters, why: str) -> None:
         )
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
     if scene.tabulated:
-        raise ParameterError("coupled", True, "False", f"coupled = True: must be False, as by the coupled solution
-        {why}")
+        raise ParameterError("coupled", True, "False", f"coupled = True: must be False, as by the coupled solution {why}")
 
 
 #: Arguments from which alpha and kappa may have their shape, each before those that it makes superfluous.
