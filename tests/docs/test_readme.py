@@ -38,12 +38,14 @@ def run_page(name):
     return session
 
 
+@pytest.mark.filterwarnings("error")
 def test_readme_block_runs(capsys):
+    """Without a warning."""
     code, _ = blocks(ROOT / "README.md", "python")
     assert len([line for line in code.splitlines() if line.strip()]) <= 12
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
-    assert "slides for 0.14 s, then rolls to 38.4 m" in printed
+    assert "slides for 0.04 s, then rolls to 2.8 m" in printed
     assert "the error of V is below 1 % down to 0.1 m/s, below 10 % down to 0.028 m/s" in printed
 
 

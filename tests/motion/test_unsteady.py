@@ -6,6 +6,7 @@ import tolerances as tol
 from closeness import close
 from drives import ON_DMA as ROLLER
 from drives import RUBBER
+from refusals import refused
 from scipy.integrate import solve_ivp
 
 import viscoroll as vr
@@ -158,3 +159,11 @@ def test_a_motion_caught_at_rest_is_not_of_the_flow_map():
     e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, method="flow")
     assert e.status.tolist() == [vr.MotionStatus.CAUGHT, vr.MotionStatus.DONE]
     assert (e.flow.tolist(), e.switches[0]) == ([False, True], 0)
+
+
+@pytest.mark.parametrize("V0", [0.0, -0.0])
+def test_a_standstill_is_refused_where_it_would_have_no_effect(V0):
+    """From V0 = omega0 = 0 the drive must first break the cylinder away, which is not known; other starts act."""
+    words = "starts at V0 = omega0 = 0 and must yet break away"
+    refused(lambda: vr.roll(ROLLER, V0, 0.0, T, force=0.01, rested=3600.0), words)
+    refused(lambda: vr.ensemble(ROLLER, [1.3, V0], [1.3, 0.0], T, force=0.01, rested=True), words)

@@ -6,6 +6,7 @@ import re
 from dataclasses import replace
 from functools import partial
 
+import h5py
 import numpy as np
 import pytest
 import tolerances as tol
@@ -314,6 +315,17 @@ def test_netcdf3_csv_and_matlab_hold_the_same_bits(table, tmp_path):
     assert all(np.array_equal(content[key], variable.values) for key, variable in table.variables.items())
     assert content["dimensions"]["Q"] == ", ".join(schema.axes_of(table))
     assert content["linear_error"]["beta"] == table.beta.attrs["linear_error"]
+
+
+def test_texts_of_attributes_have_a_fixed_length(table, tmp_path):
+    """As the C library of netCDF writes them: Octave, Fortran and nccopy -k classic read no others; "" too."""
+    vr.tables.save(table, tmp_path / "t.nc")
+    with h5py.File(tmp_path / "t.nc") as file:
+        texts = [each.attrs.get_id(key).get_type() for each in (file, *file.values()) for key in each.attrs]
+    texts = [kind for kind in texts if isinstance(kind, h5py.h5t.TypeStringID)]
+    assert len(texts) > 20
+    assert not any(kind.is_variable_str() for kind in texts)
+    assert vr.tables.load(tmp_path / "t.nc").identical(table)
 
 
 def test_modelica(name, table, tmp_path):

@@ -16,6 +16,8 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from .errors import FileError
 
 if TYPE_CHECKING:
@@ -171,10 +173,23 @@ def write_text(path: str | PathLike[str], text: str) -> None:
     write_bytes(path, text.encode())
 
 
+def fix_texts(dataset: xr.Dataset) -> xr.Dataset:
+    """Return a ``dataset`` whose attributes have texts of fixed length, as netCDF's C library writes them.
+
+    Octave, Fortran and ``nccopy -k classic`` read no others; readers of Python get them as ``str``.
+    """
+    fixed = dataset.copy()
+    for attributes in (fixed.attrs, *(variable.attrs for variable in fixed.variables.values())):
+        attributes |= {key: np.array(text.encode()) for key, text in attributes.items() if isinstance(text, str)}
+    return fixed
+
+
 def write_dataset(
     dataset: xr.Dataset, path: str | PathLike[str], encoding: dict[str, Any] | None = None, *, sealed: bool = False
 ) -> None:
     """Write a dataset as netCDF-4/HDF5, whole or not at all, by :func:`replace_file`.
+
+    Texts of attributes have a fixed length (:func:`fix_texts`).
 
     Parameters
     ----------
@@ -198,5 +213,5 @@ def write_dataset(
         for name, v in dataset.variables.items()
     }
     # The file is composed in memory, because HDF5 2.0 crashes the process on a full disk (tests/test_files.py).
-    content = bytes(dataset.to_netcdf(engine="h5netcdf", format="NETCDF4", encoding=encoding or default))
+    content = bytes(fix_texts(dataset).to_netcdf(engine="h5netcdf", format="NETCDF4", encoding=encoding or default))
     write_bytes(path, seal(content) if sealed else content)

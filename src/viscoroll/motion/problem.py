@@ -215,10 +215,9 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
     Returns (V0; omega0; whether the cylinder is too slow to leave its indentation), dimensionless.  If ``rested`` is 0,
     the speeds are returned as they are, with False.  Else V0 and omega0 of each motion are multiplied by the same
     factor in [0, 1], and the third entry has the common shape of V0 and the scene's arrays.  It is True where this
-    takes more than 45 % of V (:data:`LARGEST_LOSS`); the factor of such a motion has no meaning.  A motion from rest
-    loses nothing, with False.
-    Raises ParameterError if ``rested`` is not 0, and a speed is prescribed, any motion starts in full slip, or the
-    roller has a cover: the cost is then not known.
+    takes more than 45 % of V (:data:`LARGEST_LOSS`); the factor of such a motion has no meaning.
+    Raises ParameterError if ``rested`` is not 0, and a speed is prescribed, any motion starts in full slip or from
+    V0 = omega0 = 0, or the roller has a cover: the cost is then not known.
     """
     if rested == 0.0:
         return start.V0, start.omega0, False
@@ -226,8 +225,10 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
     V = np.asarray(start.V0, np.float64)
     limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
     prescribed = start.functions is not None and start.functions.prescribed
-    if prescribed or np.any(np.abs(start.omega0 - V) > limit):
+    still = np.any((V == 0.0) & (np.asarray(start.omega0) == 0.0))
+    if prescribed or still or np.any(np.abs(start.omega0 - V) > limit):
         why = "a speed is prescribed" if prescribed else "it starts in full slip"
+        why = "it starts at V0 = omega0 = 0 and must yet break away" if still and not prescribed else why
         sentence = f"rested is given, but {why}: the energy loss of the start is then not available"
         raise ParameterError("rested", rested, "left out", sentence)
     lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))

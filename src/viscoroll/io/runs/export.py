@@ -10,7 +10,7 @@ from typing import Any
 
 from ...core.errors import FileError
 from ...core.extras import import_extra
-from ...core.files import replace_file
+from ...core.files import fix_texts, replace_file
 from .results import open_run
 from .store import MOTIONS
 from .verify import verify
@@ -58,7 +58,7 @@ def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None
     if not verdict.ok:
         raise FileError(store, "; ".join(str(verdict).splitlines()[-2:]))
     with replace_file(path) as temporary:
-        temporary.write_bytes(bytes(summaries.to_netcdf(engine="h5netcdf")))
+        temporary.write_bytes(bytes(fix_texts(summaries).to_netcdf(engine="h5netcdf")))
         if (Path(store) / MOTIONS).is_dir():
             _append_motions(Path(store), temporary)
 
