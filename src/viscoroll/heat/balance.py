@@ -37,6 +37,8 @@ _BLOCK = 256
 _STEPS = 60
 #: sections of an interval around a minimum: 0.62^40 of two nodes is rounding
 _SECTIONS = 40
+#: distance in x that a step may leave: it changes a steep loss by 1e-12, to first order of which it is corrected
+_TOLERANCE = 1e-14
 #: Newton steps with the shift itself, from a temperature that is right to 1e-2 K: four reach rounding
 _POLISHED = 5
 
@@ -164,8 +166,8 @@ def zeros_of(balance: Balance) -> Zeros:
              range(0, balance.x_0.size, _BLOCK)]  # fmt: skip
     if not parts:
         return Zeros(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))
-    n, low, high, stable = parts[0] if len(parts) == 1 else map(np.concatenate, zip(*parts, strict=True))
-    theta = _refine(balance, n, low, high, stable)
+    n, low, high, stable, first = parts[0] if len(parts) == 1 else map(np.concatenate, zip(*parts, strict=True))
+    theta = _refine(balance, n, low, high, stable, first)
     if not balance.shift.exact:
         theta = _polish(balance, n, theta)
     order = np.lexsort((theta, n))
@@ -173,17 +175,17 @@ def zeros_of(balance: Balance) -> Zeros:
     return Zeros(n[order], theta[order], stable[order])
 
 
-def _brackets(balance: Balance, start: int, stop: int) -> tuple[Integers, Floats, Floats, Booleans]:
+def _brackets(balance: Balance, start: int, stop: int) -> tuple[Integers, Floats, Floats, Booleans, Floats]:
     """Find intervals of x in which F of the states ``start`` to ``stop`` - 1 changes its sign.
 
     Returns (indices of the states; lower and upper ends; whether F > 0 at the upper end, the colder one, so that F
-    falls with temperature), (m,) each.
+    falls with temperature; a point within to begin with, or NaN), (m,) each.
     """
     part = slice(start, stop)
     shift = balance.shift
     x_0 = balance.x_0[part]
     if not np.isfinite(x_0).any():
-        return start + np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty(0, bool)
+        return start + np.empty(0, np.int64), np.empty(0), np.empty(0), np.empty(0, bool), np.empty(0)
     ends = x_0 + shift.log2_of(np.array([balance.hottest[part], balance.ambient[part]]))
     low, high = np.clip([ends[0][ends[0] > -np.inf].min(), ends[1].max()], -_FARTHEST, _FARTHEST)
     first, last = int(np.floor(low * NODES)) - 2, int(np.ceil(high * NODES)) + 3
@@ -197,7 +199,9 @@ def _brackets(balance: Balance, start: int, stop: int) -> tuple[Integers, Floats
         F = power * (C if shift.exact else C / shift.root_b(theta)) - conductance * (theta - ambient)
     positive = F > 0.0
     n, k = np.nonzero(positive[:, 1:] != positive[:, :-1])
-    crossing = start + n, x[k], x[k + 1], positive[n, k + 1]
+    with np.errstate(invalid="ignore"):
+        secant = x[k] - F[n, k] / (F[n, k + 1] - F[n, k]) / NODES
+    crossing = start + n, x[k], x[k + 1], positive[n, k + 1], secant
     size = np.abs(F)
     with np.errstate(invalid="ignore"):
         minimum = (size[:, 1:-1] <= size[:, :-2]) & (size[:, 1:-1] <= size[:, 2:])
@@ -210,7 +214,8 @@ def _brackets(balance: Balance, start: int, stop: int) -> tuple[Integers, Floats
     sign = np.where(up, 1.0, -1.0)
     extremum, least = minimum_of(lambda at: sign * balance.heat(start + n, at)[0], x[k], x[k + 2])
     n, k, up, extremum = start + n[least < 0.0], k[least < 0.0], up[least < 0.0], extremum[least < 0.0]
-    pairs = (n, x[k], extremum, ~up), (n, extremum, x[k + 2], up)
+    lower, upper = (n, x[k], extremum, ~up), (n, extremum, x[k + 2], up)
+    pairs = [(*pair, 0.5 * (pair[1] + pair[2])) for pair in (lower, upper)]
     return tuple(map(np.concatenate, zip(crossing, *pairs, strict=True)))  # type: ignore[return-value]
 
 
@@ -234,12 +239,13 @@ def minimum_of(function: Callable[[Floats], Floats], low: Floats, high: Floats) 
     return np.where(first, inner[0], inner[1]), np.where(first, *values)
 
 
-def _refine(balance: Balance, n: Integers, low: Floats, high: Floats, rising: Booleans) -> Floats:
+def _refine(balance: Balance, n: Integers, low: Floats, high: Floats, rising: Booleans, first: Floats) -> Floats:
     """Return the temperatures of the zeros of F within brackets of x, by Newton's method with bisection.
 
-    n: indices of the states; low, high: ends of the brackets; rising: whether F > 0 at the upper end, (m,) each.
+    n: indices of the states; low, high: ends of the brackets; rising: whether F > 0 at the upper end; first:
+        points within to begin with, or NaN, (m,) each.
     """
-    x, last, loss = 0.5 * (low + high), high - low, np.empty(n.size)
+    x, last, loss = np.where((first > low) & (first < high), first, 0.5 * (low + high)), high - low, np.empty(n.size)
     with np.errstate(all="ignore"):
         for _ in range(_STEPS if n.size else 0):
             F, slope, loss, rise = balance.heat(n, x)
@@ -252,7 +258,7 @@ def _refine(balance: Balance, n: Integers, low: Floats, high: Floats, rising: Bo
             step = np.abs(new - x)
             left = step * np.minimum(step / last, 1.0) ** 2  # what a quadratic method leaves
             x, last = new, step
-            if (left <= 1e-15 * np.maximum(np.abs(x), 1.0)).all():
+            if (left <= _TOLERANCE).all():
                 break
     # so that a small rise has as many digits as the loss
     return balance.ambient[n] + loss / balance.conductance[n]

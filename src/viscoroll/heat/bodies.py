@@ -120,8 +120,11 @@ def heat_states(
         raise described_error("base", "relaxes too", allowed)
     (body,) = heated
     curve = shift_curve(body.material)
-    arrays = {name: check_array(name, value) for name, value in given.items() if value is not None}
-    arrays["conductance"] = check_array("conductance", arrays["conductance"], above=0.0)
+    lows = {"conductance": 0.0}
+    arrays = {
+        name: check_array(name, value, above=lows.get(name, -math.inf))
+        for name, value in given.items() if value is not None
+    }  # fmt: skip
     check_ambient(arrays["ambient"], curve)
     pair = roller.body_data.pair
     if body.material.vertical_shift is not None and (pair.covered or pair.share not in (0.0, 0.5, 1.0)):
