@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..core.array_types import Floats
 from ..core.blocks import block_reader, run_blocks
 from ..core.checks import broadcast_shape, extent
-from ..core.errors import ConvergenceError, ParameterError, digits_beside
+from ..core.errors import ConvergenceError, OutOfTableError, ParameterError, digits_beside
 from ..materials.bodies import Bodies
 from ..materials.law.evaluate import evaluate_by_modes
 from ..materials.law.per_element import record_of_materials, records_of_alphas, sort_by_octave
@@ -93,6 +93,10 @@ def evaluate_contact(
             allowed = "left out for many materials in one call: compute it for one of them, material[i]"
             raise ParameterError("fields", repr(UNSTEADY), allowed)
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
+    if isinstance(material, LawTable) and material.coupled is not None:
+        refuse_beyond(material, scene.kappa * np.abs(V))
+        if not material.coupled.graded and (unknown := {"lam", "length", "zeta", "epsilon", "beta"}.intersection(names)):
+            raise ParameterError("fields", sorted(unknown)[0], "left out: a grid states Q and M alone")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
     rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)
@@ -252,6 +256,14 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
         of_M, of_V, of_Q = evaluate_law(law, state, u.shape, False, ("dM_ddelta", "dQ_dV", "dQ_ddelta"))
         found[names.index("dM_dV")] -= of_M * of_V / of_Q
     return found
+
+
+def refuse_beyond(law: LawTable, u: Any) -> None:
+    """Raise OutOfTableError where kappa |V| = ``u`` exceeds the last speed of a table ``law``, as of a grid."""
+    most = law.coupled.fastest if law.coupled is not None else np.inf
+    largest = float(np.max(u, initial=0.0))
+    if largest > most * (1.0 + 1e-12):
+        raise OutOfTableError("kappa |V|", largest, 0.0, most)
 
 
 def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:

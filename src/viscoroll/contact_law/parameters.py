@@ -10,7 +10,7 @@ from typing import Any, ClassVar, Self
 import numpy as np
 
 from ..core.array_types import Floats, Integers
-from ..core.checks import broadcast_shape, check_array, check_array_extent, check_bool, read_only
+from ..core.checks import broadcast_shape, check_array, check_array_extent, check_bool, check_number, read_only
 from ..core.drive import slope_tan_cos
 from ..core.errors import ParameterError, check_one_given, described_error, shape_error
 from ..core.results import format_value
@@ -25,6 +25,8 @@ from .coupled import CoupledPair
 
 #: Names of the dimensionless numbers of a scene.
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+#: Relative difference of two coefficients of friction that count as one, as mu P/P.
+_SAME_MU = 1e-12
 #: Smallest and largest mu/kappa, dimensionless, the unit of delta_star: beyond them it leaves the range of doubles.
 RATIO_RANGE = (1e-290, 1e290)
 
@@ -140,7 +142,7 @@ class Parameters(Roller):
     mu: Any = None
     gamma: Any = None
     j: Any = 0.5
-    material: Prony | Bodies | LawTable | None = None
+    material: Prony | Bodies | LawTable | LawGrid | None = None
     coupled: bool = False
     _law: ClassVar[LawTable | None] = None
     shape: ClassVar[tuple[int, ...]] = ()
@@ -159,6 +161,8 @@ class Parameters(Roller):
         material: Any = self.material
         check_one_given(alpha=values["alpha"], material=material)
         check_bool("coupled", self.coupled)
+        if isinstance(material, LawGrid):
+            material = material.table(check_number("kappa", values["kappa"], above=0.0))
         if isinstance(material, LawTable):
             object.__setattr__(self, "_law", material)
             refuse_other_friction(material, values["mu"])
@@ -409,7 +413,7 @@ def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
 
 def refuse_other_friction(law: LawTable, mu: Any) -> None:
     """Raise ParameterError where ``mu`` is not that of a coupled table ``law``, which holds for one alone."""
-    if law.coupled is not None and not np.all(np.asarray(mu) == law.coupled.mu):
+    if law.coupled is not None and not np.allclose(mu, law.coupled.mu, rtol=_SAME_MU, atol=0.0):
         raise ParameterError("mu", format_value(mu), f"{law.coupled.mu!r}, for which the table was computed")
 
 

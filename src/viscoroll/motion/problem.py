@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_law.contact import contact
+from ..contact_law.contact_table import refuse_beyond
 from ..contact_law.parameters import Parameters, Roller, refuse_cover, resolve_model
 from ..contact_law.validity.free_rolling import FreeRolling
 from ..contact_law.validity.steadiness import LARGEST_LOSS
@@ -286,6 +287,7 @@ def integrate_single(problem: MotionProblem, times: Floats, *notes: NDArray) -> 
     arrays.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
     batch = law.unsteady_record if problem.unsteady else law.record, law.unlike, *arrays
     out, info = integrate(1, batch, problem.kernel_drive(), times, problem.limits, _ALL_ROWS, notes)
+    refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
     return out[:, 0], info[0].tolist()
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import io
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from os import PathLike
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +20,8 @@ from ...core.checks import check_array, check_number
 from ...core.errors import FileError, OutOfTableError, ParameterError, describe_value, described_error
 from ...core.files import read_sealed
 from ...core.units import conversion_factor
-from .coupled_rows import CoupledRows
+from .coupled_rows import FIELDS, CoupledRows
+from .table import LawTable, coupled_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -59,6 +60,7 @@ class LawGrid:
     slips : whether the contact slips fully at both ends of delta, at every speed: abs(Q) is at least 1 - 1e-5 of its
         limit there, and so is known beyond the ends.  False without a mu.
     R : radius in m; 1 for a dimensionless grid.
+    load : force per length P in N/m; 1 for a dimensionless grid, and where it is not known.
     title : title of the file; "of another program" without one.
     """
 
@@ -68,10 +70,27 @@ class LawGrid:
     delta: tuple[float, float]
     slips: bool
     R: float
+    load: float
     title: str
 
     def __repr__(self) -> str:
         return f"LawGrid(for vr.law alone: {self.title})"
+
+    def table(self, kappa: float) -> LawTable:
+        """Return the law for motions of a scene; of a grid in SI units times are in s, speeds over R/s.
+
+        kappa: R/l0 of the scene, a number, which has no effect on the motion.
+        Raises ParameterError for a grid without mu, or that does not slip fully at both ends of its axis of delta.
+        """
+        if not self.slips:
+            allowed = "states mu (in SI units with a load), and slips fully at both ends of delta"
+            raise ParameterError("material", repr(self), f"a grid that {allowed}")
+        fields = self.rows.fields * [1.0, kappa / (self.load * self.R), kappa / (self.load * self.R)]
+        # lengths are not known, and the work of strain counts as that of slip
+        fields = np.pad(fields, [(0, 0), (0, 0), (0, len(FIELDS) - fields.shape[-1])])
+        u, edges = kappa / self.R * self.rows.u, kappa * self.rows.edges
+        rows = replace(self.rows, mu=self.most / self.load, u=u, edges=edges, fields=fields, fastest=u[-1])
+        return coupled_table(1.0, rows)
 
     def refuse_outside(self, V: Floats, omega: Floats) -> None:
         """Raise the OutOfTableError of a state that the caller has found to be outside the axes.
@@ -315,5 +334,5 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     )
     return LawGrid(
         rows, most, V=(V[0], V[-1]), delta=(delta[0], delta[-1]), slips=slips,
-        R=check_number("R", table.attrs["R"], above=0.0), title=str(table.attrs.get("title", "of another program")),
+        R=check_number("R", table.attrs["R"], above=0.0), load=float(table.attrs.get("load", 1.0)), title=str(table.attrs.get("title", "of another program")),
     )  # fmt: skip
