@@ -15,8 +15,6 @@ from typing import Any, TypeVar
 
 import numpy as np
 
-import numpy as np
-
 from ..core.array_types import Floats
 from ..core.checks import check_number
 from ..core.errors import ModelWarning, ParameterError, caller_level
