@@ -40,3 +40,10 @@ def test_how_thick_the_layer_is():
         length = cylinder.contact([0.0, 1e-3], delta=0.0, fields="length").length
         assert close(found.value, 0.5 * length / (0.02 if holds else 0.004), tol.CONTACT)
         assert np.array_equal(found.holds, [holds, holds])
+
+
+def test_the_load_is_compared_with_the_weight():
+    """A wheel that carries a part of a vehicle: its mass and its load are two numbers."""
+    wheel = vr.Cylinder(R=0.05, m=20.0, load=5.0 * 20.0 * 9.81, material=vr.presets.RUBBER_CYLINDER.material, mu=0.5)
+    assert "the load is 5 times m g" in wheel.validity(1.0).plane.sentence
+    assert "the load is 1 times m g" in wheel.replace(load=20.0 * 9.81).validity(1.0).plane.sentence

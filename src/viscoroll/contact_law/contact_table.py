@@ -155,7 +155,7 @@ def evaluate_law(
         if direct:
             if loop(laws, request, stop - start):
                 raise ConvergenceError(
-                    f"contact: an iteration reached its limit near element {start} (method 'direct')"
+                    f"contact: method='direct' did not converge for a state of elements {start} to {stop - 1}"
                 )
         elif names != (UNSTEADY,):
             loop(laws, request, scratch, stop - start)

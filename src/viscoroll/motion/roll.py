@@ -109,8 +109,9 @@ def roll(
         NaN, infinite or oversized input, unsorted times, an array where one number belongs; both speeds prescribed,
         a prescribed speed that jumps or does not match its start, a callable that
         polynomials do not follow; ``rest`` where something drives to the end; ``unsteady`` with bodies that differ
-        or with a cover; ``rested`` below 0, with a prescribed speed, with a cover, or at a start in full slip or from V0 = omega0 = 0; a
-        scene without gamma, a layer beside a body that relaxes too or too thin for its law; a unit of another dimension.
+        or with a cover; ``rested`` below 0, with a prescribed speed, with a cover, or at a start in full slip or
+        from V0 = omega0 = 0; a scene without gamma, a layer beside a body that relaxes too or too thin for its law; a
+        unit of another dimension.
     Exception
         What a callable raises.
 

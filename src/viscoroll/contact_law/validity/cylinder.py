@@ -29,6 +29,8 @@ from .assumptions import (
     transit_speeds,
 )  # fmt: skip
 
+#: Acceleration by which a mass is compared with a load, m/s^2.
+_GRAVITY = 9.81
 #: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness matter.
 _LEAST_SHARE = 0.01
 #: (Lowest, highest) speed, m/s, of data that hold at no speed.
@@ -201,8 +203,8 @@ class BodyData:
         density: density of the cylinder, and of the base where they are alike or the cylinder is rigid, kg/m^3; None:
             as the materials have it.
         Returns a copy of the report with ``quasistatic`` (undecided without the density that decides), ``bodies``,
-        ``measured`` (undecided without a measured material) and ``plane``, which states the plane and is always
-        undecided.
+        ``measured`` (undecided without a measured material) and ``plane``, which states the plane and the
+        largest load over m g, and is always undecided.
         Raises ParameterError for a density that is not one finite number > 0.
         """
         if density is not None:
@@ -214,11 +216,14 @@ class BodyData:
             if self.plane == "strain"
             else "plane stress: a thin disc"
         )
+        weights = extent_of(self.scene.gamma * self.R / (_GRAVITY * self.T_ref**2))
         return report._replace(
             quasistatic=assess_inertia(*self.wave_ratio(fastest, density)),
             bodies=assess_coupling(*(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like),
             measured=assess_measured_band(transit_frequency(V, length), self.records),
-            plane=Assumption(None, None, f"the state is taken as {kind}"),
+            plane=Assumption(
+                None, None, f"the state is taken as {kind}; the load is {weights[1]:.3g} times m g, g = 9.81 m/s2"
+            ),
         )
 
 
