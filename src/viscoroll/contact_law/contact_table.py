@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..core.array_types import Floats
 from ..core.blocks import block_reader, run_blocks
 from ..core.checks import broadcast_shape, extent
-from ..core.errors import ConvergenceError, ParameterError, digits_beside
+from ..core.errors import ConvergenceError, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.law.evaluate import evaluate_by_modes
 from ..materials.law.per_element import record_of_materials, records_of_alphas, sort_by_octave
@@ -258,4 +258,4 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> Non
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)
     if largest > fastest:
-        raise ParameterError("kappa |V|", digits_beside(largest, fastest), f"at most {fastest:g}")
+        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
