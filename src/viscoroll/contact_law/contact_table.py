@@ -164,7 +164,7 @@ def evaluate_law(
         elif direct:
             if loop(laws, request, stop - start):
                 raise ConvergenceError(
-                    f"contact: an iteration reached its limit near element {start} (method 'direct')"
+                    f"contact: method='direct' did not converge for a state of elements {start} to {stop - 1}"
                 )
         elif names != (UNSTEADY,):
             loop(laws, request, scratch, stop - start)
@@ -283,4 +283,4 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> Non
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)
     if largest > fastest:
-        raise ParameterError("kappa |V|", digits_beside(largest, fastest), f"at most {fastest:g}")
+        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
