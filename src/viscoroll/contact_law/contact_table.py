@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..core.array_types import Floats
 from ..core.blocks import block_reader, run_blocks
 from ..core.checks import broadcast_shape, extent
-from ..core.errors import ConvergenceError, OutOfTableError, ParameterError, digits_beside
+from ..core.errors import ConvergenceError, OutOfTableError, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.law.evaluate import evaluate_by_modes
 from ..materials.law.per_element import record_of_materials, records_of_alphas, sort_by_octave
