@@ -482,7 +482,7 @@ COVER_ROWS = 1e-11
 #: On either side of an octave's end, delta_0 over delta_star/mu: a hundred roundings of the node nearest to it.
 COVER_JOIN = 1e-12
 #: The same of what shear does: the fit of the slow end, where nu < 1/2.
-COVER_JOIN_SHEAR = 1e-10
+COVER_JOIN_SHEAR = 1e-9
 #: M beside a body that relaxes too, up to a million millions of its fastest rate: the terms in ln u are extrapolated.
 COVER_LOGARITHMS = 1e-7
 #: What shear does where nu < 1/2, of 2 kappa delta_star/mu: sums along the contact between points.
