@@ -521,7 +521,7 @@ COVER_RATES = 1e-6
 #: Forces at equilibria, over P: roundings of Q near its limit.
 COVER_STEADY = 1e-13
 #: A thickness each, interpolated in its logarithm, against a law of its own; motions at rtol 1e-10.
-COVER_EACH, COVER_EACH_MOTION = 1e-10, 1e-9
+COVER_EACH, COVER_EACH_MOTION = 1e-9, 1e-8
 #: delta at rest and at 1e-11 of a relaxation time, by which lengths differ.
 COVER_REST = 1e-9
 #: Steel of 2e11 Pa beside rubber of 2e6 Pa takes 1e-5 of the compliance.
