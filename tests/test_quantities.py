@@ -56,6 +56,7 @@ OWN = {
     ("Material.lsdyna", "G"): [1e6], ("Material.lsdyna", "beta"): [2.0], ("Material.abaqus", "k"): [0.5],
     ("Material.ansys", "k"): [0.5], ("Material.comsol", "K"): [1e6], ("Material.lsdyna", "K"): [1e6],
     ("Cover", "series"): RUBBER.prony, ("Cover", "part"): 0.75, ("Cover", "other_nu"): 0.25,
+    ("Cover", "other_thickness"): 0.5,
     ("fit_relaxation", "t"): TIMES, ("fit_relaxation", "relaxation"): 1e6 * (1.0 + np.exp(-TIMES)),
     ("fit_prony", "omega"): OMEGA, ("fit_prony", "storage"): CURVE[0], ("fit_prony", "loss"): CURVE[1],
     ("fit_prony", "temperature"): np.full(12, 30.0),

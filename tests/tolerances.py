@@ -498,7 +498,7 @@ COVER_ROWS = 1e-11
 #: On either side of an octave's end, delta_0 over delta_star/mu: a hundred roundings of the node nearest to it.
 COVER_JOIN = 1e-12
 #: The same of what shear does: the fit of the slow end, where nu < 1/2.
-COVER_JOIN_SHEAR = 1e-10
+COVER_JOIN_SHEAR = 1e-9
 #: M beside a body that relaxes too, up to a million millions of its fastest rate: the terms in ln u are extrapolated.
 COVER_LOGARITHMS = 1e-7
 #: What shear does where nu < 1/2, of 2 kappa delta_star/mu: sums along the contact between points.
@@ -537,7 +537,7 @@ COVER_RATES = 1e-6
 #: Forces at equilibria, over P: roundings of Q near its limit.
 COVER_STEADY = 1e-13
 #: A thickness each, interpolated in its logarithm, against a law of its own; motions at rtol 1e-10.
-COVER_EACH, COVER_EACH_MOTION = 1e-10, 1e-9
+COVER_EACH, COVER_EACH_MOTION = 1e-9, 1e-8
 #: delta at rest and at 1e-11 of a relaxation time, by which lengths differ.
 COVER_REST = 1e-9
 #: Steel of 2e11 Pa beside rubber of 2e6 Pa takes 1e-5 of the compliance.
