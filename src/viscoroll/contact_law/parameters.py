@@ -440,8 +440,8 @@ def resolve_model(
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
         if isinstance(roller, LawGrid):
-            sentence = f"{call} reads the rows of a law, as motions do, not a grid: vr.law(grid) gives its splines to "
-            sentence += "your own integrator (docs/howto/law.md)"
+            sentence = f"{call} reads the rows of a law, or a grid as the material of a Scene, no grid by itself: "
+            sentence += "vr.law(grid) gives its splines to your own integrator (docs/howto/law.md)"
         raise ParameterError("roller", type(roller).__name__, "a Scene or a Cylinder", sentence)
     if slope is not None:
         roller = roller.on_slope(slope)

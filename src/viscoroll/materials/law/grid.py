@@ -63,7 +63,7 @@ class LawGrid:
     title: str
 
     def __repr__(self) -> str:
-        return f"LawGrid(for vr.law alone: {self.title})"
+        return f"LawGrid({self.title}; for vr.law alone, or as the material of a Scene)"
 
     def table(self, kappa: float) -> LawTable:
         """Return the law for motions of a scene; of a grid in SI units times are in s, speeds over R/s.
