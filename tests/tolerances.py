@@ -517,8 +517,29 @@ COVER_REST = 1e-9
 #: Steel of 2e11 Pa beside rubber of 2e6 Pa takes 1e-5 of the compliance.
 COVER_ON_STEEL = 1e-3
 
+# --- contact_law/coupled.py (contact_law/test_coupled.py) ---
+#: Elements of another program, Q over mu P: its own error is 3e-4 where both ends slip; kappa M; lam and epsilon.
+COUPLED_Q, COUPLED_MOMENT, COUPLED_LENGTH = 3e-4, 2e-5, 2.5e-4
+#: Edge layers of alpha up to 1000 in 72 against 110 elements: kappa M, lam; seen 3.4e-5 and 3e-4.
+COUPLED_RANDOM_MOMENT, COUPLED_RANDOM_LENGTH = 1e-4, 5e-4
+#: CONTACT prints four digits.
+BENTALL = 2e-3
+#: Half-spaces against the rows of the law, Q over P and kappa M: second order in the elements.
+COUPLED_HALF_SPACE = 1e-5
+#: The same of lam, and of parts of M, which are sums over elements.
+COUPLED_EDGES = 1e-4
+#: Onsets are strains at the front edge by extrapolation; the stick zone ends in an element of a thousandth.
+COUPLED_ONSET, COUPLED_STICK = 2e-3, 5e-3
+#: Powers computed apart, over V P/kappa; their sum in one state, by rounding.
+COUPLED_POWER, COUPLED_SUM = 1e-6, 1e-13
+#: Trapezoidal rule of a root at the edge, 20000 steps.
+COUPLED_STRESS = 1e-4
+#: A single transform decays like k^(-5/2).
+COUPLED_DEPTH = 1e-4
+
 # --- tables of the coupled solution (test_coupled_tables.py) ---
-#: A table of 32 by 33 nodes against states beside them, asked of Q/(mu P), kappa M, epsilon; seen 2.1e-4, 3.2e-5, 2.5e-4.
+#: A table of 32 by 33 nodes against states beside them, asked of Q/(mu P), kappa M, epsilon; seen 2.1e-4, 3.2e-5 and
+#: 2.5e-4.
 TABLE_Q, TABLE_M, TABLE_EPSILON = 5e-4, 5e-5, 5e-4
 #: Slopes of a table against differences over a millionth of V or omega, relative; seen 1e-8.
 TABLE_SLOPE = 1e-5

@@ -26,7 +26,7 @@ _NEAR_TERMS = 22
 _SMALL_PHASE = 0.02
 #: scales, over l0, at which the growth of the compliance is looked at; a part of the load of the root of a scale lies
 #: within it at most
-_SCALES = np.geomspace(1e-8, 1.0, 200)
+_SCALES = np.geomspace(1e-7, 1.0, 200)
 #: growth d ln J/d ln x of the compliance over distance x from the front edge from which on pressure gathers there; the
 #: pressure of half-spaces grows like the distance to the power of 1/2 less it
 _GROWTH = 0.4

@@ -39,8 +39,8 @@ MOST_SPOTS = 8
 #: width of the refinement at an edge times the number of elements, and elements in a factor of e
 WIDTH_OF_SPOT, WEIGHT_OF_SPOT = 0.1, 1.0
 #: elements in a factor of e of the distance from the front edge, down to the edge layer
-WEIGHT_OF_LAYER = 2.0
-#: part of the highest pressure that counts as tension
+WEIGHT_OF_LAYER = 2.5
+#: integral of negative pressure over the load that counts as tension
 _TENSION = 1e-6
 #: steps of the bisection of the creep where the other slip opens
 _BISECTIONS = 17
@@ -263,12 +263,11 @@ def write_state(row, contact, c, g, mu, d, status, out):
         out[4] = 2.0 * (slip * traction - slip_work(contact, slip)) / total
     out[7] = stick_length(contact)
     if status == SOLVED:
-        highest = 0.0
+        negative = 0.0
         for i in range(contact.p.size):
-            highest = max(highest, contact.p[i])
-        for i in range(contact.p.size):
-            if contact.p[i] < -_TENSION * highest:
-                status = TENSION
+            negative -= min(contact.p[i], 0.0) * 0.5 * (contact.nodes[i + 2] - contact.nodes[i])
+        if negative > _TENSION * total:
+            status = TENSION
     out[8] = status
     out[9] = c
     return total

@@ -1,0 +1,238 @@
+"""Pressure and shear solved together: references, limits, symmetries, powers computed apart, random pairs."""
+
+import csv
+import math
+
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+from places import ROOT
+from scipy.optimize import brentq
+
+import viscoroll as vr
+from viscoroll.contact_law.coupled import CoupledBody, CoupledPair, CoupledRow
+from viscoroll.contact_law.coupled_kernels import layer_transforms, transforms
+
+SERIES = {
+    "elastic": vr.Prony.elastic(),
+    "one": vr.Prony([10.0], [1.0 / 11.0]),
+    "three": vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003]),
+}
+ONE, THREE = SERIES["one"], SERIES["three"]
+KAPPA, MU = 4.0, 0.3
+BELT = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
+LINING = vr.Cover(ONE, nu=0.5, thickness=0.5, on="cylinder")
+NIP = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base", part=0.6, other=THREE, other_nu=0.4, other_thickness=0.3)
+MIXED = vr.Cover(ONE, nu=0.45, thickness=0.5, on="base", part=0.7, other=THREE, other_nu=0.3)
+CREEPS = np.array([-0.25, -0.05, 0.03, 0.1, 0.3, 0.8])
+
+
+def scene_of(material, mu=MU, kappa=KAPPA):
+    return vr.Scene(material=material, kappa=kappa, mu=mu)
+
+
+def coupled(scene, V, **more):
+    return scene.contact(V, method="coupled", **more)
+
+
+def test_boundary_elements_of_another_program():
+    with open(ROOT / "data/reference/coupled.csv") as file:
+        rows = list(csv.DictReader(file))
+    for key in dict.fromkeys(tuple(row.values())[:5] for row in rows):
+        nu, thickness, u, mu = map(float, key[1:])
+        cover = vr.Cover(SERIES[key[0]], nu=nu, thickness=thickness, on="base")
+        mine = [row for row in rows if tuple(row.values())[:5] == key]
+        creep, lam, epsilon, moment, Q = (
+            np.array([float(row[name]) for row in mine]) for name in ("creep", "lam", "epsilon", "kappa_M", "Q")
+        )
+        found = coupled(scene_of(cover, mu, 1.0), u, delta=0.5 * creep)
+        assert close(found.Q, Q, tol.COUPLED_Q, scale=mu)
+        assert close(found.M, moment, tol.COUPLED_MOMENT, scale=1.0)
+        assert close(found.lam, lam, tol.COUPLED_LENGTH)
+        assert close(found.epsilon, epsilon, tol.COUPLED_LENGTH, scale=1.0)
+
+
+def test_dundurs_constant_as_contact_publishes_it():
+    with open(ROOT / "data/reference/bentall.csv") as file:
+        rows = [row for row in csv.DictReader(file) if row["mu"] != "inf"]
+    one, other = (1.0 - 0.31) / 23000.0, (1.0 - 0.28) / 82000.0
+    elastic = vr.Prony.elastic()
+    pair = vr.Bodies(elastic, elastic, share=other / (one + other), poisson=(0.28, 0.31))
+    for row in rows:
+        mu, Q = float(row["mu"]), float(row["Q_over_mu_P"])
+        states = CoupledRow(CoupledPair.of_scene(scene_of(pair)), 1.0, mu)
+        creep = brentq(lambda x, on=states, Q=Q: on.states([x]).Q_over_mu[0] - Q, *states.onsets())
+        assert close(abs(creep) * 0.1 / 25.0, float(row["creep"]), tol.BENTALL)
+
+
+@pytest.mark.parametrize("material", [SERIES["elastic"], ONE, THREE, vr.Bodies(ONE, THREE, 0.3)])
+def test_half_spaces_have_the_law_of_the_table(material):
+    scene = scene_of(material)
+    V = 0.1
+    star = scene.contact(V, delta=0.0).delta_star
+    delta = star * np.array([-2.0, -0.7, 0.1, 0.5, 0.9])
+    found, exact = coupled(scene, V, delta=delta), scene.contact(V, delta=delta, fields=coupled_names())
+    assert close(found.Q, exact.Q, tol.COUPLED_HALF_SPACE, scale=MU)
+    assert close(KAPPA * found.M, KAPPA * exact.M, tol.COUPLED_HALF_SPACE, scale=1.0)
+    assert close(found.lam, exact.lam, tol.COUPLED_EDGES)
+    assert close(found.M_cylinder, exact.M_cylinder, tol.COUPLED_EDGES, scale=1.0)
+    assert close([found.delta_plus[0], -found.delta_minus[0]], star, tol.COUPLED_ONSET)
+    assert close(found.beta, exact.beta, tol.COUPLED_STICK, scale=1.0)
+
+
+def coupled_names():
+    return "lam", "Q", "M", "M_cylinder", "beta"
+
+
+def test_a_thick_layer_is_a_half_space():
+    thick, thicker = (coupled(scene_of(BELT.of_thickness(h)), 0.1, delta=0.02) for h in (1e3, 1e6))
+    plain = coupled(scene_of(vr.Bodies(vr.Prony.elastic(), ONE, 0.0, poisson=(0.5, 0.5))), 0.1, delta=0.02)
+    assert close([thick.Q, thicker.Q], plain.Q, tol.COUPLED_HALF_SPACE, scale=MU)
+    assert close(thicker.M, plain.M, tol.COUPLED_HALF_SPACE, scale=1.0)
+
+
+def test_sides_and_directions():
+    belt, lining = (coupled(scene_of(cover), 0.1, delta=sign * CREEPS) for cover, sign in ((BELT, 1), (LINING, -1)))
+    back = coupled(scene_of(BELT), -0.1, delta=CREEPS)
+    for name, swapped, turned in (("Q", -1, -1), ("M", 1, -1), ("lam", 1, 1), ("epsilon", 1, 1), ("loss_slip", 1, 1)):
+        assert (lining[name] == swapped * belt[name]).all(), name
+        assert (back[name] == turned * belt[name]).all(), name
+    assert (lining.M_cylinder == belt.M_half_space).all()
+    assert (lining.delta_plus == -belt.delta_minus).all()
+
+
+def test_two_like_covers_do_not_couple():
+    nip = vr.Cover(ONE, nu=0.3, thickness=0.5, on="base", part=0.5, other=ONE, other_nu=0.3, other_thickness=0.5)
+    found = coupled(scene_of(nip), 0.1, delta=[0.0, 0.02], fields=["Q", "M_half_space", "M_cylinder", "delta_0"])
+    assert close(found.Q[0], 0.0, tol.COUPLED_HALF_SPACE, scale=MU)
+    assert close(found.delta_0, 0.0, tol.COUPLED_HALF_SPACE, scale=1.0)
+    assert close(found.M_half_space[0], found.M_cylinder[0], tol.COUPLED_HALF_SPACE)
+    rigid = coupled(scene_of(vr.Cover(ONE, nu=0.3, thickness=0.5), mu=1e-4), 0.1, delta=1.0)
+    assert close(2.0 * found.M_cylinder[0], rigid.M, tol.COUPLED_EDGES)
+
+
+def losses_by_transforms(pair, u, profile):
+    """Power lost in all bodies over kappa |V| P, by Parseval's theorem from the loss compliance alone."""
+    half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
+    k = np.concatenate([np.geomspace(1e-8, 5.0, 400), np.arange(5.0, 400.0, 0.2)[1:]]) / half
+    p, q = (transforms(profile.nodes, each, k) for each in (profile.p, profile.q))
+    total = np.zeros(k.size)
+    for body in pair.bodies:
+        J = sum(j / (1.0 - 1j * k * t * u) for j, t in zip(body.J, body.T, strict=True)).imag
+        local = (1.0 - 2.0 * body.nu) / (2.0 - 2.0 * body.nu)
+        wave = np.minimum(k * body.thickness, 300.0)
+        L, T, C = layer_transforms(body.nu, wave) if math.isfinite(body.thickness) else (1.0, 1.0, local)
+        t = -q if body.side == "base" else q
+        total += body.share * J * (L * abs(p) ** 2 + T * abs(t) ** 2 - 2.0 * C * np.imag(p * np.conj(t)))
+    return np.trapezoid(total * k, np.log(k)) / np.pi / np.trapezoid(profile.p, profile.nodes)
+
+
+@pytest.mark.parametrize("cover", [BELT, LINING, NIP, MIXED])
+def test_friction_and_losses_of_the_bodies_take_the_power_of_the_loads(cover):
+    scene = scene_of(cover)
+    pair = CoupledPair.of_scene(scene)
+    row = CoupledRow(pair, 0.35, MU, 144)
+    found = row.states(CREEPS)
+    assert found.converged.all()
+    power = found.kM_base + found.kM_cylinder + 0.5 * CREEPS * MU * found.Q_over_mu
+    friction = 0.5 * (CREEPS * MU * found.Q_over_mu - found.work_base - found.work_cylinder)
+    assert (friction >= -tol.COUPLED_POWER).all()
+    apart = [losses_by_transforms(pair, 0.35, row.profile(creep)) for creep in CREEPS]
+    assert close(friction + apart, power, tol.COUPLED_POWER, scale=1.0)
+    state = coupled(scene, 0.35 / KAPPA, delta=0.5 * CREEPS / KAPPA)
+    parts = state.loss_slip, state.loss_half_space, state.loss_cylinder
+    assert min(part.min() for part in parts) > -tol.COUPLED_POWER
+    assert close(sum(parts), 0.35 / KAPPA * (state.M + state.delta * state.Q), tol.COUPLED_SUM, scale=1.0)
+
+
+def random_pair(rng):
+    """One or two bodies of any kind, with up to 20 modes over 12 decades, alpha up to 1000; u and mu."""
+    bodies = []
+    number = rng.integers(1, 3)
+    part = rng.uniform(0.2, 0.8)
+    for share, side in zip((1.0,) if number == 1 else (part, 1.0 - part), rng.permuted(["base", "cylinder"])):
+        modes = int(rng.choice([0, 1, 2, 3, 10, 20]))
+        J = (1.0 - 10.0 ** -rng.uniform(0.1, 3.0)) * rng.dirichlet(np.ones(max(modes, 1)))[:modes]
+        T = 10.0 ** rng.uniform(-12.0, 0.0, modes) if modes > 1 else np.ones(modes)
+        thickness = rng.choice([0.2, 0.5, 2.0, 20.0, math.inf])
+        bodies.append(CoupledBody(side, share, rng.uniform(0.0, 0.5), thickness, tuple(J), tuple(T)))
+    return CoupledPair(tuple(bodies)), 10.0 ** rng.uniform(-6.0, 6.0), 10.0 ** rng.uniform(-1.7, 0.0)
+
+
+def test_random_pairs_are_solved_and_refined_meshes_agree():
+    rng = np.random.default_rng(50)
+    for _ in range(25):
+        pair, u, mu = random_pair(rng)
+        coarse = CoupledRow(pair, u, mu)
+        fine = CoupledRow(pair, u, mu, 110)
+        creeps = rng.uniform(*coarse.onsets(), 4)
+        one, other = coarse.states(creeps), fine.states(creeps)
+        assert one.converged.all() and other.converged.all(), (pair, u, mu)
+        assert (np.abs(one.Q_over_mu) <= 1.0).all()
+        assert close(one.Q_over_mu, other.Q_over_mu, tol.COUPLED_Q, scale=1.0)
+        moments = (states.kM_base + states.kM_cylinder for states in (one, other))
+        assert close(*moments, tol.COUPLED_RANDOM_MOMENT, scale=1.0)
+        assert close(one.lam, other.lam, tol.COUPLED_RANDOM_LENGTH)
+
+
+def test_rest_and_the_fastest_speed_are_elastic():
+    pair = CoupledPair.of_scene(scene_of(BELT))
+    for u, end in ((1e-9, 0.0), (1e12, math.inf)):
+        near, limit = (CoupledRow(pair, each, MU).states(CREEPS) for each in (u, end))
+        assert close(near.Q_over_mu, limit.Q_over_mu, tol.COUPLED_EDGES, scale=1.0)
+        assert close(near.lam, limit.lam, tol.COUPLED_EDGES)
+
+
+def test_tractions_carry_load_and_creep_force():
+    scene = scene_of(NIP)
+    state = coupled(scene, 0.1, delta=0.01)
+    x = np.linspace(-0.6, 0.8, 20001)
+    found = vr.stress(scene, x, 0.1, delta=0.01, method="coupled")
+    unit = 32.0 * KAPPA**2 / KAPPA
+    assert close(unit * np.trapezoid(found.p, x), 1.0, tol.COUPLED_STRESS)
+    assert close(unit * np.trapezoid(found.tau, x), state.Q, tol.COUPLED_STRESS, scale=MU)
+    assert (np.abs(found.tau) <= MU * found.p * (1.0 + tol.COUPLED_STRESS)).all()
+    back = vr.stress(scene, -x, -0.1, delta=0.01, method="coupled")
+    assert (back.p == found.p).all() and (back.tau == -found.tau).all()
+
+
+def test_depth_is_that_of_the_surface_in_the_middle():
+    cover = vr.Cover(vr.Prony.elastic(), nu=0.3, thickness=0.5, on="base")
+    row = CoupledRow(CoupledPair.of_scene(scene_of(cover)), 0.0, MU)
+    profile = row.profile(0.05)
+    k = np.linspace(1e-9, 600.0, 60001)
+    L, _, C = layer_transforms(0.3, np.minimum(0.5 * k, 300.0))
+    p, q = (transforms(profile.nodes, each, k) for each in (profile.p, profile.q))
+    middle = np.trapezoid((L * p / k + 1j * C * q / k).real, k) / np.pi
+    found = coupled(scene_of(cover), 0.0, delta=0.5 * 0.05 / KAPPA, fields="depth").depth
+    assert close(KAPPA * found, middle + 0.5 * profile.shift**2, tol.COUPLED_DEPTH)
+
+
+def test_a_cylinder_has_the_units_of_its_scene():
+    belt = vr.Material(2e6, 0.49, THREE, 0.1, thickness=0.01)
+    roller = vr.Cylinder(R=0.1, m=30.0, material=vr.Material(4e6, 0.3), base=belt, mu=0.5, load=2e3)
+    found = coupled(roller, 0.5, delta=0.01)
+    plain = coupled(roller.scene(), 0.5 / roller.scale["V"], delta=0.01)
+    for name in ("Q", "M", "loss_slip", "loss_half_space", "lam", "delta_plus"):
+        assert close(found[name], plain[name] * roller.scale[name], tol.COUPLED_SUM), name
+
+
+@pytest.mark.parametrize(
+    "more, words",
+    [
+        ({"slopes": True}, "dQ_dV"),
+        ({"fields": "N"}, "N"),
+        ({"fields": "depth"}, "half-space"),
+        ({"fields": "depth", "method": "table"}, "coupled"),
+    ],
+)
+def test_what_it_does_not_have_is_refused(more, words):
+    scene = scene_of(ONE)
+    with pytest.raises(vr.ParameterError, match=words):
+        scene.contact(0.1, delta=0.0, **({"method": "coupled"} | more))
+
+
+def test_several_materials_are_refused():
+    with pytest.raises(vr.ParameterError, match="one material"):
+        coupled(scene_of(BELT.of_thickness([0.5, 0.6])), 0.1, delta=0.0)
