@@ -37,8 +37,8 @@ def test_file_keeps_every_bit_and_holds_for_one_friction(law, scene, tmp_path):
     read = vr.load_law(tmp_path / "belt.nc")
     states = {"V": np.geomspace(1e-4, 1e3, 50), "delta": np.linspace(-0.1, 0.1, 50)}
     first, again = (each.contact(**states, slopes=True) for each in (scene, scene.replace(material=read)))
-    assert all(np.array_equal(first[name], again[name]) for name in first.keys())
-    with pytest.raises(vr.ParameterError, match="mu = 0.2: must be 0.3"):
+    assert all(np.array_equal(first[name], again[name]) for name in first.keys())  # noqa: SIM118 - no dict
+    with pytest.raises(vr.ParameterError, match=r"mu = 0\.2: must be 0\.3"):
         vr.Scene(material=read, kappa=4.0, mu=0.2)
 
 
@@ -78,7 +78,8 @@ def test_motions_solve_the_equations_and_keep_energy(scene, start):
     energy = 0.5 * motion.V**2 + 0.25 * motion.omega**2
     works = np.zeros(41) + force * motion.x + torque * motion.angle
     assert np.abs(energy - energy[0] - works + losses).max() < tol.TABLE_ENERGY * losses[-1]
-    assert np.diff(motion.slip_loss).min() >= 0.0 and np.diff(motion.rolling_loss).min() >= 0.0
+    assert np.diff(motion.slip_loss).min() >= 0.0
+    assert np.diff(motion.rolling_loss).min() >= 0.0
 
 
 def test_steady_rolling_is_where_motions_end_and_rest_stays(scene):
@@ -107,7 +108,7 @@ def test_speeds_beyond_the_nodes_join_the_elastic_limits(law, scene):
     """The table is linear in u below its nodes, in 1/u beyond; both ends are those of elastic bodies."""
     rows = law.coupled
     for u, row in ((1e-9, 0), (1e12, -1)):
-        middle, low, high = rows.edges[row, :3]
+        _, low, high = rows.edges[row, :3]
         state = scene.contact(u / 4.0, delta=np.array([low, high]) / 8.0, fields=("Q", "M_half_space"))
         close(state.Q, [-0.3, 0.3], tol.TABLE_MOTION)
         close(4.0 * state.M_half_space, rows.fields[row, [0, -1], 1], tol.TABLE_MOTION)

@@ -249,5 +249,6 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     )
     return LawGrid(
         rows, most, V=(V[0], V[-1]), delta=(delta[0], delta[-1]), slips=slips,
-        R=check_number("R", table.attrs["R"], above=0.0), load=float(table.attrs.get("load", 1.0)), title=str(table.attrs.get("title", "of another program")),
+        R=check_number("R", table.attrs["R"], above=0.0), load=float(table.attrs.get("load", 1.0)),
+        title=str(table.attrs.get("title", "of another program")),
     )  # fmt: skip
