@@ -573,3 +573,18 @@ COUPLED_POWER, COUPLED_SUM = 1e-6, 1e-13
 COUPLED_STRESS = 1e-4
 #: A single transform decays like k^(-5/2).
 COUPLED_DEPTH = 1e-4
+
+# --- tables of the coupled solution (test_coupled_tables.py) ---
+#: A table of 32 by 33 nodes against states beside them, asked of Q/(mu P), kappa M, epsilon; seen 2.1e-4, 3.2e-5 and
+#: 2.5e-4.
+TABLE_Q, TABLE_M, TABLE_EPSILON = 5e-4, 5e-5, 5e-4
+#: Slopes of a table against differences over a millionth of V or omega, relative; seen 1e-8.
+TABLE_SLOPE = 1e-5
+#: A motion at rtol 1e-8 against Radau's method on the law of the table at 1e-9; seen 1e-8.
+TABLE_MOTION = 1e-6
+#: Works less losses and kinetic energy over the losses, by quadrature of a motion; seen 1.3e-8.
+TABLE_ENERGY = 1e-6
+#: Creepage of free rolling of an elastic cover, h/l0 = 0.5, nu = 0.5, times 2 kappa: 0.165 of boundary elements.
+TABLE_FREE = 1e-3
+#: A grid of 200 by 401 nodes in place of the rows, in V and omega at the end of motions; seen 1e-8.
+GRID_MOTION = 1e-6

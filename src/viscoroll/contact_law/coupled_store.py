@@ -86,25 +86,34 @@ def _digest() -> str:
 
 
 def _load(path: Path) -> CoupledRows | None:
+<<<<<<< HEAD
     """Return the table in a file; None without one that is private, and with a RuntimeWarning for one that is
     damaged."""
+=======
+    """Return the table in a file; None without a private one, and with a RuntimeWarning for a damaged one."""
+>>>>>>> h-ctable
     try:
         content = read_private(path)
     except OSError:
         return None
     try:
-        if not seal_matches(content):
-            raise ValueError("its bytes differ from the SHA-256 at their end")
-        with np.load(io.BytesIO(content)) as data:
-            arrays = [lock_array(data[name]) for name in ("u", "t", "edges", "fields")]
-            errors = dict(zip(FIELDS, data["errors"].tolist(), strict=True))
-            found = CoupledRows(float(data["mu"]), *arrays, errors=errors)
+        found = _read(content)
     except Exception as error:
         warnings.warn(f"{path}: coupled table is damaged ({error}) and is made again", RuntimeWarning, stacklevel=2)
         return None
     with suppress(OSError):  # a folder that is read-only
         path.touch()
     return found
+
+
+def _read(content: bytes) -> CoupledRows:
+    """Return the table in the bytes of a file; raises ValueError and errors of numpy for what is none."""
+    if not seal_matches(content):
+        raise ValueError("its bytes differ from the SHA-256 at their end")
+    with np.load(io.BytesIO(content)) as data:
+        u, t, edges, fields = (lock_array(data[name]) for name in ("u", "t", "edges", "fields"))
+        errors = dict(zip(FIELDS, data["errors"].tolist(), strict=True))
+        return CoupledRows(float(data["mu"]), u, t, edges, fields, errors=errors)
 
 
 def _save(rows: CoupledRows, path: Path) -> None:

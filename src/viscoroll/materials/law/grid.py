@@ -72,7 +72,7 @@ class LawGrid:
     title: str
 
     def __repr__(self) -> str:
-        return f"LawGrid(for vr.law alone: {self.title})"
+        return f"LawGrid({self.title}; for vr.law alone, or as the material of a Scene)"
 
     def table(self, kappa: float) -> LawTable:
         """Return the law for motions of a scene; of a grid in SI units times are in s, speeds over R/s.
@@ -332,5 +332,6 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     )
     return LawGrid(
         rows, most, V=(V[0], V[-1]), delta=(delta[0], delta[-1]), slips=slips,
-        R=check_number("R", table.attrs["R"], above=0.0), load=float(table.attrs.get("load", 1.0)), title=str(table.attrs.get("title", "of another program")),
+        R=check_number("R", table.attrs["R"], above=0.0), load=float(table.attrs.get("load", 1.0)),
+        title=str(table.attrs.get("title", "of another program")),
     )  # fmt: skip
