@@ -86,12 +86,7 @@ def _digest() -> str:
 
 
 def _load(path: Path) -> CoupledRows | None:
-<<<<<<< HEAD
-    """Return the table in a file; None without one that is private, and with a RuntimeWarning for one that is
-    damaged."""
-=======
     """Return the table in a file; None without a private one, and with a RuntimeWarning for a damaged one."""
->>>>>>> h-ctable
     try:
         content = read_private(path)
     except OSError:
