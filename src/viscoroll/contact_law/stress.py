@@ -36,9 +36,13 @@ _FIELDS = "lam", "epsilon", "beta", "zeta", "delta"
 
 
 @overload
-def stress(roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers, method: Literal["table", "coupled"] = "table") -> Values: ...
+def stress(
+    roller: Roller, x: Numbers, V: Numbers, *, delta: Numbers, method: Literal["table", "coupled"] = "table"
+) -> Values: ...
 @overload
-def stress(roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers, method: Literal["table", "coupled"] = "table") -> Values: ...
+def stress(
+    roller: Roller, x: Numbers, V: Numbers, *, omega: Numbers, method: Literal["table", "coupled"] = "table"
+) -> Values: ...
 def stress(
     roller: Roller,
     x: Numbers,
