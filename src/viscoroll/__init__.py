@@ -41,11 +41,16 @@ def __getattr__(name: str) -> Any:
     """
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    if (module := _MODULES[name]) == ".":
-        value = import_module(f".{name}", __name__)
+    from .core.keywords import suggest_arguments
+
+    if (path := _MODULES[name]) == ".":
+        home = import_module(f".{name}", __name__)
     else:
-        value = getattr(__import__(module[1:], globals(), fromlist=[name], level=1), name)
-    globals()[name] = value
+        home = __import__(path[1:], globals(), fromlist=[name], level=1)
+    for each, module in _MODULES.items():  # a result has a class that nobody asked for by name
+        if loaded := sys.modules.get(__name__ + module.rstrip(".")):
+            suggest_arguments(loaded, (each,))
+    value = globals()[name] = home if path == "." else getattr(home, name)
     return value
 
 

@@ -28,7 +28,7 @@ def callables(name, thing):
     elif inspect.isclass(thing):
         for part, method in inspect.getmembers(thing, lambda each: inspect.isfunction(each) or inspect.ismethod(each)):
             if not part.startswith("_") and method.__module__.startswith("viscoroll"):
-                yield f"{name}.{part}", getattr(method, "__func__", method)
+                yield f"{name}.{part}", inspect.unwrap(getattr(method, "__func__", method))
     elif inspect.isfunction(thing):
         yield name, inspect.unwrap(thing)
 
