@@ -168,7 +168,8 @@ def test_random_pairs_are_solved_and_refined_meshes_agree():
         fine = CoupledRow(pair, u, mu, 110)
         creeps = rng.uniform(*coarse.onsets(), 4)
         one, other = coarse.states(creeps), fine.states(creeps)
-        assert one.converged.all() and other.converged.all(), (pair, u, mu)
+        assert one.converged.all(), (pair, u, mu)
+        assert other.converged.all(), (pair, u, mu)
         assert (np.abs(one.Q_over_mu) <= 1.0).all()
         assert close(one.Q_over_mu, other.Q_over_mu, tol.COUPLED_Q, scale=1.0)
         moments = (states.kM_base + states.kM_cylinder for states in (one, other))
@@ -194,7 +195,8 @@ def test_tractions_carry_load_and_creep_force():
     assert close(unit * np.trapezoid(found.tau, x), state.Q, tol.COUPLED_STRESS, scale=MU)
     assert (np.abs(found.tau) <= MU * found.p * (1.0 + tol.COUPLED_STRESS)).all()
     back = vr.stress(scene, -x, -0.1, delta=0.01, method="coupled")
-    assert (back.p == found.p).all() and (back.tau == -found.tau).all()
+    assert (back.p == found.p).all()
+    assert (back.tau == -found.tau).all()
 
 
 def test_depth_is_that_of_the_surface_in_the_middle():
@@ -219,7 +221,7 @@ def test_a_cylinder_has_the_units_of_its_scene():
 
 
 @pytest.mark.parametrize(
-    "more, words",
+    ("more", "words"),
     [
         ({"slopes": True}, "dQ_dV"),
         ({"fields": "N"}, "N"),

@@ -95,7 +95,8 @@ def evaluate_contact(
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
-        if not material.coupled.graded and (unknown := {"lam", "length", "zeta", "epsilon", "beta"}.intersection(names)):
+        unknown = {"lam", "length", "zeta", "epsilon", "beta"}.intersection(names)
+        if unknown and not material.coupled.graded:
             raise ParameterError("fields", sorted(unknown)[0], "left out: a grid states Q and M alone")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)

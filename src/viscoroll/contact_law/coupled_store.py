@@ -93,18 +93,23 @@ def _load(path: Path) -> CoupledRows | None:
     except OSError:
         return None
     try:
-        if not seal_matches(content):
-            raise ValueError("its bytes differ from the SHA-256 at their end")
-        with np.load(io.BytesIO(content)) as data:
-            arrays = [lock_array(data[name]) for name in ("u", "t", "edges", "fields")]
-            errors = dict(zip(FIELDS, data["errors"].tolist(), strict=True))
-            found = CoupledRows(float(data["mu"]), *arrays, errors=errors)
+        found = _read(content)
     except Exception as error:
         warnings.warn(f"{path}: coupled table is damaged ({error}) and is made again", RuntimeWarning, stacklevel=2)
         return None
     with suppress(OSError):  # a folder that is read-only
         path.touch()
     return found
+
+
+def _read(content: bytes) -> CoupledRows:
+    """Return the table of a file's bytes; raises ValueError where its seal does not match."""
+    if not seal_matches(content):
+        raise ValueError("its bytes differ from the SHA-256 at their end")
+    with np.load(io.BytesIO(content)) as data:
+        u, t, edges, fields = (lock_array(data[name]) for name in ("u", "t", "edges", "fields"))
+        errors = dict(zip(FIELDS, data["errors"].tolist(), strict=True))
+        return CoupledRows(float(data["mu"]), u, t, edges, fields, errors=errors)
 
 
 def _save(rows: CoupledRows, path: Path) -> None:

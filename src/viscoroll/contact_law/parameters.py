@@ -340,8 +340,9 @@ class Parameters(Roller):
         mus = np.unique(self.mu)
         several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
         if several * mus.size != 1:
-            found = f"would need {several * mus.size} tables of the coupled solution, each some {SECONDS} s on two cores"
-            allowed = "one body and one mu in a call; or coupled=False, for the law that takes their coupling to first order"
+            count = several * mus.size
+            found = f"would need {count} tables of the coupled solution, each some {SECONDS} s on two cores"
+            allowed = "one body and one mu in a call; or coupled=False, for the law with coupling to first order"
             raise described_error("material" if several > 1 else "mu", found, allowed)
         mu = float(mus[0])
         made = getattr(self, "_made", None)
@@ -413,7 +414,9 @@ def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
 
 def refuse_other_friction(law: LawTable, mu: Any) -> None:
     """Raise ParameterError where ``mu`` is not that of a coupled table ``law``, which holds for one alone."""
-    if law.coupled is not None and not np.allclose(mu, law.coupled.mu, rtol=_SAME_MU, atol=0.0):
+    if law.coupled is None:
+        return
+    if np.any(np.abs(np.asarray(mu) - law.coupled.mu) > _SAME_MU * law.coupled.mu):
         raise ParameterError("mu", format_value(mu), f"{law.coupled.mu!r}, for which the table was computed")
 
 
@@ -466,7 +469,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
         )
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
     if scene.tabulated:
-        raise ParameterError("coupled", True, "False", f"coupled = True: must be False, as by the coupled solution {why}")
+        sentence = f"coupled = True: must be False, as by the coupled solution {why}"
+        raise ParameterError("coupled", True, "False", sentence)
 
 
 #: Arguments from which alpha and kappa may have their shape, each before those that it makes superfluous.

@@ -108,7 +108,8 @@ class Bodies(OneOrMany):
 
     def __getitem__(self, which: Any) -> Bodies:
         parts = (self.cylinder, self.base, self.share)
-        return Bodies(*(each[which] if np.shape(each) else each for each in parts), self.poisson)
+        cylinder, base, share = (each[which] if np.shape(each) else each for each in parts)
+        return Bodies(cylinder, base, share, self.poisson)
 
     @cached_property
     def _creep(self) -> tuple[NDArray, ...]:

@@ -329,10 +329,10 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     middle, half = 0.5 * (delta[0] + delta[-1]), 0.5 * (delta[-1] - delta[0])
     edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
     t = np.concatenate([[-1.0], (delta[1:-1] - middle) / half, [1.0]])
-    rows = CoupledRows(
-        most, V, t, edges, fields, graded=False, fastest=V[-1], slips=slips, limit=1.0 if limit < np.inf else np.inf
-    )
-    return LawGrid(
-        rows, most, V=(V[0], V[-1]), delta=(delta[0], delta[-1]), slips=slips,
-        R=check_number("R", table.attrs["R"], above=0.0), load=float(table.attrs.get("load", 1.0)), title=str(table.attrs.get("title", "of another program")),
-    )  # fmt: skip
+    largest = 1.0 if limit < np.inf else np.inf
+    rows = CoupledRows(most, V, t, edges, fields, graded=False, fastest=V[-1], slips=slips, limit=largest)
+    R = check_number("R", table.attrs["R"], above=0.0)
+    load = float(table.attrs.get("load", 1.0))
+    title = str(table.attrs.get("title", "of another program"))
+    extent = {"V": (V[0], V[-1]), "delta": (delta[0], delta[-1])}
+    return LawGrid(rows, most, **extent, slips=slips, R=R, load=load, title=title)
