@@ -225,8 +225,8 @@ RAW = {"open", "write_text", "write_bytes", "savefig", "to_netcdf", "save", "sav
 #: composed in memory and written by ``write_bytes``, to a path that ``replace_file`` gave, or to a temporary folder
 KNOWN = {
     "files.py: fix_texts(dataset).to_netcdf", "flow_store.py: np.savez", "export.py: h5netcdf.File",
-    "export.py: path.open", "folder.py: temporary.write_bytes",
-    "build.py: (folder / name).write_text", "output.py: frame.to_csv",
+    "export.py: path.open", "folder.py: temporary.write_bytes", "build.py: (folder / name).write_text",
+    "output.py: frame.to_csv",
 }  # fmt: skip
 #: stages that write to scratch folders of their own
 SCRATCH = (

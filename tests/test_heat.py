@@ -134,6 +134,15 @@ def test_two_bodies_with_a_temperature_each():
     assert close(found.loss[0], [6.0 * one, 30.0 * (other - 20.0)], 1e-8)
 
 
+def test_units_are_converted():
+    pint = pytest.importorskip("pint").UnitRegistry()
+    given = {"ambient": pint.Quantity(293.15, "kelvin"), "conductance": pint.Quantity(6e-3, "kW/m/K")}
+    found = ROLLER.temperature(pint.Quantity(18.0, "km/h"), **given)
+    assert close(found.temperature, ROLLER.temperature(5.0, ambient=20.0, conductance=6.0).temperature, 1e-12)
+    with pytest.raises(vr.ParameterError, match="must be in W"):
+        ROLLER.temperature(5.0, ambient=20.0, conductance=pint.Quantity(6.0, "kg"))
+
+
 # --- warming ---
 
 

@@ -2,9 +2,11 @@
 
 import json
 
+import numpy as np
 import pytest
 from run_files import run_of
 
+import viscoroll as vr
 from viscoroll.core.plots import draw
 from viscoroll.core.plots.style import save
 from viscoroll.io.runs import open_run, run_ensemble
@@ -27,3 +29,13 @@ def test_a_run_without_values(tmp_path):
         titles = dict(zip(sorted(json.loads(wanted)), [axes.get_title() for axes in figure.axes[1::2]], strict=True))
         assert {name for name, title in titles.items() if title == "no values"} == empty
         save(figure, tmp_path / "run.png")
+
+
+def test_the_pressure_on_a_cover():
+    """Without the shear stress, which is not known there."""
+    rubber = vr.Material(E=2e6, nu=0.5, prony=vr.Prony([2.0, 6.0], [1.0, 0.01]), thickness=0.012)
+    belt = vr.Cylinder(R=0.1, m=40.0, material=vr.Material.rigid(), base=rubber, mu=0.5, load=2e3)
+    found = belt.stress(np.linspace(-0.02, 0.02, 21), 1.0, delta=0.0)
+    (axes,) = found.plot().axes
+    assert np.array_equal(axes.lines[0].get_ydata(), found.p)
+    assert "shear" not in axes.get_ylabel()

@@ -498,7 +498,7 @@ COVER_ROWS = 1e-11
 #: On either side of an octave's end, delta_0 over delta_star/mu: a hundred roundings of the node nearest to it.
 COVER_JOIN = 1e-12
 #: The same of what shear does: the fit of the slow end, where nu < 1/2.
-COVER_JOIN_SHEAR = 1e-10
+COVER_JOIN_SHEAR = 1e-9
 #: M beside a body that relaxes too, up to a million millions of its fastest rate: the terms in ln u are extrapolated.
 COVER_LOGARITHMS = 1e-7
 #: What shear does where nu < 1/2, of 2 kappa delta_star/mu: sums along the contact between points.
@@ -537,7 +537,7 @@ COVER_RATES = 1e-6
 #: Forces at equilibria, over P: roundings of Q near its limit.
 COVER_STEADY = 1e-13
 #: A thickness each, interpolated in its logarithm, against a law of its own; motions at rtol 1e-10.
-COVER_EACH, COVER_EACH_MOTION = 1e-10, 1e-9
+COVER_EACH, COVER_EACH_MOTION = 1e-9, 1e-8
 #: delta at rest and at 1e-11 of a relaxation time, by which lengths differ.
 COVER_REST = 1e-9
 #: Steel of 2e11 Pa beside rubber of 2e6 Pa takes 1e-5 of the compliance.
@@ -573,3 +573,18 @@ COUPLED_POWER, COUPLED_SUM = 1e-6, 1e-13
 COUPLED_STRESS = 1e-4
 #: A single transform decays like k^(-5/2).
 COUPLED_DEPTH = 1e-4
+
+# --- tables of the coupled solution (test_coupled_tables.py) ---
+#: A table of 32 by 33 nodes against states beside them, asked of Q/(mu P), kappa M, epsilon; seen 2.1e-4, 3.2e-5 and
+#: 2.5e-4.
+TABLE_Q, TABLE_M, TABLE_EPSILON = 5e-4, 5e-5, 5e-4
+#: Slopes of a table against differences over a millionth of V or omega, relative; seen 1e-8.
+TABLE_SLOPE = 1e-5
+#: A motion at rtol 1e-8 against Radau's method on the law of the table at 1e-9; seen 1e-8.
+TABLE_MOTION = 1e-6
+#: Works less losses and kinetic energy over the losses, by quadrature of a motion; seen 1.3e-8.
+TABLE_ENERGY = 1e-6
+#: Creepage of free rolling of an elastic cover, h/l0 = 0.5, nu = 0.5, times 2 kappa: 0.165 of boundary elements.
+TABLE_FREE = 1e-3
+#: A grid of 200 by 401 nodes in place of the rows, in V and omega at the end of motions; seen 1e-8.
+GRID_MOTION = 1e-6

@@ -133,7 +133,7 @@ def test_the_law_of_a_grid_is_that_of_rows_within_its_stated_error(grid, path):
     assert np.abs(found.Q - truth.Q).max() <= grid.Q.attrs["spline_error"]
     assert np.abs(found.M - truth.M).max() <= grid.M.attrs["spline_error"]
     assert (found.M_half_space == found.M_cylinder).all()
-    (function, data), out = law.ctypes, (ctypes.c_double * 8)()
+    (function, data), out = law.ctypes, (ctypes.c_double * 10)()
     for n in range(50):
         assert function(speeds[n], omega[n], out, data) == 0
         state = tuple(float(each[n]) for each in found)

@@ -18,7 +18,7 @@ from msgspec import inspect as schema
 import viscoroll as vr
 from viscoroll.app.cli.program import parser
 from viscoroll.io.config import CylinderSection, SceneSection
-from viscoroll.io.runs.runfile import DriveSection, RunSection, StartSection
+from viscoroll.io.runs.runfile import DriveSection, HeatSection, RunSection, StartSection
 from viscoroll.materials.material_toml import MaterialSection
 
 from ...stage import ROOT
@@ -29,7 +29,7 @@ _PACKAGE = ROOT / "src/viscoroll"
 _SECTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "[scene]": (SceneSection, (vr.Scene,)), "[cylinder]": (CylinderSection, (vr.Cylinder,)),
     "[material], [base]": (MaterialSection, (vr.Material,)), "[start]": (StartSection, (vr.roll,)),
-    "[drive]": (DriveSection, (vr.roll,)), "[run]": (RunSection, ()),
+    "[drive]": (DriveSection, (vr.roll,)), "[heat]": (HeatSection, ()), "[run]": (RunSection, ()),
 }  # fmt: skip
 #: a role of reStructuredText, or a literal, which Markdown writes between single backticks
 _ROLE = re.compile(r"(?::\w+:`|``)\.?([^`]+)``?")

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ..core.array_types import Floats
 from ..core.blocks import block_reader, run_blocks
 from ..core.checks import broadcast_shape, extent
-from ..core.errors import ConvergenceError, OutOfTableError, ParameterError, digits_beside
+from ..core.errors import ConvergenceError, OutOfTableError, ParameterError
 from ..materials.bodies import Bodies
 from ..materials.law.evaluate import evaluate_by_modes
 from ..materials.law.per_element import record_of_materials, records_of_alphas, sort_by_octave
@@ -95,9 +95,9 @@ def evaluate_contact(
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
-        unknown = {"lam", "length", "zeta", "epsilon", "beta"}.intersection(names)
+        unknown = sorted({"lam", "length", "zeta", "epsilon", "beta"}.intersection(names))
         if unknown and not material.coupled.graded:
-            raise ParameterError("fields", sorted(unknown)[0], "left out: a grid states Q and M alone")
+            raise ParameterError("fields", unknown[0], "left out: a grid states Q and M alone")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
     rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)
@@ -165,7 +165,7 @@ def evaluate_law(
         elif direct:
             if loop(laws, request, stop - start):
                 raise ConvergenceError(
-                    f"contact: an iteration reached its limit near element {start} (method 'direct')"
+                    f"contact: method='direct' did not converge for a state of elements {start} to {stop - 1}"
                 )
         elif names != (UNSTEADY,):
             loop(laws, request, scratch, stop - start)
@@ -284,4 +284,4 @@ def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> Non
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)
     if largest > fastest:
-        raise ParameterError("kappa |V|", digits_beside(largest, fastest), f"at most {fastest:g}")
+        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")

@@ -86,8 +86,7 @@ def _digest() -> str:
 
 
 def _load(path: Path) -> CoupledRows | None:
-    """Return the table in a file; None without one that is private, and with a RuntimeWarning for one that is
-    damaged."""
+    """Return the table in a file; None without a private one, and with a RuntimeWarning for a damaged one."""
     try:
         content = read_private(path)
     except OSError:
@@ -103,7 +102,7 @@ def _load(path: Path) -> CoupledRows | None:
 
 
 def _read(content: bytes) -> CoupledRows:
-    """Return the table of a file's bytes; raises ValueError where its seal does not match."""
+    """Return the table in the bytes of a file; raises ValueError and errors of numpy for what is none."""
     if not seal_matches(content):
         raise ValueError("its bytes differ from the SHA-256 at their end")
     with np.load(io.BytesIO(content)) as data:

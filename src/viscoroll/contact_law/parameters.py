@@ -142,7 +142,7 @@ class Parameters(Roller):
     mu: Any = None
     gamma: Any = None
     j: Any = 0.5
-    material: Prony | Bodies | LawTable | LawGrid | None = None
+    material: Prony | Bodies | LawTable | None = None
     coupled: bool = False
     _law: ClassVar[LawTable | None] = None
     shape: ClassVar[tuple[int, ...]] = ()
@@ -340,9 +340,10 @@ class Parameters(Roller):
         mus = np.unique(self.mu)
         several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
         if several * mus.size != 1:
-            count = several * mus.size
-            found = f"would need {count} tables of the coupled solution, each some {SECONDS} s on two cores"
-            allowed = "one body and one mu in a call; or coupled=False, for the law with coupling to first order"
+            found = (
+                f"would need {several * mus.size} tables of the coupled solution, of some {SECONDS} s on two cores each"
+            )
+            allowed = "one body and one mu in a call; or coupled=False, for the law that takes coupling to first order"
             raise described_error("material" if several > 1 else "mu", found, allowed)
         mu = float(mus[0])
         made = getattr(self, "_made", None)
@@ -414,9 +415,7 @@ def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
 
 def refuse_other_friction(law: LawTable, mu: Any) -> None:
     """Raise ParameterError where ``mu`` is not that of a coupled table ``law``, which holds for one alone."""
-    if law.coupled is None:
-        return
-    if np.any(np.abs(np.asarray(mu) - law.coupled.mu) > _SAME_MU * law.coupled.mu):
+    if law.coupled is not None and np.abs(np.asarray(mu) / law.coupled.mu - 1.0).max(initial=0.0) > _SAME_MU:
         raise ParameterError("mu", format_value(mu), f"{law.coupled.mu!r}, for which the table was computed")
 
 
@@ -444,8 +443,8 @@ def resolve_model(
     if not isinstance(roller, Roller):
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
         if isinstance(roller, LawGrid):
-            sentence = f"{call} reads the rows of a law, as motions do, not a grid: vr.law(grid) gives its splines to "
-            sentence += "your own integrator (docs/howto/law.md)"
+            sentence = f"{call} reads the rows of a law, or a grid as the material of a Scene, no grid by itself: "
+            sentence += "vr.law(grid) gives its splines to your own integrator (docs/howto/law.md)"
         raise ParameterError("roller", type(roller).__name__, "a Scene or a Cylinder", sentence)
     if slope is not None:
         roller = roller.on_slope(slope)
@@ -469,8 +468,7 @@ def refuse_cover(scene: Parameters, why: str) -> None:
         )
         raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
     if scene.tabulated:
-        sentence = f"coupled = True: must be False, as by the coupled solution {why}"
-        raise ParameterError("coupled", True, "False", sentence)
+        raise ParameterError("coupled", True, "False", f"coupled = True: must be False: by the coupled solution {why}")
 
 
 #: Arguments from which alpha and kappa may have their shape, each before those that it makes superfluous.

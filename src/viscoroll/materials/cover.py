@@ -35,7 +35,7 @@ class Cover(Bodies):
     series : the layer's :class:`Prony` series, times in units of T_ref; or its alpha >= 1, with T_epsilon for the
         unit of time.
     nu : Poisson's ratio of the layer, in [0, 0.5], constant in time; a number, or one for each thickness, (n,).  Laws
-        are then interpolated: with an error of 1e-10 from h/l0 = 0.25 up, of 5e-9 down to 0.13.
+        are then interpolated: with an error of 1e-9 from h/l0 = 0.25 up, of 5e-9 down to 0.13.
     thickness : h/l0, dimensionless, > 0; l0 is the contact length at rest that the same bodies would have as
         half-spaces.  Half the contact at rest may be at most six thicknesses long.  An array (n,) makes n covers, of
         which ``cover[i]`` is one, for an array parameter of a scene or for the motions of an ensemble.
@@ -61,10 +61,11 @@ class Cover(Bodies):
 
     Notes
     -----
-    lam, epsilon, M and delta_star solve the normal and the full-slip problem of the layer to 1e-11; boundary elements
-    agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  Beside a body that relaxes too, epsilon and M are good to
-    1e-7 where kappa |V| is 16 to 1e8 times the fastest rate (``tests/test_covers.py``).  delta_0 is exact where shear
-    does not act back on the pressure, for nu = 1/2 to 1e-10 and else to 1e-5 of delta_star/mu.
+    Without traction lam, epsilon, M and delta_star solve the normal and the full-slip problem of the layers to 1e-11;
+    boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  Beside a half-space that relaxes too,
+    epsilon and M are good to 1e-7 where kappa |V| is 16 to 1e8 times the fastest rate (``tests/test_covers.py``).
+    Shear acts back to first order (docs/theory_covers.md), with coefficients to 1e-8 of delta_star/mu where nu = 1/2,
+    else to 5e-5; :func:`viscoroll.validity` states the error by it.
 
     Q follows Eq. (15) with the cover's own contact in place of the half-space's: the stick zone of creep limit F' has
     the traction that a full contact with that creep limit would carry at the same l0/h.  Beside the exact solution

@@ -45,7 +45,7 @@ class Material(FromPrograms):
     name : name in tables and figures.
     density : kg/m^3, for the comparison of the speed with the shear wave speed.
     thickness : thickness of a layer, m, that is bonded to a rigid core (covered roller) or bed (belt, lining); the
-        other body is then rigid or elastic.  Default: a half-space.
+        other body may be one too.  Default: a half-space.
     measured : :class:`Measured` range of frequencies of the data; outside of it functions warn.
     temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
         Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.

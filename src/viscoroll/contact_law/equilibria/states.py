@@ -334,7 +334,9 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     part = np.abs(Q) / mu
     exists = part < 1.0
     root, (star, lam, rise) = np.sqrt(np.where(exists, 1.0 - part, 1.0)), free[2:]
-    less_star, less_lam = contact_fields_at(law, kappa, mu, V / root, 0.0, "delta_star", "lam")
+    faster = V / root
+    rolling = free_creep(law, kappa, mu, faster)
+    less_star, less_lam = contact_fields_at(law, kappa, mu, faster, rolling, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
     rows = state_rows(law, kappa, mu, V, np.copysign(size, Q) + delta_0)
     # one Newton step for delta alone, which is a difference where |Q|/mu is small: the other rows do not change by it

@@ -30,6 +30,10 @@ from .assumptions import (
 )  # fmt: skip
 from .strain import assess_strain
 
+#: Acceleration by which a mass is compared with a load, m/s^2.
+_GRAVITY = 9.81
+#: Largest radius of a wheel or roller, m: none is larger, but those in mm are.
+_LARGEST_R = 10.0
 #: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness matter.
 _LEAST_SHARE = 0.01
 #: (Lowest, highest) speed, m/s, of data that hold at no speed.
@@ -139,16 +143,25 @@ class BodyData:
         return float(np.min(self.scene.kappa, initial=math.inf)) >= LEAST_KAPPA
 
     @cached_property
+    def in_metres(self) -> bool:
+        """Whether no radius is above 10 m, as one that was given in mm."""
+        return float(np.max(self.R, initial=0.0)) <= _LARGEST_R
+
+    @cached_property
     def covered_speeds(self) -> tuple[float, float] | None:
         """Return (lowest, highest) |V|, m/s, between which contacts do not warn; None where no speed gives a warning.
 
         :data:`NO_SPEEDS` (or a lowest speed above the highest) where every speed gives one, as of a contact at rest
-        that is longer than the radius.
+        that is longer than the radius, and of a radius as if in mm.
         """
         below_waves = None if self.wave_speed is None else (0.0, self.wave_speed)
         bands = [
             band
-            for band in (self.measured_speeds, None if self.small_at_rest else NO_SPEEDS, below_waves)
+            for band in (
+                self.measured_speeds,
+                None if self.small_at_rest and self.in_metres else NO_SPEEDS,
+                below_waves,
+            )
             if band is not None
         ]
         return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
@@ -206,8 +219,8 @@ class BodyData:
         density: density of the cylinder, and of the base where they are alike or the cylinder is rigid, kg/m^3; None:
             as the materials have it.
         Returns a copy of the report with ``quasistatic`` (undecided without the density that decides), ``bodies``,
-        ``measured`` (undecided without a measured material) and ``plane``, which states the plane and is always
-        undecided.
+        ``measured`` (undecided without a measured material) and ``plane``, which states the plane and the
+        largest load over m g, and is always undecided.
         Raises ParameterError for a density that is not one finite number > 0.
         """
         if density is not None:
@@ -219,11 +232,14 @@ class BodyData:
             if self.plane == "strain"
             else "plane stress: a thin disc"
         )
+        weights = extent_of(self.scene.gamma * self.R / (_GRAVITY * self.T_ref**2))
         return report._replace(
             quasistatic=assess_inertia(*self.wave_ratio(fastest, density)),
             bodies=assess_coupling(*(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like),
             measured=assess_measured_band(transit_frequency(V, length), self.records),
-            plane=Assumption(None, None, f"the state is taken as {kind}"),
+            plane=Assumption(
+                None, None, f"the state is taken as {kind}; the load is {weights[1]:.3g} times m g, g = 9.81 m/s2"
+            ),
             strain=assess_strain(self, V, length, self.load),
         )
 

@@ -53,6 +53,8 @@ _LEAST_FAST_ROLLING = 1.0
 _SLOW = 0.6 / 16.0 / STEADY_LIMIT
 #: Fault of a motion or contact, where a density is known; M is doubtful from :data:`WAVE_LIMIT` on already.
 _FASTER_THAN_WAVES = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
+#: Fault of a motion or contact whose lengths were given in mm.
+_MILLIMETRES = "R is above 10 m, where lengths are in m: divide those in mm by 1000"
 #: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
 _EXAMINED = 256
 #: Data of materials for which this process has warned already.
@@ -106,7 +108,11 @@ def warn_of_contact(roller: Roller, V: Any, extent: tuple[float, float] | None =
         waves = data.wave_speed
         too_fast = waves is not None and (ends[1] > waves or -ends[0] > waves)
         _warn_of_faults(
-            [NOT_SMALL] * (not data.small_at_rest) + [_FASTER_THAN_WAVES] * too_fast, "contact", "validity(V)"
+            [NOT_SMALL] * (not data.small_at_rest)
+            + [_MILLIMETRES] * (not data.in_metres)
+            + [_FASTER_THAN_WAVES] * too_fast,
+            "contact",
+            "validity(V)",
         )
     if data.measured_speeds is not None and is_outside(ends, data.measured_speeds):
         _warn_of_band(data, V)
@@ -210,6 +216,8 @@ def warn_of_start(
         faults = _start_faults(material, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, driven)
     else:
         faults = _worst_start_faults(scene, V0, omega0, driven)
+    if roller.body_data is not None and not roller.body_data.in_metres:
+        faults.append(_MILLIMETRES)
     _warn_of_faults(faults, "motion", "validity() of scene or result")
 
 

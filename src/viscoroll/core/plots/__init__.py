@@ -43,7 +43,7 @@ def draw(data: xr.Dataset) -> Figure:
         ("input" in data.dims, ensembles.sobol_bars),
         ({"t", "regime"} <= names, states.motion),
         ("equilibrium" in data.dims, states.equilibria),
-        ({"p", "tau", "x"} <= names, states.stresses),
+        ({"p", "x"} <= names, states.stresses),
         (bool(states.varied_axes(data)), states.field_curves),
     )
     for applies, figure in kinds:

@@ -90,20 +90,22 @@ def field_curves(data: xr.Dataset) -> Figure:
 
 
 def stresses(data: xr.Dataset) -> Figure:
-    """Draw pressure and shear stress along the contact.
+    """Draw pressure and, where it is known, shear stress along the contact.
 
-    data: dataset with ``x``, place along the contact, ``p``, pressure, and ``tau``, shear stress, with the attribute
-        units; of several states, along other axes than the first that x varies along, the first is drawn.
-    Returns the :class:`matplotlib.figure.Figure`, with both curves in one panel.
+    data: dataset with ``x``, place along the contact, ``p``, pressure, and, but for a cover, ``tau``, shear stress,
+        with the attribute units; of several states, along other axes than the first that x varies along, the first is
+        drawn.
+    Returns the :class:`matplotlib.figure.Figure`, with the curves in one panel.
     """
-    figure, axes = new_figure("Pressure and shear stress along the contact")
+    names = [name for name in ("p", "tau") if name in data]
+    figure, axes = new_figure(f"Pressure{' and shear stress' * ('tau' in names)} along the contact")
     x = data["x"]
     along = next((dim for n, dim in enumerate(x.dims) if np.diff(x.values, axis=n).any()), None)
     data = data.isel(dict.fromkeys(set(data.dims) - {along}, 0))
-    for name, line in zip(("p", "tau"), LINES, strict=False):
+    for name, line in zip(names, LINES, strict=False):
         axes.plot(data["x"].values, data[name].values, label=variable_label(data[name]), **line)
     zero_line(axes)
-    labels = (variable_label(data[name]) for name in ("p", "tau"))
+    labels = (variable_label(data[name]) for name in names)
     axes.set(xlabel=variable_label(data["x"]), ylabel=", ".join(labels))
     axes.legend(frameon=False)
     return figure

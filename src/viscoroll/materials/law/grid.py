@@ -34,11 +34,9 @@ _METHODS = ("nearest", "linear", "quadratic", "cubic")
 _ROUNDING = 1e-5
 #: fraction of the largest |Q| by which Q may fall where delta grows: other programs iterate to about this
 _NOISE = 1e-3
-#: what programs write where they have no value: the defaults of netCDF of single and of double precision, and habits
-_FILL_VALUES = np.array([
-    9.969209968386869e36, 1e20, np.float32(1e20), 1e30, 1e35, -1e20, -1e30, -1e34, -1e35,
-    -999.0, -9999.0, -99999.0, -999999.0, 9999.0, 99999.0, 999999.0,
-])  # fmt: skip
+#: moduli of what programs write where they have no value: the default of netCDF, and habits.  -9999 and the like
+#: need no place here: no field but Q is negative, and Q has a limit.
+_FILL_VALUES = np.array([9.969209968386869e36, 1e20, np.float32(1e20), 1e30, 1e35])
 #: field -> lowest and highest value that a contact has
 _BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(("lam", "delta_star", "M", "M_half_space", "M_cylinder"), (0.0, np.inf))
 #: largest file that is read, bytes
@@ -74,7 +72,7 @@ class LawGrid:
     title: str
 
     def __repr__(self) -> str:
-        return f"LawGrid(for vr.law alone: {self.title})"
+        return f"LawGrid({self.title}; for vr.law alone, or as the material of a Scene)"
 
     def table(self, kappa: float) -> LawTable:
         """Return the law for motions of a scene; of a grid in SI units times are in s, speeds over R/s.
@@ -207,8 +205,8 @@ def refuse_filled(variable: xr.DataArray, path: Any) -> None:
     """
     values = variable.values
     customary = () if variable.name in variable.dims else _FILL_VALUES
-    declared = [np.ravel(variable.attrs.get(name, np.nan)) for name in ("_FillValue", "missing_value")]
-    filled = np.isin(values, np.concatenate([customary, *declared]).astype(values.dtype))
+    declared = [variable.attrs.get(name, np.nan) for name in ("_FillValue", "missing_value")]
+    filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
     _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
     _refuse_nodes(variable, filled, path, "given: this number stands for a missing value")
 
@@ -329,10 +327,11 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     middle, half = 0.5 * (delta[0] + delta[-1]), 0.5 * (delta[-1] - delta[0])
     edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
     t = np.concatenate([[-1.0], (delta[1:-1] - middle) / half, [1.0]])
-    largest = 1.0 if limit < np.inf else np.inf
-    rows = CoupledRows(most, V, t, edges, fields, graded=False, fastest=V[-1], slips=slips, limit=largest)
-    R = check_number("R", table.attrs["R"], above=0.0)
-    load = float(table.attrs.get("load", 1.0))
-    title = str(table.attrs.get("title", "of another program"))
-    extent = {"V": (V[0], V[-1]), "delta": (delta[0], delta[-1])}
-    return LawGrid(rows, most, **extent, slips=slips, R=R, load=load, title=title)
+    rows = CoupledRows(
+        most, V, t, edges, fields, graded=False, fastest=V[-1], slips=slips, limit=1.0 if limit < np.inf else np.inf
+    )
+    return LawGrid(
+        rows, most, V=(V[0], V[-1]), delta=(delta[0], delta[-1]), slips=slips,
+        R=check_number("R", table.attrs["R"], above=0.0), load=float(table.attrs.get("load", 1.0)),
+        title=str(table.attrs.get("title", "of another program")),
+    )  # fmt: skip

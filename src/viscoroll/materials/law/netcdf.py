@@ -119,9 +119,9 @@ def load_law(path: str | PathLike[str], alpha: float | None = None) -> Any:
     Returns
     -------
     LawTable, or of a grid LawGrid
-        A LawGrid is for :func:`viscoroll.law` alone: motions are integrated from rows.  A LawTable is bit for bit that
-        of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of :class:`viscoroll.Cylinder`, it
-        stands for its :class:`viscoroll.Material`, and for the base where it has one.
+        A LawGrid is for :func:`viscoroll.law`, and the ``material`` of a :class:`viscoroll.Scene`.  A LawTable is bit
+        for bit that of its material (``tests/tables/test_law.py``).  In SI units, as ``material`` of
+        :class:`viscoroll.Cylinder`, it stands for its :class:`viscoroll.Material`, and for the base where it has one.
 
     Raises
     ------
