@@ -125,7 +125,7 @@ holds for one coefficient of friction.  Formats: .nc and .cdf (without HDF5).
 
 example:
   viscoroll samples
-  viscoroll tables grid samples/belt.toml -o belt.nc""",
+  viscoroll tables grid samples/rubber.toml -o rubber.nc""",
     "tables build": """\
 Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
