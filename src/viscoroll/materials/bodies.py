@@ -107,8 +107,10 @@ class Bodies(OneOrMany):
         return np.broadcast_to(found, self.shape) if self.shape else found
 
     def __getitem__(self, which: Any) -> Bodies:
-        parts = (self.cylinder, self.base, self.share)
-        return Bodies(*(each[which] if np.shape(each) else each for each in parts), self.poisson)
+        cylinder, base, share = (
+            each[which] if np.shape(each) else each for each in (self.cylinder, self.base, self.share)
+        )
+        return Bodies(cylinder, base, share, self.poisson)
 
     @cached_property
     def _creep(self) -> tuple[NDArray, ...]:
