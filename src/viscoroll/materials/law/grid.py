@@ -123,8 +123,9 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 
     Parameters
     ----------
-    path : file with variables V(V) > 0, delta(delta), Q over both and M over V or both, each with an attribute ``units`` ("1"
-        for none); all over alpha too where there is an axis of that name.  In place of M there may be M_half_space and
+    path : file with variables V(V) > 0, delta(delta), Q over both and M over V or both, each with an attribute
+        ``units`` ("1" for none); all over alpha too where there is an axis of that name.  In place of M there may
+        be M_half_space and
         M_cylinder; one that is missing is half of M.  Its global attributes are mu (without it Q has no bound), and
         where V has a unit R in m and, beside mu, the load in N/m; all > 0.
     alpha : required where the grid has an axis alpha, whose nodes must be > 0 and ascend; between them a spline in
