@@ -117,15 +117,6 @@ every alpha of a range.
 example:
   viscoroll samples
   viscoroll tables law samples/rubber.toml -o rubber.h""",
-    "tables grid": """\
-Compute the contact law of a roller with pressure and shear solved together, and write it as a table.
-
-vr.load_law reads the file, and motions, run files and `viscoroll contact` take it as the law of the roller.  A table
-holds for one coefficient of friction.  Formats: .nc and .cdf (without HDF5).
-
-example:
-  viscoroll samples
-  viscoroll tables grid samples/rubber.toml -o rubber.nc""",
     "tables build": """\
 Write a grid of the contact law on axes V, delta (and alpha) for look-up in other programs.
 
@@ -141,7 +132,8 @@ Pressure and shear are solved together.  The file is loaded by vr.load_law, as t
 the largest errors beside its nodes.  Formats: .nc and .cdf (without HDF5).
 
 example:
-  viscoroll tables grid belt.toml --method coupled -o belt.nc""",
+  viscoroll samples
+  viscoroll tables grid samples/rubber.toml --method coupled -o rubber.nc""",
     "tables info": """\
 Print the contents of a table file: functions or grid, stated errors, material and provenance.
 
