@@ -61,8 +61,8 @@ BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=MEASURED, m
 SERIES, MANY = vr.Prony([2.0, 6.0], [1.0, 1e-4]), vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
 SOFT, STEEL = vr.Material(2.3e5, 0.49, SERIES, density=1100.0), vr.Material.elastic(2e11, 0.3)
 RUBBER_COVER = vr.Material(2.3e5, 0.49, SERIES, thickness=0.02)
-COVERED = vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0)
-THIN = vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5)
+COVERED = vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0, coupled=False)
+THIN = vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5, coupled=False)
 ONE, PAPER, ROLLER = vr.Scene(11.0, 10.0, 0.5, 120.0), vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.RUBBER_CYLINDER
 BOTH = PAPER, ROLLER
 T = np.linspace(0.0, 8.0, 33)

@@ -28,11 +28,11 @@ THIN, RIGID = vr.Material(2e6, 0.49, THREE, 0.1, thickness=0.01), vr.Material.ri
 
 
 def roller_of(material: vr.Material, base: vr.Material, load: object = 2e3) -> vr.Cylinder:
-    return vr.Cylinder(R=0.1, m=30.0, material=material, base=base, mu=0.5, load=load)
+    return vr.Cylinder(R=0.1, m=30.0, material=material, base=base, mu=0.5, load=load, coupled=False)
 
 
 def scene_on(material: object) -> vr.Scene:
-    return vr.Scene(material=material, kappa=KAPPA, mu=MU, gamma=0.5)
+    return vr.Scene(material=material, kappa=KAPPA, mu=MU, gamma=0.5, coupled=False)
 
 
 #: a cover of nu = 1/2 on the roller, one of a compressible belt, one beside an elastic body

@@ -24,7 +24,7 @@ COVER = vr.Cover(TWO, nu=0.3, thickness=1.0, on="base")
 
 
 def series_scene(material, kappa=10.0, mu=0.2, j=0.5):
-    return vr.Scene(material=material, kappa=kappa, mu=mu, gamma=1.0, j=j)
+    return vr.Scene(material=material, kappa=kappa, mu=mu, gamma=1.0, j=j, coupled=False)
 
 
 def residuals(scene, s):

@@ -29,7 +29,7 @@ STEEL = vr.Material.elastic(2e11, 0.3, density=7850.0)
 
 
 def pair(material, base, plane="strain"):
-    return vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material, base=base, plane=plane)
+    return vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material, base=base, plane=plane, coupled=False)
 
 
 def test_how_thick_the_layer_is():

@@ -103,7 +103,7 @@ class Cylinder(Methods):
         T_epsilon: ArrayLike | None = None, T_sigma: ArrayLike | None = None, mu: ArrayLike | None = None,
         j: ArrayLike = 0.5, g: ArrayLike = 9.81, plane: Plane = "strain", *,
         material: Material | LawTable | None = None, base: Material | None = None, load: ArrayLike | None = None,
-        pressed: ArrayLike | None = None, coupled: bool = False,
+        pressed: ArrayLike | None = None, coupled: bool = True,
     ) -> None:  # fmt: skip
         """Check and freeze the parameters, which the class describes; each number may be an array (n,), or have a unit.
 

@@ -32,7 +32,7 @@ for law in (two, two.total):
     each.validity(V[:3])
 many = vr.Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1])
 for law in (many, vr.Bodies(many, vr.Prony([3.0], [2.0]), 0.3)):
-    each = vr.Scene(material=law, kappa=9.0, mu=0.2, gamma=1.0)
+    each = vr.Scene(material=law, kappa=9.0, mu=0.2, gamma=1.0, coupled=False)
     vr.ensemble(each, [1.0, 1.5], 0.5, [1e-3], fields=("V", "slip_loss"))
     vr.ensemble(each, [1.0, 1.5], 0.5, [1e-3], force=0.01)
     vr.stress(each, 0.1, 0.3, delta=1e-3)

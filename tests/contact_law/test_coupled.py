@@ -86,10 +86,10 @@ def coupled_names():
 
 
 def test_a_thick_layer_is_a_half_space():
-    thick, thicker = (coupled(scene_of(BELT.of_thickness(h)), 0.1, delta=0.02) for h in (1e3, 1e6))
+    thick = coupled(scene_of(BELT.of_thickness(1e6)), 0.1, delta=0.02)
     plain = coupled(scene_of(vr.Bodies(vr.Prony.elastic(), ONE, 0.0, poisson=(0.5, 0.5))), 0.1, delta=0.02)
-    assert close([thick.Q, thicker.Q], plain.Q, tol.COUPLED_HALF_SPACE, scale=MU)
-    assert close(thicker.M, plain.M, tol.COUPLED_HALF_SPACE, scale=1.0)
+    assert close(thick.Q, plain.Q, tol.COUPLED_HALF_SPACE, scale=MU)
+    assert close(thick.M, plain.M, tol.COUPLED_HALF_SPACE, scale=1.0)
 
 
 def test_sides_and_directions():
@@ -115,7 +115,8 @@ def test_two_like_covers_do_not_couple():
 def losses_by_transforms(pair, u, profile):
     """Power lost in all bodies over kappa |V| P, by Parseval's theorem from the loss compliance alone."""
     half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
-    k = np.concatenate([np.geomspace(1e-8, 5.0, 400), np.arange(5.0, 400.0, 0.2)[1:]]) / half
+    s = np.arange(-40.0, 150.0, 0.2)
+    k = np.logaddexp(0.0, s) / half
     p, q = (transforms(profile.nodes, each, k) for each in (profile.p, profile.q))
     total = np.zeros(k.size)
     for body in pair.bodies:
@@ -125,7 +126,7 @@ def losses_by_transforms(pair, u, profile):
         L, T, C = layer_transforms(body.nu, wave) if math.isfinite(body.thickness) else (1.0, 1.0, local)
         t = -q if body.side == "base" else q
         total += body.share * J * (L * abs(p) ** 2 + T * abs(t) ** 2 - 2.0 * C * np.imag(p * np.conj(t)))
-    return np.trapezoid(total * k, np.log(k)) / np.pi / np.trapezoid(profile.p, profile.nodes)
+    return (total / (1.0 + np.exp(-s))).sum() * 0.2 / half / np.pi / np.trapezoid(profile.p, profile.nodes)
 
 
 @pytest.mark.parametrize("cover", [BELT, LINING, NIP, MIXED])
@@ -168,8 +169,7 @@ def test_random_pairs_are_solved_and_refined_meshes_agree():
         fine = CoupledRow(pair, u, mu, 110)
         creeps = rng.uniform(*coarse.onsets(), 4)
         one, other = coarse.states(creeps), fine.states(creeps)
-        assert one.converged.all(), (pair, u, mu)
-        assert other.converged.all(), (pair, u, mu)
+        assert (one.converged & other.converged).all(), (pair, u, mu)
         assert (np.abs(one.Q_over_mu) <= 1.0).all()
         assert close(one.Q_over_mu, other.Q_over_mu, tol.COUPLED_Q, scale=1.0)
         moments = (states.kM_base + states.kM_cylinder for states in (one, other))

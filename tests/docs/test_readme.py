@@ -120,6 +120,8 @@ def test_howto_scene_files_are_read(tmp_path):
     from viscoroll.io.config import read_roller
 
     for text in (text for page in (ROOT / "docs/howto").glob("*.md") for text in blocks(page, "toml")):
+        if text.startswith("[heat]"):  # of a run file
+            continue
         (tmp_path / "scene.toml").write_text(text)
         assert read_roller(tmp_path / "scene.toml").scene()
 

@@ -26,7 +26,7 @@ STEEL = vr.Material(E=2.1e11, nu=0.3, name="steel")
 #: like bodies, and a rubber on steel, of which the cylinder alone loses work
 CYLINDERS = {
     "alike": vr.Cylinder(R=0.1, m=35.5, material=RUBBER, mu=0.3),
-    "unlike": vr.Cylinder(R=0.05, m=9.0, material=RUBBER, base=STEEL, mu=0.6, load=2000.0),
+    "unlike": vr.Cylinder(R=0.05, m=9.0, material=RUBBER, base=STEEL, mu=0.6, load=2000.0, coupled=False),
 }
 #: a steel roller with a rubber cover
 COVERED = vr.Cylinder(

@@ -45,7 +45,8 @@ def test_data_over_the_band_determine_M(growth, thickness):
     fit = vr.fit_prony(omega, rubber.storage(omega), rubber.loss(omega)).material(nu=0.49)
     bases = [replace(each, thickness=thickness, measured=vr.Measured(1.0, 1e3, 0.0)) for each in (rubber, fit)]
     true, found = (
-        vr.Cylinder(R=0.1, m=35.0, mu=0.3, load=1e3, material=vr.Material.rigid(), base=each) for each in bases
+        vr.Cylinder(R=0.1, m=35.0, mu=0.3, load=1e3, material=vr.Material.rigid(), base=each, coupled=False)
+        for each in bases
     )
     low, high = true.body_data.measured_speeds
     V = np.array([low, 5.0 * low, high / 5.0, high, 3.0 * high])

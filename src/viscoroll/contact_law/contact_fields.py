@@ -50,16 +50,8 @@ _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), s
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
 _KNOWN = (
-    *FIELDS,
-    *OF_BODIES,
-    *SLOPES,
-    *SLOPES_OF_BODIES,
-    *SLOPES_OF_COVERS,
-    UNSTEADY,
-    GRIP,
-    FREE_CREEP,
-    *_MULTIPLES,
-    *OF_COUPLED,
+    *(*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, *SLOPES_OF_COVERS),
+    *(UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES, *OF_COUPLED),
 )
 
 

@@ -26,6 +26,8 @@ from .coupled_kernels import body_kernels, edge_layer
 ELEMENTS = 72
 #: Error of the creep of free rolling, times 2 kappa.
 _FREE_CREEP_ERROR = 1e-9
+#: Length of an edge layer, over l0, from which on elements are added, as many as gather in it.
+_UNLAYERED = 1e-3
 #: Coupling over the largest kernel that counts as rounding.
 _ROUNDING = 1e-14
 
@@ -130,14 +132,15 @@ class CoupledRow:
         pair: the bodies.
         u: kappa |V|, >= 0, or infinite.
         mu: coefficient of friction, > 0.
-        n: number of elements.
+        n: number of elements, to which those of an edge layer are added.
         """
         from ..kernels.coupled import loop
 
         self.pair = pair
         self.u = u
         self.mu = mu
-        self.n = n
+        layer = edge_layer(pair.bodies, u)
+        self.n = n + round(0.5 * loop.WEIGHT_OF_LAYER * math.log(max(_UNLAYERED / layer, 1.0)))
         kernels = {body.side: body_kernels(body, u) for body in pair.bodies}
         table = np.ascontiguousarray(sum(each.table for each in kernels.values()))
         instant = math.fsum(each.instant for each in kernels.values())
@@ -146,11 +149,17 @@ class CoupledRow:
         coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
         self._row = loop.Row(
             table, np.ascontiguousarray(own.table), instant, own.instant, coupled, len(kernels) == 2,
-            "cylinder" in kernels, local, own.local, edge_layer(pair.bodies, u),
+            "cylinder" in kernels, local, own.local, layer,
         )  # fmt: skip
         self._full = np.zeros((2, loop.COLUMNS))
         length = 0.5 * math.sqrt(max(instant, 1e-3))
-        self._ends = [loop.full_slip(self._row, mu, sign, n, length, out) for sign, out in zip((-1.0, 1.0), self._full)]
+        self._ends = [
+            loop.full_slip(self._row, mu, sign, self.n, length, out)
+            for sign, out in zip((-1.0, 1.0), self._full, strict=True)
+        ]
+
+        # a guess that is the same for bodies that are swapped
+        self._length = 0.5 * float(self._full[0, 9] + self._full[1, 9])
 
     @property
     def full_slip_status(self) -> Floats:
@@ -165,10 +174,13 @@ class CoupledRow:
         """Return the creep 2 kappa delta at which slip of the other sign opens in the rear half of the contact."""
         from ..kernels.coupled import loop
 
-        return 2.0 * float(loop.touch_creep(self._row, self.mu, *self._ends, self.n, float(self._full[0, 9])))
+        return 2.0 * float(loop.touch_creep(self._row, self.mu, *self._ends, self.n, self._length))
 
-    def states(self, creeps: Any) -> CoupledStates:
-        """Return the states at creeps 2 kappa delta, in any order, (n,); beyond the onsets of full slip."""
+    def states(self, creeps: Any, apart: bool = False) -> CoupledStates:
+        """Return the states at creeps 2 kappa delta, in any order, (n,); beyond the onsets of full slip.
+
+        apart: whether each is solved from nothing; else from its neighbour, in half the time and to some 1e-5.
+        """
         from ..kernels.coupled import loop
 
         given = np.asarray(creeps, dtype=np.float64)
@@ -179,9 +191,10 @@ class CoupledRow:
         found[given <= low] = self._full[0]
         found[given >= high] = self._full[1]
         out = np.zeros((inside.size, loop.COLUMNS))
-        loop.states_loop(self._row, self.mu, 0.5 * given[inside], self.n, float(self._full[0, 9]), out)
+        loop.states_loop(self._row, self.mu, 0.5 * given[inside], self.n, self._length, apart, out)
         found[inside] = out
         lam, epsilon, Q, moment, work, own_moment, own_work, beta, status = found.T[:9].copy()
+        np.clip(Q, -1.0, 1.0, out=Q)  # beyond by rounding
         return CoupledStates(
             lam, epsilon, Q, moment - own_moment, own_moment, work - own_work, own_work, beta, status
         )  # fmt: skip
@@ -199,7 +212,7 @@ class CoupledRow:
         out = np.zeros(loop.COLUMNS)
         sign = 1.0 if creep >= high else -1.0
         d = np.inf if slips else 0.5 * creep
-        found = loop.solve_one(self._row, self.mu, d, self.n, float(self._full[0, 9]), sign, out)
+        found = loop.solve_one(self._row, self.mu, d, self.n, self._length, sign, out)
         p, q = (np.concatenate([[0.0], each, [0.0]]) for each in (found.p, found.q))
         load = np.trapezoid(p, found.nodes)
         shift = 0.5 * out[0] * out[1]

@@ -126,7 +126,7 @@ def _fields_of_row(pair: CoupledPair, states: _States, which: Any, names: tuple[
     row = coupled_row(pair, float(states.u[first]), float(states.mu[first]))
     kappa, mu, V, delta = (each[which] for each in (states.kappa, states.mu, states.V, states.delta))
     creep = states.creep[which]
-    found = row.states(creep)
+    found = row.states(creep, apart=True)
     refuse_unsolved(found.status, creep, row.u, row.mu)
     fields = _losses(found, states.slip[which], V, kappa, mu)
     sign = np.where(V < 0.0, -1.0, 1.0)

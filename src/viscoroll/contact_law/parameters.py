@@ -143,7 +143,7 @@ class Parameters(Roller):
     gamma: Any = None
     j: Any = 0.5
     material: Prony | Bodies | LawTable | None = None
-    coupled: bool = False
+    coupled: bool = True
     _law: ClassVar[LawTable | None] = None
     shape: ClassVar[tuple[int, ...]] = ()
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]

@@ -75,8 +75,8 @@ def stress(
         ``p``: pressure, >= 0.  ``tau``: shear stress on the cylinder in the direction of +x, of the sign of omega R - V
         (at V = 0 of delta), 0 for delta = 0; |tau| <= mu p, with equality in the slip zone and, in full slip, in the
         whole contact.  Both are in Pa of a Cylinder, else divided by E', and 0 outside the contact.  If a body is a
-        layer of finite thickness there is ``p`` alone by method "table": its shear stress is not known.  Both have the broadcast shape
-        of arguments and roller; they are floats if all of these are numbers.
+        layer of finite thickness there is ``p`` alone by method "table": its shear stress is not known.  Both have the
+        broadcast shape of arguments and roller; they are floats if all of these are numbers.
 
     Raises
     ------

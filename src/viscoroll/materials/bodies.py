@@ -107,9 +107,8 @@ class Bodies(OneOrMany):
         return np.broadcast_to(found, self.shape) if self.shape else found
 
     def __getitem__(self, which: Any) -> Bodies:
-        cylinder, base, share = (
-            each[which] if np.shape(each) else each for each in (self.cylinder, self.base, self.share)
-        )
+        parts = (self.cylinder, self.base, self.share)
+        cylinder, base, share = (each[which] if np.shape(each) else each for each in parts)
         return Bodies(cylinder, base, share, self.poisson)
 
     @cached_property

@@ -204,7 +204,7 @@ def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], 
     True for any list of two bodies).  Where all motions have one material the function ignores its arguments.
     """
     several: Any = scene.material_array
-    if several is None and not np.ndim(scene.alpha):
+    if scene.tabulated or (several is None and not np.ndim(scene.alpha)):
         table: Any = scene.rolling_law
         law = (table.unsteady_record if unsteady else table.record), table.unlike
         return lambda alpha, index: law

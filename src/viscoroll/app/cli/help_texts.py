@@ -125,6 +125,15 @@ The grid of a scene is dimensionless, the grid of a cylinder is in SI units.  Fo
 
 example:
   viscoroll tables build paper-section-5 --V 1e-3:2:201:log --delta -0.04:0.04:401 -o t.nc""",
+    "tables grid": """\
+Write the coupled solution of a roller over speed and creep as a law, for one mu and one thickness over l0.
+
+Pressure and shear are solved together.  The file is loaded by vr.load_law, as the material of the roller, and states
+the largest errors beside its nodes.  Formats: .nc and .cdf (without HDF5).
+
+example:
+  viscoroll samples
+  viscoroll tables grid samples/rubber.toml --method coupled -o rubber.nc""",
     "tables info": """\
 Print the contents of a table file: functions or grid, stated errors, material and provenance.
 

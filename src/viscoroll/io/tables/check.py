@@ -14,11 +14,11 @@ from ... import __version__
 from ...core.checks import check_integer
 from ...core.errors import FileError
 from ...materials.law.netcdf import parse_axis, parse_law
-from ...materials.law_file import AXIS, COVER, KIND, LAW, dataset_content, stated_errors
+from ...materials.law_file import AXIS, COUPLED, COVER, KIND, LAW, dataset_content, stated_errors
 from ...scene import Scene
 from . import schema
 from .build import RELATIVE_FIELDS, differences, errors_at, random_points
-from .law import measured_errors
+from .law import COUPLED_POINTS, measured_errors
 from .store import is_law
 
 if TYPE_CHECKING:
@@ -32,11 +32,14 @@ SAMPLE_RATIO = 2.0
 #: Largest allowed error of the splines of a grid, divided by the largest value of the field, whatever the grid states:
 #: a bound beyond the range of the field would allow anything.
 _MOST_ALLOWED = 0.5
+#: The same of a table of the coupled solution, whose stated errors are those of some tens of points.
+_COUPLED_RATIO = 8.0
 #: Kind of the file of a law -> points at which it is checked, and the reference.
 _REFERENCES = {
     LAW: "points, against the formulas of the modes",
     AXIS: "points shared by the alphas, against the formulas of the modes",
     COVER: "speeds, against solves with more terms",
+    COUPLED: "points, against states of the coupled solution",
 }
 #: Rounding error of a value, added to the stated error.
 ROUNDING = 2e-15
@@ -136,10 +139,12 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     content = dataset_content(table)
     kind = content.attributes[KIND]
     read = parse_axis if kind == AXIS else parse_law
+    count = min(count, COUPLED_POINTS) if kind == COUPLED else count
+    ratio = _COUPLED_RATIO if kind == COUPLED else SAMPLE_RATIO
     errors = measured_errors(read(content, source), count, seed)
-    meaning = f"relative; {count} {_REFERENCES[kind]}"
+    meaning = f"{'absolute' if kind == COUPLED else 'relative'}; {count} {_REFERENCES[kind]}"
     return [
-        Check(f"{table.attrs['title']}: {name}", errors[name], SAMPLE_RATIO * stated + ROUNDING, meaning)
+        Check(f"{table.attrs['title']}: {name}", errors[name], ratio * stated + ROUNDING, meaning)
         for name, stated in stated_errors(table).items()
     ]
 

@@ -212,6 +212,9 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
     from ...kernels.rows.cover import COVER_FRONT_SIZE
 
     table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))
+    if table.coupled is not None:
+        allowed = "a name that ends in .nc, .cdf or .json for a table of the coupled solution, or a law without it"
+        raise ParameterError("path", path, allowed)
     front = table.record.rows[:8]
     arrays = {f"{name}_coefficients": table.coefficients}
     fields, of_cover = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays], ["0", "{0.0}"]

@@ -15,6 +15,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...contact_law.contact_table import evaluate_law
+from ...contact_law.coupled import CoupledPair
+from ...contact_law.coupled_table import measure_errors
 from ...core.array_types import Floats
 from ...core.errors import ParameterError, check_one_given
 from ...cylinder import Cylinder
@@ -25,10 +27,13 @@ from ...materials.law.netcdf import law_as_dataset, law_table_of
 from ...materials.law.pack import AXIS_FUNCTIONS, COVER_FUNCTIONS, FUNCTIONS
 from ...materials.law.rows import Rows
 from ...materials.law.table import LawTable
+from ...scene import Scene
 
 if TYPE_CHECKING:
     import xarray as xr
 
+#: Points at which a table of the coupled solution is compared with states.
+COUPLED_POINTS = 80
 #: Fields of a cover that are compared with its solve.
 _COVER_FIELDS = "lam", "delta_star", "epsilon", "M_half_space", "M_cylinder"
 #: Speeds at which they are compared.
@@ -117,6 +122,7 @@ def measured_errors(
       closed formulas of the modes, the functions and the speed ``kappa |V|`` or v = 1/F at which they have these
       values.  Points in the fast limit, beyond the last row of the table, are left out.
     - Every alpha: 16 random alphas for each octave of alpha; the law of each is compared as one of half-spaces.
+    - A table of the coupled solution: states that are no nodes are solved, and errors are absolute.
     - A cover, a layer of finite thickness: at each random speed the contact is solved with more terms of the pressure
       than the table was made with (:func:`_measured_errors_of_cover`).
 
@@ -144,6 +150,9 @@ def measured_errors(
     ParameterError
         A cover whose solve at one of the speeds finds no contact length that carries the load.
     """
+    if isinstance(table, LawTable) and table.coupled is not None:
+        pair = CoupledPair.of_scene(Scene(material=table, kappa=1.0, mu=table.coupled.mu))
+        return measure_errors(table.coupled, pair, count or COUPLED_POINTS, seed)
     random = np.random.default_rng(seed)
     if isinstance(table, alpha_axis.LawAxis):
         octaves = len(table.rows)

@@ -39,7 +39,7 @@ MOST_SPOTS = 8
 #: width of the refinement at an edge times the number of elements, and elements in a factor of e
 WIDTH_OF_SPOT, WEIGHT_OF_SPOT = 0.1, 1.0
 #: elements in a factor of e of the distance from the front edge, down to the edge layer
-WEIGHT_OF_LAYER = 2.5
+WEIGHT_OF_LAYER = 3.0
 #: integral of negative pressure over the load that counts as tension
 _TENSION = 1e-6
 #: steps of the bisection of the creep where the other slip opens
@@ -354,19 +354,25 @@ def full_slip(row, mu, sign, count, c, out):
 
 
 @kernel(allocates=True)
-def states_loop(row, mu, creeps, count, c, out):
+def states_loop(row, mu, creeps, count, c, apart, out):
     """Solve states at creeps between the onsets, in their order, each from the zones and length of the one before.
 
     row : :class:`Row`.  mu : friction.
     creeps : d of each, (n,); neighbours should be near each other.
     count : number of elements.
     c : guess of the first half length.
+    apart : whether each is solved from nothing, so that it does not depend on the others.
     out : (n, COLUMNS), written.
     """
     contact = new_contact(count)
     slope = 2.0
     guess = c
+    first = c
     for n in range(creeps.size):
+        if apart:
+            contact.zone[:] = 0.0
+            guess = first
+            slope = 2.0
         c, slope = find_length(row, contact, guess, slope, mu, creeps[n], _LOAD_ERROR, out[n])
         finish_state(row, contact, out[n])
         guess = c

@@ -30,6 +30,8 @@ from ..splines.table import (
 
 #: Bisections of d in [-1, 1], to rounding.
 _HALVINGS = 54
+#: Margin over mu that counts as none: rounding where nothing slips in slow free rolling.
+_ROUNDING = 1e-14
 #: Distance of d from +-1 that counts as none.
 _EDGE = 1e-12
 
@@ -177,6 +179,8 @@ def balance_of_table(load, kappa, mu, rows, table):
         if abs(d) >= 1.0 - _EDGE:
             return min(mu - abs(load.force), -_EDGE)
         margin = min(margin, pull_of_table(d, kappa, mu, (0.0, 0.0, 0.0, 0.0), table)[1] - direction * load.torque)
+    if abs(margin) < _ROUNDING * mu:
+        margin = 0.0
     return margin + load.brake
 
 

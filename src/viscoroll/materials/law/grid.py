@@ -123,8 +123,9 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 
     Parameters
     ----------
-    path : file with variables V(V) > 0, delta(delta), Q over both and M over V, each with an attribute ``units`` ("1"
-        for none); all over alpha too where there is an axis of that name.  In place of M there may be M_half_space and
+    path : file with variables V(V) > 0, delta(delta), Q over both and M over V or both, each with an attribute
+        ``units`` ("1" for none); all over alpha too where there is an axis of that name.  In place of M there may
+        be M_half_space and
         M_cylinder; one that is missing is half of M.  Its global attributes are mu (without it Q has no bound), and
         where V has a unit R in m and, beside mu, the load in N/m; all > 0.
     alpha : required where the grid has an axis alpha, whose nodes must be > 0 and ascend; between them a spline in
@@ -320,10 +321,11 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     Q = table["Q"].transpose("V", "delta").values
     slips = bool((abs(Q[:, [0, -1]]) >= (1.0 - _ROUNDING) * limit).all())
     bodies = [table[name] if name in table else 0.5 * table["M"] for name in ("M_half_space", "M_cylinder")]
-    over_V = [np.broadcast_to(field.transpose("V").values[:, np.newaxis], Q.shape) for field in bodies]
-    fields = np.stack([Q / most, *over_V], axis=-1)
-    # at V = 0 Q as at the slowest speed, M = 0
-    fields = np.concatenate([fields[:1] * [1.0, 0.0, 0.0], fields, fields[-1:]])
+    moments = [field.expand_dims(delta=table["delta"]) if "delta" not in field.dims else field for field in bodies]
+    fields = np.stack([Q / most, *(field.transpose("V", "delta").values for field in moments)], axis=-1)
+    # at V = 0 Q as at the slowest speed, and M over V alone is 0
+    still = [1.0, *(float("delta" in field.dims) for field in bodies)]
+    fields = np.concatenate([fields[:1] * still, fields, fields[-1:]])
     middle, half = 0.5 * (delta[0] + delta[-1]), 0.5 * (delta[-1] - delta[0])
     edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
     t = np.concatenate([[-1.0], (delta[1:-1] - middle) / half, [1.0]])
