@@ -33,9 +33,9 @@ _BLOCK = 256
 #: steps of bracketed Newton: bisection alone needs 50 from a node to rounding
 _STEPS = 60
 #: step of difference quotients over a bracket: rounding and curvature both change a slope by some 1e-5
-_DIFFERENCE = 1e-4
+_DIFFERENCE = 1e-5
 #: distance from a zero at which it is found, relative, and absolute in K
-_TOLERANCE = 1e-14, 1e-15
+_TOLERANCE = 1e-12, 1e-15
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +72,7 @@ class Balance:
 
 
 class Zeros(NamedTuple):
-    """Zeros of a balance, sorted by state and rising temperature.
+    """Zeros of a balance.
 
     state : index of the state, (m,).
     theta : temperature, degrees Celsius, (m,).
@@ -105,9 +105,8 @@ def zeros_of(balance: Balance) -> Zeros:
         return Zeros(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))
     n, low, high, first, stable = parts[0] if len(parts) == 1 else map(np.concatenate, zip(*parts, strict=True))
     theta = balance.ambient[n] + refine(balance.rest, n, low, high, first, ~stable)
-    order = np.lexsort((theta, n))
-    order = order[theta[order] <= balance.hottest[n[order]]]
-    return Zeros(n[order], theta[order], stable[order])
+    found = theta <= balance.hottest[n]
+    return Zeros(n[found], theta[found], stable[found])
 
 
 def _brackets(balance: Balance, states: Integers) -> tuple[Any, ...]:

@@ -318,7 +318,7 @@ def _reasons(states: HeatStates, zeros: Zeros, known: Any, inside: Any, rows: di
     """Return for each state "" or why no equilibrium lies within the ranges of shift and data, (states,), objects."""
     found = np.full(states.load.size, "", object)
     good = np.bincount(zeros.state[known & inside], minlength=found.size)
-    for n in np.flatnonzero(good == 0).tolist():
+    for n in (good == 0).nonzero()[0].tolist():
         own = np.flatnonzero(zeros.state == n)
         if not own.size:
             found[n] = f"no temperature up to {HOTTEST:g} degrees Celsius balances: it runs away, or none is steady"
