@@ -43,6 +43,7 @@ PAGES = {
     "law-of-modes": "contact/d_broad_rubber",
     "law-of-pairs": "materials/c_rubber_on_steel",
     "broad-stresses": "contact/d_broad_rubber stresses",
+    "load-speed": "heat/c_load_speed",
 }
 FIGURES: dict[str, Callable[..., Figure]] = {
     "rubber-roller": rubber_roller, "grid": grid,

@@ -51,4 +51,8 @@ SECTIONS: dict[str, dict[str, str]] = {
         "first.",
         "broad-stresses": "Pressure and shear of a rubber with ten relaxation times at four speeds.",
     },
+    "Heat": {
+        "load-speed": "The load-speed curve of a wheel with a cover of polyurethane, 15 mm thick and 40 mm wide: the "
+        "fastest speed at each load at which it stays below 70 °C.",
+    },
 }  # fmt: skip

@@ -22,13 +22,13 @@ from ..contact_law.contact_table import pure_rolling_fields
 from ..contact_law.equilibria.resistance import find_zeros
 from ..contact_law.parameters import Roller, resolve_model
 from ..contact_law.validity.assumptions import Assumption
-from ..core.array_types import Booleans, Floats, Numbers
+from ..core.array_types import Booleans, Floats, Integers, Numbers
 from ..core.checks import broadcast_shape, check_array, check_choice, check_number
 from ..core.errors import ParameterError, check_one_given, described_error, shape_error
 from ..core.labels import strip_labels
 from ..core.results import Values
 from ..core.scale import SI
-from .balance import NODES, minimum_of
+from .balance import FARTHEST, NODES, kept_curve, refine
 from .bodies import HeatStates, check_ambient, heat_states
 from .temperature import HOTTEST
 
@@ -39,10 +39,9 @@ DEFAULT_FILM = 20.0
 #: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab with an insulated
 #: side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
 BIOT_LIMIT = 0.75
-#: Temperatures between ambient and the allowed one at which the limit is computed before it is refined.
-_TEMPERATURES = 65
-#: log2 of u between which it is sought, and bisections from there to rounding.
-_FARTHEST, _BISECTIONS = 900.0, 62
+#: Temperatures between ambient and the allowed one at which the limit is computed before it is refined, and the least
+#: part of the rise at which it is.
+_TEMPERATURES, _LEAST_PART = 64, 1e-9
 #: Half the step of the difference quotient of ln V, in log2 a_T: its zero is displaced by the square of it.
 _HALF_STEP = 1e-3
 #: Speed up to which turning points are returned, m/s: beyond it no roller runs, and the loss of a cold rubber no longer
@@ -107,6 +106,8 @@ def heat_limit(
     -----
     The limits are those of :func:`temperature` to 1e-8, relative (``tests/test_heat.py``).
     """
+    from scipy.optimize.elementwise import find_minimum
+
     _, _, scale = resolve_model(roller, "heat_limit")
     name = check_one_given(V=V, load=load)
     given = {name: V if load is None else load, "ambient": ambient, "conductance": conductance}
@@ -130,14 +131,17 @@ def heat_limit(
     states = heat_states(cylinder, scene, "heat_limit", given)
     check_ambient(np.asarray(allowed), states.curve, "allowed")
     sought, whole = ("load" if name == "V" else "V"), allowed - states.ambient
-    s = np.linspace(0.0, 1.0, _TEMPERATURES)[1:]  # parts of the whole rise
-    ln = _ln_limit(states, sought, whole[:, np.newaxis] * s)
-    best = np.argmax(ln, axis=1)
-    low, high = s[np.maximum(best - 1, 0)], s[np.minimum(best + 1, s.size - 1)]
-    at, least = minimum_of(lambda part: -_ln_limit(states, sought, (whole * part)[:, np.newaxis])[:, 0], low, high)
-    end = ln[:, -1] >= -least
-    rows = {sought: np.exp(np.where(end, ln[:, -1], -least))}
-    rows |= {"temperature": states.ambient + np.where(end, 1.0, at) * whole, "runaway": ~end}
+    s = np.append(_LEAST_PART, np.arange(1.0, _TEMPERATURES + 2.0) / _TEMPERATURES)  # parts of the whole rise
+    every = np.arange(whole.size)
+    ln = _ln_limit(states, sought, np.repeat(every, s.size), np.outer(whole, s).ravel()).reshape(whole.size, s.size)
+    best = 1 + np.argmax(ln[:, 1:-1], axis=1)
+    found = find_minimum(
+        lambda part, n: -_ln_limit(states, sought, n, whole[n] * part), (s[best - 1], s[best], s[best + 1]),
+        args=(every,),
+    )  # fmt: skip
+    runaway = found.success & (found.x < 1.0) & (-found.f_x > ln[:, -2])
+    rows: dict[str, Any] = {sought: np.exp(np.where(runaway, -found.f_x, ln[:, -2])), "runaway": runaway}
+    rows["temperature"] = states.ambient + np.where(runaway, found.x, 1.0) * whole
     found = {key: each.reshape(states.shape) if states.shape else each[0].item() for key, each in rows.items()}
     about = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
     return Values(found, about, si=True, title="Limits by heat", labels=labels)
@@ -156,34 +160,36 @@ def _for_each_load(roller: Any, allowed: float, load: Floats, plain: dict[str, A
     return Values(found, given, si=True, title="Limits by heat", labels=labels)
 
 
-def _ln_limit(states: HeatStates, name: str, rise: Floats) -> Floats:
-    """Return ln of the load or speed at which heat balances at temperatures above ambient, by bisection.
+def _ln_limit(states: HeatStates, name: str, n: Integers, rise: Floats) -> Floats:
+    """Return ln of the load or speed at which heat balances at temperatures above ambient.
 
-    states: the states, n of them; name: the quantity that is sought, "load" or "V".
-    rise: temperatures less ambient, K, > 0, (n, k).
-    Returns (n, k); +inf where no speed loses as much.
+    states: the states; name: the quantity that is sought, "load" or "V".
+    n, rise: indices of states, and temperatures less ambient, K, > 0, (m,) each.
+    Returns (m,); +inf where no speed loses as much.
     """
-    theta = states.ambient[:, np.newaxis] + rise
-    ln_factor, root_b = math.log(2.0) * states.curve.log2_of(theta), states.curve.root_b(theta)
-    ln_kappa = np.log(states.kappa[:, np.newaxis] * root_b)
-    ln_off = np.log(states.conductance[:, np.newaxis] * rise / (states.body.part * states.load[:, np.newaxis]))
-    ln_unit = np.log(states.unit)[:, np.newaxis]
+    log2, root_b = states.curve.exactly(states.ambient[n] + rise)
+    kappa = states.kappa[n]
+    ln_off = np.log(states.conductance[n] * rise / (states.body.part * states.load[n]))
     if name == "V":
-        power, target = 1.0, ln_off + ln_factor - np.log(root_b) + 2.0 * ln_kappa - ln_unit
+        power, unit = 1.0, log2 - np.log2(states.unit[n])  # log2 of u/(kappa V)
+        target = ln_off - np.log(root_b) + 2.0 * np.log(kappa * root_b) + math.log(2.0) * unit
     else:
-        ln_V = np.log(np.abs(states.V))[:, np.newaxis]  # type: ignore[arg-type]
-        ln_u0 = np.log(states.kappa)[:, np.newaxis] + ln_factor + ln_V - ln_unit
-        power, target = -3.0, ln_off + ln_kappa - ln_V - 3.0 * ln_u0
-    low, high = np.full((2, *rise.shape), [[[-_FARTHEST]], [[_FARTHEST]]])
-    for _ in range(_BISECTIONS):
-        middle = 0.5 * (low + high)
-        (C,) = pure_rolling_fields(states.law, np.exp2(middle).ravel(), "M")
-        below = (np.log(C.reshape(rise.shape)) + power * math.log(2.0) * middle < target) == (power > 0.0)
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    ln_u = np.where(high < _FARTHEST, math.log(2.0) * high, np.inf)
+        V = np.abs(states.V[n])  # type: ignore[index]
+        power, x_0 = -3.0, np.log2(kappa * V / states.unit[n]) + log2
+        target = ln_off + np.log(kappa * root_b / V) - 3.0 * math.log(2.0) * x_0
+    x = np.arange(2 * FARTHEST * NODES + 1) / NODES - FARTHEST
+    curve = np.log(kept_curve(states.law)) + power * math.log(2.0) * x  # monotone
+    k = (np.searchsorted(curve, target) if power > 0.0 else np.searchsorted(-curve, -target)).clip(1, x.size - 1) - 1
+
+    def rest(own: Integers, x: Floats) -> Floats:
+        C = pure_rolling_fields(states.law, np.exp2(x), "M")[0]
+        return np.log(C) + power * math.log(2.0) * x - target[own]
+
+    secant = x[k] + (target - curve[k]) / (curve[k + 1] - curve[k]) / NODES
+    u = refine(rest, np.arange(n.size), x[k], x[k + 1], secant, np.full(n.size, power > 0.0))
     if name == "V":
-        return ln_u + ln_unit - np.log(states.kappa)[:, np.newaxis] - ln_factor
-    return np.log(states.load)[:, np.newaxis] + 2.0 * (ln_u0 - ln_u)
+        return np.where(target > curve[-1], np.inf, math.log(2.0) * (u - unit) - np.log(kappa))
+    return np.log(states.load[n]) + 2.0 * math.log(2.0) * (x_0 - u)
 
 
 def turning_points(roller: Roller, *, ambient: float, conductance: float) -> TurningPoints:
@@ -228,7 +234,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
 
     def ln_V(y: Floats) -> Floats:
         theta = states.curve.temperature_of(y)
-        return _ln_limit(states, "V", (theta - given["ambient"])[np.newaxis])[0]
+        return _ln_limit(states, "V", np.zeros(y.size, np.int64), theta - given["ambient"])
 
     hottest = np.float64(min(HOTTEST, states.curve.high))
     ends = states.curve.log2_of(np.array([hottest, given["ambient"]]))

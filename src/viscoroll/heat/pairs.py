@@ -6,7 +6,7 @@ has a law of its own, of which the rows are made where they are read.
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -21,11 +21,9 @@ from .shift_curve import shift_curve
 
 #: Nodes of each temperature, evenly spaced in ln a_T: some 0.05 s of contacts at 40 us each.
 _NODES = 41
-#: Newton steps from the middle of a cell: those that have not converged by then are no zeros.
-_STEPS = 40
 #: Step of difference quotients, K.
 _DIFFERENCE = 1e-4
-#: Largest residual of a zero over the loss, and distance in K within which zeros are one.
+#: Largest residual of a zero over the larger rise, and distance in K within which zeros are one.
 _RESIDUAL, _SAME = 1e-9, 1e-5
 
 
@@ -79,6 +77,8 @@ def pair_temperatures(
     Zeros are sought from the cells of a grid of 41 by 41 temperatures in which both balances change their sign; the
     balances hold to 1e-9 (``tests/test_heat.py``).
     """
+    from scipy.optimize import root
+
     _, scene, scale = resolve_model(roller, "pair_temperatures")
     pair = roller.body_data and roller.body_data.pair
     if pair is None or scene.shape or pair.covered:
@@ -98,45 +98,42 @@ def pair_temperatures(
 
     def losses(theta: Floats) -> Floats:
         """Return the loss of each body, W/m, at temperatures of both, (2, m)."""
-        factors = [np.exp2(curve.log2_of(at)) / curve.root_b(at) for curve, at in zip(curves, theta, strict=True)]
-        E = [body.E * curve.root_b(at) ** 2 for body, curve, at in zip(bodies, curves, theta, strict=True)]
-        solids = [
-            Solid(modulus, body.nu, body.prony.slower(factor), body.T_ref)
-            for modulus, body, factor in zip(E, bodies, factors, strict=True)
-        ]
+        solids = []
+        for body, curve, at in zip(bodies, curves, theta, strict=True):
+            log2, root_b = curve.exactly(at)
+            slower = body.prony.slower(np.exp2(log2) / root_b)
+            solids.append(Solid(body.E * root_b**2, body.nu, slower, body.T_ref))
         warm = Pair(solids[0], solids[1], pair.plane)
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))
-        V_unit = np.full(index.size, speed / (scale["R"] / warm.T_ref))
         fields = ("M_cylinder", "M_half_space")
-        return load * speed * evaluate_law(warm.law, [index, own, 1.0, V_unit, 0.0], index.shape, False, fields)
+        state = [index, own, 1.0, speed * warm.T_ref / scale["R"], 0.0]
+        return load * speed * evaluate_law(warm.law, state, index.shape, False, fields)
 
-    def rest(theta: Floats) -> Floats:
-        return losses(theta) - off[:, np.newaxis] * (theta - around[:, np.newaxis])
+    def rest(theta: Any) -> Floats:
+        """Return the rise that the losses make less that of the temperatures, K, (2, m)."""
+        return around[:, np.newaxis] + losses(theta) / off[:, np.newaxis] - theta
 
-    largest = 0.5 * load * speed / kappa
+    def slopes(theta: Any) -> Floats:
+        """Return the Jacobian of ``rest`` at temperatures of both, (2, 2)."""
+        values = rest(theta[:, np.newaxis] + _DIFFERENCE * np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]))
+        return (values[:, 1:] - values[:, :1]) / _DIFFERENCE
+
     axes = []
     for at, G, curve in zip(around, off, curves, strict=True):
-        ends = curve.log2_of(np.array([at, min(at + largest / G, curve.high)]))
+        ends = curve.log2_of(np.array([at, min(at + 0.5 * load * speed / kappa / G, curve.high)]))
         axes.append(curve.temperature_of(np.linspace(float(ends[0]), float(ends[1]), _NODES)))
     grid = np.array(np.meshgrid(*axes, indexing="ij"))
     F = rest(grid.reshape(2, -1)).reshape(grid.shape) > 0.0
     corners = np.array([F[:, :-1, :-1], F[:, 1:, :-1], F[:, :-1, 1:], F[:, 1:, 1:]]).sum(axis=0)
-    cells = np.nonzero(((corners > 0) & (corners < 4)).all(axis=0))
-    theta = 0.5 * np.array([axis[n] + axis[n + 1] for axis, n in zip(axes, cells, strict=True)])
-    slopes = np.empty((theta.shape[1], 2, 2))
-    for _ in range(_STEPS if theta.size else 0):
-        value = rest(theta)
-        for k in range(2):
-            moved = theta.copy()
-            moved[k] += _DIFFERENCE
-            slopes[:, :, k] = ((rest(moved) - value) / _DIFFERENCE).T
-        step = np.linalg.solve(slopes, value.T[..., np.newaxis])[..., 0].T
-        theta = np.clip(theta - np.clip(step, -10.0, 10.0), around[:, np.newaxis], [[axis[-1]] for axis in axes])
-    loss = losses(theta)
-    good = (np.abs(loss - off[:, np.newaxis] * (theta - around[:, np.newaxis])) <= _RESIDUAL * loss.sum(axis=0)).all(0)
-    order = np.flatnonzero(good)[np.lexsort((theta[1, good], theta[0, good]))]
-    new = np.append(True, np.abs(np.diff(theta[:, order])).max(axis=0) > _SAME)[: order.size]
-    order = order[new]
-    stable = np.linalg.eigvals(slopes[order]).real.max(axis=-1, initial=-np.inf) < 0.0
-    return PairTemperatures(theta[:, order].T, stable, loss[:, order].sum(axis=0) / (load * speed), loss[:, order].T)
+    cells = ((corners > 0) & (corners < 4)).all(axis=0)
+    found: list[Any] = []
+    for start in 0.5 * (grid[:, :-1, :-1] + grid[:, 1:, 1:])[:, cells].T:
+        at = root(lambda theta: rest(theta[:, np.newaxis])[:, 0], start, jac=slopes, tol=1e-14).x
+        good = np.abs(rest(at[:, np.newaxis])).max() <= _RESIDUAL * np.abs(at - around).max()
+        if good and all(np.abs(at - other).max() > _SAME for other in found):
+            found.append(at)
+    theta = np.array(sorted(found, key=tuple)).reshape(-1, 2)
+    loss = losses(theta.T).T
+    rates = [np.linalg.eigvals(off[:, np.newaxis] * slopes(at)).real.max() for at in theta]
+    return PairTemperatures(theta, np.array(rates) < 0.0, loss.sum(axis=1) / (load * speed), loss)

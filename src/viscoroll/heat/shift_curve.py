@@ -27,29 +27,32 @@ _SAMPLED_RANGE = -150.0, 1000.0
 _SAMPLES = 5001
 #: slope, 1/K, that makes a constant shift invertible; equilibria are refined with the shift itself
 _TILT = 1e-9
+#: distance beyond the ends of the samples, K, over which they are extrapolated
+_BEYOND = 1e4
 
 
 @dataclass(frozen=True, eq=False)
 class ShiftCurve:
     """log2 of the factor of kappa V at a temperature, a_T sqrt(b_T) relative to the reference, and its inverse.
 
+    material : the material at its reference.
+    low, high : temperatures between which the shift is defined, degrees Celsius; -inf and inf of none.
     log2_of : function of temperatures, degrees Celsius, any shape; outside of ``low`` to ``high`` extrapolated.
     temperature_of : its inverse, +inf where the factor has no such value.
-    slope : derivative of ``log2_of``, 1/K, < 0, likewise.
-    root_b : function of temperatures that returns sqrt(b_T) relative to the reference; 1 without a vertical shift.
-    low, high : temperatures between which the shift is defined, degrees Celsius; -inf and inf of none.
-    exact : whether ``log2_of`` is the shift itself, else it interpolates samples.
-    material : the material at its reference.
+    sampled_root_b : function of temperatures that returns sqrt(b_T) relative to the reference; None: both functions
+        are those of the shift itself, and b_T = 1, else they interpolate samples.
     """
 
-    log2_of: Callable[[Floats], Floats]
-    temperature_of: Callable[[Floats], Floats]
-    slope: Callable[[Floats], Floats]
-    root_b: Callable[[Floats], Floats]
+    material: Material
     low: float
     high: float
-    exact: bool
-    material: Material
+    log2_of: Callable[[Floats], Floats]
+    temperature_of: Callable[[Floats], Floats]
+    sampled_root_b: Callable[[Floats], Floats] | None = None
+
+    def root_b(self, theta: Floats) -> Any:
+        """Return sqrt(b_T) relative to the reference at temperatures of any shape; 1.0 without samples."""
+        return 1.0 if self.sampled_root_b is None else self.sampled_root_b(theta)
 
     def factors(self, theta: Floats) -> tuple[Floats, Floats]:
         """Return a_T and sqrt(b_T) relative to the reference at temperatures (n,), to the bits of ``Material.at``.
@@ -64,9 +67,17 @@ class ShiftCurve:
             unit = 1.0 if reference is None else shift(reference)
             for n, at in enumerate(theta.tolist()):
                 if self.low <= at <= self.high:
-                    found[0, n] = shift(at) / unit
-                    found[1, n] = math.sqrt(vertical_factor(vertical, at, reference))
+                    found[:, n] = shift(at) / unit, math.sqrt(vertical_factor(vertical, at, reference))
         return found[0], found[1]
+
+    def exactly(self, theta: Floats) -> tuple[Floats, Any]:
+        """Return ``log2_of`` and ``root_b`` by the shift itself at temperatures (n,), which are extrapolated."""
+        log2, root_b = self.log2_of(theta), self.root_b(theta)
+        if self.sampled_root_b is None:
+            return log2, root_b
+        a_T, exact = self.factors(theta)
+        known = np.isfinite(a_T)
+        return np.where(known, np.log2(a_T * exact), log2), np.where(known, exact, root_b)
 
 
 def shift_curve(material: Material) -> ShiftCurve:
@@ -90,32 +101,27 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
     if isinstance(shift, WLF | Arrhenius) and vertical is None:
         own = 0.0 if reference is None else float(shift.log(np.asarray(reference)))
         low, high = _range_of(shift, (shift.T0 - shift.C2 if isinstance(shift, WLF) else -273.15, math.inf))
+        ln2 = math.log(2.0)
         return ShiftCurve(
-            lambda theta: (shift.log(theta) - own) / math.log(2.0),
-            lambda x: shift.temperature_of(x * math.log(2.0) + own),
-            lambda theta: shift.slope(theta) / math.log(2.0),
-            np.ones_like, low, high, True, material,
+            material, low, high,
+            lambda theta: (shift.log(theta) - own) / ln2, lambda x: shift.temperature_of(x * ln2 + own),
         )  # fmt: skip
     theta, a_T = _sampled(shift, *_range_of(shift, _SAMPLED_RANGE), reference)
-    moduli = [vertical_factor(vertical, at, reference) for at in theta.tolist()]
-    log2 = np.log2(a_T) + 0.5 * np.log2(moduli)
+    roots = np.sqrt([vertical_factor(vertical, at, reference) for at in theta.tolist()])
+    log2 = np.log2(a_T * roots)
     if (rises := np.flatnonzero(np.diff(log2) > 0.0)).size:
         found = f"rises at {theta[rises[0]]:.4g} degrees Celsius"
         raise described_error("shift", found, "a function that does not rise with temperature")
     log2 = log2 - _TILT * (theta - theta[0])
-    # one step beyond each end with the slope there extrapolates
-    step = np.array([-1e4, 1e4])
-    ends = log2[[0, -1]] + step * (np.diff(log2)[[0, -1]] / np.diff(theta)[[0, -1]])
-    whole = np.concatenate([theta[:1] + step[0], theta, theta[-1:] + step[1]])
-    logs = np.concatenate([ends[:1], log2, ends[1:]])
-    slopes = np.diff(logs) / np.diff(whole)
-    roots = np.sqrt(moduli)
+    slopes = np.diff(log2)[[0, -1]] / np.diff(theta)[[0, -1]]
+    beyond = _BEYOND * np.array([-1.0, 1.0])
+    logs = np.insert(log2, [0, log2.size], log2[[0, -1]] + beyond * slopes)
+    whole = np.insert(theta, [0, theta.size], theta[[0, -1]] + beyond)
     return ShiftCurve(
+        material, float(theta[0]), float(theta[-1]),
         lambda at: np.interp(at, whole, logs),
         lambda x: np.where(x < logs[-1], np.inf, np.interp(x, logs[::-1], whole[::-1])),
-        lambda at: slopes[np.clip(np.searchsorted(whole, at) - 1, 0, slopes.size - 1)],
         lambda at: np.interp(at, theta, roots),
-        float(theta[0]), float(theta[-1]), False, material,
     )  # fmt: skip
 
 

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..contact_law.contact_fields import complete, computed_fields
-from ..contact_law.contact_table import evaluate_law
+from ..contact_law.contact_table import evaluate_law, pure_rolling_fields
 from ..contact_law.equilibria.loads import Loads, loads_of
+from ..contact_law.equilibria.result import Equilibria, pad
 from ..contact_law.equilibria.states import Field, states_at
 from ..contact_law.equilibria.steady import steady
 from ..contact_law.parameters import Roller, resolve_model
@@ -18,10 +19,9 @@ from ..contact_law.validity.model_warnings import warn_of_contact
 from ..core.array_types import Floats, Integers, Numbers
 from ..core.drive import make_dimensionless
 from ..core.errors import ModelWarning, described_error
-from ..core.labels import Labels, dataset_axes, strip_labels
-from ..core.results import SummaryRow, Values, format_value, unit_of
+from ..core.labels import Labels, strip_labels
 from ..materials.law.table import LawTable
-from .balance import NODES, Balance, Curve, Zeros, hot_curve, peak_of, rolling_curve, zeros_of
+from .balance import Balance, Zeros, zeros_of
 from .bodies import HeatStates, heat_states
 
 if TYPE_CHECKING:
@@ -30,13 +30,12 @@ if TYPE_CHECKING:
 #: Temperature up to which equilibria under a given load are looked for, degrees Celsius: rubbers char below it.  At a
 #: given speed the loss bounds the temperature.
 HOTTEST = 500.0
-#: Fields of the result over the equilibria.
-_FIELDS = ("V", "temperature", "C_rr", "M", "M_half_space", "M_cylinder", "loss", "loss_slip")
-#: Step of x = log2(kappa V) for the slope of a loss with slip.
-_STEP = 1e-6
+#: No kappa M exceeds this: the pressure acts at most half the contact length at rest ahead of the axis.
+_MOST = 0.5
+_MOMENTS = "M", "M_half_space", "M_cylinder"
 
 
-class Temperatures(Values):
+class Temperatures(Equilibria):
     """Equilibria of heat of a roller, the result of :func:`viscoroll.temperature`, in SI units per m of its length.
 
     The last axis counts the equilibria of a state by rising temperature; shorter lists are padded with NaN
@@ -63,28 +62,14 @@ class Temperatures(Values):
     ((2, 1), True)
     """
 
+    _heading = "Equilibria of heat"
+    _rows = "V", "temperature", "C_rr", "M", "M_half_space", "M_cylinder", "loss", "loss_slip"
+    _ranges = "V", "temperature", "C_rr"
+
     def __init__(self, values: dict[str, Any], reason: Any, labels: Labels | None) -> None:
         """Keep the fields by name, their ``reason`` and the ``labels`` of the arguments."""
-        super().__init__(values, title="Equilibria of heat", si=True)
+        super().__init__(values, title=self._heading, si=True)
         self.reason, self._labels = reason, labels
-
-    def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return (title; rows): of one state the fields of each equilibrium, of several their number and ranges."""
-        if np.ndim(self.count):
-            stable = int(np.asarray(self.stable).sum())
-            rows = [SummaryRow("equilibria", f"{int(np.sum(self.count))}, {stable} stable")]
-            shown = ("V", "temperature", "C_rr")
-            rows += [
-                SummaryRow(name, format_value(np.asarray(self[name])), unit_of(self._attributes(name)))
-                for name in shown
-            ]
-            return f"Equilibria of heat, {np.size(self.count)} states", rows
-        rows = [SummaryRow("reason", self.reason)] if self.reason else []
-        for n in range(self.count):
-            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "unstable"))
-            for name in _FIELDS:
-                rows.append(SummaryRow(f"  {name}", f"{float(self[name][n]):.6g}", unit_of(self._attributes(name))))
-        return "Equilibria of heat", rows
 
     def to_xarray(self) -> xr.Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
@@ -104,16 +89,7 @@ class Temperatures(Values):
         >>> roller.temperature(1.0, ambient=20.0, conductance=6.0).to_xarray()["temperature"].attrs["units"]
         'degC'
         """
-        import xarray as xr
-
-        found = {name: np.asarray(self[name]) for name in self.keys() if name != "count"}
-        dims, coords = dataset_axes(self._labels, np.shape(self.count), (*found, "count", "equilibrium"))
-        data: dict[str, Any] = {
-            name: ((*dims, "equilibrium"), each.astype(np.int8) if each.dtype == bool else each, self._attributes(name))
-            for name, each in found.items()
-        }
-        data["count"] = dims, np.asarray(self.count), self._attributes("count")
-        return xr.Dataset(data, coords, attrs={"title": "Equilibria of heat of a viscoelastic cylinder"})
+        return self._dataset({name: self[name] for name in self.keys() if name != "count"})
 
 
 def temperature(
@@ -173,20 +149,19 @@ def temperature(
     temperature for the body is right where its Biot number is small (:func:`viscoroll.uniform_temperature`).
     """
     level, (roller, scene, scale) = roller, resolve_model(roller, "temperature", slope=slope)
-    loads = {"force": force, "torque": torque, "slope": slope}
-    plain, labels = strip_labels({"V": V, "ambient": ambient, "conductance": conductance} | loads, scale)
-    driven = {name: plain.pop(name) for name in loads}
-    loaded = any(load is not None for load in driven.values())
-    if plain["V"] is None and not loaded:
+    driven = {"force": force, "torque": torque, "slope": slope}
+    plain, labels = strip_labels({"V": V, "ambient": ambient, "conductance": conductance} | driven, scale)
+    driven = {name: plain.pop(name) for name in driven}
+    found = {name: value for name, value in driven.items() if value is not None}
+    if plain["V"] is None and not found:
         raise described_error("V", "is not given", "given, or a force, torque or slope from which it follows")
-    found = {name: value for name, value in driven.items() if value is not None and loaded}
     states = heat_states(roller, scene, "temperature", plain | found, slip_share)
     if states.V is None:
         rows, zeros = _under_load(level, states, driven)
     else:
-        rows, zeros = _at_speed(states, driven if loaded else None)
+        rows, zeros = _at_speed(states, driven if found else None)
     result = _pack(states, zeros, rows, labels)
-    warn_of_contact(roller, rows["V"] * rows.pop("a_T"))
+    warn_of_contact(roller, rows["V"] * rows["a_T"])
     return result
 
 
@@ -197,35 +172,51 @@ def _at_speed(states: HeatStates, driven: dict[str, Any] | None) -> tuple[dict[s
     driven: force, torque and slope as :func:`temperature` has them; None: the cylinder rolls freely.
     Returns (name -> values, (m,), in SI units, with a_T, which is NaN beyond the range of the shift; the zeros).
     """
-    V = states.V
-    assert V is not None
-    balance = balance_of(states)
-    loads: Any = None
-    if driven is not None:
-        loads = _loads_of(states, driven)
-        power, hottest = balance.power / states.body.part, np.full(V.size, HOTTEST)
-        balance = replace(balance, curve=_driven_curve(states, loads), power=power, hottest=hottest)
-    zeros = zeros_of(balance)
-    resting = np.flatnonzero(V == 0.0)
-    if resting.size:
-        more = Zeros(resting, states.ambient[resting], resting >= 0)
-        zeros = Zeros(*(np.append(*pair) for pair in zip(zeros, more, strict=True)))
-    rows = rolling_rows(states, zeros.state, V[zeros.state], zeros.theta)
-    return rows if driven is None else rows | _slip_rows(states, loads, zeros.state, rows), zeros
+    V: Any = states.V
+    balance = free_balance(states, V)
+    if driven is None:
+        zeros = zeros_of(balance)
+        return rolling_rows(states, zeros.state, V[zeros.state], zeros.theta), zeros
+    loads = _loads_of(states, driven)
+
+    def curve(n: Integers, x: Floats) -> Floats:
+        """Return kappa times the parts of M and of |delta Q| that heat the body; a slip that friction does not allow
+        is left out: such an equilibrium is no state, and is dropped.
+        """
+        found = states_at(states.law, loads, n, np.sign(V[n]), np.exp2(x) / loads.kappa[n]).rows
+        delta = np.nan_to_num(found[Field.DELTA])
+        rolling = np.abs(found[Field.M_HALF_SPACE] + (1.0 + delta) * found[Field.M_CYLINDER])
+        return loads.kappa[n] * (states.body.part * rolling + states.body.slip * np.abs(delta * found[Field.Q]))
+
+    hottest = np.full(V.size, HOTTEST)
+    zeros = zeros_of(replace(balance, curve=curve, law=None, power=balance.power / states.body.part, hottest=hottest))
+    n = zeros.state
+    rows = rolling_rows(states, n, V[n], zeros.theta)
+    # a cylinder at rest has no slip; a speed of 1 stands for it
+    speed = np.abs(V[n]) * np.nan_to_num(rows["a_T"], nan=1.0) / states.unit[n]
+    found = states_at(states.law, loads, n, np.sign(V[n]), np.where(V[n] == 0.0, 1.0, speed)).rows
+    power = np.where(V[n] == 0.0, 0.0, found[Field.DELTA]) * V[n] * states.load[n]
+    slip = np.abs(found[Field.Q] * power)
+    # the cylinder turns at omega = V (1 + delta)/R
+    return rows | {"loss": rows["loss"] + found[Field.M_CYLINDER] * power + slip, "loss_slip": slip}, zeros
 
 
-def balance_of(states: HeatStates) -> Balance:
-    """Return the balance of freely rolling states at given speeds; of a speed of 0, which has no balance, x_0 is
-    -inf, and no zero is found.
-    """
-    assert states.V is not None
-    speed = np.abs(states.V)
+def free_balance(states: HeatStates, V: Any) -> Balance:
+    """Return the balance of freely rolling states at speeds V, m/s, any sign, a number or (n,)."""
+    speed = np.abs(V)
     power = states.body.part * states.load * speed / states.kappa
-    with np.errstate(divide="ignore"):
-        x_0 = np.log2(states.kappa * (speed / states.unit))
-    hottest = states.ambient + power * peak_of(states.law) / states.conductance
-    curve = rolling_curve(states.law, states.materials)
-    return Balance(curve, states.curve, x_0, power, states.conductance, states.ambient, hottest)
+    # at rest x is of no account
+    x_0 = np.log2(states.kappa * np.where(speed == 0.0, 1.0, speed / states.unit))
+    hottest = states.ambient + _MOST * power / states.conductance
+    law = states.law
+
+    def curve(n: Integers, x: Floats) -> Floats:
+        if isinstance(law, LawTable):
+            return pure_rolling_fields(law, np.exp2(x), "M")[0]
+        return evaluate_law(law, [states.materials[n], 1.0, 1.0, np.exp2(x), 0.0], x.shape, False, ("M",))[0]
+
+    kept = law if isinstance(law, LawTable) else None
+    return Balance(curve, kept, states.curve, x_0, power, states.conductance, states.ambient, hottest)
 
 
 def rolling_rows(states: HeatStates, n: Integers, V: Floats, theta: Floats) -> dict[str, Floats]:
@@ -236,17 +227,16 @@ def rolling_rows(states: HeatStates, n: Integers, V: Floats, theta: Floats) -> d
     which is NaN, as are the fields of the contact, outside the range of the shift.
     """
     a_T, root_b = states.curve.factors(theta)
-    cylinder, law = states.roller, states.law
-    known = np.isfinite(a_T)
-    unit = states.R[n] / (cylinder.T_ref * np.where(known, a_T, 1.0))  # as of the Cylinder of this temperature
+    law, known = states.law, np.isfinite(a_T)
+    unit = states.R[n] / (states.roller.T_ref * np.where(known, a_T, 1.0))  # as of the Cylinder of this temperature
     kappa = states.kappa[n] * np.where(known, root_b, 1.0)
-    names = ("M", "M_half_space", "M_cylinder")
-    computed = computed_fields(names, law.unlike if isinstance(law, LawTable) else True)
-    arrays = [states.materials[n], kappa, states.mu[n], V / unit, np.zeros(n.size)]
-    contact = complete(names, computed, evaluate_law(law, arrays, n.shape, False, computed), n.shape)
+    computed = computed_fields(_MOMENTS, law.unlike if isinstance(law, LawTable) else True)
+    arrays = [states.materials[n], kappa, states.mu[n], V / unit, 0.0]
+    contact = complete(_MOMENTS, computed, evaluate_law(law, arrays, n.shape, False, computed), n.shape)
+    M = np.where(known, contact["M"], np.nan)
     rows = {name: np.where(known, each, np.nan) * (states.load[n] * states.R[n]) for name, each in contact.items()}
-    rows |= {"V": V, "temperature": theta, "C_rr": np.where(known, contact["M"], np.nan), "a_T": a_T}
-    return rows | {"loss": states.load[n] * V * rows["C_rr"], "loss_slip": 0.0 * theta}
+    more = {"V": V, "temperature": theta, "C_rr": M, "a_T": a_T, "loss": states.load[n] * V * M}
+    return rows | more | {"loss_slip": np.zeros(n.size)}
 
 
 def _loads_of(states: HeatStates, driven: dict[str, Any]) -> Loads:
@@ -255,54 +245,11 @@ def _loads_of(states: HeatStates, driven: dict[str, Any]) -> Loads:
     driven: force, torque and slope as :func:`temperature` has them.
     """
     scale = states.roller.scale
-    given = {name: make_dimensionless(name, load, scale) for name, load in driven.items() if name != "slope"}
+    given = {name: make_dimensionless(name, driven[name], scale) for name in ("force", "torque")} | {
+        "slope": driven["slope"]
+    }
     whole = {name: None if load is None else np.broadcast_to(load, states.shape) for name, load in given.items()}
-    slope = driven["slope"]
-    slope = None if slope is None else np.broadcast_to(slope, states.shape)
-    return loads_of(states.scene, whole["force"], whole["torque"], slope, np.ones(states.shape))
-
-
-def _driven_curve(states: HeatStates, loads: Loads) -> Curve:
-    """Return the curve C of states under loads at given speeds: kappa times (part of M, and of |delta Q|).
-
-    Where the friction does not suffice the loss in slip is left out; such an equilibrium is no state, and is dropped.
-    """
-    assert states.V is not None
-    sign, law = np.sign(states.V), states.law
-
-    def loss(n: Integers, x: Floats) -> Floats:
-        V = np.exp2(x) / loads.kappa[n]
-        rows = states_at(law, loads, n, sign[n], V).rows
-        delta = np.nan_to_num(rows[Field.DELTA])
-        rolling = np.abs(rows[Field.M_HALF_SPACE] + (1.0 + delta) * rows[Field.M_CYLINDER])
-        slip = np.abs(delta * rows[Field.Q])
-        return loads.kappa[n] * (states.body.part * rolling + states.body.slip * slip)
-
-    def values(n: Integers, x: Floats) -> tuple[Floats, Floats]:
-        C = loss(n, x)
-        return C, (loss(n, x + _STEP) - C) / _STEP
-
-    def nodes(first: int, stop: int, n: Integers) -> Floats:
-        x = np.arange(first, stop) / NODES
-        return loss(np.repeat(n, x.size), np.tile(x, n.size)).reshape(n.size, x.size)
-
-    return Curve(values, nodes)
-
-
-def _slip_rows(states: HeatStates, loads: Loads, n: Integers, rows: dict[str, Floats]) -> dict[str, Floats]:
-    """Return the loss and its part in slip of equilibria under loads, NaN where the friction does not suffice.
-
-    n: indices of the states; rows: as of :func:`rolling_rows`.
-    """
-    V, a_T = rows["V"], np.where(np.isfinite(rows["a_T"]), rows["a_T"], 1.0)
-    speed = np.abs(V) * a_T / states.unit[n]
-    moving = np.flatnonzero(speed)
-    slip, spin = np.zeros((2, n.size))
-    found = states_at(states.law, loads, n[moving], np.sign(V[moving]), speed[moving]).rows
-    power = found[Field.DELTA] * V[moving] * states.load[n[moving]]
-    slip[moving] = np.abs(found[Field.Q] * power)
-    spin[moving] = found[Field.M_CYLINDER] * power  # the cylinder turns at omega = V (1 + delta)/R
-    return {"loss": rows["loss"] + spin + slip, "loss_slip": slip}
+    return loads_of(states.scene, whole["force"], whole["torque"], whole["slope"], np.ones(states.shape))
 
 
 def _under_load(level: Any, states: HeatStates, driven: dict[str, Any]) -> tuple[dict[str, Floats], Zeros]:
@@ -320,25 +267,21 @@ def _under_load(level: Any, states: HeatStates, driven: dict[str, Any]) -> tuple
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # of speeds at the reference
         found = steady(level, **whole)
-    V, stable = (np.asarray(found[name]).reshape(states.load.size, -1) for name in ("V", "stable"))
-    n, k = np.nonzero(np.nan_to_num(V))
-    flat = {name: np.asarray(found[name]).reshape(V.shape)[n, k] for name in ("M", "M_half_space", "M_cylinder")}
-    slip, half_space, cylinder = (
-        np.asarray(getattr(found.loss, name)).reshape(V.shape)[n, k] for name in ("slip", "half_space", "cylinder")
-    )
-    power = states.body.part * (half_space + cylinder) + states.body.slip * slip
-    balance = Balance(
-        hot_curve(), states.curve, np.zeros(n.size), power, states.conductance[n], states.ambient[n],
-        np.full(n.size, HOTTEST),
-    )  # fmt: skip
-    zeros = zeros_of(balance)
-    k, n, a_T = zeros.state, n[zeros.state], states.curve.factors(zeros.theta)[0]
-    speed = V[np.nonzero(np.nan_to_num(V))][k] / states.unit[n] * (states.R[n] / (states.roller.T_ref * a_T))
-    rows = {name: each[k] for name, each in flat.items()}
-    rows |= {"V": speed, "temperature": zeros.theta, "a_T": a_T, "C_rr": rows["M"] / (states.load[n] * states.R[n])}
-    rows |= {"loss": (slip + half_space + cylinder)[k] / a_T, "loss_slip": slip[k] / a_T}
-    of_speed = stable[np.nonzero(np.nan_to_num(V))][k]
-    return rows, Zeros(n, zeros.theta, zeros.stable & of_speed)
+    table = {name: np.asarray(found[name]).reshape(states.load.size, -1) for name in ("V", "stable", *_MOMENTS)}
+    table |= {name: np.asarray(each).reshape(table["V"].shape) for name, each in vars(found.loss).items()}
+    n, branch = np.nonzero(np.nan_to_num(table["V"]))
+    at = {name: each[n, branch] for name, each in table.items()}
+    body, G = states.body, states.conductance[n]
+    power = body.part * (at["half_space"] + at["cylinder"]) + body.slip * at["slip"]
+    hottest = np.full(n.size, HOTTEST)
+    curve = lambda _, x: np.exp2(-x)  # noqa: E731
+    zeros = zeros_of(Balance(curve, None, states.curve, 0.0 * power, power, G, states.ambient[n], hottest))
+    n, at = n[zeros.state], {name: each[zeros.state] for name, each in at.items()}
+    a_T = states.curve.factors(zeros.theta)[0]
+    rows = {name: at[name] for name in _MOMENTS} | {"V": at["V"] / a_T, "temperature": zeros.theta, "a_T": a_T}
+    rows |= {"C_rr": at["M"] / (states.load[n] * states.R[n]), "loss_slip": at["slip"] / a_T}
+    rows |= {"loss": (at["slip"] + at["half_space"] + at["cylinder"]) / a_T}
+    return rows, Zeros(n, zeros.theta, zeros.stable & at["stable"])
 
 
 def _pack(states: HeatStates, zeros: Zeros, rows: dict[str, Floats], labels: Labels | None) -> Temperatures:
@@ -346,61 +289,46 @@ def _pack(states: HeatStates, zeros: Zeros, rows: dict[str, Floats], labels: Lab
 
     zeros, rows: the equilibria and their fields, unsorted; those with a NaN in a_T or the loss are named and dropped.
     """
-    size = states.load.size
     inside = within_data(states, rows["V"] * rows["a_T"])
-    known = np.isfinite(rows["a_T"]) & np.isfinite(rows["loss"])
+    known = np.isfinite(rows["a_T"] + rows["loss"])
     reason = _reasons(states, zeros, known, inside, rows)
     order = np.lexsort((zeros.theta, zeros.state))
     order = order[known[order]]
     state = zeros.state[order]
-    count = np.bincount(state, minlength=size)
-    most = int(count.max(initial=0))
-    place = state, np.arange(state.size) - (np.cumsum(count) - count)[state]
-    found: dict[str, Any] = {}
-    for name in _FIELDS:
-        found[name] = np.full((size, most), np.nan)
-        found[name][place] = rows[name][order]
-    for name, truth in (("stable", zeros.stable), ("measured", inside)):
-        found[name] = np.zeros((size, most), bool)
-        found[name][place] = truth[order]
-    found = {name: each.reshape(*states.shape, most) for name, each in found.items()}
+    count = np.bincount(state, minlength=states.load.size)
+    table = np.array([*(rows[name] for name in Temperatures._rows), zeros.stable, inside])[:, order]
+    *fields, stable, measured = pad(table, state, count, states.shape)
+    found: dict[str, Any] = dict(zip(Temperatures._rows, fields, strict=True))
+    found |= {"stable": stable == 1.0, "measured": measured == 1.0}
     found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
     if labels is not None:
-        found = {
-            name: labels.apply(name, each, *(() if name == "count" else ("equilibrium",)))
-            for name, each in found.items()
-        }
+        axes = {"count": ()}
+        found = {name: labels.apply(name, each, *axes.get(name, ("equilibrium",))) for name, each in found.items()}
     return Temperatures(found, reason.reshape(states.shape) if states.shape else reason[0], labels)
 
 
 def within_data(states: HeatStates, speed: Floats) -> Any:
     """Return whether the material was measured at speeds, m/s, reduced to the reference; True without data."""
-    band = states.roller.body_data.measured_speeds
+    low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
     size = np.abs(speed)
-    return np.full(size.shape, True) if band is None else (size == 0.0) | (size >= band[0]) & (size <= band[1])
+    return (size == 0.0) | (size >= low) & (size <= high)
 
 
 def _reasons(states: HeatStates, zeros: Zeros, known: Any, inside: Any, rows: dict[str, Floats]) -> Any:
     """Return for each state "" or why no equilibrium lies within the ranges of shift and data, (states,), objects."""
     found = np.full(states.load.size, "", object)
-    if known.all() and inside.all() and zeros.state.size >= found.size:
-        good = np.bincount(zeros.state, minlength=found.size) > 0
-        if good.all():
-            return found
-    good = np.zeros(found.size, bool)
-    good[zeros.state[known & inside]] = True
-    for n in np.flatnonzero(~good).tolist():
+    good = np.bincount(zeros.state[known & inside], minlength=found.size)
+    for n in (good == 0).nonzero()[0].tolist():
         own = np.flatnonzero(zeros.state == n)
-        at = own[np.argmin(zeros.theta[own])] if own.size else None
-        if at is None:
+        if not own.size:
             found[n] = f"no temperature up to {HOTTEST:g} degrees Celsius balances: it runs away, or none is steady"
-        elif not np.isfinite(rows["a_T"][at]):
-            found[n] = f"only {zeros.theta[at]:.5g} degrees Celsius balances, beyond the shift's {states.curve.high:g}"
+            continue
+        at = own[np.argmin(zeros.theta[own])]
+        theta = f"{zeros.theta[at]:.5g} degrees Celsius"
+        if not np.isfinite(rows["a_T"][at]):
+            found[n] = f"only {theta} balances, beyond the shift's {states.curve.high:g}"
         elif not known[at]:
-            found[n] = f"the friction does not suffice at {zeros.theta[at]:.5g} degrees Celsius, which balances"
+            found[n] = f"the friction does not suffice at {theta}, which balances"
         else:
-            found[n] = (
-                f"only {zeros.theta[at]:.5g} degrees Celsius balances, where the rates of the contact lie outside "
-                "the measured band"
-            )
+            found[n] = f"only {theta} balances, where the rates of the contact lie outside the measured band"
     return found

@@ -14,9 +14,8 @@ from ..core.drive import Schedule
 from ..core.errors import ParameterError, described_error, shape_error
 from ..core.labels import strip_labels
 from ..core.results import Values
-from .balance import Curve, rolling_curve
 from .bodies import HeatStates, check_ambient, heat_states
-from .temperature import rolling_rows
+from .temperature import free_balance, rolling_rows
 
 #: Tolerance of the integrator beside which its own default is loose: the energy then balances to 1e-6 of itself.
 RTOL = 1e-9
@@ -87,13 +86,13 @@ def warming(
         raise described_error("t", "does not ascend", "in ascending order")
     rtol = check_number("rtol", rtol, low=1e-12, high=1e-3)
     speed, corners = _speed_of(V, scale)
-    curve = rolling_curve(states.law, states.materials)
+    every = np.arange(start.size)
 
     def rates(time: float, y: Floats) -> Floats:
         """Return dtheta/dt of each state, then the heat per time and the heat given off, W/m."""
         theta = y[: start.size]
         off = states.conductance * (theta - states.ambient)
-        heat = states.body.part * _loss(states, curve, speed(time), theta)
+        heat = free_balance(states, speed(time)).heat(every, theta)
         return np.concatenate([(heat - off) / capacity, heat, off])
 
     y, found, time = np.concatenate([start, np.zeros(2 * start.size)]), [], 0.0
@@ -124,18 +123,6 @@ def _spread(states: HeatStates, array: Floats) -> Floats:
     return np.broadcast_to(array, states.shape or (1,)).ravel()
 
 
-def _loss(states: HeatStates, curve: Curve, V: float, theta: Floats) -> Floats:
-    """Return the loss in rolling of both bodies, W/m, of each state at one speed and its temperature, (n,)."""
-    if V == 0.0:
-        return np.zeros(theta.size)
-    factor, root_b = np.exp2(states.curve.log2_of(theta)), states.curve.root_b(theta)
-    if not states.curve.exact:
-        a_T, root_b = states.curve.factors(theta)
-        factor = a_T * root_b
-    C, _ = curve.values(np.arange(theta.size), np.log2(states.kappa * abs(V) / states.unit * factor))
-    return states.load * abs(V) / (states.kappa * root_b) * C
-
-
 def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
     """Return the speed as a function of time, m/s, and the times of its corners, at which the integrator stops.
 
@@ -144,17 +131,7 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
     if isinstance(V, Schedule):
         if V.values.ndim > 1 or V.times.ndim > 1:
             raise shape_error("V", V.values.shape, "a Schedule of one motion")
-        times, values = V.times, V.values
-        rising = np.flatnonzero(np.diff(times) > 0.0)
-
-        def at(time: float) -> float:
-            k = int(np.searchsorted(times, time, "right")) - 1  # of a jump the value after it
-            if k < 0 or k == times.size - 1:
-                return float(values[max(k, 0)])
-            part = (time - times[k]) / (times[k + 1] - times[k])
-            return float(values[k] + part * (values[k + 1] - values[k]))
-
-        return at, times if rising.size else np.empty(0)
+        return lambda time: float(np.interp(time, V.times, V.values)), V.times  # at a jump the value after it
     if callable(V):
         return lambda time: check_number("V", V(time), unit=scale), np.empty(0)
     speed = check_number("V", V, unit=scale)

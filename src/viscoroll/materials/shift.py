@@ -134,28 +134,6 @@ class WLF:
         with np.errstate(divide="ignore"):
             return self.T0 - self.C2 + math.log(10.0) * self.C1 * self.C2 / above_least
 
-    def slope(self, temperature: Floats) -> Floats:
-        """Return d ln a_T/d temperature, for arrays and without checks.
-
-        Parameters
-        ----------
-        temperature : degrees Celsius, an array of any shape.
-
-        Returns
-        -------
-        array
-            1/K, below 0.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import viscoroll as vr
-        >>> shift = vr.WLF(T0=20.0)
-        >>> bool(shift.slope(np.array([20.0])) < 0.0)
-        True
-        """
-        return -math.log(10.0) * self.C1 * self.C2 / (self.C2 + temperature - self.T0) ** 2
-
 
 @dataclass(frozen=True, kw_only=True)
 class Arrhenius:
@@ -248,28 +226,6 @@ class Arrhenius:
         inverse = np.maximum(log * GAS_CONSTANT / self.energy + 1.0 / (self.T0 - ABSOLUTE_ZERO), 0.0)
         with np.errstate(divide="ignore"):
             return ABSOLUTE_ZERO + 1.0 / inverse
-
-    def slope(self, temperature: Floats) -> Floats:
-        """Return d ln a_T/d temperature, for arrays and without checks.
-
-        Parameters
-        ----------
-        temperature : degrees Celsius, an array of any shape.
-
-        Returns
-        -------
-        array
-            1/K, below 0.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import viscoroll as vr
-        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
-        >>> bool(shift.slope(np.array([20.0])) < 0.0)
-        True
-        """
-        return -self.energy / GAS_CONSTANT / (temperature - ABSOLUTE_ZERO) ** 2
 
 
 _Law = TypeVar("_Law", WLF, Arrhenius)

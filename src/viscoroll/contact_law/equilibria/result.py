@@ -122,7 +122,54 @@ class Diagnosis(NamedTuple):
         )
 
 
-class Steady(Values):
+class Equilibria(Values):
+    """Base of results whose last axis counts the equilibria of a state, padded with NaN, with their ``count``,
+    ``stable`` and ``reason``.
+
+    A subclass has ``_heading``, the title; ``_rows``, names of the fields that the report of one state has, and
+    ``_ranges``, of those of which the report of several states has the ranges.
+    """
+
+    _heading: str
+    _rows: tuple[str, ...]
+    _ranges: tuple[str, ...]
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return the title and the rows of the printed report.
+
+        Returns (title; list of :class:`SummaryRow`).  Of one state the rows are its equilibria one after another, each
+        with "stable" or "unstable" and fields to six digits, after the reason why there is none; of several states the
+        number of all equilibria and of the stable ones, and the ranges of fields.
+        """
+        units = {name: unit_of(self._attributes(name)) for name in self._rows}
+        if np.ndim(self.count):
+            found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
+            ranges = [SummaryRow(name, format_value(np.asarray(self[name])), units[name]) for name in self._ranges]
+            return f"{self._heading}, {np.size(self.count)} states", [SummaryRow("equilibria", found), *ranges]
+        rows = [SummaryRow("reason", str(self.reason))] if self.reason else []
+        for n in range(int(self.count)):
+            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "unstable"))
+            rows += [SummaryRow(f"  {name}", f"{float(self[name][n]):.6g}", units[name]) for name in self._rows]
+        return self._heading + ("" if self.count else ": no equilibrium"), rows
+
+    def _dataset(self, fields: dict[str, Any]) -> xr.Dataset:
+        """Return a dataset of fields over states and equilibria, truth values as 0 or 1, and of ``count``.
+
+        fields: name -> array (states..., equilibria).
+        """
+        import xarray as xr
+
+        dims, coords = dataset_axes(self._labels, np.shape(self.count), (*fields, "count", "equilibrium"))
+        data: dict[str, Any] = {}
+        for name, each in fields.items():
+            array = np.asarray(each)
+            numbers = array.astype(np.int8) if array.dtype == bool else array
+            data[name] = (*dims, "equilibrium"), numbers, self._attributes(name)
+        data["count"] = dims, np.asarray(self.count), self._attributes("count")
+        return xr.Dataset(data, coords, attrs={"title": f"{self._heading} of a viscoelastic cylinder"})
+
+
+class Steady(Equilibria):
     """Equilibria of rolling under load, the result of :func:`viscoroll.steady`.
 
     The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); shorter lists are padded
@@ -154,6 +201,10 @@ class Steady(Values):
     >>> bool(found.V[0, 0] > 0.0), [bool(reason) for reason in found.reason]  # the second slope is too steep
     (True, [False, True])
     """
+
+    _heading = "Steady rolling"
+    _rows = "V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"
+    _ranges = ("V",)
 
     def __init__(
         self, values: dict[str, Any], free: Floats, reasons: Diagnosis, scale: Scale, labels: Labels | None
@@ -227,27 +278,6 @@ class Steady(Values):
     #: as :attr:`reason`
     message = reason
 
-    def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return the title and the rows of the printed report.
-
-        Returns (title; list of :class:`SummaryRow`).  Of one load the rows are its equilibria one after another, each
-        with "stable" or "unstable" and V, omega, delta, force, torque, Q, M, beta and grip to six digits, or the
-        reason why there is none; of an array of loads the number of all equilibria and of the stable ones, and their
-        speeds.
-        """
-        if np.ndim(self.count):
-            found = f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
-            speeds = SummaryRow("V", format_value(np.asarray(self.V)), unit_of(self._attributes("V")))
-            return f"Steady rolling, {np.size(self.count)} states", [SummaryRow("equilibria", found), speeds]
-        if not self.count:
-            return "Steady rolling: no equilibrium", [SummaryRow("reason", str(self.reason))]
-        rows = []
-        for n in range(int(self.count)):
-            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "unstable"))
-            for name in ("V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"):
-                rows.append(SummaryRow(f"  {name}", f"{float(self[name][n]):.6g}", unit_of(self._attributes(name))))
-        return "Steady rolling", rows
-
     def to_xarray(self) -> xr.Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
 
@@ -269,17 +299,9 @@ class Steady(Values):
         >>> vr.steady(vr.presets.RUBBER_CYLINDER, slope=0.005).to_xarray()["V"].attrs["units"]
         'm s-1'
         """
-        import xarray as xr
-
-        found = {name: self[name] for name in _FIELDS} | {"stable": np.asarray(self.stable).astype(np.int8)}
         rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
-        found |= dict(zip(("rate_fast", "rate_slow"), rates, strict=True))
-        found |= dict(zip(_LOSSES, vars(self.loss).values(), strict=True))
-        dims, coords = dataset_axes(self._labels, np.shape(self.count), (*found, "count", "equilibrium"))
-        over = (*dims, "equilibrium")
-        data = {name: (over, np.asarray(each), self._attributes(name)) for name, each in found.items()}
-        data["count"] = dims, np.asarray(self.count), self._attributes("count")
-        return xr.Dataset(data, coords, attrs={"title": "Steady rolling of a viscoelastic cylinder"})
+        found = {name: self[name] for name in (*_FIELDS, "stable")} | {"rate_fast": rates[0], "rate_slow": rates[1]}
+        return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values(), strict=True)))
 
 
 def append_axis(unit: Any) -> Any:
@@ -287,6 +309,24 @@ def append_axis(unit: Any) -> Any:
     is.
     """
     return unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
+
+
+def pad(rows: Floats, number: Integers, count: Integers, shape: tuple[int, ...]) -> Floats:
+    """Arrange equilibria, one after another, as arrays over states and equilibria, padded with NaN.
+
+    rows: fields of the equilibria, sorted by state, (fields, m).
+    number: index of the state of each, (m,).
+    count: number of equilibria of each state, (n,).
+    shape: shape of the n states.
+    Returns the fields, (fields, states..., equilibria).
+    """
+    most = int(count.max(initial=0))
+    if most * count.size > number.size:  # some have fewer
+        place = np.arange(number.size) - (np.cumsum(count) - count)[number]
+        padded = np.full((len(rows), count.size * most), np.nan)
+        padded[:, number * most + place] = rows
+        rows = padded
+    return rows.reshape(len(rows), *shape, most)
 
 
 def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None) -> Steady:
@@ -314,13 +354,7 @@ def pack_result(loads: Loads, states: States, reasons: Diagnosis, scale: Scale, 
     grip = 1.0 - np.abs(Q) / loads.mu[number]
     more = np.array([M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary])
     rows = np.concatenate([states.rows[: Field.FAST], more])
-    most = int(count.max(initial=0))
-    if most * count.size > number.size:  # some have fewer
-        place = np.arange(number.size) - (np.cumsum(count) - count)[number]
-        padded = np.full((len(rows), count.size * most), np.nan)
-        padded[:, number * most + place] = rows
-        rows = padded
-    rows = rows.reshape(len(rows), *loads.shape, most)
+    rows = pad(rows, number, count, loads.shape)
     found: dict[str, Any] = dict(zip(_FIELDS, rows, strict=False))
     if scale.si:
         found |= {name: found[name] * append_axis(scale[name]) for name in found if name in DIMENSIONS}
