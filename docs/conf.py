@@ -1,4 +1,6 @@
-"""The site: `make docs`.  Pages are Markdown (MyST), examples are run by sphinx-gallery; nothing is fetched."""
+"""The site: `make docs`.  Pages are Markdown (MyST), examples are run by sphinx-gallery; nothing is
+fetched.
+"""
 
 from __future__ import annotations
 
@@ -12,19 +14,24 @@ from typing import Any
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent
-sys.path.insert(0, str(HERE))  # gallery_images below, imported by name so that Sphinx can keep its environment
+sys.path.insert(
+    0, str(HERE)
+)  # gallery_images below, imported by name so that Sphinx can keep its environment
 
 import matplotlib.pyplot as plt  # noqa: E402
 from sphinx_gallery.sorting import ExplicitOrder  # noqa: E402
 
 import viscoroll  # noqa: E402
-from viscoroll.io.config import read_law_source  # noqa: E402
+from viscoroll.roller_toml import read_law_source  # noqa: E402
 
-warnings.simplefilter("ignore", viscoroll.ModelWarning)  # pages on the paper's example say it in words
+warnings.simplefilter(
+    "ignore", viscoroll.ModelWarning
+)  # pages on the paper's example say it in words
 plt.style.use(HERE / "viscoroll.mplstyle")
 os.environ["VISCOROLL_QUIET"] = "1"  # no word about compiling in the output of an example
 
-#: Pages that are kept elsewhere in the tree: page -> file.  What stands in docs/ of them is a pointer.
+#: Pages that are kept elsewhere in the tree: page -> file.  What stands in docs/ of them is a
+#: pointer.
 ELSEWHERE = {
     "changes": "CHANGELOG.md",
     "contributing": "CONTRIBUTING.md",
@@ -33,9 +40,12 @@ ELSEWHERE = {
     "peers": "pipeline/evidence/peers/README.md",
     "pipeline": "pipeline/README.md",
 }
-#: The address of the repository stands in [project.urls] of pyproject.toml, once there is one, and nowhere else.
+#: The address of the repository stands in [project.urls] of pyproject.toml, once there is one, and
+#: nowhere else.
 ADDRESS = (
-    tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"].get("urls", {}).get("Repository")
+    tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    .get("urls", {})
+    .get("Repository")
 )
 
 project = "viscoroll"
@@ -75,7 +85,10 @@ sphinx_gallery_conf = {
     "filename_pattern": r"\.py$",
     "ignore_pattern": r"__init__\.py",
     "subsection_order": ExplicitOrder(
-        [f"examples/gallery/{name}" for name in ("contact", "materials", "motion", "drive", "heat", "uncertain")]
+        [
+            f"examples/gallery/{name}"
+            for name in ("contact", "materials", "motion", "drive", "heat", "uncertain")
+        ]
     ),
     "within_subsection_order": "FileNameSortKey",
     "image_scrapers": "gallery_images.shown",
@@ -117,8 +130,8 @@ _LINK = re.compile(r"(?<!!)\[([^\]\[]*(?:\[[^\]]*\])?[^\]\[]*)\]\(([^)\s]+)\)")
 def linked(text: str, folder: Path, page: str) -> str:
     """``text``, written for ``folder`` of the tree, with links as the site's ``page`` needs them.
 
-    A link to a file that the site has no page for becomes one into the repository, or plain words while that has no
-    address.
+    A link to a file that the site has no page for becomes one into the repository, or plain words
+    while that has no address.
     """
     pages = {(ROOT / file).resolve(): name for name, file in ELSEWHERE.items()}
 
@@ -155,8 +168,8 @@ _SECTIONS = ("Parameters", "Attributes", "Returns")
 def spoken(app: Any, what: str, name: str, thing: Any, options: Any, lines: list[str]) -> None:
     """Docstrings as they are meant, for numpydoc.
 
-    "name : words" gives a name and what it is, where numpydoc would take the words for a type; and |V| is an absolute
-    value, not a substitution of reStructuredText.
+    "name : words" gives a name and what it is, where numpydoc would take the words for a type;
+    and |V| is an absolute value, not a substitution of reStructuredText.
     """
     section, result = "", []
     for line, following in zip(lines, [*lines[1:], ""], strict=True):
@@ -170,12 +183,16 @@ def spoken(app: Any, what: str, name: str, thing: Any, options: Any, lines: list
 
 
 def write_law(app: Any, error: Exception | None) -> None:
-    """The law that live.md computes with, as a script, for a page that is opened from a disk may not fetch."""
+    """The law that live.md computes with, as a script, for a page that is opened from a disk may
+    not fetch.
+    """
     if error is None:
         path = Path(app.outdir) / "_static/rubber.json"
-        law = viscoroll.io.tables.law(read_law_source(viscoroll.datasets.path("rubber.toml")))
-        viscoroll.io.tables.export(law, path)
-        path.with_suffix(".js").write_text(f"const RUBBER = {path.read_text(encoding='utf-8')};\n", encoding="utf-8")
+        law = viscoroll.tables.law(read_law_source(viscoroll.datasets.path("rubber.toml")))
+        viscoroll.tables.export(law, path)
+        path.with_suffix(".js").write_text(
+            f"const RUBBER = {path.read_text(encoding='utf-8')};\n", encoding="utf-8"
+        )
 
 
 def setup(app: Any) -> dict[str, bool]:

@@ -14,14 +14,20 @@ _KEPT: list[Figure] = []  # so that no identity is given twice
 def shown(block: Any, block_vars: dict[str, Any], gallery_conf: dict[str, Any]) -> str:
     """Save the figures that are new since the last block, as sphinx-gallery wants it.
 
-    A block draws all panels of the figures that it names: a later block is too late, so that an empty panel raises
-    RuntimeError, which ends the build.
+    A block draws all panels of the figures that it names: a later block is too late, so that an
+    empty panel raises RuntimeError, which ends the build.
     """
-    new = [v for v in block_vars["example_globals"].values() if isinstance(v, Figure) and id(v) not in _SHOWN]
+    new = [
+        v
+        for v in block_vars["example_globals"].values()
+        if isinstance(v, Figure) and id(v) not in _SHOWN
+    ]
     paths = []
     for figure, path in zip(new, block_vars["image_path_iterator"], strict=False):
         if not all(axes.has_data() for axes in figure.axes):
-            raise RuntimeError(f"{path}: a panel is empty when its block ends: draw all of a figure in one block")
+            raise RuntimeError(
+                f"{path}: a panel is empty when its block ends: draw all of a figure in one block"
+            )
         figure.savefig(path, dpi=200)
         _SHOWN.add(id(figure))
         _KEPT.append(figure)

@@ -1,10 +1,11 @@
-"""The stages of `make demo` that are out of date, one after another in this process, which imports and compiles once.
+"""The stages of `make demo` that are out of date, one after another in this process, which imports
+and compiles once.
 
     python -m pipeline [--config FILE] [-o FOLDER] [--tables FOLDER] [STAGE ...]
 
-A stage is out of date where its record, or a file of it, is missing or older than what it reads: the package, its own
-module, the configuration, and the stages before it.  With names, these stages and those that they need.  Exit codes are
-those of the stages; the first that fails is the last.
+A stage is out of date where its record, or a file of it, is missing or older than what it reads:
+the package, its own module, the configuration, and the stages before it.  With names, these stages
+and those that they need.  Exit codes are those of the stages; the first that fails is the last.
 """
 
 from __future__ import annotations
@@ -19,9 +20,14 @@ from . import stage
 
 #: stage -> those whose files it reads
 NEEDS: dict[str, tuple[str, ...]] = {
-    "offline": (), "runtime": ("offline",), "ensemble": (), "validate": ("runtime",), "benchmark": ("validate",),
-    "figures": ("offline", "ensemble"), "report": ("benchmark", "figures"),
-}  # fmt: skip
+    "offline": (),
+    "runtime": ("offline",),
+    "ensemble": (),
+    "validate": ("runtime",),
+    "benchmark": ("validate",),
+    "figures": ("offline", "ensemble"),
+    "report": ("benchmark", "figures"),
+}
 HERE = stage.ROOT / "pipeline"
 
 
@@ -36,7 +42,9 @@ def written(record: Path) -> float:
         found = json.loads(record.read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return 0.0
-    whole = not found["failed"] and all((record.parents[1] / file).exists() for file in found["files"])
+    whole = not found["failed"] and all(
+        (record.parents[1] / file).exists() for file in found["files"]
+    )
     return record.stat().st_mtime if whole else 0.0
 
 
@@ -47,16 +55,25 @@ def needed(names: Iterable[str]) -> set[str]:
 
 def main() -> int:
     options = stage.parser(__doc__)
-    options.add_argument("--tables", type=Path, default=stage.ROOT / "data/tables", help="default data/tables")
-    options.add_argument("names", metavar="STAGE", nargs="*", choices=[*NEEDS, []], help=f"of {', '.join(NEEDS)}")
+    options.add_argument(
+        "--tables", type=Path, default=stage.ROOT / "data/tables", help="default data/tables"
+    )
+    options.add_argument(
+        "names", metavar="STAGE", nargs="*", choices=[*NEEDS, []], help=f"of {', '.join(NEEDS)}"
+    )
     given = options.parse_args()
     shared = newest([*(stage.ROOT / "src").rglob("*.py"), HERE / "stage.py", given.config])
-    wanted, times = needed(given.names or NEEDS), {}
+    wanted = needed(given.names or NEEDS)
+    times = {}
     for name in NEEDS:
         record = given.output / f"stages/{name}.json"
-        own = newest(path for part in HERE.glob(f"{name[:5]}*") for path in (part, *part.rglob("*.py")))
+        own = newest(
+            path for part in HERE.glob(f"{name[:5]}*") for path in (part, *part.rglob("*.py"))
+        )
         times[name] = written(record)
-        if name in wanted and times[name] <= max(shared, own, *(times[each] for each in NEEDS[name])):
+        if name in wanted and times[name] <= max(
+            shared, own, *(times[each] for each in NEEDS[name])
+        ):
             extra = ["--tables", str(given.tables)] if name == "offline" else []
             sys.argv = [name, "--config", str(given.config), "-o", str(given.output), *extra]
             try:

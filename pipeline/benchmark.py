@@ -1,12 +1,13 @@
-"""Benchmark: time against error of Eq. (22) from tables and from root solves -> out/benchmark.csv, its figure.
+"""Benchmark: time against error of Eq. (22) from tables and from root solves -> out/benchmark.csv,
+its figure.
 
     python -m pipeline.benchmark [--config FILE] [-o FOLDER]
 
-The paper's motions and random ones, in one compiled integrator (:mod:`benchmark_integrator`): from splines in grids of
-Q and M over V and delta, from the rows of the law, and from root solves at every call; beside them ``vr.roll``.  The
-truth is out/direct.nc, root solves of the printed equations in SciPy's integrators, and for random starts
-``vr.ensemble`` at a tight tolerance.  Size and error of every table stand beside.  Peers of other houses stand in
-pipeline/evidence/bench.
+The paper's motions and random ones, in one compiled integrator (:mod:`benchmark_integrator`): from
+splines in grids of Q and M over V and delta, from the rows of the law, and from root solves at
+every call; beside them ``vr.roll``.  The truth is out/direct.nc, root solves of the printed
+equations in SciPy's integrators, and for random starts ``vr.ensemble`` at a tight tolerance.  Size
+and error of every table stand beside.  Peers of other houses stand in pipeline/evidence/bench.
 """
 
 from __future__ import annotations
@@ -23,8 +24,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.core.plots.style import new_figure, save
-from viscoroll.materials.law_file import stated_errors
+from viscoroll.core.plots import new_figure, save
+from viscoroll.materials.checked_netcdf import stated_errors
 
 from . import benchmark_integrator, stage
 from .runtime import least_seconds
@@ -32,13 +33,14 @@ from .validate import loaded
 
 #: Tolerance of the truth of random starts, far below what is compared.
 TRUTH_RTOL = 1e-11
-#: Every so many of the times of out/direct.nc are compared, the last among them: the integrator stops at each.
+#: Every so many of the times of out/direct.nc are compared, the last among them: the integrator
+#: stops at each.
 TIMES = 20
 
 
 class Benchmark(msgspec.Struct, forbid_unknown_fields=True):
-    """[benchmark]: the file of rows; sizes of the grids, of n by n nodes, and ends of their V; tolerances of all, and
-    of root solves; random starts, even in [-speed, speed], and their seed.
+    """[benchmark]: the file of rows; sizes of the grids, of n by n nodes, and ends of their V;
+    tolerances of all, and of root solves; random starts, even in [-speed, speed], and their seed.
     """
 
     law: str
@@ -52,7 +54,9 @@ class Benchmark(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class Law(NamedTuple):
-    """A law in compiled code: its name, what is called, the tolerances, size of its file in kB and error of Q there."""
+    """A law in compiled code: its name, what is called, the tolerances, size of its file in kB and
+    error of Q there.
+    """
 
     name: str
     call: Any
@@ -70,7 +74,13 @@ def laws(scene: vr.Scene, settings: Benchmark) -> Iterator[Law]:
             grid = vr.tables.build(scene, V, delta=vr.tables.creep_nodes(scene, V, n))
             vr.tables.save(grid, path)
             splines = vr.law(vr.load_law(path)).jitted
-            yield Law(f"grid, {n} by {n}", splines, settings.rtol, path.stat().st_size / 1e3, grid.Q.spline_error)
+            yield Law(
+                f"grid, {n} by {n}",
+                splines,
+                settings.rtol,
+                path.stat().st_size / 1e3,
+                grid.Q.spline_error,
+            )
     path = stage.ROOT / settings.law
     rows = vr.law(scene.replace(material=vr.load_law(path))).jitted
     worst = max(stated_errors(vr.tables.load(path)).values())
@@ -85,11 +95,16 @@ def ways(
 
     def integrated(law: Law, rtol: float) -> NDArray:
         out = np.empty((2, V0.size, t.size))
-        benchmark_integrator.motions(law.call, scene.gamma, scene.j, scene.mu / scene.kappa, V0, omega0, t, rtol, out)
+        benchmark_integrator.motions(
+            law.call, scene.gamma, scene.j, scene.mu / scene.kappa, V0, omega0, t, rtol, out
+        )
         return out
 
     def rolled(rtol: float) -> NDArray:
-        found = [vr.roll(scene, *start, t, rtol=rtol) for start in zip(V0.tolist(), omega0.tolist(), strict=True)]
+        found = [
+            vr.roll(scene, *start, t, rtol=rtol)
+            for start in zip(V0.tolist(), omega0.tolist(), strict=True)
+        ]
         return np.array([[one.V for one in found], [one.omega for one in found]])
 
     for law in laws(scene, settings):
@@ -101,12 +116,17 @@ def ways(
 
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """Time against error of motions, and size against error of the tables."""
-    figure, (left, right) = new_figure("Time and error of motions; size and error of the tables", 1, 2, 4.0)
+    figure, (left, right) = new_figure(
+        "Time and error of motions; size and error of the tables", 1, 2, 4.0
+    )
     names = dict.fromkeys(row["law by"] for row in rows)
     for marker, name in zip("osd^vP*X", names, strict=False):
         own = [row for row in rows if row["law by"] == name]
         left.loglog(
-            [row["error, random"] for row in own], [row["ms a motion"] for row in own], f"-{marker}", label=name
+            [row["error, random"] for row in own],
+            [row["ms a motion"] for row in own],
+            f"-{marker}",
+            label=name,
         )
         right.loglog(own[0]["kB"], own[0]["error of Q"], marker)
     left.set(xlabel="largest error of V and ω / initial speed", ylabel="time of a motion, ms")
@@ -116,22 +136,32 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
 
 
 def work(settings: Benchmark, out: Path) -> stage.Outcome:
-    scene, direct = vr.presets.PAPER_SECTION_5, loaded(out / "direct.nc")
+    scene = vr.presets.PAPER_SECTION_5
+    direct = loaded(out / "direct.nc")
     direct = direct.isel(t=np.arange(direct.t.size - 1, 0, -TIMES)[::-1])
-    starts = np.random.default_rng(settings.seed).uniform(-settings.speed, settings.speed, (2, settings.motions))
+    starts = np.random.default_rng(settings.seed).uniform(
+        -settings.speed, settings.speed, (2, settings.motions)
+    )
     exact = vr.ensemble(scene, *starts, direct.t.values, rtol=TRUTH_RTOL, method="integrate")
     truth = np.concatenate([[direct.V, direct.omega], [exact.V, exact.omega]], axis=1)
     V0, omega0 = np.concatenate([np.transpose([*vr.presets.PAPER_STARTS.values()]), starts], axis=1)
-    first, paper = np.maximum(abs(V0), abs(omega0)), len(vr.presets.PAPER_STARTS)
+    first = np.maximum(abs(V0), abs(omega0))
+    paper = len(vr.presets.PAPER_STARTS)
     rows: list[dict[str, Any]] = []
     for law, rtol, way in ways(scene, settings, V0, omega0, direct.t.values):
         found, seconds = least_seconds(way, rtol != law.rtol[0])
         errors = np.abs(found - truth).max(axis=(0, 2)) / first
-        rows.append({
-            "law by": law.name, "rtol": rtol, "ms a motion": 1e3 * seconds / V0.size,
-            "error, paper": errors[:paper].max(), "error, random": errors[paper:].max(),
-            "kB": law.size, "error of Q": law.error,
-        })  # fmt: skip
+        rows.append(
+            {
+                "law by": law.name,
+                "rtol": rtol,
+                "ms a motion": 1e3 * seconds / V0.size,
+                "error, paper": errors[:paper].max(),
+                "error, random": errors[paper:].max(),
+                "kB": law.size,
+                "error of Q": law.error,
+            }
+        )
     stage.write_rows(out / "benchmark.csv", rows)
     picture = stage.make_folder(out / "figures") / "benchmark.png"
     draw(rows, picture)

@@ -1,10 +1,11 @@
-"""The ends of what the package takes: every pair of extreme alpha, kappa V, mu and creep -> out/corners.csv.
+"""The ends of what the package takes: every pair of extreme alpha, kappa V, mu and creep ->
+out/corners.csv.
 
     python -m pipeline.validate --corners [--config FILE] [-o FOLDER]
 
-The law is held against enclosures in ball arithmetic (pipeline/evidence/truth), motions against their own energy:
-what friction and rolling take must be what V and omega have lost.  One row a quantity: worst, allowed, where; exit
-code 1 where one is exceeded.
+The law is held against enclosures in ball arithmetic (pipeline/evidence/truth), motions against
+their own energy: what friction and rolling take must be what V and omega have lost.  One row a
+quantity: worst, allowed, where; exit code 1 where one is exceeded.
 """
 
 from __future__ import annotations
@@ -25,7 +26,9 @@ FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 
 
 class Corners(msgspec.Struct, forbid_unknown_fields=True):
-    """[corners]: the extremes; creep over that of full slip; what each field and an energy may be off by."""
+    """[corners]: the extremes; creep over that of full slip; what each field and an energy may be
+    off by.
+    """
 
     alpha: list[float]
     kappa: list[float]
@@ -40,9 +43,12 @@ class Corners(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def of_states(given: Corners) -> Found:
-    """Errors of every state: of epsilon over 1 where it is less, of beta over 1, of Q over mu, else relative."""
+    """Errors of every state: of epsilon over 1 where it is less, of beta over 1, of Q over mu, else
+    relative.
+    """
     for alpha, kappa, mu, u in product(given.alpha, given.kappa, given.mu, given.kappa_V):
-        scene, V = vr.Scene(alpha=alpha, kappa=kappa, mu=mu), u / kappa
+        scene = vr.Scene(alpha=alpha, kappa=kappa, mu=mu)
+        V = u / kappa
         creep = np.array(given.s) * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
         found = vr.contact(scene, V, delta=creep, fields=FIELDS).as_dict()
         for n, delta in enumerate(creep.tolist()):
@@ -55,8 +61,12 @@ def of_states(given: Corners) -> Found:
 
 
 def of_motions(given: Corners) -> Found:
-    """Imbalance of energy over the tolerance of every motion; infinite where one does not end well."""
-    numbers = product(given.alpha, given.kappa, given.mu, given.gamma, given.j, given.starts, given.rtol)
+    """Imbalance of energy over the tolerance of every motion; infinite where one does not end
+    well.
+    """
+    numbers = product(
+        given.alpha, given.kappa, given.mu, given.gamma, given.j, given.starts, given.rtol
+    )
     for alpha, kappa, mu, gamma, j, (V0, omega0), rtol in numbers:
         scene = vr.Scene(alpha=alpha, kappa=kappa, mu=mu, gamma=gamma, j=j)
         fields = ("V", "omega", "slip_loss", "rolling_loss")
@@ -64,16 +74,34 @@ def of_motions(given: Corners) -> Found:
         found = vr.ensemble(scene, [V0], [omega0], t, rtol=rtol, fields=fields)
         energy = 0.5 * (V0 * V0 + j * omega0 * omega0)
         left = 0.5 * (found.V**2 + j * found.omega**2) + found.slip_loss + found.rolling_loss
-        error = float(np.max(np.abs(left - energy)) / energy / rtol) if found.status[0] <= 1 else np.inf
-        where = f"alpha {alpha:g}, kappa {kappa:g}, mu {mu:g}, gamma {gamma:g}, j {j:g}, from ({V0:g}, {omega0:g})"
+        error = (
+            float(np.max(np.abs(left - energy)) / energy / rtol) if found.status[0] <= 1 else np.inf
+        )
+        where = (
+            f"alpha {alpha:g}, kappa {kappa:g}, mu {mu:g}, gamma {gamma:g}, j {j:g}, from "
+            f"({V0:g}, {omega0:g})"
+        )
         yield f"{where}, rtol {rtol:g}, {found.messages()}", {"energy of motions, over rtol": error}
 
 
 def work(settings: Corners, out: Path) -> stage.Outcome:
     claims = {name: (name, allowed) for name, allowed in settings.allowed.items()}
-    proof = Proof("corners", "", "", claims, lambda *_: chain(of_states(settings), of_motions(settings)))
-    titles = {"quantity": "claim", "corners": "points", "worst": "worst", "allowed": "bound", "where": "where"}
+    proof = Proof(
+        "corners", "", "", claims, lambda *_: chain(of_states(settings), of_motions(settings))
+    )
+    titles = {
+        "quantity": "claim",
+        "corners": "points",
+        "worst": "worst",
+        "allowed": "bound",
+        "where": "where",
+    }
     rows = [{title: row[name] for title, name in titles.items()} for row in proof.rows(0, None)]
     stage.write_rows(out / "corners.csv", rows)
-    headline = {f"{row['quantity']} (allowed {row['allowed']:g}), {row['where']}": row["worst"] for row in rows}
-    return stage.Outcome([out / "corners.csv"], headline, any(row["worst"] > row["allowed"] for row in rows))
+    headline = {
+        f"{row['quantity']} (allowed {row['allowed']:g}), {row['where']}": row["worst"]
+        for row in rows
+    }
+    return stage.Outcome(
+        [out / "corners.csv"], headline, any(row["worst"] > row["allowed"] for row in rows)
+    )

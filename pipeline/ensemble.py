@@ -18,14 +18,16 @@ import viscoroll as vr
 from viscoroll.core.blocks import thread_count
 from viscoroll.core.errors import ParameterError
 from viscoroll.core.files import write_dataset
-from viscoroll.io.config import preset
-from viscoroll.io.sampling import sample
+from viscoroll.roller_toml import preset
+from viscoroll.sampling import sample
 
 from . import stage
 
 
 class Ensemble(msgspec.Struct, forbid_unknown_fields=True):
-    """[ensemble]: ``motions`` of them, V0 and omega0 uniform in [-speed, speed], ``kept`` of them one by one."""
+    """[ensemble]: ``motions`` of them, V0 and omega0 uniform in [-speed, speed], ``kept`` of them
+    one by one.
+    """
 
     preset: str
     motions: int
@@ -38,21 +40,40 @@ class Ensemble(msgspec.Struct, forbid_unknown_fields=True):
 
 def work(settings: Ensemble, out: Path) -> stage.Outcome:
     if not 1 <= settings.kept <= settings.motions:
-        raise ParameterError("kept", settings.kept, f"in [1, {settings.motions}], the number of motions")
-    scene, spread = preset(settings.preset), uniform(-settings.speed, 2.0 * settings.speed)
+        raise ParameterError(
+            "kept", settings.kept, f"in [1, {settings.motions}], the number of motions"
+        )
+    scene = preset(settings.preset)
+    spread = uniform(-settings.speed, 2.0 * settings.speed)
     starts = sample(settings.motions, settings.seed, V0=spread, omega0=spread)
     few = (starts[name][:100] for name in ("V0", "omega0"))
-    vr.ensemble(scene, *few, settings.t, rtol=settings.rtol, method="flow")  # so that compilation is not timed
+    vr.ensemble(
+        scene, *few, settings.t, rtol=settings.rtol, method="flow"
+    )  # so that compilation is not timed
     begun = time.perf_counter()
-    result = vr.ensemble(scene, starts["V0"], starts["omega0"], settings.t, rtol=settings.rtol, progress=True)
+    result = vr.ensemble(
+        scene, starts["V0"], starts["omega0"], settings.t, rtol=settings.rtol, progress=True
+    )
     seconds = time.perf_counter() - begun
-    thinned = result.to_xarray().isel(motion=slice(0, settings.kept))  # the starts are independent: any will do
-    summary = result.summary().drop_dims("status").filter_by_attrs(long_name=lambda text: "bin" not in text)
+    thinned = result.to_xarray().isel(
+        motion=slice(0, settings.kept)
+    )  # the starts are independent: any will do
+    summary = (
+        result.summary()
+        .drop_dims("status")
+        .filter_by_attrs(long_name=lambda text: "bin" not in text)
+    )
     dataset = xr.merge([summary, thinned], combine_attrs="override", join="exact", compat="equals")
     dataset.attrs |= {
-        "preset": settings.preset, "seed": starts.seed, "design": starts.design, "rtol": settings.rtol,
-        "comment": f"V_mean, V_quantiles, ... are over all motions; V, omega, ... are {settings.kept} of them",
-    }  # fmt: skip
+        "preset": settings.preset,
+        "seed": starts.seed,
+        "design": starts.design,
+        "rtol": settings.rtol,
+        "comment": (
+            "V_mean, V_quantiles, ... are over all motions; V, omega, ... are "
+            f"{settings.kept} of them"
+        ),
+    }
     path = out / "ensemble.nc"
     write_dataset(dataset, path)
     microseconds = 1e6 * seconds / settings.motions

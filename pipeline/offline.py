@@ -1,9 +1,11 @@
-"""Offline: the law of every alpha -> data/tables/law.nc, those of the materials of [tables] -> data/tables/NAME.nc, and
-lam, epsilon, beta, Q and M on a grid of V, delta and alpha, by root solves -> data/tables/grid.nc.
+"""Offline: the law of every alpha -> data/tables/law.nc, those of the materials of [tables] ->
+data/tables/NAME.nc, and lam, epsilon, beta, Q and M on a grid of V, delta and alpha, by root
+solves -> data/tables/grid.nc.
 
 python -m pipeline.offline [--config FILE] [--tables FOLDER] [-o FOLDER]
 
-Exit code 1 where an error that is measured while a file is made exceeds the one that the configuration allows.
+Exit code 1 where an error that is measured while a file is made exceeds the one that the
+configuration allows.
 """
 
 from __future__ import annotations
@@ -19,17 +21,17 @@ import xarray as xr
 
 import viscoroll as vr
 from viscoroll.core.errors import FileError
-from viscoroll.io.config import preset
-from viscoroll.materials.law_file import stated_errors
+from viscoroll.materials.checked_netcdf import stated_errors
 from viscoroll.materials.material_toml import SECTIONS, parse_materials
+from viscoroll.roller_toml import preset
 
 from . import stage
 
 
 class Law(msgspec.Struct, forbid_unknown_fields=True):
-    """[tables.laws.NAME]: a material, and that of the base where it is another, as sections of these names; or, in
-    place of the first, the columns of a DMA, a file seen from that of the configuration, which are fitted; ``nu`` and
-    ``name`` are for the fit.
+    """[tables.laws.NAME]: a material, and that of the base where it is another, as sections of
+    these names; or, in place of the first, the columns of a DMA, a file seen from that of the
+    configuration, which are fitted; ``nu`` and ``name`` are for the fit.
     """
 
     material: dict | None = None
@@ -40,8 +42,8 @@ class Law(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class Grid(msgspec.Struct, forbid_unknown_fields=True):
-    """[tables.grid]: the preset; lowest and highest V and how many; how many delta; every alpha; and the largest
-    difference of a node from the rows that is allowed.
+    """[tables.grid]: the preset; lowest and highest V and how many; how many delta; every alpha;
+    and the largest difference of a node from the rows that is allowed.
     """
 
     preset: str
@@ -52,7 +54,9 @@ class Grid(msgspec.Struct, forbid_unknown_fields=True):
 
 
 class Tables(msgspec.Struct, forbid_unknown_fields=True):
-    """[tables]: the largest errors allowed; lowest and highest alpha of law.nc; the materials by name; the grid."""
+    """[tables]: the largest errors allowed; lowest and highest alpha of law.nc; the materials by
+    name; the grid.
+    """
 
     allowed: float
     allowed_N: float
@@ -63,24 +67,32 @@ class Tables(msgspec.Struct, forbid_unknown_fields=True):
 
 def build_all(config: Path, folder: Path) -> stage.Outcome:
     """Build, save and report every law of the configuration."""
-    outcome, settings = stage.Outcome([]), stage.read_section(config, "tables", Tables)
+    outcome = stage.Outcome([])
+    settings = stage.read_section(config, "tables", Tables)
     build(outcome, folder / "law.nc", settings, lambda: vr.tables.law(alpha=settings.alpha))
     for name, law in settings.laws.items():
-        build(outcome, folder / f"{name}.nc", settings, partial(vr.tables.law, *bodies(config, law)))
+        build(
+            outcome, folder / f"{name}.nc", settings, partial(vr.tables.law, *bodies(config, law))
+        )
     build_grid(outcome, folder / "grid.nc", settings.grid)
     return outcome
 
 
 def build_grid(outcome: stage.Outcome, path: Path, settings: Grid) -> None:
     """Build the grid by root solves, save and report it."""
-    scene, V = preset(settings.preset), vr.tables.spread(*settings.V, "log")
+    scene = preset(settings.preset)
+    V = vr.tables.spread(*settings.V, "log")
     delta = vr.tables.creep_nodes(scene, V, settings.delta, alpha=settings.alpha)
     make = partial(vr.tables.build, scene, V, delta=delta, alpha=settings.alpha, method="direct")
     grid = made(outcome, path, make)
     worst = max(float(field.attrs["difference_from_rows"]) for field in grid.values())
-    outcome.headline[f"grid: nodes, largest difference from rows (allowed {settings.allowed:g})"] = worst
+    outcome.headline[
+        f"grid: nodes, largest difference from rows (allowed {settings.allowed:g})"
+    ] = worst
     for way in ("spline", "linear"):
-        outcome.headline[f"grid: largest error of Q between nodes, {way}"] = grid.Q.attrs[f"{way}_error"]
+        outcome.headline[f"grid: largest error of Q between nodes, {way}"] = grid.Q.attrs[
+            f"{way}_error"
+        ]
     outcome.failed |= not worst <= settings.allowed
 
 
@@ -96,18 +108,25 @@ def made(outcome: stage.Outcome, path: Path, make: Callable[[], xr.Dataset]) -> 
     return table
 
 
-def build(outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[], xr.Dataset]) -> None:
+def build(
+    outcome: stage.Outcome, path: Path, settings: Tables, make: Callable[[], xr.Dataset]
+) -> None:
     """Build, save and report a law."""
     errors = stated_errors(made(outcome, path, make))
-    off_N, worst = errors.pop("N"), max(errors.values())
+    off_N = errors.pop("N")
+    worst = max(errors.values())
     outcome.headline[f"{path.stem}: largest relative error (allowed {settings.allowed:g})"] = worst
-    outcome.headline[f"{path.stem}: error of N divided by its largest value (allowed {settings.allowed_N:g})"] = off_N
+    outcome.headline[
+        f"{path.stem}: error of N divided by its largest value (allowed {settings.allowed_N:g})"
+    ] = off_N
     outcome.failed |= worst > settings.allowed or off_N > settings.allowed_N
 
 
 def bodies(config: Path, law: Law) -> tuple[vr.Material | None, vr.Material | None]:
     """The material and that of the base."""
-    found = parse_materials(config, {name: each for name in SECTIONS if (each := getattr(law, name)) is not None})
+    found = parse_materials(
+        config, {name: each for name in SECTIONS if (each := getattr(law, name)) is not None}
+    )
     if law.dma:
         path = config.parent / law.dma
         try:

@@ -1,4 +1,5 @@
-"""Runtime: Eq. (22) from the file of the law that `make tables` wrote -> out/runtime.nc, the contact along with it.
+"""Runtime: Eq. (22) from the file of the law that `make tables` wrote -> out/runtime.nc, the
+contact along with it.
 
     python -m pipeline.runtime [--config FILE] [-o FOLDER]
 
@@ -21,7 +22,7 @@ from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.core.files import write_dataset
-from viscoroll.core.symbols import attributes
+from viscoroll.core.scale import attributes
 
 from . import stage
 
@@ -34,7 +35,9 @@ CONTACT = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 
 
 class Runtime(msgspec.Struct, forbid_unknown_fields=True):
-    """[runtime]: a law of the paper's material, ``times`` even times up to ``end``, the tolerance of the integrator."""
+    """[runtime]: a law of the paper's material, ``times`` even times up to ``end``, the tolerance
+    of the integrator.
+    """
 
     law: str
     end: float
@@ -47,8 +50,8 @@ class Runtime(msgspec.Struct, forbid_unknown_fields=True):
 
 
 def least_seconds(call: Callable[[], Any], compiled: bool) -> tuple[Any, float]:
-    """What a call gives, and the least seconds of three, or those of one above :data:`ENOUGH`; ``compiled``: whether
-    that was compiled before, else by a call that does not count.
+    """What a call gives, and the least seconds of three, or those of one above :data:`ENOUGH`;
+    ``compiled``: whether that was compiled before, else by a call that does not count.
     """
     if not compiled:
         call()
@@ -62,11 +65,23 @@ def least_seconds(call: Callable[[], Any], compiled: bool) -> tuple[Any, float]:
 
 def motions(way: Way, t: NDArray, law: str) -> xr.Dataset:
     """The paper's IC1-IC3 with the seconds that each took, one way; ``law``: by what."""
-    timed = [least_seconds(partial(way, *start), n > 0) for n, start in enumerate(vr.presets.PAPER_STARTS.values())]
+    timed = [
+        least_seconds(partial(way, *start), n > 0)
+        for n, start in enumerate(vr.presets.PAPER_STARTS.values())
+    ]
     found, seconds = zip(*timed, strict=True)
-    speeds = {name: (("ic", "t"), [one[n] for one in found], attributes(name)) for n, name in enumerate(("V", "omega"))}
-    about = {"title": "Motions of the paper's Sect. 5.1", "law": law, "source": f"viscoroll {vr.__version__}"}
-    data = speeds | {"seconds": ("ic", list(seconds), {"long_name": "time to integrate", "units": "s"})}
+    speeds = {
+        name: (("ic", "t"), [one[n] for one in found], attributes(name))
+        for n, name in enumerate(("V", "omega"))
+    }
+    about = {
+        "title": "Motions of the paper's Sect. 5.1",
+        "law": law,
+        "source": f"viscoroll {vr.__version__}",
+    }
+    data = speeds | {
+        "seconds": ("ic", list(seconds), {"long_name": "time to integrate", "units": "s"})
+    }
     names = np.array(list(vr.presets.PAPER_STARTS), dtype=object)
     return xr.Dataset(data, {"ic": names, "t": ("t", t, attributes("t"))}, about)
 
@@ -90,7 +105,9 @@ def work(settings: Runtime, out: Path) -> stage.Outcome:
         dataset[name] = (("ic", "t"), getattr(along, name), attributes(name))
     path = out / "runtime.nc"
     write_dataset(dataset, path, stage.plain_encoding(dataset))
-    headline: dict[str, float | int | str] = {f"{dataset.law}: seconds, IC1-IC3": float(dataset.seconds.sum())}
+    headline: dict[str, float | int | str] = {
+        f"{dataset.law}: seconds, IC1-IC3": float(dataset.seconds.sum())
+    }
     for name, start in vr.presets.PAPER_STARTS.items():
         motion = vr.roll(scene, *start, t)
         if np.isfinite(onset := motion.onset_time):

@@ -1,4 +1,5 @@
-"""What the stages share: options, their section of the configuration, timing, and a record of what they found.
+"""What the stages share: options, their section of the configuration, timing, and a record of what
+they found.
 
 A stage is a function work(settings, out) -> Outcome.  :func:`run` calls it and leaves
 <out>/stages/<name>.json: seconds, files and headline numbers, which pipeline/report.py reads.
@@ -93,7 +94,9 @@ def make_folder(path: Path) -> Path:
 
 
 def plain_encoding(dataset: xr.Dataset) -> dict[str, Any]:
-    """For ``write_dataset``, of a dataset that holds strings: those take neither compression nor checksums."""
+    """For ``write_dataset``, of a dataset that holds strings: those take neither compression nor
+    checksums.
+    """
     return {str(name): {"_FillValue": None} for name in dataset.variables}
 
 
@@ -105,8 +108,12 @@ def said(doc: str | None) -> argparse.ArgumentParser:
 def parser(doc: str | None) -> argparse.ArgumentParser:
     """Options of every stage."""
     result = said(doc)
-    result.add_argument("--config", type=Path, default=CONFIG, help=f"TOML file (default {CONFIG.name})")
-    result.add_argument("-o", "--output", type=Path, default=ROOT / "out", help="folder (default out)")
+    result.add_argument(
+        "--config", type=Path, default=CONFIG, help=f"TOML file (default {CONFIG.name})"
+    )
+    result.add_argument(
+        "-o", "--output", type=Path, default=ROOT / "out", help="folder (default out)"
+    )
     return result
 
 
@@ -135,15 +142,19 @@ def told(name: str, work: Callable[[], int | None]) -> int:
         return 2
 
 
-def run(name: str, kind: type[T] | None, work: Callable[..., Outcome], doc: str | None, **folders: Path) -> int:
+def run(
+    name: str, kind: type[T] | None, work: Callable[..., Outcome], doc: str | None, **folders: Path
+) -> int:
     """Run a stage from the command line: 0 done, 1 a tolerance is exceeded, 2 an error in one line.
 
-    ``work`` gets its settings, a ``kind`` (without one the path of the configuration), and the ``folders``, which
-    options of their names change; without any, --output.
+    ``work`` gets its settings, a ``kind`` (without one the path of the configuration), and the
+    ``folders``, which options of their names change; without any, --output.
     """
     options = parser(doc)
     for option, folder in folders.items():
-        options.add_argument(f"--{option}", type=Path, default=folder, help=f"default {shown(folder)}")
+        options.add_argument(
+            f"--{option}", type=Path, default=folder, help=f"default {shown(folder)}"
+        )
     arguments = options.parse_args()
 
     def timed() -> int:

@@ -1,10 +1,12 @@
-"""Validate: laws, stresses and motions against root solves of the printed equations -> out/validation.csv and .txt.
+"""Validate: laws, stresses and motions against root solves of the printed equations ->
+out/validation.csv and .txt.
 
     python -m pipeline.validate [--config FILE] [-o FOLDER] [--corners]
 
-The motions of out/runtime.nc, which come from the file of the law, are held against those of out/direct.nc, which are
-made here and share neither the law nor the integrator with them.  One row a quantity: found, allowed, verdict; exit
-code 1 where one is exceeded.  --corners looks at the ends of what the package takes instead (pipeline/corners.py).
+The motions of out/runtime.nc, which come from the file of the law, are held against those of
+out/direct.nc, which are made here and share neither the law nor the integrator with them.  One row
+a quantity: found, allowed, verdict; exit code 1 where one is exceeded.  --corners looks at the ends
+of what the package takes instead (pipeline/corners.py).
 """
 
 from __future__ import annotations
@@ -25,8 +27,8 @@ from pipeline.validation import validate
 from pipeline.validation.direct_motion import roll_direct
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_dataset, write_text
-from viscoroll.io.tables.check import Check
-from viscoroll.io.tables.store import is_law
+from viscoroll.tables.law_dataset import Check
+from viscoroll.tables.table_files import is_law
 
 from . import stage
 from .runtime import motions
@@ -44,8 +46,8 @@ Count = Annotated[int, msgspec.Meta(ge=1)]
 
 
 class Validate(msgspec.Struct, forbid_unknown_fields=True):
-    """[validate]: files of laws, the arguments of :func:`pipeline.validation.validate`, and what motions from the file
-    may be off by.
+    """[validate]: files of laws, the arguments of :func:`pipeline.validation.validate`, and what
+    motions from the file may be off by.
     """
 
     tables: list[str]
@@ -72,31 +74,45 @@ def loaded(path: Path) -> xr.Dataset:
     try:
         return xr.load_dataset(path, engine="h5netcdf")
     except (OSError, ValueError) as error:
-        raise FileError(path, f"cannot be read ({error}); run the stage that makes it first") from error
+        raise FileError(
+            path, f"cannot be read ({error}); run the stage that makes it first"
+        ) from error
 
 
 def errors(found: xr.Dataset, truth: xr.Dataset) -> dict[str, float]:
     """Largest error of V and omega divided by the initial speed, by start."""
     off = np.maximum(abs(found.V - truth.V), abs(found.omega - truth.omega)).max("t", skipna=False)
-    return dict(zip(map(str, truth.ic.values), (off / abs(truth.V[:, 0])).values.tolist(), strict=True))
+    return dict(
+        zip(map(str, truth.ic.values), (off / abs(truth.V[:, 0])).values.tolist(), strict=True)
+    )
 
 
 def work(settings: Validate, out: Path) -> stage.Outcome:
     sizes = msgspec.structs.asdict(settings)
-    allowed, names = sizes.pop("runtime"), sizes.pop("tables")
+    allowed = sizes.pop("runtime")
+    names = sizes.pop("tables")
     of_file = loaded(out / "runtime.nc")
     truth = direct(of_file.t.values)
     write_dataset(truth, out / "direct.nc", stage.plain_encoding(truth))
     tables = tuple(vr.tables.load(stage.ROOT / name) for name in names)
     report = validate(tables, progress=True, **sizes)
     meaning = f"V and omega by {of_file.law}, divided by the initial speed"
-    rows = [Check(f"runtime {start}", error, allowed, meaning) for start, error in errors(of_file, truth).items()]
+    rows = [
+        Check(f"runtime {start}", error, allowed, meaning)
+        for start, error in errors(of_file, truth).items()
+    ]
     report = replace(report, checks=(*report.checks, *rows))
     files = [out / "validation.csv", out / "validation.txt", out / "direct.nc"]
-    stage.write_rows(files[0], [check._asdict() | {"passed": check.passed} for check in report.checks])
+    stage.write_rows(
+        files[0], [check._asdict() | {"passed": check.passed} for check in report.checks]
+    )
     write_text(files[1], f"{report}\n")
     print(report, end="\n\n")
-    said = HEADLINE | {f"{t.title}: any function, relative": f"{re.escape(t.title)}: .*" for t in tables if is_law(t)}
+    said = HEADLINE | {
+        f"{t.title}: any function, relative": f"{re.escape(t.title)}: .*"
+        for t in tables
+        if is_law(t)
+    }
     headline: dict[str, float | int | str] = {
         text: max(check.measured for check in report.checks if re.fullmatch(which, check.name))
         for text, which in said.items()

@@ -1,4 +1,6 @@
-"""Tables of calls, refusals.txt, values.txt and cli/answers.txt; their lines see the names of this module."""
+"""Tables of calls, refusals.txt, values.txt and cli/answers.txt; their lines see the names of this
+module.
+"""
 # ruff: noqa: F401 - names are imported for the lines
 
 import dataclasses
@@ -22,73 +24,97 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll import fmu
-from viscoroll.app.cli.plot import _figure_of_netcdf
-from viscoroll.app.identification.measurements_toml import read_measurements
-from viscoroll.contact_law.contact_fields import FIELDS, SLOPES
-from viscoroll.contact_law.validity.assumptions import REACH_LIMIT, WAVE_LIMIT, assess_coupling
-from viscoroll.contact_law.validity.free_rolling import FreeRolling
-from viscoroll.contact_law.validity.steadiness import Steadiness
+from viscoroll.cli.file_commands import _figure_of_netcdf
+from viscoroll.contact_mechanics.assumptions import REACH_LIMIT, WAVE_LIMIT, assess_coupling
+from viscoroll.contact_mechanics.contact_table import FIELDS, SLOPES
+from viscoroll.contact_mechanics.free_rolling import FreeRolling
+from viscoroll.contact_mechanics.validity import Steadiness
 from viscoroll.core.scale import Scale
-from viscoroll.io.config import read_law_source, read_roller
-from viscoroll.io.runs import estimate, read_run
-from viscoroll.io.runs.columns import attributes
-from viscoroll.io.runs.evaluate import block_inputs, roll_inputs
-from viscoroll.io.runs.sensitivity import sobol_indices
-from viscoroll.io.runs.uncertain import read_column
-from viscoroll.io.sampling import sample
-from viscoroll.io.tables.check import check_table
-from viscoroll.kernels.bessel.ratios import ratio_i2, ratio_k, ratio_r
-from viscoroll.materials.law.netcdf import law_table_of
-from viscoroll.materials.law.table import law_table
-from viscoroll.materials.material_netcdf import material_as_dataset
+from viscoroll.kernels.law.bessel_ratios import ratio_i2, ratio_k, ratio_r
+from viscoroll.laws.law_netcdf import law_table_of
+from viscoroll.laws.law_table import law_table
+from viscoroll.materials.checked_netcdf import material_as_dataset
 from viscoroll.materials.material_toml import read_materials
-from viscoroll.motion.histogram import Histogram
+from viscoroll.measurements.identify import read_measurements
+from viscoroll.motion.summaries import Histogram
 from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
+from viscoroll.roller_toml import read_law_source, read_roller
+from viscoroll.runs import estimate, read_run
+from viscoroll.runs.run_blocks import attributes, block_inputs, roll_inputs
+from viscoroll.runs.sensitivity import sobol_indices
+from viscoroll.runs.uncertain_inputs import read_column
+from viscoroll.sampling import sample
+from viscoroll.tables.law_dataset import check_table
 
 SCENE_FILE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
 ROLLER_FILE = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
-RUBBER_FILE = "[material]\nE = 2.3e5\nnu = 0.5\nprony = { E = [2.0, 6], tau = [1.0, 1e-4] }\nT_ref = 0.3\n"
+RUBBER_FILE = (
+    "[material]\nE = 2.3e5\nnu = 0.5\nprony = { E = [2.0, 6], tau = [1.0, 1e-4] }\nT_ref = 0.3\n"
+)
 CYLINDER_FILE = ROLLER_FILE + "E = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n"
 OMEGA = np.logspace(-2, 4, 20)
 DMA = OMEGA, 1.0 + OMEGA / (1.0 + OMEGA), 0.1 + 0.0 * OMEGA
 LABELLED = xr.DataArray([0.1, 0.2], dims="run", coords={"run": ["a", "b"], "day": 3}, name="speed")
-FRAME = pd.DataFrame({"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=pd.Index(["x", "y"], name="roller"))
-UNSURE = DMA_ROLLER.replace(material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA_SERIES.E), DMA_SERIES.tau))
+FRAME = pd.DataFrame(
+    {"V": [0.1, 0.2], "delta": [0.0, 0.01]}, index=pd.Index(["x", "y"], name="roller")
+)
+UNSURE = DMA_ROLLER.replace(
+    material=vr.Prony(np.outer(np.linspace(0.9, 1.1, 7), DMA_SERIES.E), DMA_SERIES.tau)
+)
 MEASURED = vr.Material(
-    2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=vr.Measured(0.06, 1884.0, 0.01, "dma.csv")
+    2e6,
+    0.5,
+    vr.Prony([2.0, 6.0], [1e-3, 1e-5]),
+    measured=vr.Measured(0.06, 1884.0, 0.01, "dma.csv"),
 )
 BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=MEASURED, mu=0.5)
-SERIES, MANY = vr.Prony([2.0, 6.0], [1.0, 1e-4]), vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
-SOFT, STEEL = vr.Material(2.3e5, 0.49, SERIES, density=1100.0), vr.Material.elastic(2e11, 0.3)
+SERIES = vr.Prony([2.0, 6.0], [1.0, 1e-4])
+MANY = vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])
+SOFT = vr.Material(2.3e5, 0.49, SERIES, density=1100.0)
+STEEL = vr.Material.elastic(2e11, 0.3)
 RUBBER_COVER = vr.Material(2.3e5, 0.49, SERIES, thickness=0.02)
-COVERED = vr.Scene(material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0, coupled=False)
+COVERED = vr.Scene(
+    material=vr.Cover(11.0, nu=0.5, thickness=1.0), kappa=10.0, mu=0.5, gamma=1.0, coupled=False
+)
 THIN = vr.Scene(material=vr.Cover(11.0, nu=0.3, thickness=0.02), kappa=10.0, mu=0.5, coupled=False)
-ONE, PAPER, ROLLER = vr.Scene(11.0, 10.0, 0.5, 120.0), vr.presets.PAPER_SECTION_5_ROUNDED, vr.presets.RUBBER_CYLINDER
+ONE = vr.Scene(11.0, 10.0, 0.5, 120.0)
+PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
+ROLLER = vr.presets.RUBBER_CYLINDER
 BOTH = PAPER, ROLLER
 T = np.linspace(0.0, 8.0, 33)
 #: the paper's cylinder by its parameters, and what is left of them where materials are given
 SI = {"R": 0.1, "m": 35.5, "E": 2.3e5, "nu": 0.49, "T_epsilon": 10.7, "T_sigma": 0.97, "mu": 0.2}
 BARE = {"R": 0.1, "m": 35.5, "mu": 0.2}
-HEAVY, RUBBER = replace(STEEL, density=7850.0), vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
-TREAD = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0, 11.0], [1.0, 1e-3, 1e-7]), 0.3, "rubber", 1100.0)
+HEAVY = replace(STEEL, density=7850.0)
+RUBBER = vr.Material(2.3e5, 0.5, SERIES, T_ref=0.3)
+TREAD = vr.Material(
+    2.3e5, 0.49, vr.Prony([2.0, 6.0, 11.0], [1.0, 1e-3, 1e-7]), 0.3, "rubber", 1100.0
+)
 HARD = vr.Material(1e6, 0.5, vr.Prony([4.0, 1.0], [1.0, 1e-2]), T_ref=2.0)
 OTHER_GRID = xr.Dataset(
     {
         "Q": (("V", "delta"), np.tile([0.0, 0.0, 1.0], (3, 1)), {"units": "kN/m"}),
         "M": ("V", np.ones(3), {"units": "N mm/m"}),
     },
-    {"V": ("V", np.arange(1.0, 4.0), {"units": "mm/s"}), "delta": ("delta", [-0.01, 0.0, 0.01], {"units": "1"})},
+    {
+        "V": ("V", np.arange(1.0, 4.0), {"units": "mm/s"}),
+        "delta": ("delta", [-0.01, 0.0, 0.01], {"units": "1"}),
+    },
     {"R": 0.1, "load": 1e3},
 )
 
 
 #: a resistance over speed, in files
-DRUM_V, DRUM_M = np.geomspace(0.1, 10.0, 5), np.array([0.1, 0.3, 0.7, 0.5, 0.2])
+DRUM_V = np.geomspace(0.1, 10.0, 5)
+DRUM_M = np.array([0.1, 0.3, 0.7, 0.5, 0.2])
 
 
 def rows(*columns, sep=",", decimal="."):
     """Lines of a file of these columns."""
-    return "\n".join(sep.join(f"{x:.10g}".replace(".", decimal) for x in row) for row in zip(*columns, strict=True))
+    return "\n".join(
+        sep.join(f"{x:.10g}".replace(".", decimal) for x in row)
+        for row in zip(*columns, strict=True)
+    )
 
 
 def pair(material, base, **more):
@@ -98,7 +124,9 @@ def pair(material, base, **more):
 
 @cache
 def grid():
-    return vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2], delta=[0.0, 0.1], alpha=[1.0, 2.0])
+    return vr.tables.build(
+        vr.presets.PAPER_SECTION_5, [0.1, 0.2], delta=[0.0, 0.1], alpha=[1.0, 2.0]
+    )
 
 
 @cache
@@ -107,7 +135,9 @@ def law_file():
 
 
 def lines_of(name):
-    """The pairs of lines of a table: a call, and below it the answer; comments and empty lines are left out."""
+    """The pairs of lines of a table: a call, and below it the answer; comments and empty lines are
+    left out.
+    """
     text = (Path(__file__).parent / name).read_text()
     lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
     return [*zip(lines[::2], map(str.strip, lines[1::2]), strict=True)]
@@ -125,12 +155,18 @@ def names_in(folder):
         return read_run(file(FILES[name].replace(old, new, 1)))
 
     def measured(old, new):
-        return vr.identify(**read_measurements(experiments.measurements(folder, old, new)), starts=1)
+        return vr.identify(
+            **read_measurements(experiments.measurements(folder, old, new)), starts=1
+        )
 
     def data(text, kind="resistance"):
-        """The first data of a file of measurements, whose columns have the names of its own kind."""
+        """The first data of a file of measurements, whose columns have the names of its own
+        kind.
+        """
         file(text, "drum.csv")
-        plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', "").replace("resistance", kind)
+        plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', "").replace(
+            "resistance", kind
+        )
         return read_measurements(file(plain))["data"][0]
 
     def netcdf(data, without=""):

@@ -3,13 +3,14 @@
 import os
 import re
 
-# a thread of BLAS that waits for another spins: where cores are busy a fit of a master curve takes ten times longer
+# a thread of BLAS that waits for another spins: where cores are busy a fit of a master curve takes
+# ten times longer
 os.environ["OPENBLAS_NUM_THREADS"] = "1"
 
 import pytest
 from memory import forget
 
-from viscoroll.contact_law.validity import model_warnings
+from viscoroll.contact_mechanics import model_warnings
 from viscoroll.motion import flow_store
 
 # what a user chose for other work does not reach the tests
@@ -19,17 +20,24 @@ os.environ["VISCOROLL_QUIET"] = "1"
 
 
 def pytest_addoption(parser):
-    parser.addoption("--skips", metavar="WORDS", help="any test skipped for a reason without these words fails the run")
+    parser.addoption(
+        "--skips",
+        metavar="WORDS",
+        help="any test skipped for a reason without these words fails the run",
+    )
 
 
 def pytest_sessionfinish(session):
     """With --skips a test that nobody knows to be skipped counts as one that failed."""
-    expected, reporter = session.config.option.skips, session.config.pluginmanager.get_plugin("terminalreporter")
+    expected = session.config.option.skips
+    reporter = session.config.pluginmanager.get_plugin("terminalreporter")
     if expected is None or reporter is None:  # a worker of xdist has none
         return
     reasons = [str(report.longrepr[2]) for report in reporter.stats.get("skipped", [])]
     if unexpected := {reason for reason in reasons if not re.search(expected, reason)}:
-        reporter.write_line("not expected to be skipped: " + "; ".join(sorted(unexpected)), red=True)
+        reporter.write_line(
+            "not expected to be skipped: " + "; ".join(sorted(unexpected)), red=True
+        )
         session.exitstatus = pytest.ExitCode.TESTS_FAILED
 
 

@@ -1,4 +1,6 @@
-"""A roller that is driven, and drives that data files hold: numbers, schedules and gains in plain words."""
+"""A roller that is driven, and drives that data files hold: numbers, schedules and gains in plain
+words.
+"""
 
 import math
 from typing import NamedTuple

@@ -1,4 +1,6 @@
-"""A roller of known truth, and experiments on it: a standard linear solid whose M has its hump at 0.64 m/s."""
+"""A roller of known truth, and experiments on it: a standard linear solid whose M has its hump at
+0.64 m/s.
+"""
 
 import numpy as np
 
@@ -6,8 +8,10 @@ import viscoroll as vr
 
 TRUTH = {"mu": 0.3, "E": 3e6, "E_1": 9.0, "T_ref": 1e-3}
 RANGES = {"mu": (0.03, 3.0), "E": (3e5, 3e7), "E_1": (0.9, 90.0), "T_ref": (1e-4, 1e-2)}
-BRAKE, DRAG = 0.05, 0.003
-SLOW, HUMP = np.geomspace(0.02, 0.2, 40), np.geomspace(0.02, 20.0, 40)
+BRAKE = 0.05
+DRAG = 0.003
+SLOW = np.geomspace(0.02, 0.2, 40)
+HUMP = np.geomspace(0.02, 20.0, 40)
 TIMES = np.linspace(0.0, 20.0, 200)
 
 
@@ -24,19 +28,29 @@ def ranges(*names):
 
 def noise(seed, values, sigma):
     """Values with noise; without a seed as they are."""
-    return values if seed is None else values + sigma * np.random.default_rng(seed).standard_normal(values.shape)
+    return (
+        values
+        if seed is None
+        else values + sigma * np.random.default_rng(seed).standard_normal(values.shape)
+    )
 
 
 def resistance(V=HUMP, seed=None, sigma=0.01, **more):
     body = roller() if "load" not in more else roller().replace(load=more["load"])
-    return vr.Resistance(V, noise(seed, body.contact(V, delta=0.0, fields="M").M, sigma), sigma=sigma, **more)
+    return vr.Resistance(
+        V, noise(seed, body.contact(V, delta=0.0, fields="M").M, sigma), sigma=sigma, **more
+    )
 
 
 def traction(speeds=(0.1,), seed=None, sigma=1.0, **more):
     delta = np.tile(np.linspace(-0.06, 0.06, 21), len(speeds))
     V = np.repeat(speeds, 21)
     return vr.Traction(
-        V, delta, noise(seed, roller().contact(V, delta=delta, fields="Q").Q, sigma), sigma=sigma, **more
+        V,
+        delta,
+        noise(seed, roller().contact(V, delta=delta, fields="Q").Q, sigma),
+        sigma=sigma,
+        **more,
     )
 
 

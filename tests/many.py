@@ -1,4 +1,6 @@
-"""Arrays of materials, one for each state or motion: of both forms, with modes that fall away, and of two bodies."""
+"""Arrays of materials, one for each state or motion: of both forms, with modes that fall away, and
+of two bodies.
+"""
 
 import numpy as np
 
@@ -7,34 +9,44 @@ import viscoroll as vr
 #: materials of an array of pairs
 COUNT = 12
 #: two bodies of other times
-UNLIKE = vr.Bodies(vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7]), 0.3)
+UNLIKE = vr.Bodies(
+    vr.Prony([2.0, 5.0], [1.0, 1e-3]), vr.Prony([4.0, 1.0, 0.3], [0.2, 2e-4, 1e-7]), 0.3
+)
 
 
 def states(count, seed):
-    """alpha from exactly 1 to 1e12, kappa, mu, V > 0, and the share of delta_star, graded to both ends."""
+    """alpha from exactly 1 to 1e12, kappa, mu, V > 0, and the share of delta_star, graded to both
+    ends.
+    """
     rng = np.random.default_rng(seed)
     alpha = 10.0 ** rng.uniform(0.0, 6.0, count)
     alpha[:6] = 1.0, 1.0 + 2.0**-52, 1.0 + 1e-9, 2.0, 2.0**20, 1e12
-    kappa, mu = 10.0 ** rng.uniform(-0.3, 2.3, count), 10.0 ** rng.uniform(-2.0, 0.5, count)
-    near, at_rest = 1.0 - 10.0 ** rng.uniform(-6.0, 0.0, count), 10.0 ** rng.uniform(-12.0, 0.0, count)
+    kappa = 10.0 ** rng.uniform(-0.3, 2.3, count)
+    mu = 10.0 ** rng.uniform(-2.0, 0.5, count)
+    near = 1.0 - 10.0 ** rng.uniform(-6.0, 0.0, count)
+    at_rest = 10.0 ** rng.uniform(-12.0, 0.0, count)
     s = np.choose(rng.integers(3, size=count), [at_rest, near, rng.random(count)])
     return alpha, kappa, mu, 10.0 ** rng.uniform(-7.0, 7.0, count) / kappa, s
 
 
 def rubbers(draw, modes, creep=False, count=COUNT):
     """Random ones; some with a mode less, of strength 0 or of equal times, and one elastic."""
-    times, strengths = 10.0 ** draw.uniform(-4.0, 1.0, (count, modes)), 10.0 ** draw.uniform(-1.0, 1.0, (count, modes))
+    times = 10.0 ** draw.uniform(-4.0, 1.0, (count, modes))
+    strengths = 10.0 ** draw.uniform(-1.0, 1.0, (count, modes))
     if creep:
         strengths *= 0.9 / strengths.sum(axis=1, keepdims=True)
     if modes > 2:
-        strengths[1, 2], times[4, 1], strengths[5] = 0.0, times[4, 0], 0.0
+        strengths[1, 2] = 0.0
+        times[4, 1] = times[4, 0]
+        strengths[5] = 0.0
     return (vr.Prony.creep if creep else vr.Prony)(strengths, times)
 
 
 def series(seed, modes, decades, count):
     draw = np.random.default_rng(seed)
     return vr.Prony(
-        10.0 ** draw.uniform(-1.5, 1.5, (count, modes)), 10.0 ** draw.uniform(-decades, 0.0, (count, modes))
+        10.0 ** draw.uniform(-1.5, 1.5, (count, modes)),
+        10.0 ** draw.uniform(-decades, 0.0, (count, modes)),
     )
 
 
@@ -43,7 +55,8 @@ def of_alphas():
     return vr.Prony.creep(((alpha - 1.0) / alpha)[:, None], np.ones((alpha.size, 1)), alpha=alpha)
 
 
-ONE, ELASTIC = vr.Prony([2.0, 1.0], [1.0, 1e-2]), vr.Prony.elastic()
+ONE = vr.Prony([2.0, 1.0], [1.0, 1e-2])
+ELASTIC = vr.Prony.elastic()
 #: of both forms, of one body for all, of rigid and elastic bodies, of like series with a share each
 PAIRS = {
     "each": lambda draw, first, share: (first, rubbers(draw, 3), share),
@@ -52,7 +65,11 @@ PAIRS = {
     "a share each": lambda draw, first, share: (ONE, vr.Prony([0.5], [0.1]), share),
     "elastic base": lambda draw, first, share: (first, ELASTIC, share),
     "both elastic": lambda draw, first, share: (ELASTIC, ELASTIC, share),
-    "some rigid": lambda draw, first, share: (first, rubbers(draw, 2), 1.0 * (np.arange(COUNT) % 2)),
+    "some rigid": lambda draw, first, share: (
+        first,
+        rubbers(draw, 2),
+        1.0 * (np.arange(COUNT) % 2),
+    ),
     "rigid cylinder": lambda draw, first, share: (ELASTIC, first, 0.0),
     "of one series": lambda draw, first, share: (first, first, share),
     "of equal times": lambda draw, first, share: (

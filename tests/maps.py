@@ -18,7 +18,8 @@ def beside(scene, V0, omega0, t, rtol=1e-6):
         vr.ensemble(scene, V0, omega0, t, method=method, rtol=rtol, fields=("V", "omega"))
         for method, rtol in (("flow", rtol), ("integrate", 1e-11))
     )
-    by, size = mapped.flow, np.maximum(abs(exact.V), abs(exact.omega))
+    by = mapped.flow
+    size = np.maximum(abs(exact.V), abs(exact.omega))
     for name in ("V", "omega") if by.any() else ():
         pair = getattr(mapped, name)[by], getattr(exact, name)[by]
         assert close(*pair, mapped.flow_error, scale=size[by], what=name)

@@ -1,17 +1,19 @@
-"""What a process keeps of earlier calls, in one place for the tests that need it gone; and what a call takes."""
+"""What a process keeps of earlier calls, in one place for the tests that need it gone; and what a
+call takes.
+"""
 
 import tracemalloc
 
 import numpy as np
 
-from viscoroll.materials.law import table
+from viscoroll.laws import law_table
 from viscoroll.motion import flow
 
 
 def forget():
     """Neither a table nor a flow map is at hand; those on disk and compiled kernels stay."""
     flow._map.cache_clear()
-    table._made.cache_clear()
+    law_table._made.cache_clear()
 
 
 def taken_beside(call):
@@ -20,4 +22,6 @@ def taken_beside(call):
     result = call()
     peak = tracemalloc.get_traced_memory()[1]
     tracemalloc.stop()
-    return peak - sum(value.nbytes for value in vars(result).values() if isinstance(value, np.ndarray))
+    return peak - sum(
+        value.nbytes for value in vars(result).values() if isinstance(value, np.ndarray)
+    )

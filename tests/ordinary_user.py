@@ -8,7 +8,9 @@ NOBODY = 65534
 
 
 def as_ordinary_user(work):
-    """Kind and text of the error that ``work`` raises in a forked process of such a user, or nothing."""
+    """Kind and text of the error that ``work`` raises in a forked process of such a user, or
+    nothing.
+    """
     receiver, sender = os.pipe()
     if (child := os.fork()) == 0:
         text = ""

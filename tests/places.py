@@ -5,7 +5,9 @@ import tomllib
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-PIPELINE, DATA, DOCS = ROOT / "pipeline", ROOT / "data", ROOT / "docs"
+PIPELINE = ROOT / "pipeline"
+DATA = ROOT / "data"
+DOCS = ROOT / "docs"
 RESULTS = DATA / "results"
 
 

@@ -8,11 +8,18 @@ from places import ROOT
 
 
 def python(*arguments, **environment):
-    """An interpreter with these arguments, in the repository's folder; an environment of its own beside ours."""
+    """An interpreter with these arguments, in the repository's folder; an environment of its own
+    beside ours.
+    """
     return subprocess.run(
-        [sys.executable, *map(str, arguments)], cwd=ROOT, env=os.environ | environment,
-        capture_output=True, text=True, timeout=300, check=False,
-    )  # fmt: skip
+        [sys.executable, *map(str, arguments)],
+        cwd=ROOT,
+        env=os.environ | environment,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        check=False,
+    )
 
 
 def printed(code, *arguments, **environment):
@@ -23,8 +30,8 @@ def printed(code, *arguments, **environment):
 
 
 def stage(name, *arguments):
-    """A stage ("evidence.prove", "offline"; "" is all of the demo) that ends of its own accord: 2 where it refuses, 1
-    where it fails.
+    """A stage ("evidence.prove", "offline"; "" is all of the demo) that ends of its own accord: 2
+    where it refuses, 1 where it fails.
     """
     done = python("-m", f"pipeline.{name}".rstrip("."), *arguments)
     assert "Traceback" not in done.stderr, done.stderr

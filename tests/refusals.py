@@ -1,4 +1,6 @@
-"""Bad input: an error of the package's own, in one line that names the thing, its value and what is allowed."""
+"""Bad input: an error of the package's own, in one line that names the thing, its value and what is
+allowed.
+"""
 
 import pytest
 

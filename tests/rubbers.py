@@ -1,4 +1,6 @@
-"""A rubber of five modes with its moduli by formulas of its own, and rows of numbers of it for files."""
+"""A rubber of five modes with its moduli by formulas of its own, and rows of numbers of it for
+files.
+"""
 
 import re
 
@@ -21,24 +23,36 @@ STORAGE, LOSS = moduli(OMEGA)
 _COMPLIANCE = 1.0 / (STORAGE + 1j * LOSS)
 #: what expressions of files.toml see
 NAMES = {
-    "f": FREQUENCY, "w": OMEGA, "S": STORAGE, "L": LOSS, "tan": LOSS / STORAGE, "mod": np.hypot(STORAGE, LOSS),
-    "phase": np.degrees(np.arctan2(LOSS, STORAGE)), "J1": _COMPLIANCE.real, "J2": -_COMPLIANCE.imag,
-    "n": np.arange(1, 13), "one": np.ones(12), "log": np.log10, "np": np, "half": np.repeat([1.0, 2.0], 6),
-}  # fmt: skip
+    "f": FREQUENCY,
+    "w": OMEGA,
+    "S": STORAGE,
+    "L": LOSS,
+    "tan": LOSS / STORAGE,
+    "mod": np.hypot(STORAGE, LOSS),
+    "phase": np.degrees(np.arctan2(LOSS, STORAGE)),
+    "J1": _COMPLIANCE.real,
+    "J2": -_COMPLIANCE.imag,
+    "n": np.arange(1, 13),
+    "one": np.ones(12),
+    "log": np.log10,
+    "np": np,
+    "half": np.repeat([1.0, 2.0], 6),
+}
 
 
 def filled(text, case):
     """A text with each ``<a; b; c>`` on its line replaced by rows of these columns.
 
-    ``case`` : may have "format" (of a number, %.7g; with a D at its end exponents have it), "sep" (between cells),
-    "decimal", "begin" and "end" (of a row).
+    ``case`` : may have "format" (of a number, %.7g; with a D at its end exponents have it), "sep"
+    (between cells), "decimal", "begin" and "end" (of a row).
     """
 
     def rows(found):
         columns = [column(part.strip()) for part in found[1].split(";")]
         sep = case.get("sep", ",")
         return "\n".join(
-            case.get("begin", "") + sep.join(row) + case.get("end", "") for row in zip(*columns, strict=True)
+            case.get("begin", "") + sep.join(row) + case.get("end", "")
+            for row in zip(*columns, strict=True)
         )
 
     def column(part):

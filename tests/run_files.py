@@ -4,7 +4,7 @@ import re
 from pathlib import Path
 
 import viscoroll as vr
-from viscoroll.io.runs import read_run
+from viscoroll.runs import read_run
 
 PAPER = 'preset = "paper-section-5"\n'
 FULL = (
@@ -44,9 +44,11 @@ n = 20
 t = [0.5, 2.0]
 """
 COMPLIANCES = (
-    STRENGTHS.replace("prony", "creep").replace("E = [0.5, U(1.0, 2.0)]", "J = [0.2, U(0.3, 0.2)]")
-    .replace("tau =", "T =").replace("E_2", "J_2")
-)  # fmt: skip
+    STRENGTHS.replace("prony", "creep")
+    .replace("E = [0.5, U(1.0, 2.0)]", "J = [0.2, U(0.3, 0.2)]")
+    .replace("tau =", "T =")
+    .replace("E_2", "J_2")
+)
 PAPER_ROLLER = "[cylinder]\nR = U(0.08, 0.04)\nm = 35.5\nmu = 0.2\n"
 PAPER_RUBBER = "E = 2.3e5\nnu = 0.49\nT_epsilon = U(9.0, 3.0)\nT_sigma = 0.97\n"
 SLOW = """
@@ -60,7 +62,7 @@ rtol = 1e-10
 keep = "all"
 fields = ["V", "omega", "x", "angle", "delta", "regime", "slip_loss", "rolling_loss"]
 summaries = ["V", "omega", "x", "distance", "angle", "delta", "translation", "lost", "lost_to_slip", "onset_time"]
-"""
+"""  # noqa: E501
 NUMBERS = PAPER_ROLLER + PAPER_RUBBER + SLOW
 SERIES = """
 [material]
@@ -71,8 +73,14 @@ T_ref = 3.0
 """
 LOADED = SERIES + PAPER_ROLLER + "load = U(300.0, 100.0)\n" + SLOW
 RUBBER = vr.datasets.path("rubber-sensitivity.toml").read_text().replace("20_000", "12")
-RUBBER = re.sub("#.*", "", RUBBER).replace("rtol =", 'fields = ["V", "omega", "x"]\nkeep = "all"\nrtol =')
-CERTAIN = RUBBER[: RUBBER.index("[material]")] + "[material]\nE = 3e6\nnu = 0.5\n" + RUBBER[RUBBER.index("[start]") :]
+RUBBER = re.sub("#.*", "", RUBBER).replace(
+    "rtol =", 'fields = ["V", "omega", "x"]\nkeep = "all"\nrtol ='
+)
+CERTAIN = (
+    RUBBER[: RUBBER.index("[material]")]
+    + "[material]\nE = 3e6\nnu = 0.5\n"
+    + RUBBER[RUBBER.index("[start]") :]
+)
 SOFT_BASE = """
 [base]
 E = { distribution = "lognorm", s = 0.2, scale = 3e6 }
@@ -103,7 +111,7 @@ t = [1e-3, 3e-3]
 keep = "all"
 fields = ["V", "force", "torque", "work_torque", "slip_loss"]
 summaries = ["V", "force", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss", "lost_to_slip"]
-"""
+"""  # noqa: E501
 )
 OWN_TIMES = (
     PAPER
@@ -117,11 +125,18 @@ force = { times = [5e-4, 5e-4], values = [0.0, 0.01] }
 [run]
 n = 12
 t = [1e-3, 3e-3]
-"""
+"""  # noqa: E501
 )
-GIVEN_V = OWN_TIMES.replace("torque", "V").replace('"same", ', "").replace("0.05, ", "").replace("force", "torque")
+GIVEN_V = (
+    OWN_TIMES.replace("torque", "V")
+    .replace('"same", ', "")
+    .replace("0.05, ", "")
+    .replace("force", "torque")
+)
 GIVEN_V = GIVEN_V.replace("V0 = 0.0\n", "")
-GIVEN_OMEGA = GIVEN_V.replace("V =", "omega =").replace("omega0 =", "V0 =").replace("torque =", "force =")
+GIVEN_OMEGA = (
+    GIVEN_V.replace("V =", "omega =").replace("omega0 =", "V0 =").replace("torque =", "force =")
+)
 DRIVEN_ROLLER = """
 [cylinder]
 R = U(0.1, 0.05)
@@ -145,8 +160,11 @@ t = [0.5, 1.0, 2.0]
 keep = "all"
 fields = ["V", "omega", "x", "force", "torque", "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss"]
 summaries = ["force", "torque", "work_force", "slip_loss"]
-"""
-SPUN = DRIVEN_ROLLER[: DRIVEN_ROLLER.index("omega0")] + "[drive]\nomega = { times = [0.0, 1.0], values = [0.05, 0.2] }"
+"""  # noqa: E501
+SPUN = (
+    DRIVEN_ROLLER[: DRIVEN_ROLLER.index("omega0")]
+    + "[drive]\nomega = { times = [0.0, 1.0], values = [0.05, 0.2] }"
+)
 SPUN += "\n" + DRIVEN_ROLLER[DRIVEN_ROLLER.index("[run]") :].replace('"brake_loss", ', "")
 UNSTEADY = """[cylinder]
 R = 0.1
@@ -170,18 +188,32 @@ keep = "all"
 fields = ["V", "omega", "x", "work_torque"]
 """
 FILES = {
-    "a preset": FULL, "strengths": STRENGTHS, "compliances": COMPLIANCES,
-    "numbers": NUMBERS, "a series": LOADED, "rubber": RUBBER,
-    "rubber on rubber": RUBBER + SOFT_BASE, "rubber on steel": RUBBER + HARD_BASE,
+    "a preset": FULL,
+    "strengths": STRENGTHS,
+    "compliances": COMPLIANCES,
+    "numbers": NUMBERS,
+    "a series": LOADED,
+    "rubber": RUBBER,
+    "rubber on rubber": RUBBER + SOFT_BASE,
+    "rubber on steel": RUBBER + HARD_BASE,
     "on what is rigid": RUBBER + RIGID_BASE,
-    "known rubber": CERTAIN.replace("0.5\n", "0.5\nprony = { E = [0.3, 1.5], tau = [2e-2, 1e-3] }\n", 1) + SOFT_BASE,
+    "known rubber": CERTAIN.replace(
+        "0.5\n", "0.5\nprony = { E = [0.3, 1.5], tau = [2e-2, 1e-3] }\n", 1
+    )
+    + SOFT_BASE,
     "a rigid roller": CERTAIN.replace("3e6", "inf") + SOFT_BASE,
-    "driven": DRIVEN, "own times": OWN_TIMES, "given V": GIVEN_V, "given omega": GIVEN_OMEGA,
-    "a driven roller": DRIVEN_ROLLER, "a spun roller": SPUN,
+    "driven": DRIVEN,
+    "own times": OWN_TIMES,
+    "given V": GIVEN_V,
+    "given omega": GIVEN_OMEGA,
+    "a driven roller": DRIVEN_ROLLER,
+    "a spun roller": SPUN,
     "unsteady": UNSTEADY,
-}  # fmt: skip
+}
 FILES = {
-    name: re.sub(r"U\(([^ ]*), ([^ ]*)\)", r'{ distribution = "uniform", loc = \1, scale = \2 }', text)
+    name: re.sub(
+        r"U\(([^ ]*), ([^ ]*)\)", r'{ distribution = "uniform", loc = \1, scale = \2 }', text
+    )
     for name, text in FILES.items()
 }
 

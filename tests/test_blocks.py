@@ -19,7 +19,8 @@ def test_a_number_of_threads_that_is_none(monkeypatch, threads):
 
 
 def test_blocks_after_an_error_are_not_begun():
-    begun, lock = [], threading.Lock()
+    begun = []
+    lock = threading.Lock()
 
     def work(start, stop):
         with lock:

@@ -1,4 +1,6 @@
-"""The bound law: the digits of contact() to Python, to jitted code and to C, in all regimes and from many threads."""
+"""The bound law: the digits of contact() to Python, to jitted code and to C, in all regimes and
+from many threads.
+"""
 
 import ctypes
 import pickle
@@ -10,7 +12,7 @@ import pytest
 import scipy
 
 import viscoroll as vr
-from viscoroll.kernels.rows.loads import Loads, LoadsAndSlopes
+from viscoroll.kernels.records import Loads, LoadsAndSlopes
 
 SERIES = vr.Prony([1.0, 2.0, 3.0], [1.0, 0.1, 0.01])
 MATERIALS = {
@@ -33,13 +35,17 @@ def law(request):
 
 
 def states(scene):
-    """(V, omega) of full slip, of slight and of nearly full slip, free rolling and rest, from 1e-200 to 1e200."""
+    """(V, omega) of full slip, of slight and of nearly full slip, free rolling and rest, from
+    1e-200 to 1e200.
+    """
     V = np.array([1e-200, 1e-20, 1e-6, 3e-3, 0.07, 0.3, 4.0, 1e4, 1e160, 1e200])
     V = np.concatenate([V, -V])
     delta_star = vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
     share = np.array([[0.0], [1e-9], [0.02], [0.3], [0.8], [0.9999], [1.0], [3.0]])
     omega = V * (1.0 + np.concatenate([share, -share]) * delta_star)
-    given = [*zip(np.broadcast_to(V, omega.shape).ravel().tolist(), omega.ravel().tolist(), strict=True)]
+    given = [
+        *zip(np.broadcast_to(V, omega.shape).ravel().tolist(), omega.ravel().tolist(), strict=True)
+    ]
     return [*given, (0.3, 0.0), (-0.3, 0.4), (0.0, 0.2), (0.0, -0.2), (-0.0, 0.2), (0.0, 0.0)]
 
 
@@ -53,7 +59,8 @@ def called(law, V, omega):
 
 
 def test_law_is_contact_to_the_bit(law):
-    (function, scene), out = law.ctypes, (ctypes.c_double * 8)()
+    (function, scene) = law.ctypes
+    out = (ctypes.c_double * 8)()
     for V, omega in states(law.scene):
         state = vr.contact(law.scene, V, omega=omega, slopes=True, fields=LoadsAndSlopes._fields)
         expected = bits([getattr(state, name) for name in LoadsAndSlopes._fields])
@@ -71,14 +78,17 @@ def test_arrays_are_those_of_contact(law):
     found = law(V, omega, slopes=True)
     state = vr.contact(law.scene, V, omega=omega, fields=LoadsAndSlopes._fields)
     assert isinstance(found, LoadsAndSlopes)
-    assert all(bits(values) == bits(getattr(state, name)) for name, values in found._asdict().items())
+    assert all(
+        bits(values) == bits(getattr(state, name)) for name, values in found._asdict().items()
+    )
     assert law(V[:2, None], omega[None, :3]).Q.shape == (2, 3)
     assert isinstance(law(np.array(0.3), 0.3), Loads)
     assert law(1, np.float64(1.0)) == law(1.0, 1.0) == law(np.float32(1.0), 1.0)
 
 
 def test_what_is_no_number_is_an_error_or_nan(law):
-    (function, scene), out = law.ctypes, (ctypes.c_double * 8)()
+    (function, scene) = law.ctypes
+    out = (ctypes.c_double * 8)()
     for V, omega in BAD:
         with pytest.raises(vr.ParameterError):
             law(V, omega)
@@ -101,7 +111,9 @@ def test_scipy_takes_the_c_function(law):
 def test_a_law_lasts_as_long_as_somebody_holds_a_part_of_it():
     scene = vr.Scene(kappa=50.0, mu=0.2, material=SERIES.slower(1.7))
     expected = vr.law(scene)(0.3, 0.3001)
-    (function, data), jitted, out = vr.law(scene).ctypes, vr.law(scene).jitted, (ctypes.c_double * 8)()
+    (function, data) = vr.law(scene).ctypes
+    jitted = vr.law(scene).jitted
+    out = (ctypes.c_double * 8)()
     others = [vr.law(scene.replace(mu=mu, material=SERIES.slower(mu))) for mu in (0.3, 0.4)]
     function(0.3, 0.3001, out, data)
     assert tuple(out[:4]) == jitted(0.3, 0.3001)[:4] == expected
@@ -118,7 +130,10 @@ def test_a_law_around_a_jitted_function_stays_there():
 
 
 def test_jitted_code_takes_a_tuple_of_laws():
-    scenes = [vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[name]) for name in ("alpha", "series", "on an elastic base")]
+    scenes = [
+        vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[name])
+        for name in ("alpha", "series", "on an elastic base")
+    ]
     laws = tuple(vr.law(scene).jitted for scene in scenes)
 
     @numba.njit
@@ -131,9 +146,13 @@ def test_jitted_code_takes_a_tuple_of_laws():
     assert total(laws, 0.3) == total.py_func(laws, 0.3)
 
 
-@pytest.mark.filterwarnings("ignore::numba.core.errors.NumbaWarning")  # numba says that it cannot cache the function
+@pytest.mark.filterwarnings(
+    "ignore::numba.core.errors.NumbaWarning"
+)  # numba says that it cannot cache the function
 def test_jitted_code_with_a_law_inside_is_not_cached(tmp_path):
-    """Addresses are those of a process: numba would serve them to the next.  What holds no law is cached beside it."""
+    """Addresses are those of a process: numba would serve them to the next.  What holds no law is
+    cached beside it.
+    """
     (tmp_path / "user.py").write_text(
         "import numba, viscoroll as vr\n"
         "law = vr.law(vr.Scene(alpha=7.0, kappa=50.0, mu=0.2)).jitted\n"

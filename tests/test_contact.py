@@ -1,4 +1,5 @@
-"""The contact law: enclosures, an alpha or a material each, closed forms, signs, V = 0, slopes, fields.
+"""The contact law: enclosures, an alpha or a material each, closed forms, signs, V = 0, slopes,
+fields.
 
 Accuracy over the whole domain is claimed in ``test_claims.py``.
 """
@@ -16,11 +17,12 @@ from scipy.optimize import brentq
 
 import viscoroll as vr
 from pipeline.evidence.truth.enclosures import INPUTS, contact_enclosure, slopes
-from viscoroll.contact_law.contact_fields import FIELDS, SLOPES, SLOPES_OF_BODIES
-from viscoroll.materials.law import per_element
+from viscoroll.contact_mechanics.contact_table import FIELDS, SLOPES, SLOPES_OF_BODIES
+from viscoroll.laws import laws_per_element
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
-KAPPA, MU = SCENE.kappa, SCENE.mu
+KAPPA = SCENE.kappa
+MU = SCENE.mu
 PARTS = ("M_half_space", "M_cylinder")
 
 
@@ -46,19 +48,26 @@ def test_an_alpha_each_against_enclosures():
             for name in ("lam", "zeta", "epsilon", "delta_star", "Q", "M", "beta"):
                 bound = tol.EACH_SHIFT if name == "epsilon" else tol.EACH_ALPHA
                 bound /= left if name == "beta" else 1.0
-                assert close(getattr(found, name)[n], float(exact[name]), bound), (name, ALPHA[n], V[n])
+                assert close(getattr(found, name)[n], float(exact[name]), bound), (
+                    name,
+                    ALPHA[n],
+                    V[n],
+                )
             grip = float(1 - exact["Q"] / float(MUS[n]))
             assert close(found.grip[n], grip, 2.0 * tol.EACH_ALPHA / left), (ALPHA[n], V[n])
 
 
 @pytest.mark.parametrize("alpha", [2.52, 27.5, 32.1])
 def test_slopes_of_an_alpha_each_where_a_row_ends(alpha):
-    """Slopes of Q by the axis of alpha against the rows of that alpha, where mu V/(delta_star - delta) passes 2^n.
+    """Slopes of Q by the axis of alpha against the rows of that alpha, where mu V/(delta_star -
+    delta) passes 2^n.
 
-    Terms of the axis that no value needs were once missing in slopes at the ends of rows: dQ_dV was off by 3e-13 mu/V.
+    Terms of the axis that no value needs were once missing in slopes at the ends of rows: dQ_dV was
+    off by 3e-13 mu/V.
     """
     scene = vr.Scene(alpha, 1.0, 1.0)
-    V, s = np.geomspace(0.05, 20.0, 4000), np.array([[1e-3], [0.02], [0.05], [0.3], [0.9]])
+    V = np.geomspace(0.05, 20.0, 4000)
+    s = np.array([[1e-3], [0.02], [0.05], [0.3], [0.9]])
     delta = s * delta_star(scene, V)
     each = vr.contact(scene.replace(alpha=np.full(V.size, alpha)), V, delta=delta, slopes=True)
     alone = vr.contact(scene, V, delta=delta, slopes=True)
@@ -69,8 +78,9 @@ def test_slopes_of_an_alpha_each_where_a_row_ends(alpha):
 
 @pytest.mark.parametrize("octave", range(-4, 5))
 def test_small_creep_between_two_rows(octave):
-    """Q against enclosures where mu V/(delta_star - delta), the argument of H/F^2, passes 2^n between delta = 0 and
-    0.03 delta_star: its mean slope is then put together from those in two rows.
+    """Q against enclosures where mu V/(delta_star - delta), the argument of H/F^2, passes 2^n
+    between delta = 0 and 0.03 delta_star: its mean slope is then put together from those in two
+    rows.
     """
     s = 0.03
     V = brentq(lambda V: MU * V / delta_star(SCENE, V) - (1.0 - 0.5 * s) * 2.0**octave, 1e-6, 1e3)
@@ -86,7 +96,10 @@ def test_a_material_each_is_that_material_alone(name):
     draw = np.random.default_rng(6)
     V = 10.0 ** draw.uniform(-9.0, 18.0, (40, len(many))) / KAPPA
     V[:2] = [[0.0], [1e200]]
-    s = np.choose(draw.integers(2, size=V.shape), [10.0 ** draw.uniform(-12.0, 0.0, V.shape), draw.random(V.shape)])
+    s = np.choose(
+        draw.integers(2, size=V.shape),
+        [10.0 ** draw.uniform(-12.0, 0.0, V.shape), draw.random(V.shape)],
+    )
     scene = vr.Scene(material=many, kappa=KAPPA, mu=MU)
     delta = s * delta_star(scene, V)
     two = isinstance(many, vr.Bodies)
@@ -97,7 +110,9 @@ def test_a_material_each_is_that_material_alone(name):
         own = scene.replace(material=one)
         alone = vr.contact(own, V[:, n], delta=delta[:, n], fields=fields)
         slope = vr.contact(own, 0.0, delta=0.0, fields="dM_dV").dM_dV
-        near = np.maximum(1.0 - s[:, n], tol.EACH_MATERIAL)  # delta_star has the condition of beta and of slopes of Q
+        near = np.maximum(
+            1.0 - s[:, n], tol.EACH_MATERIAL
+        )  # delta_star has the condition of beta and of slopes of Q
         scales = dict.fromkeys(PARTS, abs(alone.M)) | dict.fromkeys(moments, slope)
         scales["dQ_dV"] = MU / np.maximum(V[:, n], 1e-9 / KAPPA)
         for field in fields:
@@ -110,7 +125,7 @@ def test_a_material_each_is_that_material_alone(name):
 def test_a_law_keeps_alive_what_its_kernels_have_the_addresses_of():
     alpha = np.array([3.0, 200.0])
     held = weakref.ref(alpha)
-    law = per_element.record_of_alphas(alpha)
+    law = laws_per_element.record_of_alphas(alpha)
     del alpha
     assert held() is not None
     del law
@@ -121,8 +136,11 @@ def test_a_law_keeps_alive_what_its_kernels_have_the_addresses_of():
 
 
 def test_carter():
-    """Sect. 3.4, alpha = 1: closed forms, with neither a Bessel function nor V; the same bits among other alphas."""
-    scene, star = vr.Scene(1.0, KAPPA, MU), MU / (2.0 * KAPPA)
+    """Sect. 3.4, alpha = 1: closed forms, with neither a Bessel function nor V; the same bits among
+    other alphas.
+    """
+    scene = vr.Scene(1.0, KAPPA, MU)
+    star = MU / (2.0 * KAPPA)
     delta = np.concatenate([S, -S]) * star
     state = vr.contact(scene, np.tile(V, 2), delta=delta, slopes=True)
     for name, exact in (("lam", 1.0), ("epsilon", 0.0), ("M", 0.0), ("delta_star", star)):
@@ -130,12 +148,16 @@ def test_carter():
     assert close(state.beta, 1.0 - abs(delta) / star, tol.CARTER, scale=1.0)
     assert close(state.Q, 4 * KAPPA * delta * (1 - abs(delta) * KAPPA / MU), tol.CARTER)
     among = vr.contact(scene.replace(alpha=np.ones(120)), np.tile(V, 2), delta=delta, slopes=True)
-    assert all(np.array_equal(value, getattr(state, name)) for name, value in among.as_dict().items())
+    assert all(
+        np.array_equal(value, getattr(state, name)) for name, value in among.as_dict().items()
+    )
 
 
 @pytest.mark.parametrize("scene", [SCENE, EACH], ids=["one", "each"])
 def test_continuous_at_delta_star(scene):
-    """Q and beta run into full slip without a jump; at delta_star itself and above it is full slip."""
+    """Q and beta run into full slip without a jump; at delta_star itself and above it is full
+    slip.
+    """
     delta = delta_star(scene, V) * np.array([[1.0 - 1e-12], [1.0], [-1.0], [1.0 + 1e-12], [2.0]])
     state = vr.contact(scene, V, delta=delta)
     assert not state.full_slip[0].any()
@@ -144,13 +166,18 @@ def test_continuous_at_delta_star(scene):
     assert (np.abs(state.Q[1:]) == scene.mu).all()
     assert close(state.Q[0], np.broadcast_to(scene.mu, V.shape), tol.CONTINUITY_Q)
     assert (state.beta[0] > 0.0).all()
-    assert (state.beta[0] <= tol.CONTINUITY_BETA * np.maximum(1.0, np.asarray(scene.alpha) / 1e4)).all()
+    assert (
+        state.beta[0] <= tol.CONTINUITY_BETA * np.maximum(1.0, np.asarray(scene.alpha) / 1e4)
+    ).all()
 
 
 def test_a_stick_zone_that_rounds_to_nothing():
-    """One rounding below delta_star, where L - D may round to 0: slip is not full, and there is no beta below 0."""
+    """One rounding below delta_star, where L - D may round to 0: slip is not full, and there is no
+    beta below 0.
+    """
     draw = np.random.default_rng(6)
-    mu, V = 10.0 ** draw.uniform(-2, 5, 300), 10.0 ** draw.uniform(-22, 22, 300)
+    mu = 10.0 ** draw.uniform(-2, 5, 300)
+    V = 10.0 ** draw.uniform(-22, 22, 300)
     for alpha in (117726.85190886419, 1.0 + 10.0 ** draw.uniform(-8, 6, 300)):
         scene = vr.Scene(alpha, 10.0 ** draw.uniform(-2, 6, 300), mu)
         state = vr.contact(scene, V, delta=np.nextafter(delta_star(scene, V), 0.0))
@@ -164,8 +191,8 @@ def test_a_stick_zone_that_rounds_to_nothing():
 
 @pytest.mark.parametrize("scene", [SCENE, EACH], ids=["one", "each"])
 def test_all_four_signs_of_V_and_delta(scene):
-    """Eqs. (17), (18), to the bit: V alone carries M, omega - V carries Q; slopes by V and omega are even, but for
-    the sign of Q at one V."""
+    """Eqs. (17), (18), to the bit: V alone carries M, omega - V carries Q; slopes by V and omega
+    are even, but for the sign of Q at one V."""
     delta = 1.5 * S * delta_star(scene, V)
     base = vr.contact(scene, V, delta=delta, slopes=True)
     assert (base.Q > 0.0).all()
@@ -173,9 +200,26 @@ def test_all_four_signs_of_V_and_delta(scene):
     for sign_V in (1.0, -1.0):
         for sign_delta in (1.0, -1.0):
             state = vr.contact(scene, sign_V * V, delta=sign_delta * delta, slopes=True)
-            signs = {"Q": sign_V * sign_delta, "M": sign_V, "dQ_dV": sign_delta, "dQ_ddelta": sign_V}
-            for name in ("lam", "zeta", "epsilon", "delta_star", "beta", "full_slip", "dM_dV", "dQ_domega", *signs):
-                assert np.array_equal(getattr(state, name), signs.get(name, 1.0) * getattr(base, name)), name
+            signs = {
+                "Q": sign_V * sign_delta,
+                "M": sign_V,
+                "dQ_dV": sign_delta,
+                "dQ_ddelta": sign_V,
+            }
+            for name in (
+                "lam",
+                "zeta",
+                "epsilon",
+                "delta_star",
+                "beta",
+                "full_slip",
+                "dM_dV",
+                "dQ_domega",
+                *signs,
+            ):
+                assert np.array_equal(
+                    getattr(state, name), signs.get(name, 1.0) * getattr(base, name)
+                ), name
 
 
 @pytest.mark.parametrize("scene", [SCENE, EACH], ids=["one", "each"])
@@ -184,7 +228,9 @@ def test_delta_and_omega_are_the_same_question(scene):
     delta = 0.9 * delta_star(scene, V)
     omega = V * (1.0 + delta)
     delta = (omega - V) / V
-    by_delta, by_omega = (vr.contact(scene, V, **given, slopes=True) for given in ({"delta": delta}, {"omega": omega}))
+    by_delta, by_omega = (
+        vr.contact(scene, V, **given, slopes=True) for given in ({"delta": delta}, {"omega": omega})
+    )
     for name in ("delta", "Q", "M", "beta", "dQ_domega"):
         assert close(getattr(by_omega, name), getattr(by_delta, name), 1e-12, what=name)
     whole = by_delta.dQ_dV - (1.0 + delta) / V * by_delta.dQ_ddelta
@@ -195,15 +241,27 @@ def test_delta_and_omega_are_the_same_question(scene):
 @pytest.mark.parametrize("alpha", [1.0, 11.0, [2.0, 11.0]])
 def test_at_rest(alpha, method):
     """V = 0: no division by V; lam = 1, M = 0; given delta, the limit V -> 0+."""
-    scene, star = vr.Scene(alpha, KAPPA, MU), MU / (2.0 * KAPPA)
-    still = {"Q": 0.0, "M": 0.0, "delta": 0.0, "beta": 1.0, "full_slip": False, "lam": 1.0, "epsilon": 0.0,
-             "delta_star": star, "zeta": math.inf}  # fmt: skip
+    scene = vr.Scene(alpha, KAPPA, MU)
+    star = MU / (2.0 * KAPPA)
+    still = {
+        "Q": 0.0,
+        "M": 0.0,
+        "delta": 0.0,
+        "beta": 1.0,
+        "full_slip": False,
+        "lam": 1.0,
+        "epsilon": 0.0,
+        "delta_star": star,
+        "zeta": math.inf,
+    }
     spins = {"Q": MU, "M": 0.0, "beta": 0.0, "full_slip": True, "delta": math.inf}
     back = spins | {"Q": -MU, "delta": -math.inf}
     for given, expected in (
-        ({"omega": 0.0}, still), ({"omega": 1e-300}, spins), ({"omega": -2.0}, back),
+        ({"omega": 0.0}, still),
+        ({"omega": 1e-300}, spins),
+        ({"omega": -2.0}, back),
         ({"delta": -2.0 * star}, {"Q": -MU}),
-    ):  # fmt: skip
+    ):
         state = vr.contact(scene, 0.0, **given, method=method)
         assert all(np.all(state[name] == value) for name, value in expected.items()), given
     limit = vr.contact(scene, 0.0, delta=np.full(2, 0.25 * star), method=method)

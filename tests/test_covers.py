@@ -1,4 +1,6 @@
-"""Covers of finite thickness: limits, closed forms, more terms, balances; against boundary elements: make prove."""
+"""Covers of finite thickness: limits, closed forms, more terms, balances; against boundary
+elements: make prove.
+"""
 
 import ctypes
 import json
@@ -16,19 +18,23 @@ from refusals import refused
 import viscoroll as vr
 from data.reference import layer as elastic_layer
 from pipeline.evidence.prove import layer
-from viscoroll.io.tables.check import check_table
-from viscoroll.materials.law.cover_rows import solve_at_speed
-from viscoroll.materials.law.cover_shear import shear_of
-from viscoroll.materials.law.cover_solve import CoverModes, solve
+from viscoroll.laws.cover_rows import shear_of, solve_at_speed
+from viscoroll.laws.cover_solve import CoverModes, solve
+from viscoroll.tables.law_dataset import check_table
 
-ONE, THREE = vr.Prony([10.0], [1.0 / 11.0]), vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003])
+ONE = vr.Prony([10.0], [1.0 / 11.0])
+THREE = vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003])
 WIDE = vr.Prony(np.logspace(-1.0, 0.5, 20), np.logspace(3.0, -9.0, 20))
-KAPPA, MU = 10.0, 0.3
-THIN, RIGID = vr.Material(2e6, 0.49, THREE, 0.1, thickness=0.01), vr.Material.rigid()
+KAPPA = 10.0
+MU = 0.3
+THIN = vr.Material(2e6, 0.49, THREE, 0.1, thickness=0.01)
+RIGID = vr.Material.rigid()
 
 
 def roller_of(material: vr.Material, base: vr.Material, load: object = 2e3) -> vr.Cylinder:
-    return vr.Cylinder(R=0.1, m=30.0, material=material, base=base, mu=0.5, load=load, coupled=False)
+    return vr.Cylinder(
+        R=0.1, m=30.0, material=material, base=base, mu=0.5, load=load, coupled=False
+    )
 
 
 def scene_on(material: object) -> vr.Scene:
@@ -42,7 +48,9 @@ SCENES = (
     scene_on(vr.Cover(THREE, nu=0.45, thickness=2.0, part=0.8, other_nu=0.3)),
 )
 #: a nip of two layers
-NIP = vr.Cover(THREE, nu=0.45, thickness=0.5, part=0.6, on="base", other=ONE, other_nu=0.3, other_thickness=0.8)
+NIP = vr.Cover(
+    THREE, nu=0.45, thickness=0.5, part=0.6, on="base", other=ONE, other_nu=0.3, other_thickness=0.8
+)
 #: with layers, one of them elastic, beside a body that relaxes, a half-space or a layer
 ALL = (
     *SCENES,
@@ -58,15 +66,20 @@ def free(scene, V):
     return vr.contact(scene, V, delta=vr.contact(scene, V, delta=0.0).delta_0)
 
 
-@pytest.mark.parametrize(("p", "other", "part"), [(ONE, None, 1.0), (THREE, None, 1.0), (THREE, ONE, 0.6)])
+@pytest.mark.parametrize(
+    ("p", "other", "part"), [(ONE, None, 1.0), (THREE, None, 1.0), (THREE, ONE, 0.6)]
+)
 def test_a_thick_cover_is_a_half_space(p, other, part):
-    """At speeds where the memory, V T over l0, does not reach the core; beside a body that relaxes without slip."""
+    """At speeds where the memory, V T over l0, does not reach the core; beside a body that relaxes
+    without slip.
+    """
     half = scene_on(vr.Bodies(p, other or vr.Prony.elastic(), part))
     cover = scene_on(vr.Cover(p, nu=0.5, thickness=1e10, part=part, other=other))
     V, creep = np.meshgrid(10.0 ** np.linspace(-13.0, 1.0, 29), [1e-3, 0.5, 0.99])
     delta = creep * vr.contact(half, V, delta=0.0).delta_star
     rolling = free(cover, V)
-    known, found = vr.contact(half, V, delta=delta), vr.contact(cover, V, delta=delta + rolling.delta_0)
+    known = vr.contact(half, V, delta=delta)
+    found = vr.contact(cover, V, delta=delta + rolling.delta_0)
     assert np.abs(rolling.delta_0).max() < tol.COVER_THICK
     for name in ("lam", "epsilon", "delta_star", "M", "M_cylinder", "Q"):
         scale = {"Q": MU, "M_cylinder": known.M}.get(name, 0.0)
@@ -81,19 +94,33 @@ def test_a_thick_cover_is_a_half_space(p, other, part):
 @pytest.mark.parametrize("scene", ALL)
 def test_rows_are_the_solve(scene):
     """With twice as many terms of the pressure; slow and fast these lose digits of epsilon."""
-    cover, u = scene.material, 10.0 ** np.linspace(-12.0, 12.0, 33)
+    cover = scene.material
+    u = 10.0 ** np.linspace(-12.0, 12.0, 33)
     truth = np.array([solve_at_speed(cover, each, orders=60) for each in u]).T
     lam, L, epsilon, half_space, cylinder, *shear = truth
     found = free(scene, u / KAPPA)
     rel = tol.COVER_LOGARITHMS if cover.other.alpha > 1.0 else tol.COVER_ROWS
     M = (half_space + cylinder) * u / KAPPA
-    known = {"lam": lam, "delta_star": 0.5 * MU / KAPPA * L, "M_half_space": half_space * u / KAPPA, "epsilon": epsilon}
+    known = {
+        "lam": lam,
+        "delta_star": 0.5 * MU / KAPPA * L,
+        "M_half_space": half_space * u / KAPPA,
+        "epsilon": epsilon,
+    }
     for name, exact in known.items():
         scale = {"M_half_space": M, "epsilon": 1.0}.get(name, 0.0)
-        assert close(found[name], exact, rel=rel if name[0] == "M" else tol.COVER_ROWS, scale=scale, what=name)
+        assert close(
+            found[name],
+            exact,
+            rel=rel if name[0] == "M" else tol.COVER_ROWS,
+            scale=scale,
+            what=name,
+        )
     rel = tol.COVER_FREE if min(cover.nu, cover.other_nu) < 0.5 else tol.COVER_SHEAR
     assert close(2.0 * KAPPA * found.delta_0, shear[0] + shear[1], rel=rel, scale=1.0)
-    full = vr.contact(scene, u / KAPPA, delta=1.0, fields=("lam", "epsilon", "M_half_space", "M_cylinder"))
+    full = vr.contact(
+        scene, u / KAPPA, delta=1.0, fields=("lam", "epsilon", "M_half_space", "M_cylinder")
+    )
     g = shear[2] + shear[3]
     limited = (1.0 + (2.0 * g / (MU * L)) ** 4) ** -0.25
     of_Q = [MU * shear[4], MU * shear[5]]
@@ -107,7 +134,8 @@ def test_rows_are_the_solve(scene):
 def test_rows_join(scene):
     """Nothing jumps at the ends of octaves, also where rates are twelve decades apart."""
     V = np.array([[1.0 - 1e-15], [1.0 + 1e-15]]) * 2.0 ** np.arange(-20, 90) / KAPPA
-    c, full = free(scene, V), vr.contact(scene, V, delta=1.0)
+    c = free(scene, V)
+    full = vr.contact(scene, V, delta=1.0)
     for name in ("lam", "epsilon", "delta_star", "M"):
         assert close(*c[name], rel=tol.COVER_JOIN, what=name)
     for found in (c.delta_0, full.M, full.lam / KAPPA, full.epsilon / KAPPA):
@@ -116,8 +144,9 @@ def test_rows_join(scene):
 
 @pytest.mark.parametrize("nu", [0.3, 0.5])
 def test_an_elastic_cover(nu):
-    """Its load at half width 1 is that of another solution (make prove); delta_0 of a thick one, where it sticks, is in
-    closed form: the strain of the surface with the weight 1/sqrt(1 - x^2)."""
+    """Its load at half width 1 is that of another solution (make prove); delta_0 of a thick one,
+    where it sticks, is in closed form: the strain of the surface with the weight 1/sqrt(1 -
+    x^2)."""
 
     def found(thickness, **more):
         return free(scene_on(vr.Cover(1.0, nu=nu, thickness=thickness, **more)), 1.0)
@@ -132,7 +161,8 @@ def test_an_elastic_cover(nu):
 
 def test_a_thin_compressible_cover_is_a_foundation():
     """To a first order in the thickness, whose extrapolation is ten times as near."""
-    modes, ratios = CoverModes(vr.Cover(ONE, nu=0.0, thickness=1.0)), []
+    modes = CoverModes(vr.Cover(ONE, nu=0.0, thickness=1.0))
+    ratios = []
     for theta in (3.0, 6.0):
         state = solve(modes, 1.0, theta)
         found = np.array([state.load, state.shift, shear_of(modes, 1.0, state).moments.sum()])
@@ -143,14 +173,19 @@ def test_a_thin_compressible_cover_is_a_foundation():
 
 @settings(max_examples=12, deadline=None)
 @given(
-    st.floats(0.0, 0.5), st.floats(-0.8, 2.0), st.floats(-1.0, 2.0), st.floats(-4.0, 0.0), st.floats(0.05, 1.0),
+    st.floats(0.0, 0.5),
+    st.floats(-0.8, 2.0),
+    st.floats(-1.0, 2.0),
+    st.floats(-4.0, 0.0),
+    st.floats(0.05, 1.0),
     st.sampled_from(["cylinder", "base"]),
-)  # fmt: skip
+)
 def test_any_cover(nu, thickness, strength, time, part, on):
-    """Shorter than the half-space's contact, which resists; traction within friction, rising with creep from that of
-    free rolling, where it is 0; backwards the mirror image."""
+    """Shorter than the half-space's contact, which resists; traction within friction, rising with
+    creep from that of free rolling, where it is 0; backwards the mirror image."""
     p = vr.Prony([10.0**strength, 1.0], [10.0**time, 1.0])
-    scene, V = scene_on(vr.Cover(p, nu=nu, thickness=10.0**thickness, on=on, part=part)), np.logspace(-9.0, 9.0, 37)
+    scene = scene_on(vr.Cover(p, nu=nu, thickness=10.0**thickness, on=on, part=part))
+    V = np.logspace(-9.0, 9.0, 37)
     state = free(scene, V[:, None])
     assert np.all((state.lam > 0.0) & (state.lam < 1.0) & (state.M > 0.0) & (state.epsilon > 0.0))
     delta = state.delta_0 + state.delta_star * np.linspace(-1.25, 1.25, 25)
@@ -162,12 +197,17 @@ def test_any_cover(nu, thickness, strength, time, part, on):
     assert np.array_equal(c.full_slip, np.abs(c.Q) == MU)
     assert np.all(np.diff(state.delta_star, axis=0) <= tol.COVER_THICK)
     assert np.array_equal([c.Q[:, 12], c.beta[:, 12]], [0.0 * V, 1.0 + 0.0 * V])
-    assert all(np.array_equal(back[name], (-1.0) ** (name in "QM") * c[name]) for name in ("Q", "M", "beta", "lam"))
+    assert all(
+        np.array_equal(back[name], (-1.0) ** (name in "QM") * c[name])
+        for name in ("Q", "M", "beta", "lam")
+    )
 
 
 @on_each
 def test_slow_and_fast(scene):
-    """M = V T_mean, and M falls as 1/V, without the logarithm of a half-space; nothing jumps at nu = 1/2."""
+    """M = V T_mean, and M falls as 1/V, without the logarithm of a half-space; nothing jumps at
+    nu = 1/2.
+    """
     slow, *fast = (free(scene, V).M for V in (1e-15, 1e8, 2e8))
     rate = slow / (1e-15 * scene.material.total.T_mean)
     assert close(rate, 1.0, rel=tol.COVER_ROWS) if scene.material.part == 1.0 else 0.8 < rate < 1.0
@@ -176,52 +216,74 @@ def test_slow_and_fast(scene):
 
 def test_nothing_jumps_where_nu_is_a_half():
     covers = (vr.Cover(THREE, nu=nu, thickness=0.5) for nu in (0.5 - 1e-9, 0.5))
-    near, at = (list(vr.contact(scene_on(cover), 0.03, delta=1e-3).as_dict().values()) for cover in covers)
+    near, at = (
+        list(vr.contact(scene_on(cover), 0.03, delta=1e-3).as_dict().values()) for cover in covers
+    )
     assert close(near, at, rel=tol.COVER_NU)
 
 
 @on_each
 def test_slopes(scene):
     """By differences."""
-    V, h = 0.03, 1e-6
+    V = 0.03
+    h = 1e-6
     for creep in ({"delta": 2e-3}, {"omega": 1.002 * V}):
-        found, up, down = (vr.contact(scene, V * (1.0 + step), **creep, slopes=True) for step in (0.0, h, -h))
+        found, up, down = (
+            vr.contact(scene, V * (1.0 + step), **creep, slopes=True) for step in (0.0, h, -h)
+        )
         for name, scale in (("Q", MU), ("M", found.M)):
             slope = (up[name] - down[name]) / (2.0 * h * V)
             assert close(found[f"d{name}_dV"], slope, rel=tol.COVER_SLOPES, scale=scale / V)
 
 
 MOTIONS = {
-    "free": ((1.0, 1.0), {}), "thrown": ((1.0, -0.5), {}), "back": ((-1.0, -0.7), {}),
+    "free": ((1.0, 1.0), {}),
+    "thrown": ((1.0, -0.5), {}),
+    "back": ((-1.0, -0.7), {}),
     "driven": ((0.1, 0.1), {"torque": 0.02}),
     "from rest": ((0.0, 0.0), {"torque": vr.Schedule([0.0, 9.0], [0.0, 0.02])}),
-    "braked": ((1.0, 1.0), {"brake": 0.05}), "to rest": ((0.02, 0.02), {}),
-}  # fmt: skip
+    "braked": ((1.0, 1.0), {"brake": 0.05}),
+    "to rest": ((0.02, 0.02), {}),
+}
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 @pytest.mark.parametrize("name", MOTIONS)
 @pytest.mark.parametrize("scene", SCENES[:2])
 def test_energy_of_motions(scene, name):
-    """What is put in is what moves and what is lost; and where nothing slips, the traction is that of the state."""
+    """What is put in is what moves and what is lost; and where nothing slips, the traction is that
+    of the state.
+    """
     (V, omega), drive = MOTIONS[name]
     t = np.linspace(0.0, 400.0 if name == "to rest" else 30.0, 31)
     m = vr.roll(scene, V, omega, t, rtol=tol.COVER_RTOL, **drive)
     assert m.status in (vr.MotionStatus.DONE, vr.MotionStatus.RESTED)
     energy = 0.5 * m.V**2 + 0.5 * scene.j * m.omega**2
     lost = m.slip_loss, m.rolling_loss, m.brake_loss
-    put_in, lost = (sum(0.0 if work is None else work for work in each) for each in ((m.work_torque,), lost))
-    assert close(energy + lost - put_in, energy[0], rel=tol.MOTION_RTOL * tol.COVER_RTOL, scale=energy.max())
+    put_in, lost = (
+        sum(0.0 if work is None else work for work in each) for each in ((m.work_torque,), lost)
+    )
+    assert close(
+        energy + lost - put_in, energy[0], rel=tol.MOTION_RTOL * tol.COVER_RTOL, scale=energy.max()
+    )
 
 
 def test_motions_follow_the_contact():
-    """V' and omega' by differences of a motion against the contact's forces; an ensemble is its motions."""
-    scene, h = SCENES[0], 1e-3
+    """V' and omega' by differences of a motion against the contact's forces; an ensemble is its
+    motions.
+    """
+    scene = SCENES[0]
+    h = 1e-3
     options = {"t": 3.0 + h * np.array([-1.0, 0.0, 1.0]), "rtol": 1e-11, "torque": 0.01}
     m = vr.roll(scene, 1.0, 0.2, **options)
     c = vr.contact(scene, m.V[1], omega=m.omega[1])
-    rates = [scene.gamma * (c.Q - c.M_half_space), scene.gamma / scene.j * (0.01 - c.Q - c.M_cylinder)]
-    assert close([(each[2] - each[0]) / (2.0 * h) for each in (m.V, m.omega)], rates, rel=tol.COVER_RATES)
+    rates = [
+        scene.gamma * (c.Q - c.M_half_space),
+        scene.gamma / scene.j * (0.01 - c.Q - c.M_cylinder),
+    ]
+    assert close(
+        [(each[2] - each[0]) / (2.0 * h) for each in (m.V, m.omega)], rates, rel=tol.COVER_RATES
+    )
     assert np.array_equal(vr.ensemble(scene, [1.0, 0.5], [0.2, 0.5], **options).V[0], m.V)
 
 
@@ -233,13 +295,18 @@ MANY_NU = vr.Cover(1.0, nu=[0.0, 0.5, 0.33], thickness=[0.3, 0.55, 0.45])
 @pytest.mark.parametrize("cover", [MANY, MANY_NU])
 def test_a_thickness_each(cover):
     """States and motions of many covers are those of each."""
-    scene, V, motion = scene_on(cover), np.array([0.01, -0.5, 3.0]), (0.1, [1.0, 9.0])
-    found, motions = vr.contact(scene, V, delta=-2e-3, slopes=True), vr.ensemble(scene, V, *motion, rtol=1e-10)
+    scene = scene_on(cover)
+    V = np.array([0.01, -0.5, 3.0])
+    motion = (0.1, [1.0, 9.0])
+    found = vr.contact(scene, V, delta=-2e-3, slopes=True)
+    motions = vr.ensemble(scene, V, *motion, rtol=1e-10)
     for n, each in enumerate(cover):
         one = scene_on(each)
         for name, value in vr.contact(one, V[n], delta=-2e-3, slopes=True).as_dict().items():
             assert close(found[name][n], value, rel=tol.COVER_EACH, what=name)
-        assert close(motions.V[n], vr.roll(one, V[n], *motion, rtol=1e-10).V, rel=tol.COVER_EACH_MOTION)
+        assert close(
+            motions.V[n], vr.roll(one, V[n], *motion, rtol=1e-10).V, rel=tol.COVER_EACH_MOTION
+        )
 
 
 def test_a_load_each():
@@ -252,24 +319,40 @@ def test_a_load_each():
 
 
 def test_a_law_of_a_roller_on_disk(tmp_path):
-    """It keeps its bodies, has the same numbers in JSON, and is refused where the load makes another thickness/l0."""
+    """It keeps its bodies, has the same numbers in JSON, and is refused where the load makes
+    another thickness/l0.
+    """
     roller = roller_of(THIN, vr.Material.elastic(3e9, 0.3))
     dataset = vr.tables.law(roller)
     for save, name in ((vr.tables.save, "law.nc"), (vr.tables.export, "law.json")):
         save(dataset, tmp_path / name)
     assert all("speeds, against solves" in check.meaning for check in check_table(dataset, 3, 0))
-    content, law = json.loads((tmp_path / "law.json").read_text()), vr.load_law(tmp_path / "law.nc")
-    assert all(np.array_equal(content[name], dataset[name].values) for name in ("lam", "limit", "lam_Q"))
+    content = json.loads((tmp_path / "law.json").read_text())
+    law = vr.load_law(tmp_path / "law.nc")
+    assert all(
+        np.array_equal(content[name], dataset[name].values) for name in ("lam", "limit", "lam_Q")
+    )
     assert law.pair == roller.pair
     for what in (law, dataset):  # delta_0 does not vary with mu: no grid holds every kappa and mu
-        refused(lambda what=what: vr.tables.build(what, [0.1], delta=[0.0]), "what = ", "a law of half-spaces")
+        refused(
+            lambda what=what: vr.tables.build(what, [0.1], delta=[0.0]),
+            "what = ",
+            "a law of half-spaces",
+        )
     loaded = roller.replace(material=law, base=None)
     assert loaded.contact(1.0, delta=1e-3).as_dict() == roller.contact(1.0, delta=1e-3).as_dict()
-    refused(lambda: loaded.replace(load=2.1e3).contact(1.0, delta=0.0), "material", "thickness/l0 = 0.5", "0.49")
+    refused(
+        lambda: loaded.replace(load=2.1e3).contact(1.0, delta=0.0),
+        "material",
+        "thickness/l0 = 0.5",
+        "0.49",
+    )
 
 
 def test_the_shear_of_a_cover_is_not_computed(monkeypatch):
-    """Nor read: memory that was never written may hold infinite numbers, whose product with 0 warns."""
+    """Nor read: memory that was never written may hold infinite numbers, whose product with 0
+    warns.
+    """
     vr.stress(ALL[0], 0.0, 0.2, delta=0.0)  # the law is made here
     empty = np.empty
 
@@ -284,25 +367,37 @@ def test_the_shear_of_a_cover_is_not_computed(monkeypatch):
 @pytest.mark.parametrize("scene", ALL)
 @pytest.mark.parametrize("V", [0.0, 2e-3, 0.04, 0.2])
 def test_pressure_of_a_cover_makes_the_parabola(scene, V):
-    """Its integral is the load, its moment M, and the slope that both bodies take on, by Fourier's transform with the
-    kernel of the layer, is x/R in the contact.
+    """Its integral is the load, its moment M, and the slope that both bodies take on, by Fourier's
+    transform with the kernel of the layer, is x/R in the contact.
 
     Much faster the memory would reach round the period of the transform."""
-    cover, c, count, cells = scene.material, free(scene, V), 1 << 17, 256
-    nodes, grid = np.pi * np.arange(1, 400) / 400.0, (np.arange(count) - count // 2 + 0.5) / cells
-    y, weights, load = np.cos(nodes), np.sin(nodes) * np.pi / 400.0, 1.0 / (32.0 * KAPPA)
-    p, on_grid = (vr.stress(scene, 0.5 * c.lam * (c.epsilon + each), V, delta=c.delta).p for each in (y, grid))
+    cover = scene.material
+    c = free(scene, V)
+    count = 1 << 17
+    cells = 256
+    nodes = np.pi * np.arange(1, 400) / 400.0
+    grid = (np.arange(count) - count // 2 + 0.5) / cells
+    y = np.cos(nodes)
+    weights = np.sin(nodes) * np.pi / 400.0
+    load = 1.0 / (32.0 * KAPPA)
+    p, on_grid = (
+        vr.stress(scene, 0.5 * c.lam * (c.epsilon + each), V, delta=c.delta).p for each in (y, grid)
+    )
     assert close(0.5 * c.lam * weights @ p, load, rel=tol.COVER_PRESSURE)
     moment = 0.25 * c.lam**2 * weights @ (p * (y + c.epsilon)) / (load * KAPPA)
     assert close(moment, c.M, rel=tol.COVER_MOMENT, scale=max(abs(c.M), c.lam))
-    v, kernel = 2.0 * np.pi * np.fft.rfftfreq(count, 1.0 / cells), 0.0
+    v = 2.0 * np.pi * np.fft.rfftfreq(count, 1.0 / cells)
+    kernel = 0.0
     for share, name in ((cover.share, "cylinder"), (1.0 - cover.share, "base")):
         series, nu, thickness = cover.body(name)
-        part = share * (1.0 if thickness is None else elastic_layer.kernel(2.0 * v * thickness / c.lam, nu))
+        part = share * (
+            1.0 if thickness is None else elastic_layer.kernel(2.0 * v * thickness / c.lam, nu)
+        )
         b = 1.0 / series.T
         creep = (series.J * b / (b - 1j * (v / c.zeta)[:, None])).sum(axis=1)
         kernel = kernel + part * (1.0 / series.alpha + creep)
-    hertz, near = np.sqrt(np.maximum(1.0 - grid**2, 0.0)) / (8.0 * np.pi * KAPPA), np.abs(grid) < 0.8
+    hertz = np.sqrt(np.maximum(1.0 - grid**2, 0.0)) / (8.0 * np.pi * KAPPA)
+    near = np.abs(grid) < 0.8
     slopes = (-1j * factor * np.fft.rfft(p) for factor, p in ((1.0, hertz), (kernel, on_grid)))
     of_hertz, found = (np.fft.irfft(slope, count)[near] for slope in slopes)
     unit = np.mean(of_hertz / grid[near]) * c.lam
@@ -321,29 +416,49 @@ void states(int n, double kappa, double mu, const double *V, const double *slip,
     for (int k = 0; k < 12; k++) out[12 * i + k] = all[k];
   }
 }
-"""
-C_FIELDS = ("lam", "epsilon", "delta_star", "delta_0", "beta", "Q", "M", "M_half_space", "M_cylinder")
+"""  # noqa: E501
+C_FIELDS = (
+    "lam",
+    "epsilon",
+    "delta_star",
+    "delta_0",
+    "beta",
+    "Q",
+    "M",
+    "M_half_space",
+    "M_cylinder",
+)
 C_FIELDS += ("dQ_dV", "dQ_domega", "dM_dV")
 
 
 @pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
 @on_each
 def test_the_header_of_C_is_the_contact(tmp_path, scene):
-    """In rows and behind them, forwards and backwards, below and above full slip, with slopes; N is NaN."""
+    """In rows and behind them, forwards and backwards, below and above full slip, with slopes; N is
+    NaN.
+    """
     vr.tables.export(vr.tables.law(scene.material), tmp_path / "cover.h")
     (tmp_path / "states.c").write_text(C_STATES)
     command = "cc -std=c99 -Wall -Wextra -Werror -O2 -shared -fPIC states.c -lm -o states.so"
     subprocess.run(command.split(), cwd=tmp_path, check=True)
     speeds = 10.0 ** np.linspace(-6.0, 14.0, 61)
-    V, part = (each.ravel() for each in np.meshgrid([*speeds, *-speeds], [-1.4, -0.6, -0.05, 1e-2, 0.3, 0.97, 1.2]))
+    V, part = (
+        each.ravel()
+        for each in np.meshgrid([*speeds, *-speeds], [-1.4, -0.6, -0.05, 1e-2, 0.3, 0.97, 1.2])
+    )
     limit = vr.contact(scene, V, delta=0.0)
     omega = V * (1.0 + limit.delta_0 + part * limit.delta_star)
-    slip, out = omega - V, np.empty((V.size, len(C_FIELDS)))
+    slip = omega - V
+    out = np.empty((V.size, len(C_FIELDS)))
     pointers = (ctypes.c_void_p(array.ctypes.data) for array in (V, slip, out))
-    ctypes.CDLL(str(tmp_path / "states.so")).states(V.size, ctypes.c_double(KAPPA), ctypes.c_double(MU), *pointers)
+    ctypes.CDLL(str(tmp_path / "states.so")).states(
+        V.size, ctypes.c_double(KAPPA), ctypes.c_double(MU), *pointers
+    )
     known = vr.contact(scene, V, omega=omega, slopes=True, fields=C_FIELDS)
     for name, values in zip(C_FIELDS, out.T, strict=True):
-        scale = np.abs(known[name]).max() if name in ("Q", "beta", "delta_0") else np.abs(known[name])
+        scale = (
+            np.abs(known[name]).max() if name in ("Q", "beta", "delta_0") else np.abs(known[name])
+        )
         assert close(values, known[name], rel=tol.COVER_IN_C, scale=scale, what=name)
 
 
@@ -357,54 +472,89 @@ def test_equilibria(scene):
     for force, torque in LOADS:
         s = vr.steady(scene, force=force, torque=torque)
         c = vr.contact(scene, s.V, omega=s.omega)
-        assert close([c.Q, c.beta], [c.M_half_space - s.force, s.beta], rel=tol.COVER_STEADY, scale=1.0)
+        assert close(
+            [c.Q, c.beta], [c.M_half_space - s.force, s.beta], rel=tol.COVER_STEADY, scale=1.0
+        )
         assert close(c.Q, s.torque - c.M_cylinder, rel=tol.COVER_STEADY, scale=1.0)
     still = free(scene, 0.0)
     still = vr.contact(scene, 0.0, delta=still.delta_0 - 0.4 * still.delta_star)
-    force, torque = still.M_half_space - still.Q, still.M_cylinder + still.Q
-    rest, slow = vr.steady(scene, force=force, torque=torque), vr.steady(scene, V=1e-12, torque=torque)
+    force = still.M_half_space - still.Q
+    torque = still.M_cylinder + still.Q
+    rest = vr.steady(scene, force=force, torque=torque)
+    slow = vr.steady(scene, V=1e-12, torque=torque)
     assert rest.V[0] == 0.0
     assert close([rest.delta[0], slow.delta[0]], still.delta, rel=tol.COVER_REST)
 
 
 def test_a_thickness_in_SI_units():
-    """A Material's thickness over l0 is that of the Cover; steel under it is nearly rigid; validity tells of it."""
+    """A Material's thickness over l0 is that of the Cover; steel under it is nearly rigid; validity
+    tells of it.
+    """
     steel = vr.Material.elastic(2e11, 0.3)
-    for material, base, on in ((THIN, RIGID, "cylinder"), (RIGID, THIN, "base"), (THIN, steel, "cylinder")):
+    for material, base, on in (
+        (THIN, RIGID, "cylinder"),
+        (RIGID, THIN, "base"),
+        (THIN, steel, "cylinder"),
+    ):
         roller = roller_of(material, base)
-        found, scene = roller.contact(1.0, delta=0.0), roller.scene()
+        found = roller.contact(1.0, delta=0.0)
+        scene = roller.scene()
         assert scene.material.on == on
         plain = scene.replace(material=vr.Cover(THREE, nu=0.49, thickness=0.01 / roller.l0, on=on))
         known = vr.contact(plain, 1.0 / roller.scale["V"], delta=0.0)
         for name in ("lam", "epsilon", "delta_star", "delta_0"):
-            assert close(found[name], known[name], rel=tol.COVER_ON_STEEL if base is steel else tol.SCENE)
+            assert close(
+                found[name], known[name], rel=tol.COVER_ON_STEEL if base is steel else tol.SCENE
+            )
         thick = roller.validity(1.0).thick
         assert close(thick.value, 0.5 * found.length / 0.01, rel=tol.CONTACT)
         assert thick.holds
         assert roller.roll(1.0, 10.0, 0.1).validity().steady.word == "?"
         # on a slope the load, and with it l0, is less: of a scene too
-        tilted = roller.roll(0.0, 0.0, 0.3, slope=0.5).V, scene.roll(0.0, 0.0, 0.3 / roller.T_ref, slope=0.5).V
+        tilted = (
+            roller.roll(0.0, 0.0, 0.3, slope=0.5).V,
+            scene.roll(0.0, 0.0, 0.3 / roller.T_ref, slope=0.5).V,
+        )
         assert close(tilted[0][-1], tilted[1][-1] * roller.scale["V"], rel=1e-9)
     thick = vr.Material(1e7, 0.3, ONE, 0.02, thickness=0.03)
     roller = roller_of(thick, THIN)
     cover = roller.scene().material
     assert (cover.layer, cover.other) == (ONE, THREE.slower(0.1 / 0.02))
-    assert close([cover.thickness, cover.other_thickness], np.array([0.03, 0.01]) / roller.l0, rel=tol.SCENE)
+    assert close(
+        [cover.thickness, cover.other_thickness], np.array([0.03, 0.01]) / roller.l0, rel=tol.SCENE
+    )
     other = roller_of(THIN, thick).contact(1.0, omega=10.0), roller.contact(1.0, omega=10.0)
     assert close(other[0].length, other[1].length, rel=tol.COVER_MIRROR)
 
 
 def test_the_same_nip_from_either_side():
     """The bodies change sides: strain and traction their signs, and M its body."""
-    other = vr.Cover(ONE, nu=0.3, thickness=0.8, part=0.4, on="base", other=THREE, other_nu=0.45, other_thickness=0.5)
+    other = vr.Cover(
+        ONE,
+        nu=0.3,
+        thickness=0.8,
+        part=0.4,
+        on="base",
+        other=THREE,
+        other_nu=0.45,
+        other_thickness=0.5,
+    )
     one, two = (free(scene_on(cover), np.logspace(-4.0, 2.0, 7)) for cover in (NIP, other))
-    for name, mirrored in (("M_half_space", two.M_cylinder), ("delta_0", -two.delta_0), ("lam", two.lam)):
+    for name, mirrored in (
+        ("M_half_space", two.M_cylinder),
+        ("delta_0", -two.delta_0),
+        ("lam", two.lam),
+    ):
         assert close(one[name], mirrored, rel=tol.COVER_MIRROR, scale=1.0 / KAPPA)
 
 
 def test_two_like_covers_do_not_couple():
-    """On like rollers both surfaces stretch alike: no creepage in free rolling, no reaction, equal shares of M."""
-    like = vr.Cover(THREE, nu=0.4, thickness=0.5, part=0.5, other=THREE, other_nu=0.4, other_thickness=0.5)
+    """On like rollers both surfaces stretch alike: no creepage in free rolling, no reaction, equal
+    shares of M.
+    """
+    like = vr.Cover(
+        THREE, nu=0.4, thickness=0.5, part=0.5, other=THREE, other_nu=0.4, other_thickness=0.5
+    )
     V = np.logspace(-4.0, 2.0, 7)
     alone, free_rolling = (vr.contact(scene_on(like), V, delta=delta) for delta in (1.0, 0.0))
     assert close(free_rolling.delta_0, 0.0, rel=tol.COVER_MIRROR, scale=1.0)
@@ -415,14 +565,19 @@ def test_two_like_covers_do_not_couple():
 
 #: nu, h/l0, u; 2 kappa delta_0* of a cover on the base, of solves with boundary elements
 MIRRORED = (
-    (ONE, 0.5, 0.5, 0.35, 0.1697361964), (ONE, 0.5, 0.3, 0.35, 0.1881772981), (THREE, 0.5, 0.5, 0.1, 0.1731879514),
-    (THREE, 0.45, 0.3, 1.0, 0.04104807), (ONE, 0.3, 1.0, 1.0, -0.08289535),
-)  # fmt: skip
+    (ONE, 0.5, 0.5, 0.35, 0.1697361964),
+    (ONE, 0.5, 0.3, 0.35, 0.1881772981),
+    (THREE, 0.5, 0.5, 0.1, 0.1731879514),
+    (THREE, 0.45, 0.3, 1.0, 0.04104807),
+    (ONE, 0.3, 1.0, 1.0, -0.08289535),
+)
 
 
 @pytest.mark.parametrize(("series", "nu", "thickness", "u", "known"), MIRRORED)
 def test_the_mirrored_strain(series, nu, thickness, u, known):
     """By other programs; of the cylinder with the other sign."""
     for on, sign in (("base", 1.0), ("cylinder", -1.0)):
-        *_, f_h, f_c, g_h, g_c, _, _ = solve_at_speed(vr.Cover(series, nu=nu, thickness=thickness, on=on), u)
+        *_, f_h, f_c, g_h, g_c, _, _ = solve_at_speed(
+            vr.Cover(series, nu=nu, thickness=thickness, on=on), u
+        )
         assert close(f_h + f_c + g_h + g_c, sign * known, rel=tol.COVER_MIRRORED, scale=1.0)

@@ -1,4 +1,6 @@
-"""From storage and loss modulus to a Prony series: what is recovered, what is said, what is refused."""
+"""From storage and loss modulus to a Prony series: what is recovered, what is said, what is
+refused.
+"""
 
 import sys
 from functools import cache
@@ -12,12 +14,13 @@ from hypothesis import strategies as st
 from places import DATA, ROOT
 
 import viscoroll as vr
-from viscoroll.app.dma.curve import Curve
-from viscoroll.app.dma.spectrum import FLOOR, _minimize
+from viscoroll.measurements.dynamic_moduli import Curve
+from viscoroll.measurements.spectrum import FLOOR, _minimize
 
 PYVISCO = DATA / "materials/pyvisco_freq_user_master.csv"
 #: a rubber of ten modes over eight decades, times in s
-E, TAU = 1e6, np.logspace(2, -6, 10)
+E = 1e6
+TAU = np.logspace(2, -6, 10)
 STRENGTHS = 3e5 * np.array([0.3, 0.5, 0.4, 0.6, 0.9, 1.5, 3.0, 8.0, 20.0, 40.0])
 RUBBER = vr.Prony(STRENGTHS / E, TAU)
 ALPHA = 1.0 + STRENGTHS.sum() / E
@@ -25,8 +28,10 @@ ALPHA = 1.0 + STRENGTHS.sum() / E
 
 def curve(omega, strengths=STRENGTHS, tau=TAU, E=E, noise=0.0, seed=1):
     """omega, E', E'' of a series, with relative noise."""
-    rng, z = np.random.default_rng(seed), np.multiply.outer(omega, tau)
-    storage, loss = E + (z**2 / (1.0 + z**2)) @ np.asarray(strengths), (z / (1.0 + z**2)) @ np.asarray(strengths)
+    rng = np.random.default_rng(seed)
+    z = np.multiply.outer(omega, tau)
+    storage = E + (z**2 / (1.0 + z**2)) @ np.asarray(strengths)
+    loss = (z / (1.0 + z**2)) @ np.asarray(strengths)
     errors = 1.0 + noise * rng.standard_normal((2, omega.size))
     return omega, storage * errors[0], loss * errors[1]
 
@@ -51,7 +56,8 @@ def test_a_rubber_of_ten_modes_with_noise(seed):
     assert close(fit.alpha, ALPHA, tol.DMA_ALPHA)
     assert close(fit.E, E, tol.DMA_ALPHA)
     V = np.logspace(-3, 6, 40)  # m/s on R = 1 m, kappa = 1 at the true modulus
-    true, found = moment(RUBBER, 1.0, V), moment(fit.prony, np.sqrt(fit.E / E), V * fit.T_ref)
+    true = moment(RUBBER, 1.0, V)
+    found = moment(fit.prony, np.sqrt(fit.E / E), V * fit.T_ref)
     assert close(found, true, tol.DMA_MOMENT)
 
 
@@ -66,8 +72,11 @@ def test_two_modes_are_found_exactly():
 
 @pytest.mark.parametrize("seed", range(2))
 def test_a_window_of_two_decades(seed):
-    """As good as a trial on 14 measured points of an EPDM rubber; M inside the window needs neither E nor alpha."""
-    omega, tau = np.logspace(0, 2, 14), np.logspace(4, -4, 10)
+    """As good as a trial on 14 measured points of an EPDM rubber; M inside the window needs neither
+    E nor alpha.
+    """
+    omega = np.logspace(0, 2, 14)
+    tau = np.logspace(4, -4, 10)
     fit = vr.fit_prony(*curve(omega, tau=tau, noise=0.005, seed=seed), misfit=0.006)
     assert fit.misfit.storage <= tol.DMA_WINDOW[0]
     assert fit.misfit.loss <= tol.DMA_WINDOW[1]
@@ -101,7 +110,10 @@ def test_strengths_are_not_negative_whatever_the_noise(seed, points, noise, deca
     assert FLOOR * fit.storage.min() * 0.999 <= fit.E
     assert np.isfinite(fit.misfit).all()
     beyond = np.concatenate(
-        [fit.prony.tau * fit.T_ref * fit.omega[0], 1.0 / (fit.prony.tau * fit.T_ref * fit.omega[-1])]
+        [
+            fit.prony.tau * fit.T_ref * fit.omega[0],
+            1.0 / (fit.prony.tau * fit.T_ref * fit.omega[-1]),
+        ]
     )
     assert (beyond <= 10.0 * (1.0 + tol.DMA_EXACT)).all()
 
@@ -121,7 +133,9 @@ def isotherms(points, noise):
     return [omega] * TEMPERATURES.size, [one[0] for one in made], [one[1] for one in made]
 
 
-@pytest.mark.parametrize(("points", "noise", "allowed"), [(21, 0.0, tol.DMA_SHIFT), (11, 0.005, tol.DMA_SHIFT_NOISY)])
+@pytest.mark.parametrize(
+    ("points", "noise", "allowed"), [(21, 0.0, tol.DMA_SHIFT), (11, 0.005, tol.DMA_SHIFT_NOISY)]
+)
 def test_shift_factors_are_found(points, noise, allowed):
     curves = isotherms(points, noise)
     fit = vr.fit_prony(*curves, temperature=TEMPERATURES, reference=0.0)
@@ -135,9 +149,13 @@ def test_shift_factors_are_found(points, noise, allowed):
 
 @pytest.mark.parametrize("reference", [0.0, 20.0, -30.0])
 def test_times_are_those_at_the_reference(reference):
-    """By a function whose constants are of another temperature, by factors in either order: all modes times a_T."""
+    """By a function whose constants are of another temperature, by factors in either order: all
+    modes times a_T.
+    """
     omega, *columns = isotherms(21, 0.0)
-    moved = vr.WLF(C1=8.86 * 101.6 / 41.6, C2=41.6, T0=-60.0)  # WLF of T0 = 0, C2 = 101.6, moved to -60
+    moved = vr.WLF(
+        C1=8.86 * 101.6 / 41.6, C2=41.6, T0=-60.0
+    )  # WLF of T0 = 0, C2 = 101.6, moved to -60
     truth = np.sort(TAU * wlf(reference))
     for shift, turn in (
         (moved, 1),
@@ -148,7 +166,12 @@ def test_times_are_those_at_the_reference(reference):
         curves = [column[::turn] for column in (omega, *columns)]
         given = shift if callable(shift) else shift[::turn]
         fit = vr.fit_prony(
-            *curves, TAU.size, temperature=TEMPERATURES[::turn], reference=reference, shift=given, misfit=1e-6
+            *curves,
+            TAU.size,
+            temperature=TEMPERATURES[::turn],
+            reference=reference,
+            shift=given,
+            misfit=1e-6,
         )
         assert close(np.sort(fit.prony.tau) * fit.T_ref, truth, tol.DMA_SHIFTED_TIMES)
         assert close(fit.shifts.a_T, wlf(TEMPERATURES) / wlf(reference), tol.DMA_SHIFTED_TIMES)
@@ -156,7 +179,9 @@ def test_times_are_those_at_the_reference(reference):
 
 
 def test_the_reference_that_a_shift_means():
-    """T0 of WLF and the temperature of the factor 1, where they are among the curves; else the middle curve."""
+    """T0 of WLF and the temperature of the factor 1, where they are among the curves; else the
+    middle curve.
+    """
     curves = isotherms(21, 0.0)
     for shift, reference in (
         (None, 0.0),
@@ -179,7 +204,9 @@ def test_the_reference_that_a_shift_means():
 
 
 def test_temperatures_as_they_were_measured():
-    """Within 0.5 K of a neighbour points are of one set, and the report says so; factors go by the sets."""
+    """Within 0.5 K of a neighbour points are of one set, and the report says so; factors go by the
+    sets.
+    """
     omega, storage, loss = (np.concatenate(column[::-1]) for column in isotherms(21, 0.0))
     nominal = np.repeat(TEMPERATURES[::-1], 21)
     measured = nominal + np.tile(np.linspace(-0.3, 0.3, 21), TEMPERATURES.size)
@@ -194,13 +221,24 @@ def test_temperatures_as_they_were_measured():
 
 @cache
 def fit_at(reference):
-    return vr.fit_prony(*isotherms(7, 0.0), temperature=TEMPERATURES, shift=wlf, reference=reference)
+    return vr.fit_prony(
+        *isotherms(7, 0.0), temperature=TEMPERATURES, shift=wlf, reference=reference
+    )
 
 
 @settings(max_examples=15, deadline=None)
-@given(st.permutations(range(8)), st.sampled_from([None, -30.0, 0.0, 20.0]), st.booleans(), st.floats(1e-3, 1e3))
-def test_the_order_of_curves_and_the_unit_of_factors_do_not_matter(order, reference, by_points, scale):
-    """Curves in any order with factors in the same, all factors times a number: one fit, at the reference."""
+@given(
+    st.permutations(range(8)),
+    st.sampled_from([None, -30.0, 0.0, 20.0]),
+    st.booleans(),
+    st.floats(1e-3, 1e3),
+)
+def test_the_order_of_curves_and_the_unit_of_factors_do_not_matter(
+    order, reference, by_points, scale
+):
+    """Curves in any order with factors in the same, all factors times a number: one fit, at the
+    reference.
+    """
     curves = isotherms(7, 0.0)
     base = 0.0 if reference is None else reference
     expected = fit_at(base)
@@ -208,7 +246,8 @@ def test_the_order_of_curves_and_the_unit_of_factors_do_not_matter(order, refere
     temperature = TEMPERATURES[list(order)]
     factors = (wlf(TEMPERATURES) * (scale if reference is not None else 1.0))[list(order)]
     if by_points:
-        turned, temperature = [np.concatenate(column) for column in turned], np.repeat(temperature, 7)
+        turned = [np.concatenate(column) for column in turned]
+        temperature = np.repeat(temperature, 7)
     fit = vr.fit_prony(*turned, temperature=temperature, shift=factors, reference=reference)
     assert fit.temperature == base
     assert close(fit.omega, expected.omega, tol.DMA_SHIFTED_TIMES)
@@ -216,36 +255,51 @@ def test_the_order_of_curves_and_the_unit_of_factors_do_not_matter(order, refere
 
 
 def test_a_plateau_fixes_no_shift():
-    """Two decades below the slowest mode nothing moves: a warning and the report say so; storage alone is offered."""
+    """Two decades below the slowest mode nothing moves: a warning and the report say so; storage
+    alone is offered.
+    """
     omega = np.logspace(-5.0, -3.0, 11)
     curves = [curve(omega * wlf(T), tau=TAU[1:], strengths=STRENGTHS[1:])[1:] for T in (0.0, 10.0)]
     columns = [omega] * 2, *zip(*curves, strict=True)
     columns = [list(column) for column in columns]
     columns[2] = [np.full(11, 50.0), np.full(11, 50.0)]  # the noise floor of the instrument
     with pytest.warns(
-        vr.ModelWarning, match=r"does not determine the shift from 0 to 10 C \(.*: give shift=, or try on="
+        vr.ModelWarning,
+        match=r"does not determine the shift from 0 to 10 C \(.*: give shift=, or try on=",
     ):
         fit = vr.fit_prony(*columns, temperature=[0.0, 10.0], misfit=0.5)
     assert "does not determine the shift from 0 to 10 C" in str(fit)
 
 
 def test_shifts_by_storage_alone():
-    """A loss modulus that does not shift with the storage modulus (here: constant) leaves its shifts as they are."""
+    """A loss modulus that does not shift with the storage modulus (here: constant) leaves its
+    shifts as they are.
+    """
     omega, storage, _ = isotherms(21, 0.0)
     flat = [np.full(21, 1e5)] * TEMPERATURES.size
-    fit = vr.fit_prony(omega, storage, flat, temperature=TEMPERATURES, reference=0.0, on="storage", misfit=0.5)
+    fit = vr.fit_prony(
+        omega, storage, flat, temperature=TEMPERATURES, reference=0.0, on="storage", misfit=0.5
+    )
     assert close(np.log10(fit.shifts.a_T), np.log10(wlf(TEMPERATURES)), tol.DMA_SHIFT, scale=1.0)
 
 
 @pytest.mark.filterwarnings("ignore:E' and E''")
-@pytest.mark.parametrize("part", [lambda f: f, lambda f: f**0.5, lambda f: 1.0 / (800.0 * f), lambda f: 1.0])
+@pytest.mark.parametrize(
+    "part", [lambda f: f, lambda f: f**0.5, lambda f: 1.0 / (800.0 * f), lambda f: 1.0]
+)
 def test_a_part_of_the_loss_that_does_not_shift_leaves_the_shift_to_the_storage(part):
-    """A low-loss material, a decade for 5 K, with a part of E'' of the instrument as large as its own."""
-    f, temperatures, rng = np.geomspace(0.1, 80.0, 15), np.arange(20.0, 45.0, 5.0), np.random.default_rng(3)
+    """A low-loss material, a decade for 5 K, with a part of E'' of the instrument as large as its
+    own.
+    """
+    f = np.geomspace(0.1, 80.0, 15)
+    temperatures = np.arange(20.0, 45.0, 5.0)
+    rng = np.random.default_rng(3)
     x = np.log10(f) - np.arange(5.0)[:, None]
     storage = 1.0 + 0.025 * x + 0.0015 * x * np.abs(x)
     loss = 0.5 * np.pi * (0.025 + 0.003 * np.abs(x)) / np.log(10.0) + 0.02 * part(f / 80.0)
-    noisy = [y * (1.0 + s * rng.standard_normal(y.shape)) for y, s in ((storage, 1e-3), (loss, 1e-2))]
+    noisy = [
+        y * (1.0 + s * rng.standard_normal(y.shape)) for y, s in ((storage, 1e-3), (loss, 1e-2))
+    ]
     fit = vr.fit_prony([f] * 5, *(list(y) for y in noisy), temperature=temperatures, reference=20.0)
     assert close(np.log10(fit.shifts.a_T), -np.arange(5.0), tol.DMA_SHIFT_LOW_LOSS, scale=1.0)
 
@@ -253,29 +307,43 @@ def test_a_part_of_the_loss_that_does_not_shift_leaves_the_shift_to_the_storage(
 def test_moduli_that_disagree_on_the_shift_and_factors_that_rise_are_named():
     omega, storage, loss = isotherms(21, 0.0)
     loss = [E * (1.0 + 0.1 * np.log(f)) for f, E in zip(omega, loss, strict=True)]
-    with pytest.warns(vr.ModelWarning, match="E' and E'' overlap best at different shifts from -30 to -20 C"):
+    with pytest.warns(
+        vr.ModelWarning, match="E' and E'' overlap best at different shifts from -30 to -20 C"
+    ):
         vr.fit_prony(omega, storage, loss, temperature=TEMPERATURES, misfit=1.0)
     factors = wlf(TEMPERATURES)
     factors[2] = 2.0 * factors[1]
-    with pytest.warns(vr.ModelWarning, match=r"a_T rises with temperature from -30 to -20 C \(by a factor of 2\)"):
+    with pytest.warns(
+        vr.ModelWarning, match=r"a_T rises with temperature from -30 to -20 C \(by a factor of 2\)"
+    ):
         vr.fit_prony(*isotherms(21, 0.0), temperature=TEMPERATURES, shift=factors, misfit=1.0)
 
 
 @pytest.mark.parametrize("decades", [2.4, 2.59, 3.0, 3.5])
 def test_curves_too_far_apart_are_refused(decades):
-    """Of 2.7 decades each: less than 15 % of overlap is not enough to find a shift, and is not taken for the best."""
+    """Of 2.7 decades each: less than 15 % of overlap is not enough to find a shift, and is not
+    taken for the best.
+    """
     omega = 2.0 * np.pi * np.geomspace(0.1, 50.0, 15)
     curves = [curve(omega * a)[1:] for a in (10.0**decades, 1.0)]
-    with pytest.raises(vr.ParameterError, match=r"at 0 and 20 °C (agree best with the least|do not agree)"):
+    with pytest.raises(
+        vr.ParameterError, match=r"at 0 and 20 °C (agree best with the least|do not agree)"
+    ):
         vr.fit_prony([omega] * 2, *map(list, zip(*curves, strict=True)), temperature=[0.0, 20.0])
 
 
 def test_found_factors_are_a_shift_and_give_a_law():
-    """Between the curves by interpolation, beyond them by WLF; of two or more by Arrhenius; what is none is refused."""
+    """Between the curves by interpolation, beyond them by WLF; of two or more by Arrhenius; what is
+    none is refused.
+    """
     fit = vr.fit_prony(*isotherms(21, 0.0), temperature=TEMPERATURES, reference=0.0)
-    law, inside, beyond = fit.wlf(), TEMPERATURES[:-1] + 5.0, np.array([-40.0, 60.0])
+    law = fit.wlf()
+    inside = TEMPERATURES[:-1] + 5.0
+    beyond = np.array([-40.0, 60.0])
     assert close([fit.shifts(T) for T in inside], wlf(inside), tol.DMA_SHIFT_BETWEEN)
-    assert close([law(T) for T in (*inside, *beyond)], wlf(np.append(inside, beyond)), tol.DMA_SHIFT_LAW)
+    assert close(
+        [law(T) for T in (*inside, *beyond)], wlf(np.append(inside, beyond)), tol.DMA_SHIFT_LAW
+    )
     rubber = fit.material(0.49)
     moved = rubber.at(-25.0, fit.shifts)
     assert close(moved.T_ref, rubber.T_ref * wlf(-25.0), tol.DMA_SHIFT_BETWEEN)
@@ -299,7 +367,9 @@ def test_found_factors_are_a_shift_and_give_a_law():
 
 
 def test_shear_is_shear():
-    """E = 2 (1 + nu) G where the material is made, and the report, the material and the files say so."""
+    """E = 2 (1 + nu) G where the material is made, and the report, the material and the files say
+    so.
+    """
     omega, storage, loss = curve(WHOLE)
     tension = vr.fit_prony(omega, storage, loss, source="sweep.csv")
     record = vr.DynamicModuli(omega, storage / 2.98, loss / 2.98, mode="shear", source="sweep.csv")
@@ -312,9 +382,9 @@ def test_shear_is_shear():
         assert words in text
     assert "shear" not in str(tension)
     assert shear.to_xarray().attrs["modulus"] == shear.mode == "shear"
-    assert vr.fit_prony(*record[:3], mode="shear").material(0.4) == vr.fit_prony(record, source="60 points").material(
-        0.4
-    )
+    assert vr.fit_prony(*record[:3], mode="shear").material(0.4) == vr.fit_prony(
+        record, source="60 points"
+    ).material(0.4)
 
 
 def test_a_record_with_temperatures_becomes_curves():
@@ -332,7 +402,9 @@ def test_a_record_with_temperatures_becomes_curves():
 
 @pytest.mark.parametrize("kind", ["dynamic", "relaxation"])
 def test_many_points_are_thinned(kind):
-    """20,000 points with noise give the series of exact data, in a time that does not grow with them."""
+    """20,000 points with noise give the series of exact data, in a time that does not grow with
+    them.
+    """
     if kind == "dynamic":
         omega, storage, loss = curve(np.geomspace(1e-2, 1e5, 20000), noise=0.01)
         fit = vr.fit_prony(omega, storage, loss)
@@ -348,7 +420,9 @@ def test_many_points_are_thinned(kind):
     _, storage, loss = curve(inner)
     material = fit.material()
     assert close(material.storage(inner), storage, tol.DMA_MANY)
-    assert close(material.loss(inner), loss, tol.DMA_MANY if kind == "dynamic" else tol.DMA_RELAXATION_LOSS)
+    assert close(
+        material.loss(inner), loss, tol.DMA_MANY if kind == "dynamic" else tol.DMA_RELAXATION_LOSS
+    )
     assert close((fit.measured.low, fit.measured.high), fit.band, 1e-15)
 
 
@@ -357,9 +431,13 @@ def relaxing(t):
 
 
 def test_relaxation_and_dynamic_data_give_one_material():
-    """E(t) of ten modes and E', E'' of the same: the same moduli inside both bands; the band follows from 1/t."""
+    """E(t) of ten modes and E', E'' of the same: the same moduli inside both bands; the band
+    follows from 1/t.
+    """
     t = np.geomspace(1e-4, 1e3, 60)
-    fit = vr.fit_relaxation(t[::-1], relaxing(t)[::-1], misfit=1e-3, temperature=20.0, source="step.csv")
+    fit = vr.fit_relaxation(
+        t[::-1], relaxing(t)[::-1], misfit=1e-3, temperature=20.0, source="step.csv"
+    )
     assert fit.reached
     assert close((fit.measured.low, fit.measured.high), (1e-3, 1e4), 1e-12)
     assert (fit.measured.source, fit.material().temperature) == ("step.csv", 20.0)
@@ -382,7 +460,11 @@ def test_relaxation_and_dynamic_data_give_one_material():
 def test_two_modes_of_a_relaxation_are_found_exactly():
     t = np.geomspace(1e-4, 1e2, 50)
     fit = vr.fit_relaxation(t, 1.0 + 2.0 * np.exp(-t) + 6.0 * np.exp(-t / 1e-3))
-    assert close((*fit.prony.tau, *fit.prony.E, fit.E, fit.T_ref), (1.0, 1e-3, 2.0, 6.0, 1.0, 1.0), tol.DMA_EXACT)
+    assert close(
+        (*fit.prony.tau, *fit.prony.E, fit.E, fit.T_ref),
+        (1.0, 1e-3, 2.0, 6.0, 1.0, 1.0),
+        tol.DMA_EXACT,
+    )
 
 
 # --- files ---
@@ -410,7 +492,10 @@ def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ()
         ("f, E_stor, E_loss\nHz, MPa, kPa\n1,2,3\n4,5,6\n", (2 * np.pi, 1e6, 1e3)),
         ("omega (rad/s); G' [GPa]; G'' [Pa]\n1;2;3\n4;5;6\n", (1, 1e9, 1)),
         ("# omega (rad/s)   E' (MPa)   E'' (MPa)\n1 2 3\n4 5 6\n", (1, 1e6, 1e6)),
-        ("Frequency (Hz), Storage Modulus (MPa), Loss Modulus (MPa)\n1,2,3\n4,5,6", (2 * np.pi, 1e6, 1e6)),
+        (
+            "Frequency (Hz), Storage Modulus (MPa), Loss Modulus (MPa)\n1,2,3\n4,5,6",
+            (2 * np.pi, 1e6, 1e6),
+        ),
         ("T, f, E_loss, E_stor\nC, Hz, Pa, MPa\n20,1,3,2\n20,4,6,5\n", (2 * np.pi, 1e6, 1)),
     ],
 )
@@ -418,7 +503,9 @@ def test_forms_of_a_file(tmp_path, text, factors):
     (tmp_path / "dma.txt").write_text(text, encoding="utf-8-sig")
     found = vr.read_dma(tmp_path / "dma.txt")
     assert close(
-        np.array(found), np.array(factors)[:, None] * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]), tol.DMA_READ
+        np.array(found),
+        np.array(factors)[:, None] * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]),
+        tol.DMA_READ,
     )
 
 
@@ -431,10 +518,14 @@ def test_source_is_a_text(tmp_path):
 
 
 def test_units_are_asked_for(tmp_path):
-    """What a file does not say is said by ``units``, or taken as usual with a word; what it says stands."""
+    """What a file does not say is said by ``units``, or taken as usual with a word; what it says
+    stands.
+    """
     file = tmp_path / "dma.txt"
     file.write_text("f, E_stor, E_loss\n1,2,3\n")
-    with pytest.warns(vr.ModelWarning, match=r"without a unit are taken in Hz \(frequency\) and Pa"):
+    with pytest.warns(
+        vr.ModelWarning, match=r"without a unit are taken in Hz \(frequency\) and Pa"
+    ):
         assert close(vr.read_dma(file), [[2.0 * np.pi], [2.0], [3.0]], 1e-15)
     assert close(vr.read_dma(file, units=("rad/s", "MPa")), [[1.0], [2e6], [3e6]], 1e-15)
     file.write_text("f [kHz], E_stor [MPa], E_loss [kPa]\n1,2,3\n")
@@ -455,13 +546,18 @@ def test_what_the_contact_sees_of_the_data():
 @pytest.mark.parametrize("noise", [0.0, 0.01])
 @pytest.mark.parametrize("seed", range(3))
 def test_the_accuracy_of_M_bounds_its_error_and_contact_states_it(noise, seed):
-    """Rubbers of two modes, one of them at an end of the data: the misfit is met, and M is off by up to 30 %.
+    """Rubbers of two modes, one of them at an end of the data: the misfit is met, and M is off by
+    up to 30 %.
 
     Over 200 random rubbers 0.7 % of the errors are above it (pipeline/evidence/measure/fits.py).
     """
-    rng, omega = np.random.default_rng(seed), np.geomspace(1.0, 1e3, 25)
+    rng = np.random.default_rng(seed)
+    omega = np.geomspace(1.0, 1e3, 25)
     rubber = vr.Material(3e6, 0.49, vr.Prony(10.0 ** rng.uniform(-0.5, 1.0, 2), [5.0, 0.01]))
-    moduli = [y * (1.0 + noise * rng.standard_normal(25)) for y in (rubber.storage(omega), rubber.loss(omega))]
+    moduli = [
+        y * (1.0 + noise * rng.standard_normal(25))
+        for y in (rubber.storage(omega), rubber.loss(omega))
+    ]
     fit = vr.fit_prony(omega, *moduli, misfit=max(0.01, 1.2 * noise))
     true, found = (
         vr.Cylinder(R=0.1, m=35.5, mu=0.5, load=1e3, material=each, base=vr.Material.rigid())
@@ -476,7 +572,9 @@ def test_the_accuracy_of_M_bounds_its_error_and_contact_states_it(noise, seed):
         assert found.contact(2.0 * high, delta=0.0, fields="M_error").M_error == np.inf
     there = fit.measured.shifted(10.0)
     rates = fit.admissible.rate[1:-1]
-    assert close(there.moment_error(0.1 * rates), fit.measured.moment_error(rates), tol.DMA_SHIFTED_TIMES)
+    assert close(
+        there.moment_error(0.1 * rates), fit.measured.moment_error(rates), tol.DMA_SHIFTED_TIMES
+    )
     unknown = found.replace(material=rubber).contact(V[0], delta=0.0, fields="M_error").M_error
     assert np.isnan(unknown)
     with pytest.raises(vr.ParameterError, match="M_error"):
@@ -492,7 +590,9 @@ def test_what_was_measured_stays_with_the_material():
     data = vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv")
     fit = vr.fit_prony(*data, source="dma.csv")
     errors = tuple(zip(fit.admissible.rate.tolist(), fit.admissible.error.tolist(), strict=True))
-    assert fit.material(0.5).measured == vr.Measured(data[0].min(), data[0].max(), max(fit.misfit), "dma.csv", errors)
+    assert fit.material(0.5).measured == vr.Measured(
+        data[0].min(), data[0].max(), max(fit.misfit), "dma.csv", errors
+    )
     with pytest.warns(vr.ModelWarning, match=r"the misfit of 1.00% was not reached \(\d"):
         rubber = vr.fit_prony(*data, 1).material(0.5)
     poor = vr.Cylinder(R=0.1, m=30.0, material=rubber, mu=0.5).validity(0.1).measured

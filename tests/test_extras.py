@@ -1,4 +1,6 @@
-"""What is not there everywhere: packages of an extra, what only POSIX has, a newer Python, the name of the version."""
+"""What is not there everywhere: packages of an extra, what only POSIX has, a newer Python, the name
+of the version.
+"""
 
 import importlib.metadata
 import os
@@ -12,8 +14,8 @@ import pytest
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.core.extras import import_extra
-from viscoroll.io.runs import export_netcdf, open_run, read_run, run_ensemble
+from viscoroll.core.errors import import_extra
+from viscoroll.runs import export_netcdf, open_run, read_run, run_ensemble
 
 RUN = """
 preset = "paper-section-5"
@@ -43,7 +45,9 @@ def bare(monkeypatch):
             monkeypatch.delitem(sys.modules, loaded)
         monkeypatch.setitem(sys.modules, name, None)
     yield
-    for name in set(sys.modules) - before:  # parts without their package would serve its next import
+    for name in (
+        set(sys.modules) - before
+    ):  # parts without their package would serve its next import
         if name.partition(".")[0] in MISSING:
             del sys.modules[name]
 
@@ -52,9 +56,16 @@ def bare(monkeypatch):
 
 
 def test_a_missing_extra_is_named(bare, run_file, tmp_path):
-    run, store = read_run(run_file), tmp_path / "store.zarr"
-    for call in (partial(run_ensemble, run, store), partial(open_run, store), partial(export_netcdf, store, "x")):
-        with pytest.raises(vr.MissingDependencyError, match=r"zarr is not .*pip install 'viscoroll\[runs\]'"):
+    run = read_run(run_file)
+    store = tmp_path / "store.zarr"
+    for call in (
+        partial(run_ensemble, run, store),
+        partial(open_run, store),
+        partial(export_netcdf, store, "x"),
+    ):
+        with pytest.raises(
+            vr.MissingDependencyError, match=r"zarr is not .*pip install 'viscoroll\[runs\]'"
+        ):
             call()
     assert not store.exists()
 
@@ -64,7 +75,9 @@ def test_cluster_and_parquet_are_extras_too(bare, run_file, tmp_path, monkeypatc
     with pytest.raises(vr.MissingDependencyError, match=r"viscoroll\[cluster\]"):
         run_ensemble(read_run(run_file), tmp_path / "store.zarr", cluster="local")
     (tmp_path / "a.parquet").touch()
-    run_file.write_text(RUN.replace("omega0 = 0.5", 'omega0 = { file = "a.parquet", column = "a" }'))
+    run_file.write_text(
+        RUN.replace("omega0 = 0.5", 'omega0 = { file = "a.parquet", column = "a" }')
+    )
     with pytest.raises(vr.MissingDependencyError, match=r"viscoroll\[parquet\]"):
         read_run(run_file)
 
@@ -91,24 +104,26 @@ import viscoroll
 for module in pkgutil.walk_packages(viscoroll.__path__, "viscoroll."):
     if not module.name.endswith("__main__"):
         importlib.import_module(module.name)
-from viscoroll.io.runs import estimate, export_netcdf, read_run, run_ensemble
+from viscoroll.runs import estimate, export_netcdf, read_run, run_ensemble
 run = read_run("run.toml")
 run_ensemble(run, "store.zarr")
 export_netcdf("store.zarr", "store.nc")
 print(estimate(run).memory > 1e8)
-"""
+"""  # noqa: E501
 #: of os, on no Windows
 POSIX_ONLY = """
 O_CLOEXEC O_DIRECTORY O_NOFOLLOW chown fchmod fchown fork forkpty getegid geteuid getgid getgroups getpgid getpgrp
 getpriority getresgid getresuid getsid getuid killpg lchown lockf mkfifo mknod nice openpty pipe2 posix_fadvise
 posix_fallocate posix_spawn pread pwrite register_at_fork sched_getaffinity sched_setaffinity sendfile setgid setpgid
 setsid setuid statvfs sync sysconf uname wait wait3 wait4
-"""
+"""  # noqa: E501
 
 
 def test_every_module_loads_and_a_run_ends_without_posix(run_file, tmp_path):
     command = [sys.executable, "-c", NOT_POSIX, " ".join(POSIX_ONLY.split())]
-    done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False)
+    done = subprocess.run(
+        command, cwd=tmp_path, capture_output=True, text=True, timeout=600, check=False
+    )
     assert done.stdout == "True\n", done.stderr
     assert (tmp_path / "store.nc").exists()
 
@@ -119,21 +134,31 @@ def test_every_module_loads_and_a_run_ends_without_posix(run_file, tmp_path):
 def test_an_older_python_is_told_in_one_line(tmp_path):
     code = "import sys; sys.version_info = (3, 10, 13); import viscoroll"
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=False)
-    assert done.stderr.splitlines()[-1].startswith("ImportError: viscoroll needs Python 3.11 or newer, this is 3.")
+    assert done.stderr.splitlines()[-1].startswith(
+        "ImportError: viscoroll needs Python 3.11 or newer, this is 3."
+    )
     make = shutil.which("make")
     if make is None:
         pytest.skip("make is not installed")
     old = tmp_path / "python"
-    old.write_text(f"#!/bin/sh\nshift\nexec {sys.executable} -c 'import sys; sys.version_info = (3, 10, 13)\n'\"$1\"")
+    old.write_text(
+        f"#!/bin/sh\nshift\nexec {sys.executable} -c 'import sys; sys.version_info = (3, 10, "
+        '13)\n\'"$1"'
+    )
     old.chmod(0o755)
     makefile = (ROOT / "Makefile").read_text()
     (tmp_path / "Makefile").write_text(makefile)
     for name in ("pyproject.toml", "constraints.txt"):
         (tmp_path / name).touch()
     (tmp_path / "src").mkdir()
-    done = subprocess.run([make, "setup", f"PYTHON={old}"], cwd=tmp_path, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        [make, "setup", f"PYTHON={old}"], cwd=tmp_path, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 2
-    assert done.stderr.splitlines()[0] == f"viscoroll needs Python 3.11 or newer, {old} is 3.10: make PYTHON=..."
+    assert (
+        done.stderr.splitlines()[0]
+        == f"viscoroll needs Python 3.11 or newer, {old} is 3.10: make PYTHON=..."
+    )
 
 
 def test_one_version():
@@ -141,5 +166,7 @@ def test_one_version():
     citation = (ROOT / "CITATION.cff").read_text()
     assert f"\nversion: {vr.__version__}\n" in citation
     assert "doi: 10.1007/s00707-020-02643-5" in citation
-    if Path(vr.__file__).is_relative_to(Path(os.__file__).parent):  # installed, not a tree on PYTHONPATH
+    if Path(vr.__file__).is_relative_to(
+        Path(os.__file__).parent
+    ):  # installed, not a tree on PYTHONPATH
         assert importlib.metadata.version("viscoroll") == vr.__version__

@@ -39,7 +39,10 @@ OBSTACLES = {
     "no folder": (lambda path: path.parent.rmdir(), "No such file or directory"),
     "a loop of links": (lambda path: path.symlink_to(path), "it is a loop of symbolic links"),
     "a pipe": (os.mkfifo, "it is not a regular file"),
-    "a device": (lambda path: path.symlink_to(os.devnull), "it is not a regular file"),  # which a rename would replace
+    "a device": (
+        lambda path: path.symlink_to(os.devnull),
+        "it is not a regular file",
+    ),  # which a rename would replace
 }
 
 
@@ -58,7 +61,11 @@ def test_an_obstacle_is_told_and_stays(write, tmp_path, obstacle):
 
 def test_a_symbolic_link_stays_and_its_target_is_written(write, tmp_path):
     (tmp_path / "far").mkdir()
-    for name, target in (("link", "far/file"), ("link to the link", "link"), ("to nothing yet", "far/new")):
+    for name, target in (
+        ("link", "far/file"),
+        ("link to the link", "link"),
+        ("to nothing yet", "far/new"),
+    ):
         (tmp_path / name).symlink_to(target)
         write(tmp_path / name)
         assert (tmp_path / name).readlink() == Path(target)
@@ -67,7 +74,9 @@ def test_a_symbolic_link_stays_and_its_target_is_written(write, tmp_path):
 
 @pytest.fixture
 def shared(tmp_path, write):
-    """A folder that others may enter; what ``write`` imports is loaded, for they may not read where it lies."""
+    """A folder that others may enter; what ``write`` imports is loaded, for they may not read where
+    it lies.
+    """
     write(tmp_path / "before")
     let_in(tmp_path)
     folder = tmp_path / "shared"
@@ -77,7 +86,8 @@ def shared(tmp_path, write):
 
 
 @pytest.mark.parametrize(
-    ("file", "folder", "words"), [(0o444, 0o777, "it is read-only"), (0o666, 0o555, "Permission denied")]
+    ("file", "folder", "words"),
+    [(0o444, 0o777, "it is read-only"), (0o666, 0o555, "Permission denied")],
 )
 def test_what_is_read_only_is_not_replaced(write, shared, file, folder, words):
     """A rename would not ask."""
@@ -113,11 +123,13 @@ for name, write in test_files.WRITERS.items():
         resource.setrlimit(resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
         assert path.read_bytes() == before
         assert list(path.parent.iterdir()) == [path]
-"""
+"""  # noqa: E501
 
 
 def test_a_full_disk(tmp_path):
-    """In a process of its own, as HDF5 2.0 crashes one that meets a full disk: it must not meet it."""
+    """In a process of its own, as HDF5 2.0 crashes one that meets a full disk: it must not meet
+    it.
+    """
     path = tmp_path / "file"
     command = [sys.executable, "-c", FULL, str(Path(__file__).parent), str(path)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -133,7 +145,9 @@ def test_samples_are_copied_and_a_file_of_the_user_stays(tmp_path):
     assert all(copy.read_bytes() == vr.datasets.path(copy.name).read_bytes() for copy in copies)
     (tmp_path / "own").mkdir()
     (tmp_path / "own/rubber.toml").write_text("mine")
-    refused(lambda: vr.datasets.copy_files(tmp_path / "own"), "rubber.toml: exists", error=vr.FileError)
+    refused(
+        lambda: vr.datasets.copy_files(tmp_path / "own"), "rubber.toml: exists", error=vr.FileError
+    )
     assert [file.read_text() for file in (tmp_path / "own").iterdir()] == ["mine"]
 
 
@@ -149,8 +163,11 @@ def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path):
 def test_all_is_on_disk_before_the_name_is(tmp_path, monkeypatch):
     """File synced, renamed, folder synced; in this order."""
     done = []
-    sync, replace = os.fsync, os.replace
-    monkeypatch.setattr(os, "fsync", lambda fd: done.append(os.readlink(f"/proc/self/fd/{fd}")) or sync(fd))
+    sync = os.fsync
+    replace = os.replace
+    monkeypatch.setattr(
+        os, "fsync", lambda fd: done.append(os.readlink(f"/proc/self/fd/{fd}")) or sync(fd)
+    )
     monkeypatch.setattr(os, "replace", lambda a, b: done.append("rename") or replace(a, b))
     files.write_text(tmp_path / "file", "new")
     assert done[0].startswith(f"{tmp_path}/.")
@@ -173,16 +190,23 @@ def test_no_change_goes_unnoticed():
 
 # --- what is read is what was written ---
 
-RUBBER = vr.Material(1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one')
+RUBBER = vr.Material(
+    1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one'
+)
 #: format -> how a file of it is written, and read
 FORMATS = {
-    "law": (lambda path: vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), path), vr.load_law),
+    "law": (
+        lambda path: vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), path),
+        vr.load_law,
+    ),
     "law of every alpha": (
         lambda path: vr.tables.save(vr.tables.law(alpha=(1, 30.0)), path),
         lambda path: vr.load_law(path, 11.0),
     ),
     "grid": (
-        lambda path: vr.tables.save(vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01]), path),
+        lambda path: vr.tables.save(
+            vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01]), path
+        ),
         vr.tables.load,
     ),
     "material": (RUBBER.to_netcdf, vr.Material.from_netcdf),
@@ -191,8 +215,11 @@ FORMATS = {
 
 @pytest.mark.parametrize("form", FORMATS)
 def test_damage_is_told(form, tmp_path):
-    """One flipped bit anywhere, a file that is cut, longer or another, none: an error in one line that names it."""
-    path, (write, read) = tmp_path / "file.nc", FORMATS[form]
+    """One flipped bit anywhere, a file that is cut, longer or another, none: an error in one line
+    that names it.
+    """
+    path = tmp_path / "file.nc"
+    (write, read) = FORMATS[form]
 
     def told(content, *words):
         path.write_bytes(content)
@@ -220,25 +247,49 @@ def test_damage_is_told(form, tmp_path):
 
 # --- every writer is one of these ---
 
-RAW = {"open", "write_text", "write_bytes", "savefig", "to_netcdf", "save", "savez", "savez_compressed", "savemat",
-       "savetxt", "to_csv", "to_parquet", "netcdf_file", "File", "copyfile"}  # fmt: skip
-#: composed in memory and written by ``write_bytes``, to a path that ``replace_file`` gave, or to a temporary folder
+RAW = {
+    "open",
+    "write_text",
+    "write_bytes",
+    "savefig",
+    "to_netcdf",
+    "save",
+    "savez",
+    "savez_compressed",
+    "savemat",
+    "savetxt",
+    "to_csv",
+    "to_parquet",
+    "netcdf_file",
+    "File",
+    "copyfile",
+}
+#: composed in memory and written by ``write_bytes``, to a path that ``replace_file`` gave, or to a
+#: temporary folder
 KNOWN = {
-    "files.py: fix_texts(dataset).to_netcdf", "flow_store.py: np.savez", "export.py: h5netcdf.File",
-    "export.py: path.open", "folder.py: temporary.write_bytes", "build.py: (folder / name).write_text",
-    "output.py: frame.to_csv",
-}  # fmt: skip
+    "files.py: fix_texts(dataset).to_netcdf",
+    "flow_store.py: np.savez",
+    "run_results.py: h5netcdf.File",
+    "run_results.py: path.open",
+    "cache_folder.py: temporary.write_bytes",
+    "fmu_build.py: (folder / name).write_text",
+    "arguments.py: frame.to_csv",
+}
 #: stages that write to scratch folders of their own
 SCRATCH = (
-    "pipeline/evidence/matrix.py", "pipeline/evidence/measure/ensembles.py", "pipeline/evidence/measure/outside.py",
+    "pipeline/evidence/matrix.py",
+    "pipeline/evidence/measure/ensembles.py",
+    "pipeline/evidence/measure/outside.py",
     "pipeline/evidence/mutate/",
     "pipeline/evidence/torture/",
-)  # fmt: skip
+)
 
 
 def calls(node):
     """Calls outside the body of ``with replace_file(...)``."""
-    if isinstance(node, ast.With) and any("replace_file(" in ast.unparse(item) for item in node.items):
+    if isinstance(node, ast.With) and any(
+        "replace_file(" in ast.unparse(item) for item in node.items
+    ):
         return []
     found = [node] if isinstance(node, ast.Call) else []
     return found + [call for child in ast.iter_child_nodes(node) for call in calls(child)]
@@ -248,17 +299,35 @@ def writes(call):
     """Whether a call may write a file by other means than those of ``files.py``."""
     owner, _, name = ast.unparse(call.func).rpartition(".")
     if name in ("open", "File"):  # with a mode such as "w", "ab" or "r+"
-        words = {node.value for node in ast.walk(call) if isinstance(node, ast.Constant) and node.value}
-        return any(set(word) <= set("rwaxb+t") and set(word) & set("wax+") for word in words if isinstance(word, str))
-    return name in RAW and owner not in {"", "files", "material", "stored", "tables", "vr.tables", "figures"}
+        words = {
+            node.value for node in ast.walk(call) if isinstance(node, ast.Constant) and node.value
+        }
+        return any(
+            set(word) <= set("rwaxb+t") and set(word) & set("wax+")
+            for word in words
+            if isinstance(word, str)
+        )
+    return name in RAW and owner not in {
+        "",
+        "files",
+        "material",
+        "stored",
+        "tables",
+        "vr.tables",
+        "figures",
+    }
 
 
 def test_every_file_is_written_whole_or_not_at_all():
-    """Whatever writes in the package and the pipeline does so inside ``replace_file``, but for what is known."""
+    """Whatever writes in the package and the pipeline does so inside ``replace_file``, but for what
+    is known.
+    """
     found = {
         f"{path.name}: {ast.unparse(call.func)}"
-        for folder in ("src/viscoroll", "pipeline") for path in (ROOT / folder).rglob("*.py")
+        for folder in ("src/viscoroll", "pipeline")
+        for path in (ROOT / folder).rglob("*.py")
         if not path.relative_to(ROOT).as_posix().startswith(SCRATCH)
-        for call in calls(ast.parse(path.read_text())) if writes(call)
-    }  # fmt: skip
+        for call in calls(ast.parse(path.read_text()))
+        if writes(call)
+    }
     assert found == KNOWN

@@ -9,10 +9,14 @@ from closeness import close
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # random rollers are beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # random rollers are beyond the model
 
 WLF = vr.WLF(C1=8.86, C2=101.6, T0=0.0)
-RUBBER = vr.Material(3e6, 0.49, vr.Prony([2.0, 40.0], [1.0, 1e-2]), 0.02, temperature=20.0, shift=WLF)
+RUBBER = vr.Material(
+    3e6, 0.49, vr.Prony([2.0, 40.0], [1.0, 1e-2]), 0.02, temperature=20.0, shift=WLF
+)
 ROLLER = vr.Cylinder(R=0.1, m=60.0, material=RUBBER, base=vr.Material.rigid(), mu=0.6, load=2e4)
 COLD = {"ambient": -30.0, "conductance": 6.0}
 
@@ -25,7 +29,9 @@ def with_shift(shift, **more):
 
 
 def test_constant_shift_in_closed_form():
-    """The loss does not depend on the temperature: theta = ambient + w/conductance, and warming is exponential."""
+    """The loss does not depend on the temperature: theta = ambient + w/conductance, and warming is
+    exponential.
+    """
     roller = with_shift(lambda T: 1.0)
     w = 2e4 * 3.0 * roller.contact(3.0, delta=0.0).C_rr
     found = roller.temperature(3.0, ambient=5.0, conductance=10.0)
@@ -40,11 +46,17 @@ def test_infinite_conductance_is_the_law_at_ambient(base):
     """To the bit, as Material.at makes it."""
     at_ambient = ROLLER.replace(material=RUBBER.at(-7.0), base=base).contact(3.0, delta=0.0)
     found = ROLLER.replace(base=base).temperature(3.0, ambient=-7.0, conductance=1e300)
-    assert (found.temperature[0], found.C_rr[0], found.M[0]) == (-7.0, at_ambient.C_rr, at_ambient.M)
+    assert (found.temperature[0], found.C_rr[0], found.M[0]) == (
+        -7.0,
+        at_ambient.C_rr,
+        at_ambient.M,
+    )
 
 
 def test_against_a_dense_scan():
-    """None of the equilibria of 300 random rollers at 60,000 temperatures is missed; they balance, and alternate."""
+    """None of the equilibria of 300 random rollers at 60,000 temperatures is missed; they balance,
+    and alternate.
+    """
     rng = np.random.default_rng(5)
     several = 0
     for k in range(300):
@@ -52,19 +64,32 @@ def test_against_a_dense_scan():
         shift = vr.WLF(C1=rng.uniform(6, 18), C2=rng.uniform(40, 120), T0=rng.uniform(-60, 20))
         shift = shift if k % 3 else vr.Arrhenius(energy=rng.uniform(3e4, 2e5), T0=20.0)
         series = vr.Prony(10 ** rng.uniform(-1, 2, n), 10 ** rng.uniform(-4, 1, n))
-        rubber = vr.Material(10 ** rng.uniform(5.5, 7.5), 0.45, series, 0.1, temperature=20.0, shift=shift)
+        rubber = vr.Material(
+            10 ** rng.uniform(5.5, 7.5), 0.45, series, 0.1, temperature=20.0, shift=shift
+        )
         like = bool(k % 2)
-        roller = ROLLER.replace(R=10 ** rng.uniform(-1.7, 0), material=rubber, base=None if like else ROLLER.base)
-        V, A, G = 10 ** rng.uniform(-2, 1.7), rng.uniform(-35, 30), 10 ** rng.uniform(-0.5, 2.5)
+        roller = ROLLER.replace(
+            R=10 ** rng.uniform(-1.7, 0), material=rubber, base=None if like else ROLLER.base
+        )
+        V = 10 ** rng.uniform(-2, 1.7)
+        A = rng.uniform(-35, 30)
+        G = 10 ** rng.uniform(-0.5, 2.5)
         found = roller.temperature(V, ambient=A, conductance=G)
         heat = 0.5 * found.loss if like else found.loss
-        assert close(G * (found.temperature - A), heat, tol.HEAT_BALANCE, scale=1e-3 * G)  # of a rise of 1 mK
+        assert close(
+            G * (found.temperature - A), heat, tol.HEAT_BALANCE, scale=1e-3 * G
+        )  # of a rise of 1 mK
         assert found.count % 2
         assert found.stable.tolist() == [n % 2 == 0 for n in range(found.count)]
         largest = roller.contact(np.geomspace(1e-9, 1e9, 999), delta=0.0, fields="C_rr").C_rr.max()
         theta = np.linspace(A, A + 1.1 * roller.load * V * largest / G, 60_000)
         a_T = np.exp(shift.log(theta) - shift.log(np.float64(20.0)))
-        loss = roller.load * V * roller.contact(V * a_T, delta=0.0, fields="C_rr").C_rr * (0.5 if like else 1.0)
+        loss = (
+            roller.load
+            * V
+            * roller.contact(V * a_T, delta=0.0, fields="C_rr").C_rr
+            * (0.5 if like else 1.0)
+        )
         positive = loss > G * (theta - A)
         assert found.count >= np.count_nonzero(positive[1:] != positive[:-1])
         several += found.count > 1
@@ -72,20 +97,29 @@ def test_against_a_dense_scan():
 
 
 def test_found_factors_and_arrays():
-    """A table of factors gives the temperatures of the WLF that it samples; arrays those of single states."""
+    """A table of factors gives the temperatures of the WLF that it samples; arrays those of single
+    states.
+    """
     at = np.linspace(-60.0, 150.0, 2101)
     table = with_shift(lambda T: float(np.exp(np.interp(T, at, WLF.log(at)))))
     V = np.array([[0.3], [2.0]])
     A = np.array([-30.0, 20.0, 0.0])
     whole = ROLLER.temperature(V, ambient=A, conductance=6.0)
-    assert close(table.temperature(V, ambient=A, conductance=6.0).temperature, whole.temperature, 1e-4, scale=1.0)
+    assert close(
+        table.temperature(V, ambient=A, conductance=6.0).temperature,
+        whole.temperature,
+        1e-4,
+        scale=1.0,
+    )
     one = ROLLER.temperature(2.0, ambient=-30.0, conductance=6.0)
     assert whole.count[1, 0] == one.count
     assert np.array_equal(whole.temperature[1, 0, : one.count], one.temperature)
 
 
 def test_heat_of_slip_and_given_loads():
-    """A torque adds its slip to the heat; a force gives the speed too, at which the balance is the same."""
+    """A torque adds its slip to the heat; a force gives the speed too, at which the balance is the
+    same.
+    """
     driven = ROLLER.temperature(3.0, ambient=20.0, conductance=6.0, torque=500.0, slip_share=1.0)
     assert driven.loss_slip[0] > 0.0
     assert close(6.0 * (driven.temperature - 20.0), driven.loss, tol.HEAT_BALANCE)
@@ -99,7 +133,9 @@ def test_heat_of_slip_and_given_loads():
 
 
 def test_vertical_shift_scales_the_moduli():
-    """The equilibrium has the loss of the material whose moduli and times are those at its temperature."""
+    """The equilibrium has the loss of the material whose moduli and times are those at its
+    temperature.
+    """
     roller = with_shift(WLF, vertical_shift="entropic")
     found = roller.temperature(3.0, ambient=0.0, conductance=6.0)
     hot = roller.replace(material=roller.material.at(float(found.temperature[0])))
@@ -116,7 +152,9 @@ def test_cover_follows_its_own_law():
 
 
 def test_two_bodies_with_a_temperature_each():
-    """Like bodies in like surroundings have the temperatures that both share; others balance by the law of both."""
+    """Like bodies in like surroundings have the temperatures that both share; others balance by the
+    law of both.
+    """
     like = ROLLER.replace(base=None)
     both = like.pair_temperatures(1.0, ambient=(-30.0, -30.0), conductance=(6.0, 6.0))
     shared = like.temperature(1.0, **COLD)
@@ -124,7 +162,12 @@ def test_two_bodies_with_a_temperature_each():
     assert close(both.temperature[same, 0], shared.temperature, 1e-8)
     assert both.stable[same].tolist() == shared.stable.tolist()
     base = vr.Material(
-        5e6, 0.49, vr.Prony([9.0], [1.0]), 1e-4, temperature=0.0, shift=vr.Arrhenius(energy=9e4, T0=10.0)
+        5e6,
+        0.49,
+        vr.Prony([9.0], [1.0]),
+        1e-4,
+        temperature=0.0,
+        shift=vr.Arrhenius(energy=9e4, T0=10.0),
     )
     pair = ROLLER.replace(base=base)
     found = pair.pair_temperatures(2.0, ambient=(0.0, 20.0), conductance=(6.0, 30.0))
@@ -136,9 +179,14 @@ def test_two_bodies_with_a_temperature_each():
 
 def test_units_are_converted():
     pint = pytest.importorskip("pint").UnitRegistry()
-    given = {"ambient": pint.Quantity(293.15, "kelvin"), "conductance": pint.Quantity(6e-3, "kW/m/K")}
+    given = {
+        "ambient": pint.Quantity(293.15, "kelvin"),
+        "conductance": pint.Quantity(6e-3, "kW/m/K"),
+    }
     found = ROLLER.temperature(pint.Quantity(18.0, "km/h"), **given)
-    assert close(found.temperature, ROLLER.temperature(5.0, ambient=20.0, conductance=6.0).temperature, 1e-12)
+    assert close(
+        found.temperature, ROLLER.temperature(5.0, ambient=20.0, conductance=6.0).temperature, 1e-12
+    )
     with pytest.raises(vr.ParameterError, match="must be in W"):
         ROLLER.temperature(5.0, ambient=20.0, conductance=pint.Quantity(6.0, "kg"))
 
@@ -155,13 +203,18 @@ def test_warming_ends_in_a_stable_equilibrium():
     lost = 0.5 * ((course.loss[:, 1:] + course.loss[:, :-1]) * np.diff(t)).sum(axis=1)
     assert close(lost, course.heat[:, -1], 1e-4)  # the trapezoidal rule of 4000 steps
     assert close(
-        course.heat - course.given_off, 9e3 * (course.temperature - course.temperature[:, :1]), 1e-6, scale=1e5
+        course.heat - course.given_off,
+        9e3 * (course.temperature - course.temperature[:, :1]),
+        1e-6,
+        scale=1e5,
     )
 
 
 def test_warming_under_a_schedule():
     """A speed that changes at a corner warms as two warmings, one after the other."""
-    once = ROLLER.warming(vr.Schedule([0.0, 500.0, 500.0], [4.0, 4.0, 1.0]), [500.0, 900.0], **COLD, capacity=9e3)
+    once = ROLLER.warming(
+        vr.Schedule([0.0, 500.0, 500.0], [4.0, 4.0, 1.0]), [500.0, 900.0], **COLD, capacity=9e3
+    )
     first = ROLLER.warming(4.0, [500.0], **COLD, capacity=9e3)
     then = ROLLER.warming(lambda t: 1.0, [400.0], **COLD, capacity=9e3, start=first.temperature[0])
     assert close(once.temperature[1], then.temperature[0], tol.WARMING)
@@ -176,28 +229,44 @@ def test_limits_are_those_of_the_equilibria():
     for speed, load in zip(V, found.load, strict=True):
         at = ROLLER.replace(load=load).temperature(speed, ambient=20.0, conductance=6.0).temperature
         assert close(at[0], 70.0, tol.HEAT_BALANCE)
-    assert close(ROLLER.heat_limit(70.0, load=found.load, ambient=20.0, conductance=6.0).V, V, tol.HEAT_BALANCE)
+    assert close(
+        ROLLER.heat_limit(70.0, load=found.load, ambient=20.0, conductance=6.0).V,
+        V,
+        tol.HEAT_BALANCE,
+    )
     cold = ROLLER.heat_limit(50.0, V=1.0, **COLD)
-    less, more = (ROLLER.replace(load=cold.load * (1.0 + e)).temperature(1.0, **COLD).count for e in (-1e-8, 1e-8))
+    less, more = (
+        ROLLER.replace(load=cold.load * (1.0 + e)).temperature(1.0, **COLD).count
+        for e in (-1e-8, 1e-8)
+    )
     assert cold.runaway
     assert (less, more) == (3, 1)
 
 
 def test_turning_points():
     """On either side of each the number of equilibria differs by two."""
-    roller = with_shift(vr.WLF(C1=15.0, C2=60.0, T0=-20.0), prony=vr.Prony([2.0, 60.0, 60.0], [1.0, 1e-3, 1e-7]))
+    roller = with_shift(
+        vr.WLF(C1=15.0, C2=60.0, T0=-20.0), prony=vr.Prony([2.0, 60.0, 60.0], [1.0, 1e-3, 1e-7])
+    )
     found = 0
     for at in (ROLLER, roller):
         for V, _, runaway in zip(*at.turning_points(**COLD), strict=True):
-            less, more = (at.temperature(V * (1.0 + e), **COLD).count for e in (-tol.TURNING, tol.TURNING))
+            less, more = (
+                at.temperature(V * (1.0 + e), **COLD).count for e in (-tol.TURNING, tol.TURNING)
+            )
             assert less - more == (2 if runaway else -2)
             found += 1
     assert found > 1
 
 
 def test_conductance_of_film_and_cover():
-    """The slab with even sources, by finite differences; thin covers and poor films are the film alone."""
-    R, h, k, film = 0.1, 0.015, 0.25, 20.0
+    """The slab with even sources, by finite differences; thin covers and poor films are the film
+    alone.
+    """
+    R = 0.1
+    h = 0.015
+    k = 0.25
+    film = 20.0
     n = 2000
     edge = np.full(n, 2.0)
     edge[-1] = 1.0 + 1.0 / (0.5 + k * n / (film * h))
@@ -207,7 +276,9 @@ def test_conductance_of_film_and_cover():
         matrix = np.diag(main) - np.diag(np.ones(n - 1), 1) - np.diag(np.ones(n - 1), -1)
         mean = np.linalg.solve(matrix, np.ones(n)).mean() * (h / n) ** 2 / k
         expected = 2.0 * np.pi * (R - 0.5 * h) * h / mean
-        assert close(vr.conductance(R, film=film, thickness=h, conductivity=k, core=core), expected, 1e-3)
+        assert close(
+            vr.conductance(R, film=film, thickness=h, conductivity=k, core=core), expected, 1e-3
+        )
     assert close(vr.conductance(R, film=film), 2.0 * np.pi * R * film, 1e-15)
     assert not vr.uniform_temperature(20.0, h, k).holds
 
@@ -219,10 +290,19 @@ def test_conductance_of_film_and_cover():
     ("call", "words"),
     [
         (lambda: ROLLER.temperature(1.0, ambient=20.0, conductance=0.0), "conductance = 0.0"),
-        (lambda: ROLLER.temperature(1.0, ambient=-110.0, conductance=6.0), "outside the range of the shift"),
+        (
+            lambda: ROLLER.temperature(1.0, ambient=-110.0, conductance=6.0),
+            "outside the range of the shift",
+        ),
         (lambda: ROLLER.temperature(ambient=20.0, conductance=6.0), "V is not given"),
-        (lambda: vr.presets.RUBBER_CYLINDER.temperature(1.0, ambient=20.0, conductance=6.0), "a WLF, an Arrhenius"),
-        (lambda: vr.presets.RUBBER_ROLLER.temperature(1.0, ambient=20.0, conductance=6.0), "is a Scene"),
+        (
+            lambda: vr.presets.RUBBER_CYLINDER.temperature(1.0, ambient=20.0, conductance=6.0),
+            "a WLF, an Arrhenius",
+        ),
+        (
+            lambda: vr.presets.RUBBER_ROLLER.temperature(1.0, ambient=20.0, conductance=6.0),
+            "is a Scene",
+        ),
         (lambda: with_shift(None).temperature(1.0, ambient=20.0, conductance=6.0), "shift = None"),
         (lambda: with_shift(lambda T: T + 300.0).temperature(1.0, **COLD), "rises at"),
         (lambda: ROLLER.warming(1.0, [1.0], **COLD, capacity=-1.0), "capacity = -1.0"),
@@ -237,7 +317,9 @@ def test_refused(call, words):
 
 
 def test_beyond_the_ranges_is_named():
-    """Of the shift: nothing is returned; of the data: the equilibrium is marked.  Both state the temperature."""
+    """Of the shift: nothing is returned; of the data: the equilibrium is marked.  Both state the
+    temperature.
+    """
 
     def factors(T):
         return WLF(T)
@@ -258,13 +340,15 @@ def test_beyond_the_ranges_is_named():
 
 def test_run_file_with_uncertain_surroundings(tmp_path):
     """Each motion has the material at the temperature of its own ambient and conductance."""
-    from viscoroll.io.runs.evaluate import roll_inputs
+    from viscoroll.runs.run_blocks import roll_inputs
 
     path = tmp_path / "run.toml"
     path.write_text(
-        "[cylinder]\nR = 0.1\nm = 60.0\nmu = 0.6\nload = 2e4\n[base]\nE = inf\n[material]\nE = 3e6\nnu = 0.49\n"
+        "[cylinder]\nR = 0.1\nm = 60.0\nmu = 0.6\nload = 2e4\n[base]\nE = inf\n[material]\nE = "
+        "3e6\nnu = 0.49\n"
         "prony = { E = [2.0, 40.0], tau = [1.0, 1e-2] }\nT_ref = 0.02\nreference = 20.0\n"
-        "wlf = { T0 = 0.0, C1 = 8.86, C2 = 101.6 }\n[start]\nV0 = 3.0\nomega0 = 30.0\n[run]\nn = 8\nt = [1.0]\n[heat]\n"
+        "wlf = { T0 = 0.0, C1 = 8.86, C2 = 101.6 }\n[start]\nV0 = 3.0\nomega0 = 30.0\n[run]\nn = "
+        "8\nt = [1.0]\n[heat]\n"
         'ambient = { distribution = "uniform", loc = 0.0, scale = 30.0 }\nconductance = 6.0\n'
     )
     run = vr.runs.read_run(path)
@@ -273,7 +357,9 @@ def test_run_file_with_uncertain_surroundings(tmp_path):
     found = roll_inputs(run, {"ambient": ambient}, 2)
     for V, A in zip(found.V[:, -1], ambient, strict=True):
         theta = float(ROLLER.temperature(3.0, ambient=A, conductance=6.0).temperature[0])
-        assert close(V, ROLLER.replace(material=RUBBER.at(theta)).roll(3.0, 30.0, [1.0]).V[-1], 1e-7)
+        assert close(
+            V, ROLLER.replace(material=RUBBER.at(theta)).roll(3.0, 30.0, [1.0]).V[-1], 1e-7
+        )
 
 
 # --- strain ---
@@ -286,7 +372,9 @@ def test_strain_of_the_contact():
     for base, part in ((ROLLER.base, 1.0), (None, 0.5)):
         at = roller.replace(base=base)
         strain = at.validity([1.0, 0.0]).strain
-        assert close(strain.value, part * 0.300283 * at.contact([1.0, 0.0], delta=0.0).length / 0.1, 1e-6)
+        assert close(
+            strain.value, part * 0.300283 * at.contact([1.0, 0.0], delta=0.0).length / 0.1, 1e-6
+        )
         assert strain.holds.all() == (part < 1.0)
     belt = roller.replace(material=ROLLER.base, base=dataclasses.replace(rubber, thickness=1.5))
     on = roller.replace(material=ROLLER.base, base=rubber)

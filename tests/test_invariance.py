@@ -1,5 +1,5 @@
-"""What changes no bit: company, order, threads, processes, kinds of arrays; and a hostile host: other rounding modes,
-flushed subnormals, little memory."""
+"""What changes no bit: company, order, threads, processes, kinds of arrays; and a hostile host:
+other rounding modes, flushed subnormals, little memory."""
 
 import os
 import platform
@@ -23,13 +23,16 @@ from processes import printed
 import viscoroll as vr
 from viscoroll.motion.ensemble import FIELDS
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.array([1e-5, 1e-3, 3e-3, 1e-1, 1.0])
 X = np.linspace(-0.5, 1.0, 61)[:, None]
 GRID = {"what": SCENE, "V": [0.1, 0.3, 2.0], "delta": [-0.01, 0.0, 0.03], "alpha": [1.0, 11.0]}
-#: control and status register of SSE: rounding in bits 13-14, denormals are zero in 6, flush to zero in 15
+#: control and status register of SSE: rounding in bits 13-14, denormals are zero in 6, flush to
+#: zero in 15
 MODES = {
     "denormals are zero": 0x0040,
     "flush to zero": 0x8000,
@@ -49,7 +52,10 @@ def states():
     """From the least to the largest speeds, a third of them in full slip."""
     rng = np.random.default_rng(1)
     V = np.concatenate(
-        [rng.uniform(-2.0, 2.0, 2500), rng.choice([-1.0, 1.0], 2000) * 10.0 ** rng.uniform(-300, 50, 2000)]
+        [
+            rng.uniform(-2.0, 2.0, 2500),
+            rng.choice([-1.0, 1.0], 2000) * 10.0 ** rng.uniform(-300, 50, 2000),
+        ]
     )
     delta = rng.uniform(-0.04, 0.04, V.size)
     return {"V": np.append(V, 0.0), "delta": np.append(delta, 0.01)}
@@ -57,20 +63,30 @@ def states():
 
 def states_of_alphas():
     alpha, kappa, mu, V, s = of_all_alphas(300, 5)
-    V[::2], V[7] = -V[::2], 0.0
-    delta = 1.2 * s * vr.contact(vr.Scene(alpha, kappa, mu), V, delta=0.0, fields="delta_star").delta_star
+    V[::2] = -V[::2]
+    V[7] = 0.0
+    delta = (
+        1.2
+        * s
+        * vr.contact(vr.Scene(alpha, kappa, mu), V, delta=0.0, fields="delta_star").delta_star
+    )
     return {"alpha": alpha, "kappa": kappa, "mu": mu, "V": V, "delta": delta}
 
 
 def starts():
     V0, omega0 = np.random.default_rng(2).uniform(-2.0, 2.0, (2, 60))
-    V0[:4], omega0[:4] = (0.0, 1.0, 0.0, 5e-324), (0.0, 0.0, 1.0, 1.0)
+    V0[:4] = (0.0, 1.0, 0.0, 5e-324)
+    omega0[:4] = (0.0, 0.0, 1.0, 1.0)
     return {"V0": V0, "omega0": omega0}
 
 
 def drives():
     rng = np.random.default_rng(3)
-    return {"V0": rng.uniform(-1.0, 1.0, 12), "force": rng.normal(size=12), "torque": rng.normal(size=(12, 2))}
+    return {
+        "V0": rng.uniform(-1.0, 1.0, 12),
+        "force": rng.normal(size=12),
+        "torque": rng.normal(size=(12, 2)),
+    }
 
 
 def of_materials(name):
@@ -101,12 +117,16 @@ CALLS = {
     ),
     "an alpha each": (
         states_of_alphas,
-        lambda V, delta, **scene: vr.contact(vr.Scene(**scene), V, delta=delta, slopes=True).as_dict(),
+        lambda V, delta, **scene: vr.contact(
+            vr.Scene(**scene), V, delta=delta, slopes=True
+        ).as_dict(),
     ),
     **{
         f"{name}, each": (
             partial(of_materials, name),
-            lambda material, V: vr.contact(scene_of(material), V, delta=1e-3, slopes=True).as_dict(),
+            lambda material, V: vr.contact(
+                scene_of(material), V, delta=1e-3, slopes=True
+            ).as_dict(),
         )
         for name in ("3 modes", "each")
     },
@@ -118,7 +138,11 @@ CALLS = {
     "driven": (
         drives,
         lambda torque, **given: rolled(
-            SCENE.replace(gamma=1e3), omega0=0.1, torque=vr.Schedule([0.0, 1.0], torque), brake=0.05, **given
+            SCENE.replace(gamma=1e3),
+            omega0=0.1,
+            torque=vr.Schedule([0.0, 1.0], torque),
+            brake=0.05,
+            **given,
         ),
     ),
     "validity": (
@@ -135,7 +159,10 @@ def scene_of(material):
 def of(name, part=slice(None)):
     """What a call gives, of a part of its arrays."""
     make, call = CALLS[name]
-    return {field: np.array(value) for field, value in call(**{k: v[part] for k, v in make().items()}).items()}
+    return {
+        field: np.array(value)
+        for field, value in call(**{k: v[part] for k, v in make().items()}).items()
+    }
 
 
 @cache
@@ -151,7 +178,9 @@ def everything():
     table = vr.tables.build(**GRID)
     found |= {f"table: {name}": values.values for name, values in table.data_vars.items()}
     middle = {str(name): axis.values.mean() for name, axis in table.coords.items()}
-    found |= {f"between: {k}": v for k, v in vr.tables.interpolate(table, **middle).as_dict().items()}
+    found |= {
+        f"between: {k}": v for k, v in vr.tables.interpolate(table, **middle).as_dict().items()
+    }
     return {name: np.array(values) for name, values in found.items()}
 
 
@@ -166,7 +195,9 @@ def assert_same(found, expected):
 
 @pytest.mark.parametrize("name", CALLS)
 def test_any_company_and_any_threads(name, monkeypatch, own_maps):
-    """Parts, none, backward, two by two (a single alpha has a table of its own), and on other numbers of threads."""
+    """Parts, none, backward, two by two (a single alpha has a table of its own), and on other
+    numbers of threads.
+    """
     whole = of(name)
     count = len(next(iter(CALLS[name][0]().values())))
     for part in (
@@ -182,26 +213,38 @@ def test_any_company_and_any_threads(name, monkeypatch, own_maps):
 
 
 def test_a_field_alone_and_single_states():
-    V, delta = np.array([0.3, -2.0, 1e-4, 0.0]), np.array([0.01, -0.005, 1.0, 1e-3])
+    V = np.array([0.3, -2.0, 1e-4, 0.0])
+    delta = np.array([0.01, -0.005, 1.0, 1e-3])
     whole = vr.contact(SCENE, V, delta=delta, slopes=True)
     for name, values in whole.as_dict().items():
-        assert np.array_equal(getattr(vr.contact(SCENE, V, delta=delta, fields=name), name), values), name
-        one = [getattr(vr.contact(SCENE, V[i], delta=delta[i], slopes=True), name) for i in range(V.size)]
+        assert np.array_equal(
+            getattr(vr.contact(SCENE, V, delta=delta, fields=name), name), values
+        ), name
+        one = [
+            getattr(vr.contact(SCENE, V[i], delta=delta[i], slopes=True), name)
+            for i in range(V.size)
+        ]
         assert np.array_equal(one, values), name
 
 
 def test_a_grid_is_as_the_grid_written_out():
     """Across the edges of blocks."""
-    V, delta = np.linspace(-1.0, 2.0, 301), np.linspace(-0.04, 0.04, 333)
+    V = np.linspace(-1.0, 2.0, 301)
+    delta = np.linspace(-0.04, 0.04, 333)
     axes = vr.contact(SCENE, V[:, None], delta=delta).as_dict()
-    assert_same(axes, vr.contact(SCENE, np.repeat(V[:, None], 333, axis=1), delta=np.tile(delta, (301, 1))).as_dict())
+    assert_same(
+        axes,
+        vr.contact(
+            SCENE, np.repeat(V[:, None], 333, axis=1), delta=np.tile(delta, (301, 1))
+        ).as_dict(),
+    )
 
 
 # --- floating-point environment ---
 
 
-#: A program that takes a folder and computes ``everything``: in each mode of a host library, "usual" without one; and
-#: in a fork of itself, which has used threads and kernels by then.
+#: A program that takes a folder and computes ``everything``: in each mode of a host library,
+#: "usual" without one; and in a fork of itself, which has used threads and kernels by then.
 ELSEWHERE = """
 import ctypes, multiprocessing, sys
 from pathlib import Path
@@ -240,7 +283,10 @@ def elsewhere(tmp_path_factory):
     compiler = shutil.which("cc") if platform.machine() in ("x86_64", "AMD64") else None
     if compiler:
         (folder / "register.c").write_text(REGISTER)
-        subprocess.run([compiler, "-shared", "-fPIC", "-o", folder / "register.so", folder / "register.c"], check=True)
+        subprocess.run(
+            [compiler, "-shared", "-fPIC", "-o", folder / "register.so", folder / "register.c"],
+            check=True,
+        )
     environment = {"VISCOROLL_THREADS": "2", "PYTHONPATH": os.pathsep.join(sys.path)}
     printed(ELSEWHERE, folder, Path(__file__).parent, **environment)
     return {path.stem: dict(np.load(path)) for path in folder.glob("*.npz")}
@@ -252,9 +298,14 @@ def expected(maps_of_this_file):
 
 
 def test_other_processes(elsewhere, expected):
-    """A process of its own and the child of one that has used threads and kernels compute the same bits, and end."""
+    """A process of its own and the child of one that has used threads and kernels compute the same
+    bits, and end.
+    """
     for way in {"usual", "fork"} & elsewhere.keys():
-        assert_same({name: values for name, values in elsewhere[way].items() if name != "register_after"}, expected)
+        assert_same(
+            {name: values for name, values in elsewhere[way].items() if name != "register_after"},
+            expected,
+        )
 
 
 @pytest.fixture(scope="module")
@@ -271,13 +322,19 @@ def test_flushed_subnormals_change_nothing_else(modes):
         assert modes[mode].pop("register_after") == MODES[mode]
         for name, found in modes[mode].items():
             usual = modes["usual"][name]
-            normal = np.isfinite(usual) & (np.abs(usual) > tol.SUBNORMAL) & (np.abs(usual) < 1.0 / tol.SUBNORMAL)
+            normal = (
+                np.isfinite(usual)
+                & (np.abs(usual) > tol.SUBNORMAL)
+                & (np.abs(usual) < 1.0 / tol.SUBNORMAL)
+            )
             assert np.array_equal(found[normal], usual[normal]), (mode, name)
             assert np.array_equal(np.isnan(found), np.isnan(usual)), (mode, name)
 
 
 def test_rounding_mode(modes):
-    """The same numbers to some roundings more, over the largest of each field; the same regimes; no new NaN."""
+    """The same numbers to some roundings more, over the largest of each field; the same regimes; no
+    new NaN.
+    """
     for mode in set(MODES) - set(FLUSHING):
         assert modes[mode].pop("register_after") == MODES[mode] & 0xE040
         for name, found in modes[mode].items():
@@ -336,10 +393,17 @@ KINDS = {
 
 @pytest.mark.parametrize("kind", KINDS)
 def test_arrays_of_any_kind(kind):
-    """The bits of the plain float64 array of the same values; whole numbers, so that every kind holds them."""
+    """The bits of the plain float64 array of the same values; whole numbers, so that every kind
+    holds them.
+    """
     make = KINDS[kind]
-    V0, omega0, t, x = map(np.array, ([2.0, 0.0, -1.0], [1.0, 1.0, 3.0], [0.0, 1.0, 2.0], [0.0, 1.0]))
-    scenes = [vr.Scene(f(np.array([11.0, 2.0, 1.0])), 3, f(np.array([1.0, 2.0, 1.0])), 2, 1) for f in (np.array, make)]
+    V0, omega0, t, x = map(
+        np.array, ([2.0, 0.0, -1.0], [1.0, 1.0, 3.0], [0.0, 1.0, 2.0], [0.0, 1.0])
+    )
+    scenes = [
+        vr.Scene(f(np.array([11.0, 2.0, 1.0])), 3, f(np.array([1.0, 2.0, 1.0])), 2, 1)
+        for f in (np.array, make)
+    ]
     calls = (
         lambda scene, f: vr.ensemble(scene, f(V0), f(omega0), f(t)).V,
         lambda scene, f: vr.ensemble(SCENE, f(V0), f(omega0), f(t), method="flow").x,

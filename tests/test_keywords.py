@@ -11,7 +11,12 @@ import viscoroll as vr
 def public_calls():
     """Every public function, class that users make, and method, with its arguments by name."""
     values = [getattr(vr, name) for name in vr.__all__[1:]]
-    listed = [getattr(value, name) for value in values if inspect.ismodule(value) for name in value.__all__]
+    listed = [
+        getattr(value, name)
+        for value in values
+        if inspect.ismodule(value)
+        for name in value.__all__
+    ]
     for value in {*filter(callable, [*values, *listed])}:
         if not inspect.isclass(value):
             yield value
@@ -25,11 +30,18 @@ def parameters(call):
     found = inspect.signature(call).parameters.values()
     if any(each.kind is each.VAR_KEYWORD for each in found):
         return []
-    return [each.name for each in found if each.kind in (each.KEYWORD_ONLY, each.POSITIONAL_OR_KEYWORD)]
+    return [
+        each.name for each in found if each.kind in (each.KEYWORD_ONLY, each.POSITIONAL_OR_KEYWORD)
+    ]
 
 
 def test_every_misspelt_argument_of_public_calls_is_told():
-    asked = [(call, name) for call in public_calls() for name in parameters(call) if len(name) > 2 and name != "self"]
+    asked = [
+        (call, name)
+        for call in public_calls()
+        for name in parameters(call)
+        if len(name) > 2 and name != "self"
+    ]
     assert len(asked) > 300
     for call, name in asked:
         with pytest.raises(TypeError, match=f"; did you mean '{name}'"):

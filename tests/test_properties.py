@@ -1,4 +1,5 @@
-"""Whatever is asked of the public interface: an answer without NaN, or, of what it refuses, one of its own errors.
+"""Whatever is asked of the public interface: an answer without NaN, or, of what it refuses, one of
+its own errors.
 
 Short here; ``make fuzz`` runs it for ten minutes (``FUZZ_SECONDS``).
 """
@@ -14,7 +15,7 @@ from hypothesis import strategies as st
 
 import viscoroll as vr
 from viscoroll.core.errors import MotionStatus
-from viscoroll.materials.law.table import law_table
+from viscoroll.laws.law_table import law_table
 from viscoroll.motion.ensemble import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
@@ -43,12 +44,23 @@ series = st.lists(st.tuples(tens(-2.0, 4.0), tens(-6.0, 0.0)), min_size=1, max_s
     lambda modes: vr.Prony(*np.transpose(modes))
 )
 #: the contact hardly longer than the radius
-others = {"kappa": tens(-1.0, 6.0), "mu": tens(-3.0, 2.0), "gamma": tens(-6.0, 6.0), "j": st.floats(0.05, 3.0)}
+others = {
+    "kappa": tens(-1.0, 6.0),
+    "mu": tens(-3.0, 2.0),
+    "gamma": tens(-6.0, 6.0),
+    "j": st.floats(0.05, 3.0),
+}
 of_alpha = st.builds(vr.Scene, alphas, **others)
 scenes = of_alpha | st.builds(vr.Scene, material=series, **others)
-arrays = st.builds(vr.Scene, one_or_three(alphas), **{name: one_or_three(values) for name, values in others.items()})
+arrays = st.builds(
+    vr.Scene,
+    one_or_three(alphas),
+    **{name: one_or_three(values) for name, values in others.items()},
+)
 signs = st.sampled_from([-1.0, 1.0])
-speeds = st.sampled_from([0.0, -0.0]) | st.builds(np.multiply, signs, tens(-3.0, 3.0) | tens(-150.0, 95.0))
+speeds = st.sampled_from([0.0, -0.0]) | st.builds(
+    np.multiply, signs, tens(-3.0, 3.0) | tens(-150.0, 95.0)
+)
 creeps = st.just(0.0) | st.builds(np.multiply, signs, tens(-5.0, 2.0) | tens(-150.0, 99.0))
 times = st.lists(st.just(0.0) | tens(-6.0, 6.0), min_size=1, max_size=4).map(sorted)
 
@@ -56,7 +68,9 @@ times = st.lists(st.just(0.0) | tens(-6.0, 6.0), min_size=1, max_size=4).map(sor
 
 any_float = st.floats(allow_nan=True, allow_infinity=True)
 usual = st.floats(1e-3, 1e3) | st.floats(-1e3, -1e-3) | st.sampled_from([0.0, -0.0, 1.0, -1.0])
-odd = st.sampled_from(["fast", None, True, 1j, [], [[1.0], [1.0, 2.0]], 10**400, {}, b"1", np.array([object()])])
+odd = st.sampled_from(
+    ["fast", None, True, 1j, [], [[1.0], [1.0, 2.0]], 10**400, {}, b"1", np.array([object()])]
+)
 number = usual | any_float | st.integers(-(10**20), 10**20)
 argument = number | st.lists(usual, max_size=4) | st.lists(number, max_size=3) | odd
 
@@ -125,7 +139,12 @@ def test_motion(scene, V0, omega0, t, rtol, rest, method):
 
 
 #: parameters at the ends of the doubles, where most are refused
-widest = {"kappa": tens(-1.0, 300.0), "mu": tens(-30.0, 0.0), "gamma": tens(-300.0, 300.0), "j": tens(-300.0, 300.0)}
+widest = {
+    "kappa": tens(-1.0, 300.0),
+    "mu": tens(-30.0, 0.0),
+    "gamma": tens(-300.0, 300.0),
+    "j": tens(-300.0, 300.0),
+}
 far = st.builds(vr.Scene, alphas, **widest) | st.builds(vr.Scene, material=series, **widest)
 
 
@@ -175,7 +194,10 @@ def test_anything(a, bounds):
         lambda: vr.Cylinder(*a[:5], *bounds, a[5]).scene(),
         lambda: vr.presets.PAPER_CYLINDER.validity(a[1], density=a[0]),
         lambda: vr.sampling.sample(few, a[1], a[2], V0=a[3]),
-        *(lambda table=table: vr.tables.interpolate(table, alpha=a[0], V=a[1], delta=a[2]) for table in tables()),
+        *(
+            lambda table=table: vr.tables.interpolate(table, alpha=a[0], V=a[1], delta=a[2])
+            for table in tables()
+        ),
     )
     for call in calls:
         try:
@@ -186,8 +208,15 @@ def test_anything(a, bounds):
 
 def tables(made=[]):  # noqa: B006 - built once
     if not made:
-        made.append(vr.tables.build(law_table(11.0), [0.1, 0.3, 2.0, 5.0], delta=[-0.01, 0.0, 0.03]))
         made.append(
-            vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.3, 2.0], delta=[-0.01, 0.0, 0.03], alpha=[1.0, 11.0])
+            vr.tables.build(law_table(11.0), [0.1, 0.3, 2.0, 5.0], delta=[-0.01, 0.0, 0.03])
+        )
+        made.append(
+            vr.tables.build(
+                vr.presets.PAPER_SECTION_5,
+                [0.1, 0.3, 2.0],
+                delta=[-0.01, 0.0, 0.03],
+                alpha=[1.0, 11.0],
+            )
         )
     return made

@@ -1,4 +1,6 @@
-"""Units that inputs carry: every argument of every public function and class, found by its signature."""
+"""Units that inputs carry: every argument of every public function and class, found by its
+signature.
+"""
 
 import dataclasses
 import datetime
@@ -36,52 +38,148 @@ TIMES = np.round(OMEGA, 3)
 CURVE = 1e6 * (1.0 + OMEGA**2 / (1.0 + OMEGA**2)), 1e6 * OMEGA / (1.0 + OMEGA**2)
 #: a value of each argument, which goes with those of the others of its function
 SAMPLES = {
-    "roller": SCENE, "cylinder": CYLINDER, "prony": RUBBER.prony, "shift": vr.WLF(T0=20.0), "what": CYLINDER,
-    "V": 0.5, "V0": 0.5, "omega": 0.5, "omega0": 0.5, "t": 0.25, "x": 0.125, "delta": 1e-3, "speed": 1.0,
-    "force": 0.01, "torque": 0.01, "slope": 0.01, "brake": 0.01, "drag": 0.01, "rest": 1e-3, "rested": 0.5,
-    "rtol": 1e-6, "density": 1e3, "thickness": 0.25, "temperature": 30.0, "reference": 30.0,
-    "alpha": 11.0, "kappa": 10.0, "mu": 0.25, "gamma": 1.0, "j": 0.5, "share": 0.5,
-    "R": 0.5, "m": 40.0, "E": 2e6, "nu": 0.25, "T_epsilon": 0.5, "T_sigma": 0.125, "T_ref": 0.5, "g": 10.0,
-    "nu_instant": 0.25, "load": 400.0, "pressed": 400.0, "E0": 4e6, "G0": 4e6, "G_inf": 1e6, "bulk": 1e9, "energy": 1e5,
-    "T0": 20.0, "C1": 17.0, "C2": 50.0, "low": 0.5, "high": 4.0, "misfit": 0.01, "M": 0.5, "F": 0.5, "Q": 0.5,
-    "sigma": 0.5, "t0": 0.125, "quantiles": (0.25, 0.75), "level": 0.5,
-}  # fmt: skip
+    "roller": SCENE,
+    "cylinder": CYLINDER,
+    "prony": RUBBER.prony,
+    "shift": vr.WLF(T0=20.0),
+    "what": CYLINDER,
+    "V": 0.5,
+    "V0": 0.5,
+    "omega": 0.5,
+    "omega0": 0.5,
+    "t": 0.25,
+    "x": 0.125,
+    "delta": 1e-3,
+    "speed": 1.0,
+    "force": 0.01,
+    "torque": 0.01,
+    "slope": 0.01,
+    "brake": 0.01,
+    "drag": 0.01,
+    "rest": 1e-3,
+    "rested": 0.5,
+    "rtol": 1e-6,
+    "density": 1e3,
+    "thickness": 0.25,
+    "temperature": 30.0,
+    "reference": 30.0,
+    "alpha": 11.0,
+    "kappa": 10.0,
+    "mu": 0.25,
+    "gamma": 1.0,
+    "j": 0.5,
+    "share": 0.5,
+    "R": 0.5,
+    "m": 40.0,
+    "E": 2e6,
+    "nu": 0.25,
+    "T_epsilon": 0.5,
+    "T_sigma": 0.125,
+    "T_ref": 0.5,
+    "g": 10.0,
+    "nu_instant": 0.25,
+    "load": 400.0,
+    "pressed": 400.0,
+    "E0": 4e6,
+    "G0": 4e6,
+    "G_inf": 1e6,
+    "bulk": 1e9,
+    "energy": 1e5,
+    "T0": 20.0,
+    "C1": 17.0,
+    "C2": 50.0,
+    "low": 0.5,
+    "high": 4.0,
+    "misfit": 0.01,
+    "M": 0.5,
+    "F": 0.5,
+    "Q": 0.5,
+    "sigma": 0.5,
+    "t0": 0.125,
+    "quantiles": (0.25, 0.75),
+    "level": 0.5,
+}
 #: the same where a name means something else
 OWN = {
-    ("Prony", "E"): [2.0], ("Prony", "tau"): [0.5], ("Prony.creep", "J"): [0.5], ("Prony.creep", "T"): [0.5],
-    ("Prony.creep", "alpha"): 2.0, ("Bodies", "cylinder"): RUBBER.prony, ("Bodies", "base"): RUBBER.prony,
+    ("Prony", "E"): [2.0],
+    ("Prony", "tau"): [0.5],
+    ("Prony.creep", "J"): [0.5],
+    ("Prony.creep", "T"): [0.5],
+    ("Prony.creep", "alpha"): 2.0,
+    ("Bodies", "cylinder"): RUBBER.prony,
+    ("Bodies", "base"): RUBBER.prony,
     ("Prony.times", "factor"): 2.0,
-    ("Material.abaqus", "g"): [0.5], ("Material.abaqus", "tau"): [0.5], ("Material.ansys", "alpha"): [0.5],
-    ("Material.ansys", "tau"): [0.5], ("Material.comsol", "G"): [1e6], ("Material.comsol", "tau"): [0.5],
-    ("Material.lsdyna", "G"): [1e6], ("Material.lsdyna", "beta"): [2.0], ("Material.abaqus", "k"): [0.5],
-    ("Material.ansys", "k"): [0.5], ("Material.comsol", "K"): [1e6], ("Material.lsdyna", "K"): [1e6],
-    ("Cover", "series"): RUBBER.prony, ("Cover", "part"): 0.75, ("Cover", "other_nu"): 0.25,
+    ("Material.abaqus", "g"): [0.5],
+    ("Material.abaqus", "tau"): [0.5],
+    ("Material.ansys", "alpha"): [0.5],
+    ("Material.ansys", "tau"): [0.5],
+    ("Material.comsol", "G"): [1e6],
+    ("Material.comsol", "tau"): [0.5],
+    ("Material.lsdyna", "G"): [1e6],
+    ("Material.lsdyna", "beta"): [2.0],
+    ("Material.abaqus", "k"): [0.5],
+    ("Material.ansys", "k"): [0.5],
+    ("Material.comsol", "K"): [1e6],
+    ("Material.lsdyna", "K"): [1e6],
+    ("Cover", "series"): RUBBER.prony,
+    ("Cover", "part"): 0.75,
+    ("Cover", "other_nu"): 0.25,
     ("Cover", "other_thickness"): 0.5,
-    ("fit_relaxation", "t"): TIMES, ("fit_relaxation", "relaxation"): 1e6 * (1.0 + np.exp(-TIMES)),
-    ("fit_prony", "omega"): OMEGA, ("fit_prony", "storage"): CURVE[0], ("fit_prony", "loss"): CURVE[1],
+    ("fit_relaxation", "t"): TIMES,
+    ("fit_relaxation", "relaxation"): 1e6 * (1.0 + np.exp(-TIMES)),
+    ("fit_prony", "omega"): OMEGA,
+    ("fit_prony", "storage"): CURVE[0],
+    ("fit_prony", "loss"): CURVE[1],
     ("fit_prony", "temperature"): np.full(12, 30.0),
-    ("Coastdown", "t"): [0.0, 0.25, 0.5], ("Coastdown", "V"): [0.5, 0.4, 0.3], ("Coastdown", "x"): [0.0, 0.1, 0.2],
-    ("Coastdown", "omega"): [0.5, 0.4, 0.3], ("Motion.at", "t"): 0.125, ("Arrhenius", "T0"): 20.0,
-    ("Measured", "strain"): 0.01, ("Motion.validity", "capacity"): 9e3,
-}  # fmt: skip
+    ("Coastdown", "t"): [0.0, 0.25, 0.5],
+    ("Coastdown", "V"): [0.5, 0.4, 0.3],
+    ("Coastdown", "x"): [0.0, 0.1, 0.2],
+    ("Coastdown", "omega"): [0.5, 0.4, 0.3],
+    ("Motion.at", "t"): 0.125,
+    ("Arrhenius", "T0"): 20.0,
+    ("Measured", "strain"): 0.01,
+    ("Motion.validity", "capacity"): 9e3,
+}
 #: words of annotations of what may be a number with a unit, and of what is none
 NUMBERS = ("float", "ArrayLike", "Numbers", "Acting", "Course", "Any")
 NO_NUMBERS = ("Mapping", "PathLike", "Callable[[", "Iterable[str]", "Reasons", "Labels", "LawTable")
-#: left out: values that have a unit where they are used alone (tests of drives), files, mappings by name, results;
-#: ``resolve`` goes with a function of time alone (tests/motion/test_fitted.py)
+#: left out: values that have a unit where they are used alone (tests of drives), files, mappings by
+#: name, results; ``resolve`` goes with a function of time alone (tests/motion/test_fitted.py)
 LEFT_OUT = {
-    "Schedule", "Feedback", "read_dma", "load_law", "identify", "Values", "Steady", "Motion", "Ensemble", "Validity",
-    "Fit", "Law", "DynamicModuli", "RelaxationFit", "RelaxationModulus", "read_relaxation",
-    "Temperatures", "temperature", "warming", "heat_limit",
-    "turning_points", "pair_temperatures", "conductance", "uniform_temperature",  # of heat: tests/test_heat.py
-}  # fmt: skip
+    "Schedule",
+    "Feedback",
+    "read_dma",
+    "load_law",
+    "identify",
+    "Values",
+    "Steady",
+    "Motion",
+    "Ensemble",
+    "Validity",
+    "Fit",
+    "Law",
+    "DynamicModuli",
+    "RelaxationFit",
+    "RelaxationModulus",
+    "read_relaxation",
+    "Temperatures",
+    "temperature",
+    "warming",
+    "heat_limit",
+    "turning_points",
+    "pair_temperatures",
+    "conductance",
+    "uniform_temperature",  # of heat: tests/test_heat.py
+}
 #: what has methods that take numbers
 MADE = {
     "Material": lambda: dataclasses.replace(RUBBER, shift=vr.WLF(T0=20.0)),
-    "WLF": lambda: vr.WLF(T0=20.0), "Arrhenius": lambda: vr.Arrhenius(energy=1e5, T0=20.0),
-    "Law": lambda: vr.law(CYLINDER), "Motion": lambda: vr.roll(CYLINDER, 0.5, 0.5, 0.25),
+    "WLF": lambda: vr.WLF(T0=20.0),
+    "Arrhenius": lambda: vr.Arrhenius(energy=1e5, T0=20.0),
+    "Law": lambda: vr.law(CYLINDER),
+    "Motion": lambda: vr.roll(CYLINDER, 0.5, 0.5, 0.25),
     "Ensemble": lambda: vr.ensemble(CYLINDER, [0.5, 0.4], 0.5, 0.25),
-}  # fmt: skip
+}
 #: how a unit is refused
 REFUSED = "must be in .+, or in another unit|must be a number without dimension"
 
@@ -107,60 +205,82 @@ class Argument(NamedTuple):
             text = str(error)
             assert re.search(REFUSED, text), text
             assert "\n" not in text
-            return error.allowed.split(",")[0].removeprefix("in ").replace("a number without dimension", "1")
+            return (
+                error.allowed.split(",")[0]
+                .removeprefix("in ")
+                .replace("a number without dimension", "1")
+            )
         return ""
 
 
 def parameters(function):
     given = inspect.signature(function).parameters
-    return {name: one for name, one in given.items() if one.kind not in (one.VAR_KEYWORD, one.VAR_POSITIONAL)}
+    return {
+        name: one
+        for name, one in given.items()
+        if one.kind not in (one.VAR_KEYWORD, one.VAR_POSITIONAL)
+    }
 
 
 def may_be_numbers(name, parameter):
     """Whether its annotation allows for a number that has a unit."""
     said = str(parameter.annotation)
     return any(word in said for word in NUMBERS) and not (
-        any(word in said for word in NO_NUMBERS) or name in ("self", "fields", "material", "path", "resolve")
+        any(word in said for word in NO_NUMBERS)
+        or name in ("self", "fields", "material", "path", "resolve")
     )
 
 
 def public():
-    """Functions and classes of the package, and methods, that take numbers: a name, and how to have it."""
+    """Functions and classes of the package, and methods, that take numbers: a name, and how to have
+    it.
+    """
     for name in vr.__all__:
         value = getattr(vr, name)
-        if not callable(value) or (inspect.isclass(value) and issubclass(value, Exception | enum.Enum)):
+        if not callable(value) or (
+            inspect.isclass(value) and issubclass(value, Exception | enum.Enum)
+        ):
             continue
         if name not in LEFT_OUT and "roller" in parameters(value):
             yield f"{name} of a Scene", lambda value=value: functools.partial(value, SCENE)
             yield f"{name} of a Cylinder", lambda value=value: functools.partial(value, CYLINDER)
         elif name not in LEFT_OUT:
             yield name, lambda value=value: value
-        for method, found in inspect.getmembers(value, inspect.isroutine) if inspect.isclass(value) else ():
+        for method, found in (
+            inspect.getmembers(value, inspect.isroutine) if inspect.isclass(value) else ()
+        ):
             if (method.startswith("_") and method != "__call__") or not (
                 inspect.isfunction(found) or inspect.ismethod(found)
             ):
                 continue
-            if getattr(vr.Scene, method, None) in vars(vr).values() and issubclass(value, vr.Scene | vr.Cylinder):
+            if getattr(vr.Scene, method, None) in vars(vr).values() and issubclass(
+                value, vr.Scene | vr.Cylinder
+            ):
                 continue  # a function of the package
             if not any(may_be_numbers(*each) for each in parameters(found).items()):
                 continue
             if inspect.ismethod(found):
                 yield f"{name}.{method}", lambda found=found: found
             elif name in MADE:
-                yield f"{name}.{method}", lambda name=name, method=method: getattr(MADE[name](), method)
+                yield (
+                    f"{name}.{method}",
+                    lambda name=name, method=method: getattr(MADE[name](), method),
+                )
 
 
 def sample(call, name):
     """The value of an argument; raises AssertionError where there is none."""
     call = call.partition(" of ")[0]
-    assert (call, name) in OWN or name in SAMPLES, f"give a value of {name} of {call} in SAMPLES or OWN"
+    assert (call, name) in OWN or name in SAMPLES, (
+        f"give a value of {name} of {call} in SAMPLES or OWN"
+    )
     return OWN.get((call, name), SAMPLES.get(name))
 
 
 @functools.cache
 def arguments_of(call):
-    """The arguments of a call of CALLS that may carry a unit, each with others with which the call works and looks
-    at it."""
+    """The arguments of a call of CALLS that may carry a unit, each with others with which the call
+    works and looks at it."""
     return tuple(search_arguments(call, CALLS[call]()))
 
 
@@ -175,7 +295,10 @@ def search_arguments(call, function):
         more = {other: each for other, each in may.items() if other not in needed and other != name}
         sizes = (0, 1, 2, len(more), len(more) - 1)
         some = (others for size in sizes for others in itertools.combinations(more, max(size, 0)))
-        tried = (Argument(call, function, name, value, {**needed, **{n: more[n] for n in others}}) for others in some)
+        tried = (
+            Argument(call, function, name, value, {**needed, **{n: more[n] for n in others}})
+            for others in some
+        )
         found = next((one for one in tried if works(one, value) and one.unit), None)
         assert found, f"{call}: no call with {name} works, or it takes any unit"
         yield found
@@ -199,7 +322,9 @@ def numbers_of(result):
     elif isinstance(result, vr.Prony):
         yield from (result.E, result.tau)
     elif dataclasses.is_dataclass(result):
-        held = (value for name, value in vars(result).items() if name != "labels")  # they hold the arguments
+        held = (
+            value for name, value in vars(result).items() if name != "labels"
+        )  # they hold the arguments
         yield from itertools.chain.from_iterable(map(numbers_of, held))
     elif isinstance(result, tuple | list):
         yield from itertools.chain.from_iterable(map(numbers_of, result))
@@ -212,7 +337,9 @@ def numbers_of(result):
 def others_of(unit, value):
     """The same quantity otherwise: by pint in the unit and in another, by xarray, as a duration."""
     value = np.asarray(value) if np.ndim(value) else value
-    spelled = UNITS.Quantity(1.0, "degC" if unit == "degC" else unit.replace("-", "**-").replace("s2", "s**2")).units
+    spelled = UNITS.Quantity(
+        1.0, "degC" if unit == "degC" else unit.replace("-", "**-").replace("s2", "s**2")
+    ).units
     yield UNITS.Quantity(value, spelled)
     other = {
         "1": "percent",
@@ -237,17 +364,30 @@ CALLS = dict(public())
 @pytest.mark.parametrize("call", CALLS)
 def test_every_argument_is_converted_or_refused(call):
     for argument in arguments_of(call):
-        unit, exact = argument.unit, [*numbers_of(argument(argument.value))]
+        unit = argument.unit
+        exact = [*numbers_of(argument(argument.value))]
         assert exact, call
         for other in others_of(unit, argument.value):
             found = [*numbers_of(argument(other))]
             assert len(found) == len(exact)
             for one, right in zip(found, exact, strict=True):
                 if np.size(right):
-                    close(one, right, tolerances.UNIT_CONVERTED, scale=np.abs(right).max(), what=(argument, other))
-        wrong = [xr.DataArray(argument.value, attrs={"units": "1"})] if unit not in ("1", "rad") else []
+                    close(
+                        one,
+                        right,
+                        tolerances.UNIT_CONVERTED,
+                        scale=np.abs(right).max(),
+                        what=(argument, other),
+                    )
+        wrong = (
+            [xr.DataArray(argument.value, attrs={"units": "1"})] if unit not in ("1", "rad") else []
+        )
         wrong += [] if unit == "s" else [pd.Timedelta(1, "s"), np.timedelta64(1, "s")]
-        for other in [*wrong, xr.DataArray(argument.value, attrs={"units": "mol"}), [UNITS.Quantity(1.0, "mol")]]:
+        for other in [
+            *wrong,
+            xr.DataArray(argument.value, attrs={"units": "mol"}),
+            [UNITS.Quantity(1.0, "mol")],
+        ]:
             refused(lambda argument=argument, other=other: argument(other), error=vr.ParameterError)
 
 
@@ -260,20 +400,46 @@ class Like:
 
 #: what is no number
 ODD = {
-    "text": "ten", "number as a text": "1.0", "bytes": b"1", "dictionary": {"a": 1.0}, "complex": 0.5 + 0j,
-    "NaN": math.nan, "infinite": -math.inf, "masked": np.ma.array([1.0, 2.0], mask=[0, 1]), "mask": np.ma.masked,
-    "date": datetime.datetime(2020, 1, 1), "date of numpy": np.datetime64("2020-01-01"), "huge": 10**400,
-    "long double": np.longdouble("-1e400"), "missing": pd.NA, "no time": pd.NaT, "no duration": np.timedelta64("NaT"),
-    "month": np.timedelta64(1, "M"), "ragged": [[1.0], [1.0, 2.0]], "with a truth value": [True, 1.0],
-    "with nothing": [None, 1.0], "object": Like(), "records": np.zeros(2, [("a", float)]), "module": np,
-    "dataset": xr.Dataset({"a": 1.0}), "dates": pd.date_range("2020-01-01", periods=2), "not a number": Decimal("NaN"),
-    "texts": pd.Series(["a"]), "set": {1.0}, "unit in part": [UNITS.Quantity(1.0, ""), 2.0],
-}  # fmt: skip
+    "text": "ten",
+    "number as a text": "1.0",
+    "bytes": b"1",
+    "dictionary": {"a": 1.0},
+    "complex": 0.5 + 0j,
+    "NaN": math.nan,
+    "infinite": -math.inf,
+    "masked": np.ma.array([1.0, 2.0], mask=[0, 1]),
+    "mask": np.ma.masked,
+    "date": datetime.datetime(2020, 1, 1),
+    "date of numpy": np.datetime64("2020-01-01"),
+    "huge": 10**400,
+    "long double": np.longdouble("-1e400"),
+    "missing": pd.NA,
+    "no time": pd.NaT,
+    "no duration": np.timedelta64("NaT"),
+    "month": np.timedelta64(1, "M"),
+    "ragged": [[1.0], [1.0, 2.0]],
+    "with a truth value": [True, 1.0],
+    "with nothing": [None, 1.0],
+    "object": Like(),
+    "records": np.zeros(2, [("a", float)]),
+    "module": np,
+    "dataset": xr.Dataset({"a": 1.0}),
+    "dates": pd.date_range("2020-01-01", periods=2),
+    "not a number": Decimal("NaN"),
+    "texts": pd.Series(["a"]),
+    "set": {1.0},
+    "unit in part": [UNITS.Quantity(1.0, ""), 2.0],
+}
 #: what is one
 GOOD = {
-    "decimal": Decimal, "fraction": Fraction, "object array": lambda value: np.array(value, object),
-    "array": np.array, "long double": np.longdouble, "float32": np.float32, "labelled": xr.DataArray,
-}  # fmt: skip
+    "decimal": Decimal,
+    "fraction": Fraction,
+    "object array": lambda value: np.array(value, object),
+    "array": np.array,
+    "long double": np.longdouble,
+    "float32": np.float32,
+    "labelled": xr.DataArray,
+}
 
 
 @pytest.mark.parametrize("call", CALLS)
@@ -288,9 +454,14 @@ def test_odd_values_are_right_or_refused(call):
             continue
         for kind, made in GOOD.items():
             value = made(argument.value)
-            pairs = zip(numbers_of(argument(value)), numbers_of(argument(float(value))), strict=True)
+            pairs = zip(
+                numbers_of(argument(value)), numbers_of(argument(float(value))), strict=True
+            )
             for one, other in pairs:
-                assert np.array_equal(np.squeeze(one), np.squeeze(other), equal_nan=True), (argument, kind)
+                assert np.array_equal(np.squeeze(one), np.squeeze(other), equal_nan=True), (
+                    argument,
+                    kind,
+                )
 
 
 @functools.cache
@@ -305,7 +476,12 @@ def compute_results():
         yield kind, roller.stress(1e-4, 0.5, delta=1e-3).to_xarray()
         yield kind, roller.steady(torque=1e-3, slope=1e-4).to_xarray()
         yield kind, roller.roll(0.5, 0.5, [0.1, 0.25], torque=1e-3).to_xarray()
-        yield kind, roller.ensemble([0.5], 0.5, [0.1, 0.25], fields=("V", "omega", "x", "delta")).to_xarray()
+        yield (
+            kind,
+            roller.ensemble(
+                [0.5], 0.5, [0.1, 0.25], fields=("V", "omega", "x", "delta")
+            ).to_xarray(),
+        )
 
 
 @pytest.mark.parametrize("call", [call for call in CALLS if " of a " in call])
@@ -319,13 +495,23 @@ def test_fields_of_results_go_back(call):
             if kind in call or {argument.unit, given.attrs["units"]} <= {"1", "rad"}:
                 assert works(argument, field) == works(argument, some[-1])
                 if works(argument, field):
-                    pairs = zip(numbers_of(argument(field)), numbers_of(argument(some[-1])), strict=True)
+                    pairs = zip(
+                        numbers_of(argument(field)), numbers_of(argument(some[-1])), strict=True
+                    )
                     assert all(np.array_equal(*pair, equal_nan=True) for pair in pairs)
             else:
-                refused(lambda argument=argument, field=field: argument(field), argument.name, "must be")
+                refused(
+                    lambda argument=argument, field=field: argument(field), argument.name, "must be"
+                )
 
 
-DRIVEN = (("force", "N/m"), ("torque", "N*m/m"), ("brake", "N*m/m"), ("omega", "rad/s"), ("V", "m/s"))
+DRIVEN = (
+    ("force", "N/m"),
+    ("torque", "N*m/m"),
+    ("brake", "N*m/m"),
+    ("omega", "rad/s"),
+    ("V", "m/s"),
+)
 
 
 @pytest.mark.parametrize(("name", "unit"), DRIVEN)
@@ -338,13 +524,26 @@ def test_schedules_carry_units(name, unit):
     values = np.array([0.5, 0.25])
     exact = rolled([0.0, 0.5], values)
     milli = UNITS.Quantity(values, unit).to(f"milli{unit}")
-    for times in (UNITS.Quantity(np.array([0.0, 500.0]), "ms"), pd.to_timedelta([0.0, 0.5], "s"), [0.0, 0.5]):
+    for times in (
+        UNITS.Quantity(np.array([0.0, 500.0]), "ms"),
+        pd.to_timedelta([0.0, 0.5], "s"),
+        [0.0, 0.5],
+    ):
         found = rolled(times, milli)
         assert close([found.V, found.omega], [exact.V, exact.omega], tolerances.UNIT_CONVERTED)
-    refused(lambda: rolled(UNITS.Quantity(np.array([0.0, 0.5]), "m"), values), f"times of {name} is in meter", "in s")
-    refused(lambda: rolled([0.0, 0.5], UNITS.Quantity(values, "kg")), f"values of {name} is in kilogram")
+    refused(
+        lambda: rolled(UNITS.Quantity(np.array([0.0, 0.5]), "m"), values),
+        f"times of {name} is in meter",
+        "in s",
+    )
+    refused(
+        lambda: rolled([0.0, 0.5], UNITS.Quantity(values, "kg")), f"values of {name} is in kilogram"
+    )
     schedule = vr.Schedule(pd.to_timedelta([0.0, 0.5], "s"), values)
-    refused(lambda: SCENE.roll(0.5, 0.5, 1.0, **{name: schedule}), f"times of {name} is in s: must be a number without")
+    refused(
+        lambda: SCENE.roll(0.5, 0.5, 1.0, **{name: schedule}),
+        f"times of {name} is in s: must be a number without",
+    )
 
 
 @pytest.mark.parametrize(
@@ -353,7 +552,10 @@ def test_schedules_carry_units(name, unit):
 def test_feedbacks_carry_units(name, units):
     values = 2.0, -0.25, -0.125
     exact = {name: vr.Feedback(*values)}
-    milli = (UNITS.Quantity(1e3 * value, f"milli{unit}") for value, unit in zip(values, units, strict=True))
+    milli = (
+        UNITS.Quantity(1e3 * value, f"milli{unit}")
+        for value, unit in zip(values, units, strict=True)
+    )
     found = {name: vr.Feedback(*milli)}
     pairs = (CYLINDER.roll(0.5, 0.5, 1.0, **found).V, CYLINDER.roll(0.5, 0.5, 1.0, **exact).V)
     assert close(*pairs, tolerances.UNIT_CONVERTED)
@@ -361,7 +563,9 @@ def test_feedbacks_carry_units(name, units):
     assert close(*pairs, tolerances.UNIT_CONVERTED)
     wrong = {name: vr.Feedback(2.0, V=UNITS.Quantity(1.0, "kg"))}
     refused(lambda: CYLINDER.roll(0.5, 0.5, 1.0, **wrong), f"V of {name} is in kilogram")
-    refused(lambda: SCENE.roll(0.5, 0.5, 1.0, **found), f"value of {name} is in", "without dimension")
+    refused(
+        lambda: SCENE.roll(0.5, 0.5, 1.0, **found), f"value of {name} is in", "without dimension"
+    )
     refused(lambda: SCENE.steady(**found), f"value of {name} is in", "without dimension")
 
 
@@ -370,7 +574,8 @@ def test_functions_of_time_give_quantities():
     found = CYLINDER.roll(0.5, 0.5, 1.0, force=lambda t: UNITS.Quantity(2e3 * t, "mN/m"))
     assert close(found.V, exact.V, tolerances.UNIT_CONVERTED)
     refused(
-        lambda: SCENE.roll(0.5, 0.5, 1.0, force=lambda t: UNITS.Quantity(t, "N/m")), "force(t) is in newton / meter"
+        lambda: SCENE.roll(0.5, 0.5, 1.0, force=lambda t: UNITS.Quantity(t, "N/m")),
+        "force(t) is in newton / meter",
     )
 
 
@@ -379,11 +584,21 @@ def test_columns_of_results_go_back():
     data = CYLINDER.roll(0.5, 0.5, [0.1, 0.2]).to_pandas().reset_index()
     V = data["V [m s-1]"]
     exact = CYLINDER.contact(V.to_numpy(), delta=0.0).M
-    for column in (V, pd.Index(V), (3.6 * V).rename("V [km/h]"), V.rename("run [left wheel]"), V.rename("run [1]")):
+    for column in (
+        V,
+        pd.Index(V),
+        (3.6 * V).rename("V [km/h]"),
+        V.rename("run [left wheel]"),
+        V.rename("run [1]"),
+    ):
         assert close(CYLINDER.contact(column, delta=0.0).M, exact, tolerances.UNIT_CONVERTED)
     assert np.array_equal(CYLINDER.roll(0.5, 0.5, data["t [s]"]).V, V)
     for column in (V, pd.Index(V)):
-        refused(lambda column=column: SCENE.contact(column, delta=0.0), "V is in m s-1", "without dimension")
+        refused(
+            lambda column=column: SCENE.contact(column, delta=0.0),
+            "V is in m s-1",
+            "without dimension",
+        )
         refused(lambda column=column: CYLINDER.roll(0.5, 0.5, column), "t is in m s-1", "in s")
 
 
@@ -414,14 +629,19 @@ def test_quantities_of_other_libraries():
     refused(lambda: CYLINDER.replace(m=lengths), "m is in cm", "in kg m-1")
 
 
-@pytest.mark.parametrize("made", [Decimal, Fraction, int, np.float32, lambda value: np.array([value], object)])
+@pytest.mark.parametrize(
+    "made", [Decimal, Fraction, int, np.float32, lambda value: np.array([value], object)]
+)
 def test_magnitudes_of_any_kind(made):
     """Converted in double precision, whatever they are kept in."""
-    assert close(CYLINDER.replace(R=UNITS.Quantity(made(5), "mm")).R, 0.005, tolerances.UNIT_CONVERTED)
+    assert close(
+        CYLINDER.replace(R=UNITS.Quantity(made(5), "mm")).R, 0.005, tolerances.UNIT_CONVERTED
+    )
 
 
 @pytest.mark.parametrize(
-    "magnitude", [True, 1j, None, "1.0", np.array([1j]), np.array([True]), np.array(["1.0"]), 10**400]
+    "magnitude",
+    [True, 1j, None, "1.0", np.array([1j]), np.array([True]), np.array(["1.0"]), 10**400],
 )
 def test_magnitudes_that_are_no_numbers(magnitude):
     class Quantity(NamedTuple):
@@ -439,19 +659,26 @@ def test_ranges_of_unknowns_carry_units():
         for ends in ((3e5, 3e7), UNITS.Quantity([0.3, 30.0], "MPa"))
     )
     assert close(found, plain, tolerances.UNIT_CONVERTED)
-    refused(lambda: vr.identify(experiments.roller(), {"E": UNITS.Quantity([1.0, 2.0], "m")}, data), "E is in meter")
+    refused(
+        lambda: vr.identify(experiments.roller(), {"E": UNITS.Quantity([1.0, 2.0], "m")}, data),
+        "E is in meter",
+    )
 
 
 def test_labels_stay():
     V = xr.DataArray([1.8, 3.6], dims="run", coords={"run": ["a", "b"]}, attrs={"units": "km h-1"})
-    assert np.array_equal(CYLINDER.contact(V, delta=0.0).M.sel(run="b"), CYLINDER.contact(1.0, delta=0.0).M)
+    assert np.array_equal(
+        CYLINDER.contact(V, delta=0.0).M.sel(run="b"), CYLINDER.contact(1.0, delta=0.0).M
+    )
     data = CYLINDER.ensemble(V, 0.5, pd.to_timedelta([0.5], "s")).to_xarray()
     assert list(data["motion"]) == ["a", "b"]
     assert float(data.t[0]) == 0.5
     speeds = pd.Series([0.5, 1.0], index=["a", "b"])
     speeds.attrs["units"] = "m/s"
     assert list(CYLINDER.contact(speeds, delta=0.0).M.index) == ["a", "b"]
-    of_table = vr.tables.build(CYLINDER, UNITS.Quantity(np.array([360.0, 720.0, 1080.0]), "cm/s"), delta=[0.0, 1e-3])
+    of_table = vr.tables.build(
+        CYLINDER, UNITS.Quantity(np.array([360.0, 720.0, 1080.0]), "cm/s"), delta=[0.0, 1e-3]
+    )
     assert close(of_table.V, [3.6, 7.2, 10.8], tolerances.UNIT_CONVERTED)
     at = vr.tables.interpolate(of_table, "M", V=UNITS.Quantity(5.0, "m/s"))
     assert at.M == vr.tables.interpolate(of_table, "M", V=5.0).M

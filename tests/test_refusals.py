@@ -1,4 +1,6 @@
-"""The table refusals.txt: bad input is answered by an error of the package's own, doubtful input by one warning."""
+"""The table refusals.txt: bad input is answered by an error of the package's own, doubtful input by
+one warning.
+"""
 
 import warnings
 
@@ -30,7 +32,8 @@ def told(call, answer, names):
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 @pytest.mark.parametrize(("call", "answer"), LINES, ids=[call for call, _ in LINES])
 def test_answered(call, answer, tmp_path):
-    names, (kind, _, words) = names_in(tmp_path), answer.rpartition("! ")
+    names = names_in(tmp_path)
+    (kind, _, words) = answer.rpartition("! ")
     if kind == "says":
         said = str(eval(call, names))
         assert all(word in said for word in words.split(" | ")), said

@@ -16,7 +16,9 @@ import viscoroll as vr
 from viscoroll.core.files import write_dataset
 from viscoroll.motion.ensemble import FIELDS
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 ROLLER = vr.presets.RUBBER_CYLINDER
@@ -26,7 +28,8 @@ NO_DENSITY = ROLLER.replace(material=dataclasses.replace(ROLLER.material, densit
 @pytest.fixture(scope="module")
 def results():
     """One of each kind, dimensionless and in SI units."""
-    t, V = np.linspace(0.0, 4e-3, 9), np.geomspace(1e-2, 1.0, 5)
+    t = np.linspace(0.0, 4e-3, 9)
+    V = np.geomspace(1e-2, 1.0, 5)
     fit = vr.fit_prony(*vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv"), modes=3, misfit=0.2)
     return {
         "contact": vr.contact(SCENE, V[:, None], delta=np.linspace(-0.02, 0.02, 4)),
@@ -35,7 +38,9 @@ def results():
         "motion": vr.roll(SCENE, 1.5, 0.5, t),
         "driven": vr.roll(SCENE, 0.0, 0.0, t, torque=vr.Schedule([0.0, 2e-3], [0.0, 0.1])),
         "motion in SI": ROLLER.roll(1.0, 0.0, np.linspace(0.0, 1.0, 9)),
-        "scenes each": vr.ensemble(SCENE.replace(mu=[0.1, 0.2, 0.3]), 1.0, 0.5, t, fields=FIELDS, rest=1e-3),
+        "scenes each": vr.ensemble(
+            SCENE.replace(mu=[0.1, 0.2, 0.3]), 1.0, 0.5, t, fields=FIELDS, rest=1e-3
+        ),
         "ensemble in SI": ROLLER.ensemble(np.linspace(0.5, 1.5, 3), 0.0, [0.1, 0.2]),
         "steady": vr.steady(SCENE, slope=np.radians([1.0, 2.0, 30.0])),
         "fit": fit,
@@ -44,20 +49,29 @@ def results():
 
 
 def test_each_shows_itself(results, tmp_path):
-    """A short text, HTML, a dataset with units that a file keeps, and a figure with labelled axes."""
+    """A short text, HTML, a dataset with units that a file keeps, and a figure with labelled
+    axes.
+    """
     for name, result in results.items():
         assert len(repr(result)) < 1500, name
         assert len(repr(result).splitlines()) < 25, name
         assert result._repr_html_().startswith("<"), name
         data = result.to_xarray()
         for variable in () if name == "fit" else data.data_vars.values():
-            assert variable.attrs.get("units") or "flag_values" in variable.attrs, (name, variable.name)
+            assert variable.attrs.get("units") or "flag_values" in variable.attrs, (
+                name,
+                variable.name,
+            )
         write_dataset(data, tmp_path / "result.nc")
-        with xr.open_dataset(tmp_path / "result.nc", engine="h5netcdf", decode_times=False) as stored:
+        with xr.open_dataset(
+            tmp_path / "result.nc", engine="h5netcdf", decode_times=False
+        ) as stored:
             xr.testing.assert_equal(stored.load(), data)
         figure = result.plot()
         assert isinstance(figure, Figure)
-        figure.set_layout_engine("none")  # takes most of the time; figures of the program have theirs
+        figure.set_layout_engine(
+            "none"
+        )  # takes most of the time; figures of the program have theirs
         figure.draw_without_rendering()
         assert any(axes.get_xlabel() for axes in figure.axes), name
 
@@ -89,7 +103,9 @@ def test_a_table_of_pandas_has_a_row_each(results):
 
 
 def test_figures_bend_as_results_do():
-    """A motion to one time in few steps; terminal speeds of a gentle slope beside the unstable ones."""
+    """A motion to one time in few steps; terminal speeds of a gentle slope beside the unstable
+    ones.
+    """
     m = ROLLER.roll(2.0, 0.0, 10.0)
     t, x = m.plot().axes[2].lines[0].get_data()
     assert close(np.interp(5.0, t, x), m.at([5.0]).x[0], tol.FIGURE)
@@ -97,10 +113,17 @@ def test_figures_bend_as_results_do():
 
 
 def test_a_motion_tells_its_peak(results):
-    """First, largest with its time, last: a roller that is spun up and rolls out was fastest between the two."""
-    m = ROLLER.roll(0.0, 0.0, np.linspace(0.0, 10.0, 101), torque=vr.Schedule([0.0, 1.0, 1.0], [2.0, 2.0, 0.0]))
+    """First, largest with its time, last: a roller that is spun up and rolls out was fastest
+    between the two.
+    """
+    m = ROLLER.roll(
+        0.0, 0.0, np.linspace(0.0, 10.0, 101), torque=vr.Schedule([0.0, 1.0, 1.0], [2.0, 2.0, 0.0])
+    )
     (line,) = (line for line in repr(m).splitlines() if line.startswith("  V "))
-    assert line.split(maxsplit=1)[1] == f"first 0, largest {m.V[10]:.6g} (at t = 1), last {m.V[-1]:.6g} m s-1"
+    assert (
+        line.split(maxsplit=1)[1]
+        == f"first 0, largest {m.V[10]:.6g} (at t = 1), last {m.V[-1]:.6g} m s-1"
+    )
     with pytest.warns(RuntimeWarning, match="step limit"):
         cut = vr.roll(SCENE, 1.5, 0.5, np.linspace(0.0, 4e-3, 9), max_steps=12)
     assert np.isnan(cut.V[-1])
@@ -118,7 +141,9 @@ def test_a_validity_is_a_card(results):
 
 
 def test_a_torque_that_jumps_is_drawn_with_both_sides():
-    """In a figure of few output times too: the schedule's corners, and beside it what does not jump."""
+    """In a figure of few output times too: the schedule's corners, and beside it what does not
+    jump.
+    """
     schedule = vr.Schedule([0.0, 1.0, 1.0, 2.0, 2.0, 2.2, 2.2], [3.0, 3.0, 0.0, 0.0, 5.0, 5.0, 0.0])
     force = vr.Feedback(vr.Schedule([0.0, 0.7], [0.0, 4.0]), V=-2.0)
     m = ROLLER.roll(0.0, 0.0, [0.0, 0.5, 1.0, 3.0], torque=schedule, force=force)
@@ -141,14 +166,21 @@ def test_a_torque_that_jumps_is_drawn_with_both_sides():
         (partial(ROLLER.roll, 0.05, 0.5, [1e-3]), 150),
         (partial(SCENE.steady, force=0.01), 220),
         (partial(SCENE.steady, V=0.5, torque=0.0), 220),
-        (partial(ROLLER.steady, force=2.0), 260),  # it warns of the wave speed at two of its four states
+        (
+            partial(ROLLER.steady, force=2.0),
+            260,
+        ),  # it warns of the wave speed at two of its four states
         (partial(NO_DENSITY.steady, force=2.0), 250),
         (partial(ROLLER.steady, V=0.05, torque=0.0), 260),
     ],
-    ids=lambda given: given.func.__name__ + "/" + type(given.func.__self__).__name__ if callable(given) else "",
+    ids=lambda given: (
+        given.func.__name__ + "/" + type(given.func.__self__).__name__ if callable(given) else ""
+    ),
 )
 def test_the_way_of_one_state_is_short(call, most):
-    """Calls of Python and of C for one state, as a profiler counts them: people loop over states."""
+    """Calls of Python and of C for one state, as a profiler counts them: people loop over
+    states.
+    """
     call()  # what is made once
     count = 0
 
@@ -165,7 +197,8 @@ def test_the_way_of_one_state_is_short(call, most):
 
 
 def test_results_say_whether_they_succeeded():
-    one, none = ROLLER.steady(force=2.0), ROLLER.steady(force=1e9)
+    one = ROLLER.steady(force=2.0)
+    none = ROLLER.steady(force=1e9)
     assert (one.success, one.status, one.message) == (True, 0, "")
     assert (none.success, none.status, none.message) == (False, 1, none.reason)
     assert ROLLER.steady(force=[2.0, 1e9]).success.tolist() == [True, False]

@@ -1,4 +1,4 @@
-"""Random inputs (io/sampling.py): designs, distributions, and what is refused."""
+"""Random inputs (sampling.py): designs, distributions, and what is refused."""
 
 from functools import partial
 
@@ -7,11 +7,13 @@ import pytest
 from scipy import stats
 
 from viscoroll import sampling
-from viscoroll.io.sampling import sample
+from viscoroll.sampling import sample
 
 
 def test_no_draw_lies_on_the_edge(monkeypatch):
-    """Of as many points as a Sobol sequence has one has the coordinate 0, whose normal draw would be infinite."""
+    """Of as many points as a Sobol sequence has one has the coordinate 0, whose normal draw would
+    be infinite.
+    """
     monkeypatch.setattr(sampling, "_BITS", 6)
     sampling._sequence.cache_clear()
     drawn = sample(64, seed=0, design="sobol", V0=stats.norm(), omega0=stats.uniform())

@@ -1,4 +1,6 @@
-"""How far the law of steady rolling drives a motion: the unsteadiness, speeds down to which it is small, warnings."""
+"""How far the law of steady rolling drives a motion: the unsteadiness, speeds down to which it is
+small, warnings.
+"""
 
 import warnings
 from itertools import pairwise
@@ -13,7 +15,7 @@ from scipy.integrate import quad
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from viscoroll.contact_law.validity import model_warnings
+from viscoroll.contact_mechanics import model_warnings
 
 ONE = vr.Scene(11.0, 10.0, 0.5, 120.0)
 UNLIKE = ROLLER.replace(material=vr.Bodies(DMA, vr.Prony([4.0], [3e-3]), 0.3))
@@ -36,9 +38,13 @@ def over(scene, low, high, f):
     return sum(parts)
 
 
-@pytest.mark.parametrize(("scene", "V"), [(ROLLER, 30.0), (ROLLER, 6.0), (ONE, 3.0), (UNLIKE, 20.0)])
+@pytest.mark.parametrize(
+    ("scene", "V"), [(ROLLER, 30.0), (ROLLER, 6.0), (ONE, 3.0), (UNLIKE, 20.0)]
+)
 def test_by_quadrature_of_N_and_M(scene, V):
-    """The unsteadiness, the speeds at which it is 1 % and 10 %, time and way until there and the way left."""
+    """The unsteadiness, the speeds at which it is 1 % and 10 %, time and way until there and the
+    way left.
+    """
     found = scene.validity(-V).steady
     assert close(found.value, abs(law(scene, V)[0]), tol.STEADINESS)
     rest = over(scene, 1e-9, V, lambda V, brake: V / brake)
@@ -48,8 +54,12 @@ def test_by_quadrature_of_N_and_M(scene, V):
         top = grid[np.flatnonzero(abs(law(scene, grid)[0]) >= level)[-1]]
         speed = brentq(lambda V, level=level: law(scene, V)[0] - level, top, 1.01 * top, rtol=1e-14)
         assert close(reach.speed, speed, tol.STEADINESS)
-        assert close(reach.time, over(scene, speed, V, lambda V, brake: 1.0 / brake), tol.STEADINESS)
-        assert close(reach.distance, over(scene, speed, V, lambda V, brake: V / brake), tol.STEADINESS)
+        assert close(
+            reach.time, over(scene, speed, V, lambda V, brake: 1.0 / brake), tol.STEADINESS
+        )
+        assert close(
+            reach.distance, over(scene, speed, V, lambda V, brake: V / brake), tol.STEADINESS
+        )
         assert close(reach.distance + reach.left, rest, tol.STEADINESS)
     assert close(found.share, found.ten_percent.left / rest, tol.STEADINESS)
 
@@ -57,45 +67,70 @@ def test_by_quadrature_of_N_and_M(scene, V):
 @pytest.mark.parametrize("V", [30.0, 5.0])
 def test_a_start_from_rest_costs_an_energy(V):
     """W in closed form; the speed that is left, and the way from it."""
-    J, T, u, g = DMA.J, DMA.T, ROLLER.kappa * V, ROLLER.gamma / 1.5
+    J = DMA.J
+    T = DMA.T
+    u = ROLLER.kappa * V
+    g = ROLLER.gamma / 1.5
     found = ROLLER.validity(V).steady
     L = np.minimum(2.0 * u * T, 4.84 * max(2.0 * ROLLER.kappa * found.whole, 20.0))
     W = (0.25 * J * np.log(1.0 + (0.681 * L) ** 2)).sum() - np.log(DMA.alpha) / (8.0 * DMA.alpha)
     left = np.sqrt(V * V - 0.5 * g * W / ROLLER.kappa**2)
     assert close(found.start.speed, V - left, tol.STEADINESS)
-    assert close(found.start.distance, found.whole - ROLLER.validity(left).steady.whole, tol.STEADINESS)
+    assert close(
+        found.start.distance, found.whole - ROLLER.validity(left).steady.whole, tol.STEADINESS
+    )
 
 
 def test_no_relaxation_time_bounds_it():
-    """Of any material |N| (kappa V)^2 <= 1.35/16 (1 - 1/alpha); modes that are slower change nothing much."""
+    """Of any material |N| (kappa V)^2 <= 1.35/16 (1 - 1/alpha); modes that are slower change
+    nothing much.
+    """
     draw = np.random.default_rng(1)
-    some = [vr.Prony(10.0 ** draw.uniform(-2, 2, 4), 10.0 ** draw.uniform(-6, 2, 4)) for _ in range(20)]
-    for material in (*(vr.Prony([alpha - 1.0], [1.0 / alpha]) for alpha in (1.05, 11.0, 100.0, 1e4)), *some):
+    some = [
+        vr.Prony(10.0 ** draw.uniform(-2, 2, 4), 10.0 ** draw.uniform(-6, 2, 4)) for _ in range(20)
+    ]
+    for material in (
+        *(vr.Prony([alpha - 1.0], [1.0 / alpha]) for alpha in (1.05, 11.0, 100.0, 1e4)),
+        *some,
+    ):
         V = np.geomspace(1e-3 / material.T[0], 1e3 / material.T[-1], 300)
         N = abs(law(vr.Scene(material=material, kappa=1.0, mu=0.5, gamma=1.5), V)[0])
         assert (N * V * V).max() <= tol.STEADINESS_BOUND * (1.0 - 1.0 / material.alpha)
     years = vr.Prony([0.1, 0.1, *DMA.E], [1e4, 1e2, *DMA.tau])
-    speeds = [ROLLER.replace(material=each).validity(30.0).steady.ten_percent.speed for each in (DMA, years)]
+    speeds = [
+        ROLLER.replace(material=each).validity(30.0).steady.ten_percent.speed
+        for each in (DMA, years)
+    ]
     assert close(speeds[1], speeds[0], 0.1)
 
 
 @pytest.mark.parametrize("alpha", [1.001, 1.5, 11.0, 100.0, 1e5])
 def test_bounds_tell_slow_starts_of_one_relaxation_time(alpha):
-    """N (kappa V)^2 >= 0.64/16 (1 - 1/alpha) from kappa V = 1 on; what bounds decide is what the table says."""
+    """N (kappa V)^2 >= 0.64/16 (1 - 1/alpha) from kappa V = 1 on; what bounds decide is what the
+    table says.
+    """
     u = np.geomspace(1.0, 1e5, 300)
     N = law(vr.Scene(alpha=alpha, kappa=1.0, mu=0.5, gamma=1.5), u)[0]
     assert (N * u * u).min() >= tol.STEADINESS_LEAST * (1.0 - 1.0 / alpha)
     for gamma in (3.0, 1e4) / np.float64(1.0 - 1.0 / alpha):
         ends, slow = model_warnings._slow_starts(alpha, float(gamma), 0.5)
-        assert [model_warnings._is_too_slow(alpha, end, float(gamma), 0.5) for end in ends[1:]] == slow[1:]
+        assert [
+            model_warnings._is_too_slow(alpha, end, float(gamma), 0.5) for end in ends[1:]
+        ] == slow[1:]
 
 
 def test_each_of_many_is_as_alone():
     """Speeds, gammas, alphas, a material each, some of them elastic."""
-    V, gamma = np.array([3.0, 0.3, 30.0]), np.array([10.0, 500.0, 2.0])
+    V = np.array([3.0, 0.3, 30.0])
+    gamma = np.array([10.0, 500.0, 2.0])
     series = vr.Prony(np.array([[1.0, 2.0], [3.0, 0.5], [0.0, 0.0]]), [1.0, 1e-2])
     pairs = vr.Bodies(series, DMA, np.array([0.2, 0.5, 0.5]))
-    laws = [{"alpha": np.array([1.0, 11.0, 2.0])}, {"alpha": 11.0}, {"material": series}, {"material": pairs}]
+    laws = [
+        {"alpha": np.array([1.0, 11.0, 2.0])},
+        {"alpha": 11.0},
+        {"material": series},
+        {"material": pairs},
+    ]
     for given in laws:
         found = vr.Scene(kappa=20.0, mu=0.3, gamma=gamma, **given).validity(V)
         for n in range(3):
@@ -110,13 +145,22 @@ def test_each_of_many_is_as_alone():
 def test_beyond_all_bounds():
     """No NaN, no warning of numpy."""
     found = ONE.validity([5e-324, 1e-300, 1e20, 1e100, 1e150, 1e300]).steady
-    for each in (found.value, found.whole, found.share, *found.one_percent, *found.ten_percent, *found.start):
+    for each in (
+        found.value,
+        found.whole,
+        found.share,
+        *found.one_percent,
+        *found.ten_percent,
+        *found.start,
+    ):
         assert not np.isnan(each).any()
     assert found.share[-1] == 0.0
 
 
 def test_along_a_motion():
-    """The largest so far of what rolls, and the part of the way that lies below the speed where V is right to 10 %."""
+    """The largest so far of what rolls, and the part of the way that lies below the speed where V
+    is right to 10 %.
+    """
     t = np.linspace(0.0, 20.0, 4001)
     m, thrown = (vr.roll(ROLLER, 30.0, omega0, t) for omega0 in (30.0, 0.0))
     found = m.validity().steady
@@ -148,12 +192,18 @@ def test_workers_are_quiet(monkeypatch):
     vr.roll(ROLLER, 3.0, 3.0, 1.0)  # warnings are errors here
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the motion is beyond the model on purpose
+@pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the motion is beyond the model on purpose
 def test_a_motion_is_judged_between_its_output_times():
-    """A slow roller of a DMA rubber on steel: one output time at rest gives the report of 601, failures and share."""
+    """A slow roller of a DMA rubber on steel: one output time at rest gives the report of 601,
+    failures and share.
+    """
     rubber = vr.fit_prony(*vr.read_dma(vr.datasets.path("dma.csv"))).material(nu=0.49)
     roller = vr.Cylinder(R=0.03, m=5.0, material=rubber, base=vr.Material.rigid(), load=2e3, mu=0.8)
-    few, many = (roller.roll(0.4, 13.0, t, rest=1e-3).validity() for t in (60.0, np.linspace(0.0, 60.0, 601)))
+    few, many = (
+        roller.roll(0.4, 13.0, t, rest=1e-3).validity() for t in (60.0, np.linspace(0.0, 60.0, 601))
+    )
     assert "steady" in few.failed
     assert few.failed == many.failed
     assert few.steady.holds.shape == (1,)

@@ -1,4 +1,6 @@
-"""Steady rolling under load: extrema of M, all equilibria, stability, feedback, limits of existence."""
+"""Steady rolling under load: extrema of M, all equilibria, stability, feedback, limits of
+existence.
+"""
 
 import math
 
@@ -12,10 +14,11 @@ from scipy.optimize import brentq
 import viscoroll as vr
 from pipeline.evidence.truth.enclosures import zone_of
 from pipeline.evidence.truth.material import material_of
-from viscoroll.contact_law.contact_fields import SLOPES_OF_BODIES
+from viscoroll.contact_mechanics.contact_table import SLOPES_OF_BODIES
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
-KAPPA, MU = SCENE.kappa, SCENE.mu
+KAPPA = SCENE.kappa
+MU = SCENE.mu
 TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: a hump a mode, of ever smaller height
 TEN = vr.Prony(2.0 ** np.arange(10), 10.0 ** np.linspace(0.0, -18.0, 10))
@@ -51,7 +54,9 @@ def test_speeds_against_extended_precision():
 
         start = -mp.log(2 * mp.mpf(hump.V[0] * KAPPA))
         x_top = mp.findroot(
-            lambda x: mp.diff(lambda y: curve(y)[1], x, h=mp.mpf(10) ** -15), (start - 0.3, start), tol=1e-25
+            lambda x: mp.diff(lambda y: curve(y)[1], x, h=mp.mpf(10) ** -15),
+            (start - 0.3, start),
+            tol=1e-25,
         )
         u_top, top = curve(x_top)
         assert abs(hump.V[0] * KAPPA / u_top - 1) < tol.STEADY_HUMP_V
@@ -64,9 +69,14 @@ def test_speeds_against_extended_precision():
             def missing(x, load=load):
                 return curve(x)[1] - load
 
-            for found, end in zip(vr.steady(scene, force=force).V, (x_top + 4, x_top - 4), strict=True):
+            for found, end in zip(
+                vr.steady(scene, force=force).V, (x_top + 4, x_top - 4), strict=True
+            ):
                 x = mp.findroot(missing, (x_top, end), solver="anderson", tol=1e-50, maxsteps=200)
-                assert abs(mp.mpf(found) * mp.mpf(KAPPA) / curve(x)[0] - 1) * mp.sqrt(short) < tol.STEADY, short
+                assert (
+                    abs(mp.mpf(found) * mp.mpf(KAPPA) / curve(x)[0] - 1) * mp.sqrt(short)
+                    < tol.STEADY
+                ), short
 
 
 def test_creep_has_its_traction():
@@ -98,11 +108,14 @@ def test_all_equilibria_of_random_materials():
         modes = int(rng.integers(1, 6))
         series = vr.Prony(10.0 ** rng.uniform(-1, 2, modes), 10.0 ** rng.uniform(-8, 0, modes))
         other = vr.Prony(10.0 ** rng.uniform(-1, 2, modes), 10.0 ** rng.uniform(-8, 0, modes))
-        scene = series_scene(series if n % 2 else vr.Bodies(series, other, rng.uniform(0.1, 0.9)), mu=0.03)
+        scene = series_scene(
+            series if n % 2 else vr.Bodies(series, other, rng.uniform(0.1, 0.9)), mu=0.03
+        )
         speeds = np.geomspace(1e-7, 1e12, 40001)
         top = vr.resistance_extrema(scene).M.max()
         for _ in range(8):
-            g, q = rng.uniform(0.0, 1.1) * top, rng.uniform(-0.03, 0.03)
+            g = rng.uniform(0.0, 1.1) * top
+            q = rng.uniform(-0.03, 0.03)
             s = vr.steady(scene, force=g - q, torque=q)
             within = (s.V > speeds[0]) & (s.V < speeds[-1])
             assert within.sum() == brute(scene, g - q, q, speeds)
@@ -110,7 +123,9 @@ def test_all_equilibria_of_random_materials():
                 assert (np.abs(off) <= tol.STEADY_RESIDUAL / np.minimum(s.grip, 1.0)).all()
             c = vr.contact(scene, s.V, omega=s.omega)
             assert not s.count or close(c.beta, s.beta, tol.STEADY_BETA, scale=1.0)
-            assert not s.count or close(1.0 - np.abs(c.Q) / scene.mu, s.grip, tol.STEADY_BETA, scale=1.0)
+            assert not s.count or close(
+                1.0 - np.abs(c.Q) / scene.mu, s.grip, tol.STEADY_BETA, scale=1.0
+            )
 
 
 def test_ten_humps():
@@ -121,7 +136,10 @@ def test_ten_humps():
     assert (np.abs(slopes * hump.V) <= tol.STEADY_FLAT * hump.M).all()
     for g in (0.5 * hump.M.min(), 0.5 * (hump.M[2] + hump.M[4]), 0.99 * hump.M[0]):
         s = vr.steady(scene, force=g)
-        assert s.count == 2 * (np.diff(np.sign(np.concatenate([[0.0], hump.M, [0.0]]) - g)) > 0.0).sum()
+        assert (
+            s.count
+            == 2 * (np.diff(np.sign(np.concatenate([[0.0], hump.M, [0.0]]) - g)) > 0.0).sum()
+        )
         assert s.stable.tolist() == [True, False] * (s.count // 2)
         np.testing.assert_array_equal(s.M, [g] * s.count)
     at_top = vr.steady(scene, force=hump.M[0])
@@ -138,16 +156,28 @@ def test_ten_humps():
 
 def test_eigenvalues_are_those_of_the_slopes_of_the_contact_law():
     """Of (V', omega') over gamma t by V and omega; the falling branch of every hump is a saddle."""
-    for scene in (SCENE.replace(j=0.3), series_scene(TWO), series_scene(UNLIKE, j=2.0), series_scene(TEN)):
+    for scene in (
+        SCENE.replace(j=0.3),
+        series_scene(TWO),
+        series_scene(UNLIKE, j=2.0),
+        series_scene(TEN),
+    ):
         g = 0.6 * vr.resistance_extrema(scene).M[0]
         for gains in (np.zeros((2, 2)), np.array([[-0.02, 0.01], [0.01, -0.05]])):
-            force, torque = (vr.Feedback(part * g, *row) for part, row in zip((0.3, 0.7), gains, strict=True))
+            force, torque = (
+                vr.Feedback(part * g, *row) for part, row in zip((0.3, 0.7), gains, strict=True)
+            )
             s = vr.steady(scene, force=force, torque=torque)
             assert s.count >= 1
-            c = vr.contact(scene, s.V, omega=s.omega, fields=("dQ_dV", "dQ_domega", *SLOPES_OF_BODIES, "dM_dV"))
-            a, b = c.dQ_dV - c.dM_half_space_dV + force.V, c.dQ_domega + force.omega
-            p, q = (-c.dQ_dV - c.dM_cylinder_dV + torque.V) / scene.j, (-c.dQ_domega + torque.omega) / scene.j
-            trace, det = s.eigenvalues.sum(axis=-1), s.eigenvalues.prod(axis=-1)
+            c = vr.contact(
+                scene, s.V, omega=s.omega, fields=("dQ_dV", "dQ_domega", *SLOPES_OF_BODIES, "dM_dV")
+            )
+            a = c.dQ_dV - c.dM_half_space_dV + force.V
+            b = c.dQ_domega + force.omega
+            p = (-c.dQ_dV - c.dM_cylinder_dV + torque.V) / scene.j
+            q = (-c.dQ_domega + torque.omega) / scene.j
+            trace = s.eigenvalues.sum(axis=-1)
+            det = s.eigenvalues.prod(axis=-1)
             assert close(trace.real, a + q, tol.STEADY_DETERMINANT, scale=np.abs(a))
             assert close(det.real, a * q - b * p, tol.STEADY_DETERMINANT, scale=np.abs(a * q))
             assert not np.any([trace.imag, det.imag])
@@ -170,7 +200,9 @@ def test_focus_where_friction_is_all_but_spent():
 
 
 def test_motions_settle_at_equilibria():
-    """From rest up the first rising branch: on a slope, of unlike bodies, with a motor whose torque falls."""
+    """From rest up the first rising branch: on a slope, of unlike bodies, with a motor whose torque
+    falls.
+    """
     unlike = series_scene(UNLIKE)
     for scene, load in (
         (SCENE, {"slope": 0.05}),
@@ -190,19 +222,30 @@ def test_motions_settle_at_equilibria():
 def test_critical_slope():
     """tan(theta) = M_top of kappa/sqrt(cos(theta)): the definition."""
     turned = lambda theta: SCENE.replace(kappa=KAPPA / np.sqrt(np.cos(theta)))  # noqa: E731
-    theta = brentq(lambda theta: math.tan(theta) - vr.resistance_extrema(turned(theta)).M[0], 0.0, 1.0, xtol=1e-16)
+    theta = brentq(
+        lambda theta: math.tan(theta) - vr.resistance_extrema(turned(theta)).M[0],
+        0.0,
+        1.0,
+        xtol=1e-16,
+    )
     assert close(math.degrees(theta), 4.8, 0.05 / 4.8)
     s = vr.steady(SCENE, slope=theta * np.array([1.0 - 1e-9, 1.0 + 1e-9]))
     assert s.count.tolist() == [2, 0]
-    np.testing.assert_array_equal(vr.steady(SCENE, slope=0.05).V, vr.steady(turned(0.05), force=np.tan(0.05)).V)
+    np.testing.assert_array_equal(
+        vr.steady(SCENE, slope=0.05).V, vr.steady(turned(0.05), force=np.tan(0.05)).V
+    )
 
 
 # --- feedback ---
 
 
 def brute_feedback(scene, force, torque, V):
-    """Equilibria with V > 0: omega by the sum of the equations, changes of sign of what is left of the first."""
-    total, gain_V, gain = force.value + torque.value, force.V + torque.V, force.omega + torque.omega
+    """Equilibria with V > 0: omega by the sum of the equations, changes of sign of what is left of
+    the first.
+    """
+    total = force.value + torque.value
+    gain_V = force.V + torque.V
+    gain = force.omega + torque.omega
     M = vr.contact(scene, V, delta=0.0, fields="M").M
     omega = (M - gain_V * V - total) / gain
     c = vr.contact(scene, V, omega=omega, fields=("Q", "M_half_space"))
@@ -212,9 +255,12 @@ def brute_feedback(scene, force, torque, V):
 
 def test_feedback_on_omega_misses_none():
     rng = np.random.default_rng(3)
-    V, several = np.geomspace(1e-5, 1e6, 400001), 0
+    V = np.geomspace(1e-5, 1e6, 400001)
+    several = 0
     for n in range(24):
-        scene = (SCENE, *(series_scene(material, mu=0.02) for material in (TWO, UNLIKE, COVER)))[n % 4]
+        scene = (SCENE, *(series_scene(material, mu=0.02) for material in (TWO, UNLIKE, COVER)))[
+            n % 4
+        ]
         size = vr.resistance_extrema(scene).M[0]
         gains = rng.uniform(-1.0, 1.0, 4) * 10.0 ** rng.uniform(-2.0, 0.0)
         force = vr.Feedback(rng.uniform(-1.5, 1.5) * size, V=gains[0], omega=gains[1])
@@ -259,7 +305,8 @@ def test_losses_are_what_the_loads_put_in():
         g = rng.uniform(-0.9, 0.9, 50) * vr.resistance_extrema(scene).M[0]
         q = rng.uniform(-0.3, 0.3, 50) * scene.mu
         s = vr.steady(scene, force=g - q, torque=q)
-        put_in, lost = s.force * s.V + s.torque * s.omega, s.loss.slip + s.loss.half_space + s.loss.cylinder
+        put_in = s.force * s.V + s.torque * s.omega
+        lost = s.loss.slip + s.loss.half_space + s.loss.cylinder
         held = np.isfinite(s.V)
         assert close(lost[held], put_in[held], tol.STEADY_POWER)
         assert (s.loss.slip[held] >= 0.0).all()
@@ -281,14 +328,17 @@ def test_many_loads_are_single_calls_bit_for_bit():
     assert vr.steady(scene, force=f[:0]).V.shape == (0, 0)
     assert (np.isfinite(s.V).sum(axis=1) == s.count).all()
     for n in range(0, f.size, 997):
-        one, held = vr.steady(scene, force=f[n]), slice(0, s.count[n])
+        one = vr.steady(scene, force=f[n])
+        held = slice(0, s.count[n])
         assert one.count == s.count[n]
         for name in ("V", "omega", "delta", "Q", "M", "beta", "grip", "eigenvalues", "stable"):
             np.testing.assert_array_equal(getattr(one, name), getattr(s, name)[n][held])
 
 
 def test_eigenvalues_at_the_least_and_largest_numbers():
-    """The slope over slip, mu kappa/V, exceeds the square root of the doubles; that over V is -T_mean/(1 + j) still."""
+    """The slope over slip, mu kappa/V, exceeds the square root of the doubles; that over V
+    is -T_mean/(1 + j) still.
+    """
     scene = series_scene(TWO)
     known = vr.steady(scene, V=1e-6, torque=0.0).eigenvalues[0]
     for V in (1e-153, 1e-290):

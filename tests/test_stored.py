@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from viscoroll.kernels.flow.layout import SIZE
+from viscoroll.kernels.motion.flow_layout import SIZE
 from viscoroll.motion import flow_store
 
 
@@ -36,7 +36,9 @@ def kept(alpha):
 
 
 def test_made_once(folder):
-    assert [kept(number) for number in (2.0, 3.0, np.nextafter(3.0, 4.0), 2.0, 3.0)] == [False] * 3 + [True] * 2
+    assert [kept(number) for number in (2.0, 3.0, np.nextafter(3.0, 4.0), 2.0, 3.0)] == [
+        False
+    ] * 3 + [True] * 2
     assert len(list(folder.iterdir())) == 3
 
 

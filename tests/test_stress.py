@@ -1,4 +1,6 @@
-"""Pressure and shear along the contact: closed forms, and nothing outside; integrals are in ``test_claims.py``."""
+"""Pressure and shear along the contact: closed forms, and nothing outside; integrals are in
+``test_claims.py``.
+"""
 
 import numpy as np
 import tolerances as tol
@@ -6,25 +8,44 @@ from closeness import close
 
 import viscoroll as vr
 
-KAPPA, MU = 2.91, 0.2
+KAPPA = 2.91
+MU = 0.2
 
 
 def test_elastic_cylinder_and_rest_are_carter():
     """Hertz's pressure and Carter's two ellipses, at alpha = 1 or at V = 0."""
-    x, peak = np.linspace(-0.4999, 0.4999, 41)[:, None], 1.0 / (8 * np.pi * KAPPA)
+    x = np.linspace(-0.4999, 0.4999, 41)[:, None]
+    peak = 1.0 / (8 * np.pi * KAPPA)
     p_0 = np.sqrt((1 - 2 * x) * (1 + 2 * x))
-    for alpha, kappa_V in ((1.0, 500.0), (1.0, 0.5), (1.0, 5e-6), (1.0, 0.0), (11.0, 0.0), (1e4, 0.0)):
-        scene, V = vr.Scene(alpha, KAPPA, MU), kappa_V / KAPPA
-        delta = np.array([1.0, 0.7, 0.1]) * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
-        beta, found = vr.contact(scene, V, delta=delta, fields="beta").beta, vr.stress(scene, x, V, delta=delta)
+    for alpha, kappa_V in (
+        (1.0, 500.0),
+        (1.0, 0.5),
+        (1.0, 5e-6),
+        (1.0, 0.0),
+        (11.0, 0.0),
+        (1e4, 0.0),
+    ):
+        scene = vr.Scene(alpha, KAPPA, MU)
+        V = kappa_V / KAPPA
+        delta = (
+            np.array([1.0, 0.7, 0.1])
+            * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+        )
+        beta = vr.contact(scene, V, delta=delta, fields="beta").beta
+        found = vr.stress(scene, x, V, delta=delta)
         stuck = np.sqrt(np.maximum(beta**2 - (2 * x - 1 + beta) ** 2, 0.0))
-        assert close(found.p, np.broadcast_to(peak * p_0, found.p.shape), tol.STRESS_ELLIPSE, scale=peak)
+        assert close(
+            found.p, np.broadcast_to(peak * p_0, found.p.shape), tol.STRESS_ELLIPSE, scale=peak
+        )
         assert close(found.tau, MU * peak * (p_0 - stuck), tol.STRESS_CARTER, scale=MU * peak)
 
 
 def test_nothing_lies_outside_the_contact():
-    alpha, V = np.array([1.0, 1.01, 11.0, 1e4]), np.geomspace(1e-5, 1e4, 7)[:, None] / KAPPA
+    alpha = np.array([1.0, 1.01, 11.0, 1e4])
+    V = np.geomspace(1e-5, 1e4, 7)[:, None] / KAPPA
     state = vr.contact(vr.Scene(alpha, KAPPA, MU), V, delta=1e-3)
     for place in (-1.0 - 1e-9, 1.0 + 1e-9):
-        beyond = vr.stress(vr.Scene(alpha, KAPPA, MU), 0.5 * state.lam * (state.epsilon + place), V, delta=1e-3)
+        beyond = vr.stress(
+            vr.Scene(alpha, KAPPA, MU), 0.5 * state.lam * (state.epsilon + place), V, delta=1e-3
+        )
         assert not np.any([beyond.p, beyond.tau])

@@ -1,4 +1,6 @@
-"""What type checkers see of the public interface; what mypy says of a user's script: tests/typing, `make check`."""
+"""What type checkers see of the public interface; what mypy says of a user's script: tests/typing,
+`make check`.
+"""
 
 import ast
 

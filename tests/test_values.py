@@ -12,10 +12,16 @@ LINES = lines_of("values.txt")
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 @pytest.mark.parametrize(("call", "answer"), LINES, ids=[call for call, _ in LINES])
 def test_value(call, answer, tmp_path):
-    names, (exact, within, tolerance) = names_in(tmp_path), answer.partition(" within ")
-    found, exact = eval(call, names), eval(exact.removeprefix("== "), names)
+    names = names_in(tmp_path)
+    (exact, within, tolerance) = answer.partition(" within ")
+    found = eval(call, names)
+    exact = eval(exact.removeprefix("== "), names)
     if within:
         tolerance, _, scale = tolerance.partition(" of ")
         assert close(found, exact, eval(tolerance, vars(tolerances)), scale=float(scale or 0.0))
     else:
-        assert np.array_equal(found, exact, equal_nan=True) if isinstance(found, np.ndarray) else found == exact
+        assert (
+            np.array_equal(found, exact, equal_nan=True)
+            if isinstance(found, np.ndarray)
+            else found == exact
+        )

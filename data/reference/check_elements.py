@@ -1,23 +1,28 @@
-"""Make check_elements.json: steady contacts by boundary elements, on half-spaces and on layers of finite thickness.
+"""Make check_elements.json: steady contacts by boundary elements, on half-spaces and on layers of
+finite thickness.
 
     python -m data.reference.check_elements [-o FILE]        in some ten minutes
 
-There is no Bessel function, no second form of the material, no superposition of two contacts.  Lengths over V T_ref, Y
-ahead of the middle of the contact.  Pressure p and shear q over mu are linear in elements that are graded to the edges.
-Each slopes the surface by the point load that moves along it, whose creep it leaves behind:
+There is no Bessel function, no second form of the material, no superposition of two contacts.
+Lengths over V T_ref, Y ahead of the middle of the contact.  Pressure p and shear q over mu are
+linear in elements that are graded to the edges.  Each slopes the surface by the point load that
+moves along it, whose creep it leaves behind:
 
     u'(Y) = int p(y) k(Y - y) dy      pi k(x) = J(0)/x + sum J_j b_j f(b_j x)      f(X) = PV int_0^inf e^-s/(X + s) ds
 
-Contact: u_p' = Y + g at the middles of the elements, p = 0 at both ends, which finds g too.  Friction: q = p behind the
-stick zone, u_q' = d in it, the same at every place, which finds d = delta/(mu V).  (G. M. L. Gladwell, Contact problems
-in the classical theory of elasticity, 1980, for the elastic kernel.)
+Contact: u_p' = Y + g at the middles of the elements, p = 0 at both ends, which finds g too.
+Friction: q = p behind the stick zone, u_q' = d in it, the same at every place, which finds d =
+delta/(mu V).  (G. M. L. Gladwell, Contact problems in the classical theory of elasticity, 1980, for
+the elastic kernel.)
 
-The surface of a layer of thickness h under tractions exp(i k x) is solved as a 4 by 4 system of Airy's function in its
-thickness, f = (A + B y) e^(k (y - h)) + (C + D y) e^(-k y), at every wave number.  What it slopes beyond a half-space
-decays with the wave number and is added to the elements by quadrature, with the complex compliance of the creep series.
+The surface of a layer of thickness h under tractions exp(i k x) is solved as a 4 by 4 system of
+Airy's function in its thickness, f = (A + B y) e^(k (y - h)) + (C + D y) e^(-k y), at every wave
+number.  What it slopes beyond a half-space decays with the wave number and is added to the elements
+by quadrature, with the complex compliance of the creep series.
 
-The package places the states: its half lengths are the elements', which find load, offset, moment, creep and friction.
-"""
+The package places the states: its half lengths are the elements', which find load, offset, moment,
+creep and friction.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -64,8 +69,8 @@ class Boundary(NamedTuple):
     H, g, m : load over pi/2, distance of the axis behind the middle, M/V
     shares : of each creep mode in m, slowest first
     d, Q : creep over mu V, and friction over mu
-    least : least of p, p - q and q inside, over the largest p, and of the slip behind the stick zone over d: where all
-        are positive, no inequality is hurt
+    least : least of p, p - q and q inside, over the largest p, and of the slip behind the stick
+        zone over d: where all are positive, no inequality is hurt
     """
 
     H: float
@@ -82,7 +87,9 @@ def _memory(X: Floats) -> Floats:
     size, found = np.abs(X), np.full(X.shape, -np.euler_gamma)
     far, near = size > _FAR, (size > 0.0) & (size <= _FAR)
     x = X[near]
-    inside = np.where(x > 0.0, np.exp(x) * exp1(np.abs(x)), -np.exp(x) * expi(np.where(x > 0.0, -1.0, -x)))
+    inside = np.where(
+        x > 0.0, np.exp(x) * exp1(np.abs(x)), -np.exp(x) * expi(np.where(x > 0.0, -1.0, -x))
+    )
     found[near] = inside + np.log(size[near])
     term = 1.0 / X[far]
     total, ratio = term.copy(), -term
@@ -99,7 +106,8 @@ def _twice(X: Floats) -> Floats:
 
 
 class Elements:
-    """Elements between nodes, and the slopes that slope jumps of a traction at the nodes make at some places.
+    """Elements between nodes, and the slopes that slope jumps of a traction at the nodes make at
+    some places.
 
     Parameters
     ----------
@@ -116,10 +124,15 @@ class Elements:
             self._jumps[n : n + 3, n] = before, -before - behind, behind
 
     def slopes(self, at: Floats) -> list[Floats]:
-        """u' at places, of tractions at the inner nodes: what is elastic, and of each creep mode."""
+        """u' at places, of tractions at the inner nodes: what is elastic, and of each creep
+        mode.
+        """
         apart = at[:, None] - self.nodes[None, :]
         scaled = ((J * T, apart / T) for J, T in zip(self.p.J, self.p.T, strict=True))
-        parts = [_twice(apart) / self.p.alpha, *(size * (_memory(X) + _twice(X)) for size, X in scaled)]
+        parts = [
+            _twice(apart) / self.p.alpha,
+            *(size * (_memory(X) + _twice(X)) for size, X in scaled),
+        ]
         return [part @ self._jumps / math.pi for part in parts]
 
     def moments(self, values: Floats) -> tuple[float, float]:
@@ -173,12 +186,20 @@ def contact(p: Prony, z: float, eta: float, count: int = 100) -> Boundary:
     rest = pressure - shear
     least = min(pressure.min(), rest[count:].min(), shear.min()) / pressure.max()
     slipped = float(min(least, slip.min() / d))
-    return Boundary(2.0 * load / math.pi, g, g + moment / load, shares, d, elements.moments(shear)[0] / load, slipped)
+    return Boundary(
+        2.0 * load / math.pi,
+        g,
+        g + moment / load,
+        shares,
+        d,
+        elements.moments(shear)[0] / load,
+        slipped,
+    )
 
 
 def extrapolated(p: Prony, z: float, eta: float, count: int = 50) -> Boundary:
-    """The same from ``count`` elements and twice as many: once the layers are resolved, errors are as 8 to 1, those of
-    the shares, which a midpoint rule integrates, as 4 to 1.
+    """The same from ``count`` elements and twice as many: once the layers are resolved, errors are
+    as 8 to 1, those of the shares, which a midpoint rule integrates, as 4 to 1.
     """
     coarse, fine = contact(p, z, eta, count), contact(p, z, eta, 2 * count)
     both: Any = zip(coarse, fine, strict=True)
@@ -188,7 +209,8 @@ def extrapolated(p: Prony, z: float, eta: float, count: int = 50) -> Boundary:
 
 # --- Layers ---
 
-#: wave numbers times h up to which the layer differs from a half-space, intervals halved towards 0, and Gauss's points
+#: wave numbers times h up to which the layer differs from a half-space, intervals halved towards 0,
+#: and Gauss's points
 _LAST, _HALVED, _POINTS, _EQUAL = 22.0, 24, 16, 12
 #: Gauss's points on an element
 _ON_ELEMENT = 4
@@ -197,9 +219,9 @@ _ON_ELEMENT = 4
 class OnLayer(NamedTuple):
     """What the elements find.
 
-    H, g, m : as of :class:`Boundary`.  star : delta_star/(mu V).  strain : of the surface by the pressure,
-    beyond that of a half-space, weighted with the pressure.  d, Q : delta/(mu V) and Q/mu of the stick zone, without
-    coupling.  least : of the inequalities, over their scales.
+    H, g, m : as of :class:`Boundary`.  star : delta_star/(mu V).  strain : of the surface by the
+    pressure, beyond that of a half-space, weighted with the pressure.  d, Q : delta/(mu V) and Q/mu
+    of the stick zone, without coupling.  least : of the inequalities, over their scales.
     """
 
     H: float
@@ -213,8 +235,8 @@ class OnLayer(NamedTuple):
 
 
 def kernels(u: Floats, nu: float) -> Floats:
-    """L, T and C at u = k h: normal displacement by pressure, tangential by shear, tangential by pressure, over those
-    of a half-space by its own traction."""
+    """L, T and C at u = k h: normal displacement by pressure, tangential by shear, tangential by
+    pressure, over those of a half-space by its own traction."""
     e = np.exp(-u)
     one, nothing = np.ones_like(u), np.zeros_like(u)
     found = np.empty((3, u.size))
@@ -236,7 +258,8 @@ def kernels(u: Floats, nu: float) -> Floats:
     top, bottom = displacements(1.0), displacements(0.0)
     system = np.moveaxis(np.array([*bottom, at[1.0][0], at[1.0][1]]), -1, 0)
     pressed, sheared = (
-        np.moveaxis(np.array([nothing, nothing, *sides]), -1, 0) for sides in ((one, nothing), (nothing, one))
+        np.moveaxis(np.array([nothing, nothing, *sides]), -1, 0)
+        for sides in ((one, nothing), (nothing, one))
     )
     for sides in (pressed, sheared):
         terms = np.linalg.solve(system, sides[..., None])[..., 0].T
@@ -250,14 +273,17 @@ def kernels(u: Floats, nu: float) -> Floats:
 
 def _panels() -> tuple[Floats, Floats]:
     x, w = np.polynomial.legendre.leggauss(_POINTS)
-    ends = np.concatenate([[0.0], _LAST * 2.0 ** np.arange(-_HALVED, -2.0), _LAST * np.arange(1, _EQUAL + 1) / _EQUAL])
+    ends = np.concatenate(
+        [[0.0], _LAST * 2.0 ** np.arange(-_HALVED, -2.0), _LAST * np.arange(1, _EQUAL + 1) / _EQUAL]
+    )
     ends = np.unique(ends)
     middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
     return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
 
 
 class Layer:
-    """A layer under elements: its kernels and the transforms of the elements, at the wave numbers of a quadrature.
+    """A layer under elements: its kernels and the transforms of the elements, at the wave numbers
+    of a quadrature.
 
     Parameters
     ----------
@@ -265,7 +291,9 @@ class Layer:
     part : the layer's of the long-time compliance.
     """
 
-    def __init__(self, p: Prony, nu: float, h: float, elements: Elements, part: float = 1.0) -> None:
+    def __init__(
+        self, p: Prony, nu: float, h: float, elements: Elements, part: float = 1.0
+    ) -> None:
         u, self.weights = _panels()
         self.k, self.h = u / h, h
         self.L, self.T, self.C = kernels(u, nu)
@@ -280,7 +308,9 @@ class Layer:
         self.hats = right[:, :-1] + left[:, 1:]
 
     def slopes(self, kernel: Floats, at: Floats) -> Floats:
-        """Slopes at places by tractions at the inner nodes, of a kernel over that of a half-space, which decays."""
+        """Slopes at places by tractions at the inner nodes, of a kernel over that of a half-space,
+        which decays.
+        """
         factor = kernel * self.weights * self.compliance / (math.pi * self.h)
         result: Floats = np.imag((np.exp(1j * at[:, None] * self.k) * factor) @ self.hats)
         return result
@@ -292,8 +322,11 @@ class Layer:
         return float(-whole / (math.pi * load))
 
 
-def contact_on_layer(p: Prony, nu: float, z: float, theta: float, eta: float, count: int, part: float = 1.0) -> OnLayer:
-    """A contact of half length z on a layer of thickness z/theta, with a stick zone of half length eta in front.
+def contact_on_layer(
+    p: Prony, nu: float, z: float, theta: float, eta: float, count: int, part: float = 1.0
+) -> OnLayer:
+    """A contact of half length z on a layer of thickness z/theta, with a stick zone of half length
+    eta in front.
 
     ``part`` : the layer's of the long-time compliance; the other body is an elastic half-space.
     """
@@ -315,10 +348,19 @@ def contact_on_layer(p: Prony, nu: float, z: float, theta: float, eta: float, co
     found = np.linalg.solve(np.column_stack([slopes[count:, count:], -np.ones(count)]), -known)
     shear, d = np.concatenate([pressure[:count], found[:-1]]), float(found[-1])
     rest, slip = pressure - shear, d - slopes[:count] @ shear
-    least = min(min(pressure.min(), rest[count:].min(), shear.min()) / pressure.max(), slip.min() / d)
+    least = min(
+        min(pressure.min(), rest[count:].min(), shear.min()) / pressure.max(), slip.min() / d
+    )
     strain = layer.strain(pressure, load, (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu))
     return OnLayer(
-        2.0 * load / math.pi, g, g + moment / load, star, strain, d, elements.moments(shear)[0] / load, least
+        2.0 * load / math.pi,
+        g,
+        g + moment / load,
+        star,
+        strain,
+        d,
+        elements.moments(shear)[0] / load,
+        least,
     )
 
 
@@ -328,14 +370,17 @@ def extrapolated_on_layer(
     """The same from ``count`` elements in either zone and twice as many: errors fall by 8."""
     coarse, fine = (contact_on_layer(p, nu, z, theta, eta, n, part) for n in (count, 2 * count))
     both: Any = zip(coarse, fine, strict=True)
-    return OnLayer(*(b + (b - a) / 7.0 for a, b in both))._replace(least=min(coarse.least, fine.least))
+    return OnLayer(*(b + (b - a) / 7.0 for a, b in both))._replace(
+        least=min(coarse.least, fine.least)
+    )
 
 
 # --- The file ---
 
 
 def bodies_states(random: np.random.Generator) -> Iterator[dict[str, Any]]:
-    """Yield states of one to four modes in two bodies: bodies, V and delta at kappa = 1 and mu = 0.5, half lengths.
+    """Yield states of one to four modes in two bodies: bodies, V and delta at kappa = 1 and mu =
+    0.5, half lengths.
 
     random: random numbers.
     """
@@ -350,7 +395,9 @@ def bodies_states(random: np.random.Generator) -> Iterator[dict[str, Any]]:
         share, V = float(random.uniform(0.2, 0.8)), float(10.0 ** random.uniform(-1.5, 1.0))
         bodies = vr.Bodies(*(vr.Prony(**part) for part in parts), share=share)
         scene = vr.Scene(alpha=None, kappa=1.0, mu=0.5, material=bodies)
-        delta = random.uniform(0.05, 0.95) * float(vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star)
+        delta = random.uniform(0.05, 0.95) * float(
+            vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
+        )
         c = vr.contact(scene, V, delta=delta)
         z, eta = float(c.zeta), float(c.beta * c.zeta)
         truth = extrapolated(bodies.total, z, eta, _ELEMENTS)._asdict()
@@ -359,15 +406,22 @@ def bodies_states(random: np.random.Generator) -> Iterator[dict[str, Any]]:
 
 
 def cover_states(random: np.random.Generator, is_free: bool) -> Iterator[dict[str, Any]]:
-    """Yield states of covers of both materials in turn: cover, V, half lengths and what the elements find.
+    """Yield states of covers of both materials in turn: cover, V, half lengths and what the
+    elements find.
 
     random: random numbers; thickness and speed in their logarithms.
-    is_free: on a rigid base with nu = 1/2, where all strain by the pressure comes of the finite thickness.
+    is_free: on a rigid base with nu = 1/2, where all strain by the pressure comes of the finite
+    thickness.
     """
     for n in range(COVERS):
-        thickness, u = (float(np.exp(random.uniform(*np.log(ends)))) for ends in (_THICKNESS, _SPEEDS))
+        thickness, u = (
+            float(np.exp(random.uniform(*np.log(ends)))) for ends in (_THICKNESS, _SPEEDS)
+        )
         nu, share = (float(random.uniform(*ends)) for ends in ((0.0, 0.5), _STICK))
-        on, part = ("base", "cylinder")[n // 2 % 2], 1.0 if n % 3 else float(random.uniform(0.2, 1.0))
+        on, part = (
+            ("base", "cylinder")[n // 2 % 2],
+            1.0 if n % 3 else float(random.uniform(0.2, 1.0)),
+        )
         if is_free:
             nu, share, on, part = 0.5, 0.5, "base", 1.0
         p = MATERIALS[n % 2]
@@ -377,23 +431,36 @@ def cover_states(random: np.random.Generator, is_free: bool) -> Iterator[dict[st
         z = 0.5 * lam / u
         truth = extrapolated_on_layer(p, nu, z, 0.5 * lam / thickness, share * z, part)
         series = {"E": p.E.tolist(), "tau": p.tau.tolist()}
-        yield {"series": series, "cover": given, "V": u / KAPPA, "z": z, "eta": share * z} | truth._asdict()
+        yield {
+            "series": series,
+            "cover": given,
+            "V": u / KAPPA,
+            "z": z,
+            "eta": share * z,
+        } | truth._asdict()
 
 
 def main() -> None:
     """Solve all states, and write the file, a line for each."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("-o", "--output", type=Path, default=TARGET)
     output = parser.parse_args().output
     states = {
         name: make(np.random.default_rng([SEED, n]))
-        for n, (name, make) in enumerate({
-            "bodies": bodies_states,
-            "covers": lambda random: cover_states(random, is_free=False),
-            "free_creep": lambda random: cover_states(random, is_free=True),
-        }.items())
-    }  # fmt: skip
-    groups = (f'"{name}": [\n' + ",\n".join(map(json.dumps, tqdm(rows, name))) + "\n]" for name, rows in states.items())
+        for n, (name, make) in enumerate(
+            {
+                "bodies": bodies_states,
+                "covers": lambda random: cover_states(random, is_free=False),
+                "free_creep": lambda random: cover_states(random, is_free=True),
+            }.items()
+        )
+    }
+    groups = (
+        f'"{name}": [\n' + ",\n".join(map(json.dumps, tqdm(rows, name))) + "\n]"
+        for name, rows in states.items()
+    )
     output.write_text("{" + ",\n".join(groups) + "}\n", encoding="utf-8")
 
 

@@ -2,13 +2,13 @@
 
     python -m data.reference.check_motions [free|driven ...] [--count N] [-o FOLDER]
 
-Each file holds its inputs; its values are made from them again, and the file is written anew (the first N of them with
---count).  Each motion is rolled twice, the second time with more nodes, shorter steps and more digits; how far the two
-differ stands beside them.
+Each file holds its inputs; its values are made from them again, and the file is written anew (the
+first N of them with --count).  Each motion is rolled twice, the second time with more nodes,
+shorter steps and more digits; how far the two differ stands beside them.
 
-Eq. (22), free or with forces, slopes, brakes, prescribed speeds.  Nothing is shared with the kernels but the equations:
-the matching conditions of the material as they stand, collocation of high order, steps that end at every change of the
-law, every corner of the drive and every output.
+Eq. (22), free or with forces, slopes, brakes, prescribed speeds.  Nothing is shared with the
+kernels but the equations: the matching conditions of the material as they stand, collocation of
+high order, steps that end at every change of the law, every corner of the drive and every output.
 """
 
 from __future__ import annotations
@@ -34,12 +34,21 @@ from tqdm import tqdm
 from pipeline import stage
 from pipeline.evidence.truth.enclosures import zone_of
 from pipeline.evidence.truth.material import Material, material_of
-from pipeline.evidence.truth.reference import DRIVEN, FREE, OUTPUTS, PATHS, SPEEDS, Case, driven_motion, free_motion
+from pipeline.evidence.truth.reference import (
+    DRIVEN,
+    FREE,
+    OUTPUTS,
+    PATHS,
+    SPEEDS,
+    Case,
+    driven_motion,
+    free_motion,
+)
 from viscoroll import Bodies
-from viscoroll.core.drive import Feedback, Schedule
+from viscoroll.core.drive_arguments import Feedback, Schedule
 from viscoroll.core.errors import ConvergenceError
 from viscoroll.core.files import write_text
-from viscoroll.scene import Scene
+from viscoroll.rollers import Scene
 
 # --- Radau IIA collocation of any order: a polynomial through a start and nodes ---
 
@@ -50,9 +59,10 @@ from viscoroll.scene import Scene
 class Radau:
     """Nodes on (0, 1], the last of them 1, and what goes with them; made by :func:`radau`.
 
-    ``slopes``: derivatives at the nodes from values at 0 and the nodes, ``matrix`` the latter part in doubles;
-    ``weights``: of the integral; ``bary``: barycentric weights of the nodes; ``tail``: weights of the values at 0 and
-    the nodes in the last Legendre coefficient.
+    ``slopes``: derivatives at the nodes from values at 0 and the nodes, ``matrix`` the latter part
+    in doubles;
+    ``weights``: of the integral; ``bary``: barycentric weights of the nodes; ``tail``: weights of
+    the values at 0 and the nodes in the last Legendre coefficient.
     """
 
     nodes: list[Any]
@@ -99,7 +109,9 @@ def radau(count: int, bits: int) -> Radau:
 
 
 def _barycentric(points: list[Any]) -> list[Any]:
-    return [1 / math.prod(p - q for m, q in enumerate(points) if m != i) for i, p in enumerate(points)]
+    return [
+        1 / math.prod(p - q for m, q in enumerate(points) if m != i) for i, p in enumerate(points)
+    ]
 
 
 # --- What drives a motion, over pieces of time in which all of it is linear. ---
@@ -144,9 +156,13 @@ def pieces_of(drive: dict[str, Any], gamma: Any, tangent: Any, end: Any) -> list
     for name in NAMES:
         given = drive.get(name) or 0.0
         if name in ("force", "torque"):
-            gains += [arb(given.V), arb(given.omega)] if isinstance(given, Feedback) else [arb(0)] * 2
+            gains += (
+                [arb(given.V), arb(given.omega)] if isinstance(given, Feedback) else [arb(0)] * 2
+            )
         given = given.value if isinstance(given, Feedback) else given
-        times, values = (given.times, given.values) if isinstance(given, Schedule) else ([0.0], [given])
+        times, values = (
+            (given.times, given.values) if isinstance(given, Schedule) else ([0.0], [given])
+        )
         more = tangent if name == "force" else 0
         pairs = zip(times, values, strict=True)
         courses[name] = [((gamma * arb(float(t))).mid(), arb(float(v)) + more) for t, v in pairs]
@@ -154,7 +170,13 @@ def pieces_of(drive: dict[str, Any], gamma: Any, tangent: Any, end: Any) -> list
     corners = {float(tau): tau for course in courses.values() for tau, _ in course if 0 < tau < end}
     edges = [arb(0), *(tau for _, tau in sorted(corners.items())), end]
     return [
-        Piece(start, stop, {name: _linear(course, start) for name, course in courses.items()}, prescribed, gains)
+        Piece(
+            start,
+            stop,
+            {name: _linear(course, start) for name, course in courses.items()},
+            prescribed,
+            gains,
+        )
         for start, stop in pairwise(edges)
     ]
 
@@ -168,10 +190,11 @@ def _linear(course: list[tuple[Any, Any]], start: Any) -> tuple[Any, Any]:
     return course[0 if start < course[0][0] else -1][1], arb(0)
 
 
-# --- Full and partial slip of a motion in extended precision: what a state is, what acts on it, what ends it. ---
+# --- Full and partial slip of a motion in extended precision: what a state is, what acts on it,
+# what ends it. ---
 #
-# Time is tau = gamma t.  A state is s = 1/zeta along ``ahead``, and omega - V in full slip, b = 1 - eta/zeta in partial
-# slip.  With l = lam/(2 kappa)
+# Time is tau = gamma t.  A state is s = 1/zeta along ``ahead``, and omega - V in full slip, b = 1 -
+# eta/zeta in partial slip.  With l = lam/(2 kappa)
 #
 #     V = s l      omega - V = mu s l G      G = l s (F(zeta) - F(eta))
 
@@ -210,7 +233,9 @@ class Law(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """What a state is: V, omega - V, friction, the parts of M, with their signs; the least omega - V of full slip."""
+    """What a state is: V, omega - V, friction, the parts of M, with their signs; the least omega -
+    V of full slip.
+    """
 
     V: Any
     slip: Any
@@ -264,12 +289,17 @@ class Phase:
             slip = self.sigma * mu * s * length**2 * (other + size * (whole.g - g))
             Q *= 1 - (rest * rest + 2 * rest * size * h) / pressed
         limit = mu * abs(V) * length * (1 + whole.g * size)
-        return Contact(*(value.mid() for value in (V, slip, Q, V * whole.parts[0], V * whole.parts[1], limit)))
+        return Contact(
+            *(value.mid() for value in (V, slip, Q, V * whole.parts[0], V * whole.parts[1], limit))
+        )
 
     def pushed(self, c: Contact, tau: Any) -> tuple[Any, Any]:
         """(V', omega' - V'), Eq. (22) with M/2 as each body's own part."""
         force, torque, brake = self.piece.at(tau, c.V, c.omega)
-        d_V, d_omega = c.Q - c.M_half_space + force, (torque - self.spin * brake - c.Q - c.M_cylinder) / self.law.j
+        d_V, d_omega = (
+            c.Q - c.M_half_space + force,
+            (torque - self.spin * brake - c.Q - c.M_cylinder) / self.law.j,
+        )
         if self.piece.prescribed == "V":
             d_V = self.piece.rate
         if self.piece.prescribed == "omega":
@@ -342,7 +372,8 @@ class Phase:
     def balance(self, tau: Any) -> tuple[Any, Any] | None:
         """(b with the sign of delta, V' along ``ahead``) at V = 0; None where there is no balance.
 
-        (omega' - V')/(mu l) = b V', F = z, H = z^2, l = 1/(2 kappa); the left side less the right one falls with b.
+        (omega' - V')/(mu l) = b V', F = z, H = z^2, l = 1/(2 kappa); the left side less the right
+        one falls with b.
         """
 
         def pulled(b: Any) -> tuple[Any, Any]:
@@ -356,17 +387,25 @@ class Phase:
         return b, pulled(b)[1]
 
     def guess(self, times: list[Any], tau: Any) -> list[list[Any]]:
-        """States some times later: in partial slip as now, from V = 0 as the balance has it; else at their pace."""
+        """States some times later: in partial slip as now, from V = 0 as the balance has it; else
+        at their pace.
+        """
         kappa = self.law.kappa
         if not self.sticks:
             d_V, d_slip = self.pushed(self.contact(), tau)
             pace = 2 * kappa * self.ahead * d_V, d_slip
-            return [[(part + rate * time).mid() for part, rate in zip(self.u, pace, strict=True)] for time in times]
+            return [
+                [(part + rate * time).mid() for part, rate in zip(self.u, pace, strict=True)]
+                for time in times
+            ]
         at = self.balance(tau) if self.u[0] == 0 else None
         if at is None:
             return [self.u for _ in times]
         there = [self.balance(tau + time) or at for time in times]
-        return [[(kappa * (at[1] + a) * time).mid(), abs(b)] for (b, a), time in zip(there, times, strict=True)]
+        return [
+            [(kappa * (at[1] + a) * time).mid(), abs(b)]
+            for (b, a), time in zip(there, times, strict=True)
+        ]
 
 
 def begun(law: Law, piece: Piece, V: Any, omega: Any) -> Phase | None:
@@ -374,7 +413,16 @@ def begun(law: Law, piece: Piece, V: Any, omega: Any) -> Phase | None:
     if V == 0 and omega == 0:
         return None
     slip, none = omega - V, arb(0)
-    phase = Phase(law, piece, sign(omega) if piece.braked else 0, False, False, sign(V), sign(slip) or 1, [none, slip])
+    phase = Phase(
+        law,
+        piece,
+        sign(omega) if piece.braked else 0,
+        False,
+        False,
+        sign(V),
+        sign(slip) or 1,
+        [none, slip],
+    )
     if V == 0:
         return replace(phase, ahead=sign(phase.pushed(phase.contact(), none)[0]) or 1)
     most = 4 * law.kappa * abs(V)
@@ -387,7 +435,9 @@ def begun(law: Law, piece: Piece, V: Any, omega: Any) -> Phase | None:
     phase = replace(phase, sticks=True, u=[s, none])
     if slip == 0:
         return replace(phase, sigma=sign(phase.pushed(phase.contact(), none)[1]) or 1)
-    return replace(phase, u=[s, root(lambda b: abs(phase.contact([s, b]).slip) - abs(slip), none, arb(1))])
+    return replace(
+        phase, u=[s, root(lambda b: abs(phase.contact([s, b]).slip) - abs(slip), none, arb(1))]
+    )
 
 
 def leaving(piece: Piece, law: Law, tau: Any) -> Any:
@@ -428,7 +478,8 @@ def departed(piece: Piece, law: Law, tau: Any) -> Phase:
     raise AssertionError("no way out of rest")
 
 
-# --- A step of a motion in extended precision: collocation of V and omega - V, and the event that it ends on. ---
+# --- A step of a motion in extended precision: collocation of V and omega - V, and the event that
+# it ends on. ---
 
 #: Iterations of a step.
 _MOST_ITERATIONS = 14
@@ -446,7 +497,9 @@ _BEYOND = arb("1.001")
 _LEAST_SLIP = 1e-8
 
 
-def solved(phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Radau) -> list[list[Any]] | None:
+def solved(
+    phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Radau
+) -> list[list[Any]] | None:
     """States at the nodes of one step, from a guess; None where the iteration does not converge."""
     n, start, length = len(method.nodes), list(phase.contact()[:2]), float(h)
     whole: NDArray[np.float64] = np.empty(0)
@@ -454,11 +507,15 @@ def solved(phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Rada
     for iteration in range(_MOST_ITERATIONS):
         rates = [_rates(phase, u, tau + h * c) for u, c in zip(values, method.nodes, strict=True)]
         defect = method.slopes * flint.arb_mat([start, *(state for state, _ in rates)])
-        residual = np.array([float(defect[i, k] - h * rates[i][1][k]) for i in range(n) for k in range(2)])
+        residual = np.array(
+            [float(defect[i, k] - h * rates[i][1][k]) for i in range(n) for k in range(2)]
+        )
         if iteration < _MATRICES:
             size = np.abs(np.array([[float(part) for part in u] for u in values])).max(axis=0)
             fastest = max(abs(float(state[0])) for state, _ in rates)
-            scale = np.tile(np.maximum(size, [1e-200, 1e-8 if phase.sticks else 1e-8 * fastest + 1e-200]), n)
+            scale = np.tile(
+                np.maximum(size, [1e-200, 1e-8 if phase.sticks else 1e-8 * fastest + 1e-200]), n
+            )
             whole = np.zeros((2 * n, 2 * n))
             for i, u in enumerate(values):
                 for m in range(2):
@@ -466,7 +523,8 @@ def solved(phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Rada
                     beside = [part + by * (k == m) for k, part in enumerate(u)]
                     moved = _rates(phase, beside, tau + h * method.nodes[i])
                     slopes = [
-                        [float((a - b) / by) for a, b in zip(*pair)] for pair in zip(moved, rates[i], strict=True)
+                        [float((a - b) / by) for a, b in zip(*pair)]
+                        for pair in zip(moved, rates[i], strict=True)
                     ]
                     for k in range(2):
                         whole[k::2, 2 * i + m] = method.matrix[:, i] * slopes[0][k]
@@ -478,7 +536,8 @@ def solved(phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Rada
         change = np.linalg.solve(matrix / rows[:, None], residual / rows)
         by_node = (change * scale).reshape(n, 2)
         values = [
-            [(u - float(d)).mid() for u, d in zip(*pair, strict=True)] for pair in zip(values, by_node, strict=True)
+            [(u - float(d)).mid() for u, d in zip(*pair, strict=True)]
+            for pair in zip(values, by_node, strict=True)
         ]
         beyond = phase.sticks and any(u[1] > 1 + NOTHING for u in values)
         if beyond or not np.isfinite(change).all() or np.abs(change).max() > 1e6:
@@ -494,8 +553,12 @@ def _rates(phase: Phase, u: list[Any], tau: Any) -> tuple[tuple[Any, Any], tuple
     return (c.V, c.slip), phase.pushed(c, tau)
 
 
-def met(phase: Phase, tau: Any, h: Any, method: Radau) -> tuple[str | None, Any, list[list[Any]] | None]:
-    """(Event, length, states at the nodes) of a step up to h that ends at the first event; None where none is found."""
+def met(
+    phase: Phase, tau: Any, h: Any, method: Radau
+) -> tuple[str | None, Any, list[list[Any]] | None]:
+    """(Event, length, states at the nodes) of a step up to h that ends at the first event; None
+    where none is found.
+    """
     values = solved(phase, tau, h, phase.guess([h * c for c in method.nodes], tau), method)
     event = None
     for _ in range(_CUTS):
@@ -513,7 +576,9 @@ def met(phase: Phase, tau: Any, h: Any, method: Radau) -> tuple[str | None, Any,
 def _first(
     known: str | None, phase: Phase, tau: Any, h: Any, values: list[list[Any]], method: Radau
 ) -> tuple[str | None, Any]:
-    """(Event whose function first falls below 0, share of the step), that of the ``known`` one maybe beyond its end."""
+    """(Event whose function first falls below 0, share of the step), that of the ``known`` one
+    maybe beyond its end.
+    """
     soonest, least = None, _BEYOND
     for event, function in phase.events().items():
 
@@ -523,7 +588,9 @@ def _first(
         nodes = [arb(0), *method.nodes, _BEYOND]
         told = [function(u, tau + h * c) for u, c in zip(values, method.nodes, strict=True)]
         told += [along(_BEYOND)] if event == known else []
-        beyond = next((i for i, value in enumerate(told) if value < -NOTHING * (event == "no creep")), None)
+        beyond = next(
+            (i for i, value in enumerate(told) if value < -NOTHING * (event == "no creep")), None
+        )
         if beyond is None:
             continue
         share = root(lambda theta: -along(theta), nodes[beyond], nodes[beyond + 1])
@@ -536,9 +603,15 @@ def left_out(phase: Phase, values: list[list[Any]], method: Radau) -> float:
     """The last Legendre coefficients of V and omega - V, over the largest of them in the step."""
     states = [phase.contact(), *map(phase.contact, values)]
     fastest = max(max(abs(float(c.V)), abs(float(c.omega))) for c in states)
-    slip = max(max(abs(float(c.slip)), _LEAST_SLIP * float(c.limit)) for c in states) if phase.sticks else fastest
+    slip = (
+        max(max(abs(float(c.slip)), _LEAST_SLIP * float(c.limit)) for c in states)
+        if phase.sticks
+        else fastest
+    )
     sizes = max(fastest, 1e-200), max(slip, 1e-200)
-    return max(abs(float(weighted(method.tail, [c[k] for c in states]))) / sizes[k] for k in range(2))
+    return max(
+        abs(float(weighted(method.tail, [c[k] for c in states]))) / sizes[k] for k in range(2)
+    )
 
 
 # --- A motion ---
@@ -601,7 +674,8 @@ def roll_precise(
     bits: int = 220,
     **drive: Any,
 ) -> PreciseMotion:
-    """Motion from (V0, omega0) at ascending times ``t`` > 0; every argument is the exact double it is.
+    """Motion from (V0, omega0) at ascending times ``t`` > 0; every argument is the exact double it
+    is.
 
     Parameters
     ----------
@@ -610,7 +684,8 @@ def roll_precise(
     tolerance : what a step may leave out, relative to the largest speed in it.
     nodes : of the collocation, whose order is twice that less one.
     bits : working precision.
-    **drive : force, torque, brake, V, omega as for :func:`viscoroll.roll`: numbers, schedules, Feedback.
+    **drive : force, torque, brake, V, omega as for :func:`viscoroll.roll`: numbers, schedules,
+    Feedback.
 
     Raises
     ------
@@ -619,12 +694,14 @@ def roll_precise(
 
     Notes
     -----
-    ``data/reference/check_driven.json`` states for every motion there how far other nodes and tolerances are off
-    (``tests/evidence/test_precise.py``).
+    ``data/reference/check_driven.json`` states for every motion there how far other nodes and
+    tolerances are off (``tests/evidence/test_precise.py``).
     """
     with flint.ctx.workprec(bits):
         theta = arb(float(slope or 0.0))
-        kappa, mu, gamma, j = (arb(float(value)) for value in (scene.kappa, scene.mu, scene.gamma, scene.j))
+        kappa, mu, gamma, j = (
+            arb(float(value)) for value in (scene.kappa, scene.mu, scene.gamma, scene.j)
+        )
         kappa, gamma = (kappa / theta.cos().sqrt()).mid(), (gamma * theta.cos()).mid()
         material = scene.material
         if isinstance(material, Bodies) and scene.like_bodies:
@@ -645,7 +722,9 @@ def roll_precise(
 
 
 class _Rolling:
-    """A motion up to tau: its phase (None at rest), the piece of the drive, what has added up, the step to be tried."""
+    """A motion up to tau: its phase (None at rest), the piece of the drive, what has added up, the
+    step to be tried.
+    """
 
     def __init__(
         self,
@@ -674,12 +753,18 @@ class _Rolling:
         """What is found now."""
         contact = self.phase.contact() if self.phase else None
         self.motion.V.append(contact.V if contact else arb(0))
-        self.motion.omega.append(contact.omega.mid() if contact and self.regime != "locked" else arb(0))
+        self.motion.omega.append(
+            contact.omega.mid() if contact and self.regime != "locked" else arb(0)
+        )
         for name, value in zip(PATHS, self.paths, strict=True):
-            getattr(self.motion, name).append((value / self.gamma).mid() if name in ("x", "angle") else value)
+            getattr(self.motion, name).append(
+                (value / self.gamma).mid() if name in ("x", "angle") else value
+            )
 
     def go_on(self, end: Any) -> None:
-        """One step, or the stay at rest, no further than the end, the next corner of the drive or the first event."""
+        """One step, or the stay at rest, no further than the end, the next corner of the drive or
+        the first event.
+        """
         regime, motion = self.regime, self.motion
         if self.tau >= self.piece.end:
             self.piece, self.h = self.pieces.pop(0), arb(0)
@@ -703,7 +788,11 @@ class _Rolling:
 
     def _leave(self) -> None:
         """From rest, if something moves the cylinder now."""
-        if self.phase is None and self.tau < self.piece.end and leaving(self.piece, self.law, self.tau) == self.tau:
+        if (
+            self.phase is None
+            and self.tau < self.piece.end
+            and leaving(self.piece, self.law, self.tau) == self.tau
+        ):
             self.phase, self.h = departed(self.piece, self.law, self.tau), arb(0)
 
     def _step(self, phase: Phase, limit: Any) -> None:
@@ -718,7 +807,9 @@ class _Rolling:
             factor = _SHRINK
             if values is not None:
                 error = left_out(phase, values, self.method)
-                factor = _SAFETY * (self.tolerance / max(error, _LEAST_ERROR)) ** (1 / len(self.method.nodes))
+                factor = _SAFETY * (self.tolerance / max(error, _LEAST_ERROR)) ** (
+                    1 / len(self.method.nodes)
+                )
                 if error <= self.tolerance:
                     break
             h = (h * max(_SHRINK, min(factor, 0.7))).mid()
@@ -732,7 +823,9 @@ class _Rolling:
             self.h = arb(0)
             return
         grown = min(_GROWTH, factor) * length
-        if phase.sticks and values[-1][1] > values[-2][1]:  # no further than a share of the way to full slip
+        if (
+            phase.sticks and values[-1][1] > values[-2][1]
+        ):  # no further than a share of the way to full slip
             rate = (values[-1][1] - values[-2][1]) / (1 - self.method.nodes[-2]) / length
             grown = min(grown, _APPROACH * (1 - values[-1][1]) / rate)
         self.h = grown.mid()
@@ -754,7 +847,9 @@ def rolled_twice(case: Case) -> tuple[PreciseMotion, float]:
 
 
 def difference(one: PreciseMotion, other: PreciseMotion) -> float:
-    """Worst of V, omega over the larger of both, paths and losses over their largest so far, events over themselves."""
+    """Worst of V, omega over the larger of both, paths and losses over their largest so far, events
+    over themselves.
+    """
     with flint.ctx.workprec(_BITS):
         if [regime for _, regime in one.switches] != [regime for _, regime in other.switches]:
             return math.inf
@@ -764,17 +859,31 @@ def difference(one: PreciseMotion, other: PreciseMotion) -> float:
         for name in (*SPEEDS, *PATHS):
             found = getattr(other, name)
             sizes = speeds if name in SPEEDS else accumulate(map(abs, found), max)
-            worst += [abs(a - b) / size for a, b, size in zip(getattr(one, name), found, sizes) if size > 0]
+            worst += [
+                abs(a - b) / size
+                for a, b, size in zip(getattr(one, name), found, sizes)
+                if size > 0
+            ]
         return max(map(float, worst))
 
 
 def free_rows(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """One row an output: inputs, values, onset (NaN: none), and the difference of the two motions."""
+    """One row an output: inputs, values, onset (NaN: none), and the difference of the two
+    motions.
+    """
     case, _ = free_motion(rows)
     fine, apart = rolled_twice(case)
     onset = math.nan if fine.onset_time is None else float(fine.onset_time)
-    found = {"motion": int(rows[0]["motion"]), "onset_time": onset, "switches": len(fine.switches), "difference": apart}
-    return [row | found | {name: float(getattr(fine, name)[i]) for name in OUTPUTS} for i, row in enumerate(rows)]
+    found = {
+        "motion": int(rows[0]["motion"]),
+        "onset_time": onset,
+        "switches": len(fine.switches),
+        "difference": apart,
+    }
+    return [
+        row | found | {name: float(getattr(fine, name)[i]) for name in OUTPUTS}
+        for i, row in enumerate(rows)
+    ]
 
 
 def driven_row(row: dict[str, Any]) -> dict[str, Any]:
@@ -782,7 +891,15 @@ def driven_row(row: dict[str, Any]) -> dict[str, Any]:
     fine, apart = rolled_twice(driven_motion(row))
     found = {name: [float(value) for value in getattr(fine, name)] for name in (*SPEEDS, *PATHS)}
     switches = [[float(when), regime] for when, regime in fine.switches]
-    return row | found | {"difference": apart, "switches": switches, "reversals": [float(t) for t in fine.reversals]}
+    return (
+        row
+        | found
+        | {
+            "difference": apart,
+            "switches": switches,
+            "reversals": [float(t) for t in fine.reversals],
+        }
+    )
 
 
 def free(folder: Path, count: int | None) -> None:
@@ -793,13 +910,17 @@ def free(folder: Path, count: int | None) -> None:
 
 def driven(folder: Path, count: int | None) -> None:
     content = json.loads(DRIVEN.read_text(encoding="utf-8"))
-    content["motions"] = [driven_row(row) for row in tqdm(content["motions"][:count], "driven motions", leave=False)]
+    content["motions"] = [
+        driven_row(row) for row in tqdm(content["motions"][:count], "driven motions", leave=False)
+    ]
     write_text(folder / DRIVEN.name, json.dumps(content, indent=1) + "\n")
 
 
 def main() -> int:
     """Make the files named, or both."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("files", nargs="*", metavar="FILE", help="free or driven; default: both")
     parser.add_argument("--count", type=int)
     parser.add_argument("-o", "--output", type=Path, default=FREE.parent)
@@ -807,7 +928,9 @@ def main() -> int:
 
     def made() -> None:
         for name in arguments.files or ("free", "driven"):
-            (free if name == "free" else driven)(stage.make_folder(arguments.output), arguments.count)
+            (free if name == "free" else driven)(
+                stage.make_folder(arguments.output), arguments.count
+            )
 
     return stage.told("check_motions", made)
 

@@ -1,9 +1,11 @@
-"""Make check_values.csv: contact states, each the double nearest to a certified enclosure, with condition numbers.
+"""Make check_values.csv: contact states, each the double nearest to a certified enclosure, with
+condition numbers.
 
     python -m data.reference.check_values [--count N] [-o FOLDER]
 
-The file holds its inputs; its values are made from them again, and the file is written anew (the first N of them with
---count).  A condition number is the relative error that one of 1 in each input makes.
+The file holds its inputs; its values are made from them again, and the file is written anew (the
+first N of them with --count).  A condition number is the relative error that one of 1 in each input
+makes.
 """
 
 from __future__ import annotations
@@ -30,7 +32,11 @@ def value_row(row: dict[str, Any]) -> dict[str, Any]:
     values = contact_enclosure(**state)
     conditions = condition_numbers({name: arb(abs(value)) for name, value in state.items()})
     found = {"full_slip": int(values["full_slip"])} | {name: float(values[name]) for name in FIELDS}
-    return state | found | {f"condition_{name}": float(f"{conditions[name]:.2e}") for name in CONDITIONED}
+    return (
+        state
+        | found
+        | {f"condition_{name}": float(f"{conditions[name]:.2e}") for name in CONDITIONED}
+    )
 
 
 def make(folder: Path, count: int | None) -> None:
@@ -45,7 +51,9 @@ def make(folder: Path, count: int | None) -> None:
 
 def main() -> int:
     """Make the file."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("--count", type=int)
     parser.add_argument("-o", "--output", type=Path, default=VALUES.parent)
     arguments = parser.parse_args()

@@ -2,9 +2,10 @@
 
     python -m data.reference.layer [-o FILE]        in seconds
 
-A rigid cylinder presses an elastic layer of thickness h, plane strain, no friction.  Its surface yields to a pressure
-p cos(k x) by 2 (1 - nu^2)/E p/k L(k h), and contact is where the pressure is (I. I. Vorovich, V. M. Aleksandrov and
-V. A. Babeshko, Nonclassical mixed problems of elasticity, 1974):
+A rigid cylinder presses an elastic layer of thickness h, plane strain, no friction.  Its surface
+yields to a pressure p cos(k x) by 2 (1 - nu^2)/E p/k L(k h), and contact is where the pressure is
+(I. I. Vorovich, V. M. Aleksandrov and V. A. Babeshko, Nonclassical mixed problems of elasticity,
+1974):
 
     L(u) = (2 c sinh 2u - 4 u)/(2 c cosh 2u + 4 u^2 + 1 + c^2),   c = 3 - 4 nu,   L -> 1 of a half-space
 
@@ -12,9 +13,10 @@ With lengths in the half-width a, the slope of the surface in contact is that of
 
     integral over s of p(s) (1/(x - s) + r((x - s)/h)/h) = pi x,   r(y) = integral over u of (L(u) - 1) sin(u y)
 
-with p = sqrt(1 - s^2) phi(s), phi = 1 on a half-space; collocation at Chebyshev's points converges exponentially.
-At one half-width the load is f(h) times that of Hertz, so that at one load the half-widths are as 1/sqrt(f).
-"""
+with p = sqrt(1 - s^2) phi(s), phi = 1 on a half-space; collocation at Chebyshev's points converges
+exponentially.  At one half-width the load is f(h) times that of Hertz, so that at one load the
+half-widths are as 1/sqrt(f).
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -50,7 +52,9 @@ def kernel(u: NDArray[np.float64], nu: float) -> NDArray[np.float64]:
     """L, by decaying exponentials."""
     c, once = 3.0 - 4.0 * nu, np.exp(-2.0 * u)
     rest = (4.0 * u * u + 1.0 + c * c) * once
-    result: NDArray[np.float64] = (c * (1.0 - once * once) - 4.0 * u * once) / (c * (1.0 + once * once) + rest)
+    result: NDArray[np.float64] = (c * (1.0 - once * once) - 4.0 * u * once) / (
+        c * (1.0 + once * once) + rest
+    )
     return result
 
 
@@ -61,7 +65,9 @@ def load(h: float, nu: float, points: int = _POINTS) -> float:
     x = np.cos((np.arange(n) + 0.5) * np.pi / n)
     weights = np.pi / n * (1.0 - s * s)
     apart = x[:, None] - s
-    phi = np.linalg.lstsq(weights * (1.0 / apart + _regular(apart / h, nu) / h), np.pi * x, rcond=None)[0]
+    phi = np.linalg.lstsq(
+        weights * (1.0 / apart + _regular(apart / h, nu) / h), np.pi * x, rcond=None
+    )[0]
     return float(weights @ phi / (0.5 * np.pi))
 
 
@@ -83,26 +89,34 @@ def shorter(nu: float, length: float) -> float:
 
 
 def longest(nu: float, by: float = ALLOWED) -> float:
-    """Contact length on a half-space over the thickness, at which that on the layer is shorter by a share."""
+    """Contact length on a half-space over the thickness, at which that on the layer is shorter by a
+    share.
+    """
     h = brentq(lambda h: np.sqrt(load(h, nu)) - 1.0 / (1.0 - by), _THIN, _THICK, rtol=1e-6)
     return float(2.0 * np.sqrt(load(h, nu)) / h)
 
 
 def _thickness(nu: float, length: float) -> float:
     """h over the half-width on the layer, of a length on the half-space over h."""
-    return float(brentq(lambda h: 2.0 * np.sqrt(load(h, nu)) / h - length, _THIN, _THICK, rtol=1e-6))
+    return float(
+        brentq(lambda h: 2.0 * np.sqrt(load(h, nu)) / h - length, _THIN, _THICK, rtol=1e-6)
+    )
 
 
 def main() -> None:
     """Write contact lengths by nu, and where they are 5 % off."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("-o", "--output", type=Path, default=TARGET)
     rows = [
         {
-            "nu": nu, "limit": rounded(longest(nu)),
+            "nu": nu,
+            "limit": rounded(longest(nu)),
             "shorter": {f"{length:g}": rounded(shorter(nu, length)) for length in LENGTHS},
-        } for nu in RATIOS
-    ]  # fmt: skip
+        }
+        for nu in RATIOS
+    ]
     text = json.dumps({"allowed": ALLOWED, "rows": rows}, indent=1)
     parser.parse_args().output.write_text(f"{text}\n", encoding="utf-8")
 

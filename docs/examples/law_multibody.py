@@ -1,7 +1,8 @@
-"""Two rollers on a rope: a tractor at constant speed pulls one, and that one the next, by springs with dampers.
+"""Two rollers on a rope: a tractor at constant speed pulls one, and that one the next, by springs
+with dampers.
 
-Once the train runs smoothly, every rope carries the rolling resistance of all rollers behind it: M of both, M of the
-last.  The last is of the same rubber, but colder, where its modes are slower.
+Once the train runs smoothly, every rope carries the rolling resistance of all rollers behind it: M
+of both, M of the last.  The last is of the same rubber, but colder, where its modes are slower.
 """
 
 import numpy as np
@@ -38,15 +39,21 @@ def jacobian(t, y):
     dQ_dV, dQ_domega, dM_half_space, dM_cylinder = np.transpose(f)[4:]
     one, to_rope = np.eye(n), np.eye(n) - np.eye(n, k=1)  # of the pull
     to_V = -to_rope.T  # of the closing speeds
-    return np.block([
-        [0.0 * one, to_V, 0.0 * one],
+    return np.block(
         [
-            gamma * stiffness * to_rope,
-            gamma * (np.diag(dQ_dV - dM_half_space) + damping * to_rope @ to_V),
-            gamma * np.diag(dQ_domega),
-        ],
-        [0.0 * one, -gamma / j * np.diag(dQ_dV + dM_cylinder), -gamma / j * np.diag(dQ_domega)],
-    ])  # fmt: skip
+            [0.0 * one, to_V, 0.0 * one],
+            [
+                gamma * stiffness * to_rope,
+                gamma * (np.diag(dQ_dV - dM_half_space) + damping * to_rope @ to_V),
+                gamma * np.diag(dQ_domega),
+            ],
+            [
+                0.0 * one,
+                -gamma / j * np.diag(dQ_dV + dM_cylinder),
+                -gamma / j * np.diag(dQ_domega),
+            ],
+        ]
+    )
 
 
 slack = np.array([0.0, 0.0, 0.1, 0.1, 0.1, 0.1])  # ropes; speeds; angular velocities

@@ -1,7 +1,8 @@
 """A roller in gusts of wind, by a loop of the user's own in numba.
 
-A linearly implicit step needs the law and its slopes once: (1 - h J) dy = h rates.  Friction makes V and omega go
-together, so the gusts move the roller as a whole, and its rolling resistance holds it back.
+A linearly implicit step needs the law and its slopes once: (1 - h J) dy = h rates.  Friction makes
+V and omega go together, so the gusts move the roller as a whole, and its rolling resistance holds
+it back.
 """
 
 import numba

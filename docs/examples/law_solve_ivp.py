@@ -1,7 +1,8 @@
 """A roller rolls to a stop, by SciPy's Radau with the exact Jacobian.
 
-V' = gamma (Q - M_half_space), j omega' = gamma (-Q - M_cylinder).  Once the roller has ceased to slide, friction ties
-omega to V within 1e-4 s, and rolling resistance brakes both over seconds: a stiff pair, for an implicit method.
+V' = gamma (Q - M_half_space), j omega' = gamma (-Q - M_cylinder).  Once the roller has ceased to
+slide, friction ties omega to V within 1e-4 s, and rolling resistance brakes both over seconds: a
+stiff pair, for an implicit method.
 """
 
 import numpy as np
@@ -34,5 +35,6 @@ found = solve_ivp(
 )
 V, omega = found.y
 print(
-    f"V = {V[-1]:.6f}, omega = {omega[-1]:.6f} after {found.nfev} calls of the law and {found.njev} of its slopes"
+    f"V = {V[-1]:.6f}, omega = {omega[-1]:.6f} after {found.nfev} calls of the law and "
+    f"{found.njev} of its slopes"
 )

@@ -8,17 +8,30 @@ import xarray as xr
 
 FUNCTIONS = "lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press"
 # of a layer, where shear acts back on the pressure
-SHEAR = "limit", "free_half_space", "free_cylinder", "excess_half_space", "excess_cylinder", "lam_Q", "epsilon_Q"
+SHEAR = (
+    "limit",
+    "free_half_space",
+    "free_cylinder",
+    "excess_half_space",
+    "excess_cylinder",
+    "lam_Q",
+    "epsilon_Q",
+)
 
 
 def read_law(path):
     with xr.open_dataset(path, engine="h5netcdf") as file:
         names = FUNCTIONS + SHEAR if "limits" in file else FUNCTIONS
         unknown = np.full(file.lam.shape, np.nan)
-        c = np.stack([file[name].values if name in file else unknown for name in names])  # [function, octave, power]
+        c = np.stack(
+            [file[name].values if name in file else unknown for name in names]
+        )  # [function, octave, power]
         if "limits" in file:  # a layer
             ends = file.limits.values
-            fast = ends[0] ** -2.0, np.array([[0.0, 4.0 * ends[8]], [0.0, 8.0 * ends[17]], [0.0, 8.0 * ends[18]]])
+            fast = (
+                ends[0] ** -2.0,
+                np.array([[0.0, 4.0 * ends[8]], [0.0, 8.0 * ends[17]], [0.0, 8.0 * ends[18]]]),
+            )
         else:
             ends, fast = None, (float(file.alpha), file.fast_limit.values)
         numbers = int(file.e0), *fast, ends
@@ -56,18 +69,29 @@ def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
     row, t, _ = place(u, e0)
     z = 0.5 / (u * np.sqrt(alpha))
     half, log = 0.5 * alpha * z, np.log(z)
-    fast = [alpha**-0.5, half * (C - W * log), *(half * z * (C - W * (log - 0.25)) for W, C in limit[1:])]
+    fast = [
+        alpha**-0.5,
+        half * (C - W * log),
+        *(half * z * (C - W * (log - 0.25)) for W, C in limit[1:]),
+    ]
     fast.append(0.25 * (alpha - 1.0) * z * z)
     if ends is not None:
         fast[0], fast[1] = ends[1] + ends[9] / u, ends[16] / u
-    lam, epsilon, half_space, cylinder, N = (np.where(row < rows, value(one, row, t), end) for one, end in zip(c, fast))
+    lam, epsilon, half_space, cylinder, N = (
+        np.where(row < rows, value(one, row, t), end) for one, end in zip(c, fast)
+    )
     L, *shear = lam * (1.0 + epsilon), *np.zeros(6)
     if ends is not None:
         beyond = (ends[n] + ends[n + 8] / u for n in (0, *range(2, 8)))
-        L, *shear = (np.where(row < rows, value(one, row, t), end) for one, end in zip(c[7:], beyond))
+        L, *shear = (
+            np.where(row < rows, value(one, row, t), end) for one, end in zip(c[7:], beyond)
+        )
     f_h, f_c, g_h, g_c, lam_Q, epsilon_Q = shear
     f = f_h + f_c
-    delta = np.where(slip == 0.0, 0.0, np.where(V == 0.0, np.copysign(np.inf, slip), slip / V)) - 0.5 * f / kappa
+    delta = (
+        np.where(slip == 0.0, 0.0, np.where(V == 0.0, np.copysign(np.inf, slip), slip / V))
+        - 0.5 * f / kappa
+    )
     side, sign, delta = np.where(V < 0.0, -1.0, 1.0), np.sign(delta), np.abs(delta)
     D = 2.0 * kappa * delta / mu
     slips = ~((delta < 0.5 * mu * L / kappa) & (D < L))
@@ -86,15 +110,25 @@ def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
     beyond = C - W * (np.where(x > 0.0, np.log1p(x) / x, 1.0) - np.log(v1))
     beyond *= 0.5 * alpha**2 * (2.0 - 0.5 * alpha * sum(bracket)) / v1 / v2
     S = np.where(r2 >= rows, beyond, np.where(r1 == r2, chord(c[6], r1, t1, t2) * p1, two))
-    q = np.where(D < L / 8.0, D * ((2.0 * L - D) * press - 2.0 * u * L / w * S), 1.0 - w * w * press)
+    q = np.where(
+        D < L / 8.0, D * ((2.0 * L - D) * press - 2.0 * u * L / w * S), 1.0 - w * w * press
+    )
     used = np.where(slips, 1.0, np.minimum(q, 1.0))
     Q, along = side * sign * mu * used, sign * mu * used
     more = used * (1.0 + (2.0 * (g_h + g_c) / (mu * L)) ** 4) ** -0.25
-    change_h, change_c = Q * (f_h + more * g_h) / (2.0 * kappa), Q * (f_c + more * g_c) / (2.0 * kappa + f)
+    change_h, change_c = (
+        Q * (f_h + more * g_h) / (2.0 * kappa),
+        Q * (f_c + more * g_c) / (2.0 * kappa + f),
+    )
     found = {
-        "lam": lam + lam_Q * along, "epsilon": epsilon + epsilon_Q * along, "delta_star": 0.5 * mu * L / kappa,
-        "beta": np.where(slips, 0.0, np.minimum(share * w / lam, 1.0)), "Q": Q,
-        "M": V * (half_space + cylinder) - (change_h + change_c), "M_half_space": V * half_space - change_h,
-        "M_cylinder": V * cylinder - change_c, "N": N,
-    }  # fmt: skip
+        "lam": lam + lam_Q * along,
+        "epsilon": epsilon + epsilon_Q * along,
+        "delta_star": 0.5 * mu * L / kappa,
+        "beta": np.where(slips, 0.0, np.minimum(share * w / lam, 1.0)),
+        "Q": Q,
+        "M": V * (half_space + cylinder) - (change_h + change_c),
+        "M_half_space": V * half_space - change_h,
+        "M_cylinder": V * cylinder - change_c,
+        "N": N,
+    }
     return {name: np.where(good, each, np.nan) for name, each in found.items()}

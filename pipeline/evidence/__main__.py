@@ -1,4 +1,6 @@
-"""Every stage of the evidence by its name: `python -m pipeline.evidence` lists them, `... NAME OPTIONS` runs one."""
+"""Every stage of the evidence by its name: `python -m pipeline.evidence` lists them,
+`... NAME OPTIONS` runs one.
+"""
 
 from __future__ import annotations
 
@@ -7,7 +9,9 @@ import sys
 from pathlib import Path
 
 STAGES = {
-    ".".join(path.relative_to(Path(__file__).parent).with_suffix("").parts).removesuffix(".__main__"): path
+    ".".join(path.relative_to(Path(__file__).parent).with_suffix("").parts).removesuffix(
+        ".__main__"
+    ): path
     for path in sorted(Path(__file__).parent.rglob("*.py"))
     if path != Path(__file__) and "\nif __name__ ==" in path.read_text(encoding="utf-8")
 }

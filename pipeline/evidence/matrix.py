@@ -1,16 +1,18 @@
-"""The package as pip installs it: wheel and sdist, every Python, the newest and the lowest dependencies.
+"""The package as pip installs it: wheel and sdist, every Python, the newest and the lowest
+dependencies.
 
     python -m pipeline.evidence.matrix            all of them; the whole suite once, on the newest Python
     python -m pipeline.evidence.matrix --quick    newest dependencies on the newest Python, from the wheel; no suite
 
-A case is a fresh environment outside the tree.  The newest dependencies come with the wheel, the lowest, which
-the metadata declare for this Python, with the sdist.  There the program answers once, and tests of the unpacked
-sdist run: the README, the how-to, a run file, contact states against enclosures, motions
+A case is a fresh environment outside the tree.  The newest dependencies come with the wheel, the
+lowest, which the metadata declare for this Python, with the sdist.  There the program answers once,
+and tests of the unpacked sdist run: the README, the how-to, a run file, contact states against
+enclosures, motions
 and a flow map.
 
-Pythons are those of the classifiers: this one, pyenv's and those on the PATH, or those that $PYTHONS names.  One
-that is not found is told, and is no failure.  Exit code 1 if a case fails.
-"""
+Pythons are those of the classifiers: this one, pyenv's and those on the PATH, or those that
+$PYTHONS names.  One that is not found is told, and is no failure.  Exit code 1 if a case fails.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -47,7 +49,9 @@ _VERSION = "import sys, venv, ensurepip; print('%d.%d' % sys.version_info[:2])"
 
 
 class Packages(NamedTuple):
-    """What is tried: both packages, the tree of the unpacked sdist, and what the metadata require."""
+    """What is tried: both packages, the tree of the unpacked sdist, and what the metadata
+    require.
+    """
 
     wheel: Path
     sdist: Path
@@ -75,7 +79,9 @@ def main() -> int:
     if not found:
         return 1
     newest = list(found)[-1]
-    chosen = [(newest, False)] if quick else [(each, low) for each in found for low in (False, True)]
+    chosen = (
+        [(newest, False)] if quick else [(each, low) for each in found for low in (False, True)]
+    )
     cases = [
         Case(version, found[version], low, suite=not quick and (version, low) == (newest, False))
         for version, low in chosen
@@ -93,13 +99,19 @@ def pythons() -> dict[str, str]:
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
     words = [each.rpartition(":: ")[2] for each in project["classifiers"] if "Python :: 3." in each]
     installed = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv")) / "versions"
-    places = [Path(sys.executable).parent, *sorted(installed.glob("*/bin"), reverse=True), os.environ["PATH"]]
+    places = [
+        Path(sys.executable).parent,
+        *sorted(installed.glob("*/bin"), reverse=True),
+        os.environ["PATH"],
+    ]
     found = {}
     for name in os.environ.get("PYTHONS", "").split() or [f"python{version}" for version in words]:
         path = shutil.which(name, path=os.pathsep.join(map(str, places))) or "false"
         done = subprocess.run([path, "-c", _VERSION], capture_output=True, text=True, check=False)
         if done.returncode:
-            print(f"matrix: no {name} that makes environments was found: it is not tried", flush=True)
+            print(
+                f"matrix: no {name} that makes environments was found: it is not tried", flush=True
+            )
         else:
             found[done.stdout.strip()] = path
     return dict(sorted(found.items(), key=lambda each: int(each[0].partition(".")[2])))
@@ -108,8 +120,14 @@ def pythons() -> dict[str, str]:
 def packed(folder: Path, *options: str) -> tuple[Path, Path, bytes]:
     """Wheel, made of the sdist, sdist, and the metadata."""
     command = [sys.executable, "-m", "build", *options, "--outdir", folder, ROOT]
-    subprocess.run(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL if options else None, check=True)
-    (wheel,), (sdist,) = folder.glob("*.whl"), folder.glob("*.tar.gz")
+    subprocess.run(
+        command,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.DEVNULL if options else None,
+        check=True,
+    )
+    (wheel,) = folder.glob("*.whl")
+    (sdist,) = folder.glob("*.tar.gz")
     with zipfile.ZipFile(wheel) as archive:
         (name,) = (each for each in archive.namelist() if each.endswith(".dist-info/METADATA"))
         return wheel, sdist, archive.read(name)
@@ -119,12 +137,16 @@ def built(folder: Path) -> Packages:
     """Both packages, the second unpacked."""
     wheel, sdist, found = packed(folder)
     shutil.unpack_archive(sdist, folder)
-    required = [Requirement(line) for line in message_from_bytes(found).get_all("Requires-Dist", [])]
+    required = [
+        Requirement(line) for line in message_from_bytes(found).get_all("Requires-Dist", [])
+    ]
     return Packages(wheel, sdist, folder / sdist.name.removesuffix(".tar.gz"), required)
 
 
 def floors(required: list[Requirement], version: str) -> list[str]:
-    """The lowest version of everything that the package and its extra `runs` declare for this Python."""
+    """The lowest version of everything that the package and its extra `runs` declare for this
+    Python.
+    """
     here = {"python_version": version, "python_full_version": f"{version}.0", "extra": "runs"}
     return [
         f"{each.name}=={next(bound.version for bound in each.specifier if bound.operator == '>=')}"
@@ -141,11 +163,22 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     pins = floors(packages.required, case.version) if case.lowest else []
     (place / "constraints.txt").write_text("\n".join(pins) + "\n", encoding="utf-8")
     binaries = place / "env" / ("Scripts" if os.name == "nt" else "bin")
-    python, program = str(binaries / "python"), str(binaries / "viscoroll")
-    package = f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
+    python = str(binaries / "python")
+    program = str(binaries / "viscoroll")
+    package = (
+        f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
+    )
     pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"]
     warnings = "filterwarnings=ignore::viscoroll.ModelWarning"
-    quiet = ["-p", "no:cacheprovider", "-o", warnings, "--disable-warnings", "--show-capture=no", "-rfE"]
+    quiet = [
+        "-p",
+        "no:cacheprovider",
+        "-o",
+        warnings,
+        "--disable-warnings",
+        "--show-capture=no",
+        "-rfE",
+    ]
     test = [python, "-m", "pytest", *quiet, "--rootdir", packages.tree]
     steps = {
         "environment": ([case.python, "-m", "venv", place / "env"], place),
@@ -161,15 +194,23 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     told: dict[str, list[str]] = {}
     for name, (command, where) in steps.items():
         done = subprocess.run(
-            command, cwd=where, env=environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+            command,
+            cwd=where,
+            env=environment,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.STDOUT,
+            text=True,
             check=False,
-        )  # fmt: skip
+        )
         if done.returncode:
             print(f"matrix: {case}: {name} failed\n{done.stdout[-4000:]}", flush=True)
             return False
         told[name] = done.stdout.splitlines()
     kind = "the whole suite" if case.suite else "sample"
-    print(f"matrix: {case} ({time.monotonic() - begun:.0f} s): {kind}: {told['tests'][-1]}", flush=True)
+    print(
+        f"matrix: {case} ({time.monotonic() - begun:.0f} s): {kind}: {told['tests'][-1]}",
+        flush=True,
+    )
     print(f"        {', '.join(told['versions'])}", flush=True)
     return True
 

@@ -1,9 +1,11 @@
-"""What a release needs, checked: sdist and wheel, metadata, the README as a package page, licences, measured numbers.
+"""What a release needs, checked: sdist and wheel, metadata, the README as a package page, licences,
+measured numbers.
 
 python -m pipeline.evidence.release
 
-Builds both packages, without a network, and prints each check that fails, with the reason, and each entry of
-OWNER.toml that is open: the entries that only the owner of the project can fill in.  Exit code 1 if a check fails.
+Builds both packages, without a network, and prints each check that fails, with the reason, and each
+entry of OWNER.toml that is open: the entries that only the owner of the project can fill in.  Exit
+code 1 if a check fails.
 """
 
 from __future__ import annotations
@@ -55,13 +57,18 @@ def built(folder: Path) -> Packages:
     with zipfile.ZipFile(wheel) as archive:
         names = archive.namelist()
     with tarfile.open(sdist) as archive:
-        members = {each.name.partition("/")[2]: each for each in archive.getmembers() if each.isfile()}
+        members = {
+            each.name.partition("/")[2]: each for each in archive.getmembers() if each.isfile()
+        }
         for name in ("LICENSE", "CITATION.cff", "CHANGELOG.md", f"{MATERIALS}README.md"):
             if name in members and (file := archive.extractfile(members[name])) is not None:
                 texts[name] = file.read().decode()
     # raises where a field is not valid
     return Packages(
-        names, {name: each.size for name, each in members.items()}, Metadata.from_email(found, validate=True), texts
+        names,
+        {name: each.size for name, each in members.items()},
+        Metadata.from_email(found, validate=True),
+        texts,
     )
 
 
@@ -73,7 +80,9 @@ def metadata(packages: Packages) -> Iterator[str]:
     citation = packages.texts.get("CITATION.cff", "")
     if f"version: {vr.__version__}\n" not in citation:
         yield f"CITATION.cff does not name version {vr.__version__}"
-    if (date := _DATE.search(citation)) is None or datetime.date.fromisoformat(date[1]) > datetime.date.today():
+    if (date := _DATE.search(citation)) is None or datetime.date.fromisoformat(
+        date[1]
+    ) > datetime.date.today():
         yield "CITATION.cff has no date-released, or one to come"
     if f"\n## {vr.__version__}\n" not in packages.texts.get("CHANGELOG.md", ""):
         yield f"the CHANGELOG has no section {vr.__version__}, or not as released"
@@ -83,22 +92,41 @@ def metadata(packages: Packages) -> Iterator[str]:
 
 def contents(packages: Packages) -> Iterator[str]:
     """Every module of the tree is in the wheel, nothing else is; the sdist holds its own tests."""
-    modules = {path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src/viscoroll").rglob("*.py")}
+    modules = {
+        path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src/viscoroll").rglob("*.py")
+    }
     own = {name for name in packages.wheel if ".dist-info/" not in name}
     yield from (f"the wheel lacks {name}" for name in sorted(modules - own))
     yield from (f"the wheel ships {name}" for name in sorted(own) if not name.endswith(SHIPPED))
-    for name in ("Makefile", "constraints.txt", "tests/conftest.py", "docs/conf.py", "pipeline/stage.py"):
+    for name in (
+        "Makefile",
+        "constraints.txt",
+        "tests/conftest.py",
+        "docs/conf.py",
+        "pipeline/stage.py",
+    ):
         if name not in packages.sdist:
             yield f"the sdist lacks {name}"
-    yield from (f"the sdist ships {name}" for name in sorted(packages.sdist) if FOREIGN.search(name))
-    yield from (f"{name} has {size / 1e6:.1f} MB" for name, size in packages.sdist.items() if size > LARGEST)
+    yield from (
+        f"the sdist ships {name}" for name in sorted(packages.sdist) if FOREIGN.search(name)
+    )
+    yield from (
+        f"{name} has {size / 1e6:.1f} MB" for name, size in packages.sdist.items() if size > LARGEST
+    )
 
 
 def licences(packages: Packages) -> Iterator[str]:
-    """Our licence is in both packages; what others made has its own beside it, and a row that names it."""
-    if not any(name.endswith("licenses/LICENSE") for name in packages.wheel) or "LICENSE" not in packages.sdist:
+    """Our licence is in both packages; what others made has its own beside it, and a row that names
+    it.
+    """
+    if (
+        not any(name.endswith("licenses/LICENSE") for name in packages.wheel)
+        or "LICENSE" not in packages.sdist
+    ):
         yield "LICENSE is not in both packages"
-    theirs = [name for name in packages.sdist if name.startswith(MATERIALS) and name.endswith(".csv")]
+    theirs = [
+        name for name in packages.sdist if name.startswith(MATERIALS) and name.endswith(".csv")
+    ]
     beside = [name for name in packages.sdist if name.startswith(f"{MATERIALS}LICENSE.")]
     rows = packages.texts.get(f"{MATERIALS}README.md", "").splitlines()
     for name in theirs:
@@ -117,15 +145,22 @@ def numbers(packages: Packages) -> Iterator[str]:
     """What README and docs state was measured at the kernels that are shipped."""
     others = outdated(RESULTS)
     if others:
-        files = ", ".join(f"{name} ({', '.join(one[:SHORT] for one in digests)})" for name, digests in others.items())
+        files = ", ".join(
+            f"{name} ({', '.join(one[:SHORT] for one in digests)})"
+            for name, digests in others.items()
+        )
         yield f"of other kernels than these, {kernels_digest()[:SHORT]}, in data/results: {files}"
 
 
 def left_to_the_owner() -> Iterator[str]:
-    """Entries of OWNER.toml that are open: their file lacks the text, or they are no text of a file."""
+    """Entries of OWNER.toml that are open: their file lacks the text, or they are no text of a
+    file.
+    """
     for entry in tomllib.loads((ROOT / "OWNER.toml").read_text(encoding="utf-8"))["open"]:
         pattern = entry.get("has")
-        if pattern is None or not re.search(pattern, (ROOT / entry["file"]).read_text(encoding="utf-8"), re.MULTILINE):
+        if pattern is None or not re.search(
+            pattern, (ROOT / entry["file"]).read_text(encoding="utf-8"), re.MULTILINE
+        ):
             yield f"{entry['what']} ({entry['file']})"
 
 
@@ -142,7 +177,9 @@ def main() -> int:
     said(__doc__).parse_args()
     with tempfile.TemporaryDirectory(prefix="viscoroll-release-") as folder:
         packages = built(Path(folder))
-    problems = [f"{name}: {problem}" for name, check in CHECKS.items() for problem in check(packages)]
+    problems = [
+        f"{name}: {problem}" for name, check in CHECKS.items() for problem in check(packages)
+    ]
     print("\n".join([*problems, *(f"owner: {entry}" for entry in left_to_the_owner())]))
     return int(bool(problems))
 

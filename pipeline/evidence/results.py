@@ -1,4 +1,6 @@
-"""What the stages share whose results are kept in git: their options and sizes, the file, rows and parts."""
+"""What the stages share whose results are kept in git: their options and sizes, the file, rows and
+parts.
+"""
 
 from __future__ import annotations
 
@@ -32,12 +34,16 @@ SIZES = ROOT / "pipeline/evidence/sizes.toml"
 Parts = Mapping[str, Callable[[dict[str, Any]], Any]]
 
 
-def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | None = None) -> argparse.ArgumentParser:
+def parser(
+    doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | None = None
+) -> argparse.ArgumentParser:
     """-o; where there are sizes to choose, --config and --quick; where there are parts, --only."""
     result = said(doc)
     if sizes:
         result.add_argument("--config", type=Path, default=SIZES, help="TOML file with the sizes")
-        result.add_argument("--quick", action="store_true", help="the sizes of a test: does it run?")
+        result.add_argument(
+            "--quick", action="store_true", help="the sizes of a test: does it run?"
+        )
     if parts:
         result.add_argument("--only", nargs="+", choices=parts, help="renew these parts alone")
     result.add_argument("-o", "--output", type=Path, default=output)
@@ -45,9 +51,16 @@ def parser(doc: str | None, output: Path, *, sizes: bool = True, parts: Parts | 
 
 
 def run(
-    name: str, work: Callable[..., dict[str, Any]], doc: str | None, file: str | None = None, *, sizes: bool = True
+    name: str,
+    work: Callable[..., dict[str, Any]],
+    doc: str | None,
+    file: str | None = None,
+    *,
+    sizes: bool = True,
 ) -> int:
-    """Run a stage from the command line: what ``work`` finds, and the machine, into -o, data/results/``file``."""
+    """Run a stage from the command line: what ``work`` finds, and the machine, into -o,
+    data/results/``file``.
+    """
     arguments = parser(doc, RESULTS / (file or f"{name}.json"), sizes=sizes).parse_args()
 
     def measured() -> None:
@@ -66,9 +79,11 @@ def run_parts(
     file: str,
     complaint: Callable[[dict[str, Any]], str | None] = lambda _: None,
 ) -> int:
-    """Run a stage of ``parts``: what each finds, its sizes and the machine, beside the parts that -o has already.
+    """Run a stage of ``parts``: what each finds, its sizes and the machine, beside the parts
+    that -o has already.
 
-    Sizes are those of the part, [name.part], or of all, [name].  Exit code 1 if there is a ``complaint`` about a row.
+    Sizes are those of the part, [name.part], or of all, [name].  Exit code 1 if there is a
+    ``complaint`` about a row.
     """
     arguments = parser(doc, RESULTS / file, parts=parts).parse_args()
     output = arguments.output
@@ -80,7 +95,10 @@ def run_parts(
         for part in arguments.only or parts:
             own = sizes[part] if isinstance(sizes.get(part), dict) else sizes
             made = parts[part](own)
-            found[part] = (made if isinstance(made, dict) else {"rows": made}) | {"sizes": own, "machine": machine()}
+            found[part] = (made if isinstance(made, dict) else {"rows": made}) | {
+                "sizes": own,
+                "machine": machine(),
+            }
             write_results(output, {"parts": found})
         rows = rows_of(found)
         complaints = [text for row in rows if (text := complaint(row))]
@@ -93,7 +111,9 @@ def run_parts(
 
 
 class Results(dict[str, Any]):
-    """What stages have left, by the name of the file, or "file part", from the first of the folders that has it."""
+    """What stages have left, by the name of the file, or "file part", from the first of the folders
+    that has it.
+    """
 
     def __init__(self, *folders: Path) -> None:
         super().__init__()
@@ -121,7 +141,8 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
 
 
 def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
-    """Section [name] of the configuration, with its [quick] over it if asked, and those of its parts over theirs.
+    """Section [name] of the configuration, with its [quick] over it if asked, and those of its
+    parts over theirs.
 
     Raises
     ------
@@ -139,7 +160,11 @@ def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
 
 def _sized(section: dict[str, Any], quick: bool) -> dict[str, Any]:
     small = section.get("quick", {}) if quick else {}
-    parts = {key: _sized(each, quick) for key, each in section.items() if isinstance(each, dict) and "quick" in each}
+    parts = {
+        key: _sized(each, quick)
+        for key, each in section.items()
+        if isinstance(each, dict) and "quick" in each
+    }
     return {key: value for key, value in (section | parts | small).items() if key != "quick"}
 
 
@@ -151,7 +176,9 @@ def write_results(path: Path, results: Any) -> None:
 
 
 def rounded(value: Any) -> Any:
-    """Every float to three significant digits: more would be noise in the history; None for inf and NaN, as in JSON."""
+    """Every float to three significant digits: more would be noise in the history; None for inf and
+    NaN, as in JSON.
+    """
     if isinstance(value, dict):
         return {str(key): rounded(item) for key, item in value.items()}
     if isinstance(value, (list, tuple)):
@@ -162,10 +189,14 @@ def rounded(value: Any) -> Any:
 
 
 def _caches() -> dict[str, str]:
-    """Return the sizes of the caches of one core as Linux states them, {"L2 Unified": "1024K"}; empty elsewhere."""
+    """Return the sizes of the caches of one core as Linux states them, {"L2 Unified": "1024K"};
+    empty elsewhere.
+    """
     found = {}
     for index in sorted(Path("/sys/devices/system/cpu/cpu0/cache").glob("index*")):
-        level, kind, size = ((index / name).read_text(encoding="ascii").strip() for name in ("level", "type", "size"))
+        level, kind, size = (
+            (index / name).read_text(encoding="ascii").strip() for name in ("level", "type", "size")
+        )
         found[f"L{level} {kind}"] = size
     return found
 

@@ -3,9 +3,9 @@
     python -m pipeline.evidence.same                 the hashes of this tree
     python -m pipeline.evidence.same --base HEAD     beside those of a commit: exit code 1 where they differ
 
-Contact states, stresses, motions, maps, steady rolling and tables through the public interface alone: the script
-outlives any move inside.
-"""
+Contact states, stresses, motions, maps, steady rolling and tables through the public interface
+alone: the script outlives any move inside.
+"""  # noqa: E501
 
 from __future__ import annotations
 
@@ -25,12 +25,15 @@ import xarray as xr
 import viscoroll as vr
 
 ROOT = Path(__file__).parents[2]
-_STATES, _MOTIONS = 20_000, 1_000
+_STATES = 20_000
+_MOTIONS = 1_000
 _ALL = ("V", "omega", "x", "angle", "delta", "regime", "slip_loss", "rolling_loss")
 
 
 def main() -> int:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("--base", metavar="REV", help="compare with this commit")
     base = parser.parse_args().base
     here = {name: _hash(found) for name, found in parts()}
@@ -44,21 +47,31 @@ def parts() -> Iterator[tuple[str, Any]]:
     """What is computed, and its name without blanks."""
     draw = np.random.default_rng(12)
     V, delta = (
-        10.0 ** draw.uniform(*ends, _STATES) * draw.choice((-1.0, 1.0), _STATES) for ends in ((-12, 12), (-9, 0.5))
+        10.0 ** draw.uniform(*ends, _STATES) * draw.choice((-1.0, 1.0), _STATES)
+        for ends in ((-12, 12), (-9, 0.5))
     )
     alpha = 1.0 + 10.0 ** draw.uniform(-8.0, 5.0, _STATES)
-    V[:2], delta[2:4], alpha[4:8] = 0.0, 0.0, 1.0
-    scene, scenes = vr.presets.PAPER_SECTION_5, vr.Scene(alpha=alpha, kappa=2.9, mu=0.2)
+    V[:2] = 0.0
+    delta[2:4] = 0.0
+    alpha[4:8] = 1.0
+    scene = vr.presets.PAPER_SECTION_5
+    scenes = vr.Scene(alpha=alpha, kappa=2.9, mu=0.2)
     yield "contact", vr.contact(scene, V, delta=delta)
     yield "contact-own-alpha", vr.contact(scenes, V, delta=delta)
     yield "contact-slopes", vr.contact(scenes, V, delta=delta, slopes=True)
     slower = np.flatnonzero(np.abs(V[:1000]) < 1e9)
     yield "contact-direct", vr.contact(scene, V[slower], delta=delta[slower], method="direct")
     x = np.linspace(-1.0, 2.0, 301)[:, None]
-    yield "stress", vr.stress(vr.Scene(alpha=alpha[:100], kappa=2.9, mu=0.2), x, V[:100], delta=delta[:100])
-    starts, t = draw.uniform(-2.0, 2.0, (2, _MOTIONS)), np.linspace(0.0, 3e-3, 13)
+    yield (
+        "stress",
+        vr.stress(vr.Scene(alpha=alpha[:100], kappa=2.9, mu=0.2), x, V[:100], delta=delta[:100]),
+    )
+    starts = draw.uniform(-2.0, 2.0, (2, _MOTIONS))
+    t = np.linspace(0.0, 3e-3, 13)
     kappa, mu = 10.0 ** draw.uniform([[-0.3], [-2.0]], [[2.0], [0.3]], (2, _MOTIONS))
-    own = scene.replace(alpha=alpha[:_MOTIONS], kappa=kappa, mu=mu, j=draw.uniform(0.2, 2.0, _MOTIONS))
+    own = scene.replace(
+        alpha=alpha[:_MOTIONS], kappa=kappa, mu=mu, j=draw.uniform(0.2, 2.0, _MOTIONS)
+    )
 
     def motions(each: Any, count: int = _MOTIONS, **how: Any) -> Any:
         return vr.ensemble(each, *starts[:, :count], t, fields=_ALL, **how)
@@ -70,8 +83,10 @@ def parts() -> Iterator[tuple[str, Any]]:
     yield "roll", motion
     yield "switches", xr.Dataset({"t": ("change", [each.t for each in motion.switches])})
     yield "flow-map", motions(scene, method="flow")
-    strengths, times = np.array([3.0, 5.0, 1.0]), (1e-3, 0.1, 10.0)
-    rubber, plastic = vr.Prony(strengths, times), vr.Prony((2.0,), (1.0,))
+    strengths = np.array([3.0, 5.0, 1.0])
+    times = (1e-3, 0.1, 10.0)
+    rubber = vr.Prony(strengths, times)
+    plastic = vr.Prony((2.0,), (1.0,))
     each = vr.Prony(np.linspace(1.0, 6.0, 50)[:, None] * strengths, times)
     pair, pairs = (vr.Bodies(plastic, one, 0.3) for one in (rubber, each))
     for name, material, many in (("series", rubber, each), ("pair", pair, pairs)):
@@ -99,17 +114,26 @@ def _hashes_at(revision: str) -> dict[str, str]:
     """What this script finds in a copy of another commit."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(
-            [sys.executable, __file__], env=os.environ | {"PYTHONPATH": str(checked_out(revision, Path(folder)))},
-            stdout=subprocess.PIPE, text=True, check=True,
-        )  # fmt: skip
+            [sys.executable, __file__],
+            env=os.environ | {"PYTHONPATH": str(checked_out(revision, Path(folder)))},
+            stdout=subprocess.PIPE,
+            text=True,
+            check=True,
+        )
     return dict(line.split() for line in done.stdout.splitlines())
 
 
 def checked_out(revision: str, folder: Path) -> Path:
-    """``src`` of a commit, in a folder; raises FileNotFoundError where this clone lacks the commit."""
-    archive = subprocess.run(["git", "-C", ROOT, "archive", revision, "src"], capture_output=True, check=False)
+    """``src`` of a commit, in a folder; raises FileNotFoundError where this clone lacks the
+    commit.
+    """
+    archive = subprocess.run(
+        ["git", "-C", ROOT, "archive", revision, "src"], capture_output=True, check=False
+    )
     if archive.returncode:
-        raise FileNotFoundError(f"no commit {revision} here; a shallow clone has few: git fetch --unshallow")
+        raise FileNotFoundError(
+            f"no commit {revision} here; a shallow clone has few: git fetch --unshallow"
+        )
     subprocess.run(["tar", "-x", "-C", folder], input=archive.stdout, check=True)
     return folder / "src"
 

@@ -1,7 +1,8 @@
-"""Of which kernels results are: a digest of what computes, which every file of data/results carries.
+"""Of which kernels results are: a digest of what computes, which every file of data/results
+carries.
 
-Comments, docstrings and layout compute nothing, so a reworded docstring outdates no result.  Versions of Python and
-numba are not in it: the files name them beside it.
+Comments, docstrings and layout compute nothing, so a reworded docstring outdates no result.
+Versions of Python and numba are not in it: the files name them beside it.
 """
 
 from __future__ import annotations
@@ -25,7 +26,8 @@ SHORT = 8
 def kernels_digest(kernels: Path = KERNELS) -> str:
     """Hash of the syntax trees and of the coefficients below ``kernels``.
 
-    It takes 0.3 s, as long as a first call from a full cache: what names the cache hashes the files as they are.
+    It takes 0.3 s, as long as a first call from a full cache: what names the cache hashes the files
+    as they are.
     """
     digest = hashlib.sha256()
     for path in sorted((*kernels.rglob("*.py"), *kernels.rglob("*.npy"))):
@@ -37,14 +39,23 @@ def kernels_digest(kernels: Path = KERNELS) -> str:
 
 
 def _plain(node: Any) -> str:
-    """A syntax tree as text, the same in every version of Python; expressions that are constants alone, docstrings
-    say, are left out, and fields that hold nothing, of which later versions have more.
+    """A syntax tree as text, the same in every version of Python; expressions that are constants
+    alone, docstrings say, are left out, and fields that hold nothing, of which later versions have
+    more.
     """
     if isinstance(node, ast.AST):
-        fields = (f"{name}={_plain(value)}" for name, value in ast.iter_fields(node) if value not in (None, []))
+        fields = (
+            f"{name}={_plain(value)}"
+            for name, value in ast.iter_fields(node)
+            if value not in (None, [])
+        )
         return f"{type(node).__name__}({','.join(fields)})"
     if isinstance(node, list):
-        bare = (each for each in node if not (isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant)))
+        bare = (
+            each
+            for each in node
+            if not (isinstance(each, ast.Expr) and isinstance(each.value, ast.Constant))
+        )
         return f"[{','.join(map(_plain, bare))}]"
     return repr(node)
 

@@ -14,7 +14,8 @@ from typing import Any
 
 import numpy as np
 
-#: calls quicker than this, s, are repeated for as long; 0 where times are of no interest: a call is made once, as it is
+#: calls quicker than this, s, are repeated for as long; 0 where times are of no interest: a call is
+#: made once, as it is
 shortest = 0.1
 
 
@@ -29,13 +30,20 @@ def seconds_of(call: Callable[[], Any], number: int = 1) -> tuple[float, Any]:
 
 
 def steady_seconds(call: Callable[[], Any]) -> tuple[float, Any]:
-    """As :func:`seconds_of`; a quick call is repeated, so that cold caches and new memory do not count."""
+    """As :func:`seconds_of`; a quick call is repeated, so that cold caches and new memory do not
+    count.
+    """
     seconds, result = seconds_of(call)
-    return (seconds, result) if seconds >= shortest else seconds_of(call, int(shortest / seconds) + 1)
+    return (
+        (seconds, result) if seconds >= shortest else seconds_of(call, int(shortest / seconds) + 1)
+    )
 
 
-def timed(calls: dict[Any, tuple[float, Callable[[], Any]]], repeats: int) -> dict[Any, dict[str, float]]:
-    """Name -> (count, call) -> nanoseconds that one of ``count`` takes: median and least, as on an idle machine.
+def timed(
+    calls: dict[Any, tuple[float, Callable[[], Any]]], repeats: int
+) -> dict[Any, dict[str, float]]:
+    """Name -> (count, call) -> nanoseconds that one of ``count`` takes: median and least, as on an
+    idle machine.
 
     The first calls compile; then come rounds of all of them, so that a slow minute hits all alike.
     """
@@ -45,7 +53,9 @@ def timed(calls: dict[Any, tuple[float, Callable[[], Any]]], repeats: int) -> di
     for _ in range(repeats):
         for name, (count, call) in calls.items():
             ns[name].append(1e9 * steady_seconds(call)[0] / count)
-    return {name: {"ns": float(np.median(each)), "least_ns": min(each)} for name, each in ns.items()}
+    return {
+        name: {"ns": float(np.median(each)), "least_ns": min(each)} for name, each in ns.items()
+    }
 
 
 #: what a program of :func:`printed` begins with; ru_maxrss would be inherited from the parent
@@ -61,9 +71,13 @@ given = json.loads(sys.argv[1])
 
 
 def printed(program: str, *given: Any, **environment: str) -> Any:
-    """What a program prints as JSON that finds its arguments in the list ``given``, in a process of its own."""
+    """What a program prints as JSON that finds its arguments in the list ``given``, in a process of
+    its own.
+    """
     command = [sys.executable, "-c", _BEGIN + program, json.dumps(given)]
-    done = subprocess.run(command, env=os.environ | environment, check=True, capture_output=True, text=True)
+    done = subprocess.run(
+        command, env=os.environ | environment, check=True, capture_output=True, text=True
+    )
     return json.loads(done.stdout)
 
 

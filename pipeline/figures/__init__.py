@@ -1,4 +1,5 @@
-"""Pictures by name (:data:`FIGURES`): the paper's, the drawing behind the symbols, and those of the site's gallery.
+"""Pictures by name (:data:`FIGURES`): the paper's, the drawing behind the symbols, and those of the
+site's gallery.
 
 A picture of the gallery is the code of its page: it is run here as a reader runs it.
 """
@@ -46,7 +47,11 @@ PAGES = {
     "load-speed": "heat/c_load_speed",
 }
 FIGURES: dict[str, Callable[..., Figure]] = {
-    "rubber-roller": rubber_roller, "grid": grid,
-    "geometry": geometry, "figure-2": figure_2, "figure-3": figure_3, "figure-7": figure_7,
+    "rubber-roller": rubber_roller,
+    "grid": grid,
+    "geometry": geometry,
+    "figure-2": figure_2,
+    "figure-3": figure_3,
+    "figure-7": figure_7,
     "ensemble": lambda motions: draw(drawn_summary(motions)),
-} | {name: partial(of_page, *page.split()) for name, page in PAGES.items()}  # fmt: skip
+} | {name: partial(of_page, *page.split()) for name, page in PAGES.items()}

@@ -16,7 +16,7 @@ import msgspec
 from tqdm import tqdm
 
 from viscoroll import ModelWarning
-from viscoroll.core.plots.style import save
+from viscoroll.core.plots import save
 
 from .. import stage
 from ..validate import loaded
@@ -32,7 +32,8 @@ class Figures(msgspec.Struct, forbid_unknown_fields=True):
 def work(settings: Figures, out: Path) -> stage.Outcome:
     files_of = {"ensemble": out / "ensemble.nc", "grid": stage.ROOT / settings.grid}
     shown: dict[str, tuple[Any, ...]] = {name: (loaded(path),) for name, path in files_of.items()}
-    folder, files = stage.make_folder(out / "figures"), []
+    folder = stage.make_folder(out / "figures")
+    files = []
     for name, draw in tqdm(FIGURES.items(), desc="figures", delay=1.0, leave=False):
         files.append(folder / f"{name}.png")
         save(draw(*shown.get(name, ())), files[-1])

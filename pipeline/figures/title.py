@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from viscoroll import Scene
-from viscoroll.core.symbols import SYMBOLS
+from viscoroll.core.scale import SYMBOLS
 
 
 def describe(scene: Scene, *names: str) -> str:

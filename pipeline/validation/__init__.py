@@ -1,7 +1,9 @@
-"""Is what the package computes what the paper's equations say?  :func:`validate` -> :class:`Report`.
+"""Is what the package computes what the paper's equations say?  :func:`validate` ->
+:class:`Report`.
 
 Read in this order: :mod:`states` and :mod:`stresses` (contact law), :mod:`direct_motion` (an
-integrator of its own) and :mod:`motions` (what it is for); rows of files are those of ``viscoroll tables validate``.
+integrator of its own) and :mod:`motions` (what it is for); rows of files are those of ``viscoroll
+tables validate``.
 """
 
 from __future__ import annotations
@@ -9,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
-from viscoroll.io.tables.check import Check, Report, check_table
+from viscoroll.tables.law_dataset import Check, Report, check_table
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -31,7 +33,8 @@ def validate(
 
     Parameters
     ----------
-    tables : of :func:`viscoroll.io.tables.load` or ``build``; each is checked at its nodes and off them.
+    tables : of :func:`viscoroll.tables.load` or ``build``; each is checked at its nodes and off
+    them.
     states : random states at which method "table" meets method "direct".
     stress_states : random states at which the stresses are integrated.
     table_points : random nodes, and as many points between nodes, of each table.
@@ -53,7 +56,8 @@ def validate(
 
     Notes
     -----
-    Each check states the error that it allows; that none passes where the law, the stresses, a table
+    Each check states the error that it allows; that none passes where the law, the stresses, a
+    table
     or a scene is wrong is tested in ``tests/validation/test_validation.py``.
     """
     from tqdm import tqdm
@@ -72,5 +76,10 @@ def validate(
     checks = []
     for part in tqdm(parts, desc="validate", delay=1.0, leave=False, disable=not progress):
         checks += part()
-    settings = {"states": states, "stress_states": stress_states, "table_points": table_points, "times": times}
+    settings = {
+        "states": states,
+        "stress_states": stress_states,
+        "table_points": table_points,
+        "times": times,
+    }
     return Report(tuple(checks), settings | {"seed": seed})

@@ -1,8 +1,8 @@
 """viscoroll: a viscoelastic cylinder rolling with partial slip on a half-space of its material.
 
-Contact law, tables, motion and ensembles after the paper cited in ``README.md``.  A ``Scene`` is dimensionless, a
-``Cylinder`` in SI units.  Public names are imported at their first use, so that ``import viscoroll`` imports neither
-numba nor xarray nor matplotlib.
+Contact law, tables, motion and ensembles after the paper cited in ``README.md``.  A ``Scene`` is
+dimensionless, a ``Cylinder`` in SI units.  Public names are imported at their first use, so that
+``import viscoroll`` imports neither numba nor xarray nor matplotlib.
 """
 
 from __future__ import annotations
@@ -20,12 +20,17 @@ __version__ = "0.3.0"
 
 
 def _read_modules() -> dict[str, str]:
-    """Return a dict from each public name to the module that defines it, as ".scene"; "." for a public module.
+    """Return a dict from each public name to the module that defines it, as ".scene"; "." for a
+    public module.
 
-    They are read from ``__init__.pyi``, which type checkers and editors read too, so that they are listed once.
+    They are read from ``__init__.pyi``, which type checkers and editors read too, so that they are
+    listed once.
     """
     with open(splitext(__file__)[0] + ".pyi", encoding="utf-8") as stub:
-        return {name: module for _, module, _, name, *_ in (line.split() for line in stub if line.startswith("from"))}
+        return {
+            name: module
+            for _, module, _, name, *_ in (line.split() for line in stub if line.startswith("from"))
+        }
 
 
 _MODULES = _read_modules()
@@ -33,11 +38,13 @@ __all__ = ["__version__", *_MODULES]  # noqa: PLE0604
 
 
 def __getattr__(name: str) -> Any:
-    """Import a public name of the package at its first use: Python calls this for a name that it does not find.
+    """Import a public name of the package at its first use: Python calls this for a name that it
+    does not find.
 
     name: the name that was looked up in the package.
     Returns the public object, and keeps it under its name.
-    Raises AttributeError for a name that is not public, ImportError where a package that its module needs is missing.
+    Raises AttributeError for a name that is not public, ImportError where a package that its module
+    needs is missing.
     """
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

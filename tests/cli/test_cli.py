@@ -19,17 +19,21 @@ from places import ROOT
 from processes import printed, python
 
 import viscoroll as vr
-from viscoroll.app.cli import arguments, main
-from viscoroll.materials.law_file import checksum, dataset_content
+from viscoroll.cli import arguments, main
+from viscoroll.materials.checked_netcdf import checksum, dataset_content
 from viscoroll.materials.material_toml import read_materials
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 PRESET = ["paper-section-5"]
 START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
 GRID = "tables build --V 0.1:1:5:log --delta -0.04:0.04:9"
 SCENE = "[scene]\nalpha = 11.0\nkappa = 2.91\nmu = 0.2\n"
-COMMANDS = [name for name in arguments.COMMANDS if name not in ("warmup", "identify", "fmu")]  # these take long
+COMMANDS = [
+    name for name in arguments.COMMANDS if name not in ("warmup", "identify", "fmu")
+]  # these take long
 UNCERTAIN = """
 preset = "paper-section-5"
 scene.mu = { distribution = "uniform", loc = 0.19, scale = 0.02 }
@@ -65,7 +69,9 @@ def content(folder):
 
 @pytest.fixture
 def refuse(capsys, here):
-    """Runs a command line that must fail in one line, leaving the folder as it was; returns the line."""
+    """Runs a command line that must fail in one line, leaving the folder as it was; returns the
+    line.
+    """
 
     def refuse(*argv):
         before = content(here)
@@ -85,7 +91,9 @@ def tables(tmp_path_factory):
     folder = tmp_path_factory.mktemp("tables")
     vr.tables.save(vr.tables.law(vr.presets.RUBBER_CYLINDER.material), folder / "rubber.nc")
     vr.tables.save(
-        vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01], alpha=[1.0, 11.0]),
+        vr.tables.build(
+            vr.presets.PAPER_SECTION_5, [0.1, 1.0], delta=[0.0, 0.01], alpha=[1.0, 11.0]
+        ),
         folder / "grid.nc",
     )
     return folder
@@ -102,7 +110,7 @@ def test_version_and_module():
 def test_help_imports_nothing_heavy():
     printed(
         "import sys\n"
-        "from viscoroll.app.cli import main\n"
+        "from viscoroll.cli import main\n"
         f"for command in {COMMANDS!r}: assert main([*command.split(), '--help']) == 0\n"
         "assert main(['--help']) == 0\n"
         "heavy = {'numpy', 'numba', 'scipy', 'xarray', 'matplotlib', 'h5py'} & sys.modules.keys()\n"
@@ -133,7 +141,8 @@ def test_an_error_that_nobody_hears_is_one(redirected):
 
 
 @pytest.mark.parametrize(
-    ("raised", "code", "words"), [(KeyboardInterrupt, 130, ""), (MemoryError, 2, "not enough memory")]
+    ("raised", "code", "words"),
+    [(KeyboardInterrupt, 130, ""), (MemoryError, 2, "not enough memory")],
 )
 def test_interrupt_and_memory(monkeypatch, capsys, raised, code, words):
     def fail(*_, **__):
@@ -182,14 +191,21 @@ def test_material_fit(run, here):
     fit = vr.fit_prony(*record, source="dma.csv")
     assert report == f"{record}\n{fit}\n"
     assert read_materials(here / "a.toml") == {"material": fit.material(0.5, name="a rubber")}
-    assert "Prony series of 4 modes" in run("material", "fit", data, "--modes", "4", "--misfit", "0.05")
+    assert "Prony series of 4 modes" in run(
+        "material", "fit", data, "--modes", "4", "--misfit", "0.05"
+    )
     assert f"measured          {fit.measured}" in run("material", "show", "a.toml")
 
 
 def test_a_fit_that_misses_writes_no_file(here, capsys):
-    """Exit code 1, whether the misfit was asked for in vain or is above 5 %; with --force a file that says so."""
+    """Exit code 1, whether the misfit was asked for in vain or is above 5 %; with --force a file
+    that says so.
+    """
     data = str(ROOT / "src/viscoroll/datasets/dma.csv")
-    for more, words in ((["--misfit", "1e-4"], "0.01% was not reached"), (["--misfit", "0.9"], "is above 5%")):
+    for more, words in (
+        (["--misfit", "1e-4"], "0.01% was not reached"),
+        (["--misfit", "0.9"], "is above 5%"),
+    ):
         fit = ["material", "fit", data, *more, "--modes", "1", "-o"]
         for name in ("poor.toml", "poor.nc"):
             assert main([*fit, name]) == 1
@@ -202,33 +218,61 @@ def test_a_fit_that_misses_writes_no_file(here, capsys):
                 warnings.simplefilter("default")
                 assert main([*fit, name, "--force"]) == 0
             assert capsys.readouterr().err.count(words) == 1
-            assert "forced: the misfit of" in read_materials(here / name)["material"].measured.source
+            assert (
+                "forced: the misfit of" in read_materials(here / name)["material"].measured.source
+            )
             (here / name).unlink()
 
 
 def test_a_fit_of_shear_at_several_temperatures(run, here):
     """Columns by their names, WLF whose constants are of another temperature than the reference."""
-    rubber, shift = vr.Material(3e6, 0.5, vr.Prony([1.0, 2.0], [1.0, 0.01])), vr.WLF(C1=8.86, C2=101.6, T0=20.0)
-    f, rows = np.geomspace(0.01, 100.0, 13), []
+    rubber = vr.Material(3e6, 0.5, vr.Prony([1.0, 2.0], [1.0, 0.01]))
+    shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+    f = np.geomspace(0.01, 100.0, 13)
+    rows = []
     for T in (0.0, 20.0, 40.0):
         omega = 2.0 * np.pi * f
         at = rubber.at(T, shift)
-        rows += [*zip(f, at.storage(omega) / 3e6, at.loss(omega) / 3e6, np.full(f.size, T), strict=True)]
+        rows += [
+            *zip(f, at.storage(omega) / 3e6, at.loss(omega) / 3e6, np.full(f.size, T), strict=True)
+        ]
     np.savetxt(
-        here / "a.csv", rows, delimiter=";", header="f [Hz];Module A [MPa];Module B [MPa];T [°C]", encoding="utf8"
+        here / "a.csv",
+        rows,
+        delimiter=";",
+        header="f [Hz];Module A [MPa];Module B [MPa];T [°C]",
+        encoding="utf8",
     )
     run(
-        "material", "fit", "a.csv", "--column", "storage=Module A", "--column", "loss=Module B", "--mode", "shear",
-        "--wlf", f"{8.86 * 101.6 / 61.6},61.6,-20", "--reference", "40", "--nu", "0.5", "-o", "a.toml",
-    )  # fmt: skip
-    found, true = read_materials(here / "a.toml")["material"], rubber.at(40.0, shift)
+        "material",
+        "fit",
+        "a.csv",
+        "--column",
+        "storage=Module A",
+        "--column",
+        "loss=Module B",
+        "--mode",
+        "shear",
+        "--wlf",
+        f"{8.86 * 101.6 / 61.6},61.6,-20",
+        "--reference",
+        "40",
+        "--nu",
+        "0.5",
+        "-o",
+        "a.toml",
+    )
+    found = read_materials(here / "a.toml")["material"]
+    true = rubber.at(40.0, shift)
     assert found.temperature == 40.0
     assert close(found.storage(omega), true.storage(omega), 0.01)
     assert close(found.loss(omega), true.loss(omega), 0.05)
 
 
 def test_a_belt_of_a_fit_that_was_saved(run, here, capsys):
-    """From columns without units to the resistance of a steel roller: each step reads what the one before wrote."""
+    """From columns without units to the resistance of a steel roller: each step reads what the one
+    before wrote.
+    """
     fit = vr.fit_prony(*vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv"))
     columns = np.transpose([fit.omega / (2.0 * np.pi), fit.storage / 1e6, fit.loss / 1e6])
     np.savetxt(here / "bare.txt", columns)
@@ -252,15 +296,22 @@ def test_a_cylinder_of_a_file_is_in_si(run, here):
     cylinder = vr.Cylinder(R=0.1, m=35.5, mu=0.2, material=material)
     point = ["contact", "a.toml", "--V", "0.5", "--delta", "0.01"]
     assert f"M = {cylinder.contact(0.5, delta=0.01).M:.10g} N m m-1" in run(*point)
-    table = json.loads(run("roll", "a.toml", "--V0", "1", "--omega0", "0.5", "--t", "0,0.1", "--format", "json"))
+    table = json.loads(
+        run("roll", "a.toml", "--V0", "1", "--omega0", "0.5", "--t", "0,0.1", "--format", "json")
+    )
     assert table["V [m s-1]"] == cylinder.roll(1.0, 0.5, [0.0, 0.1]).V.tolist()
     assert run(*point, "--format", "csv").startswith("V [m s-1],delta,lam,length [m],")
-    assert f"{cylinder.steady(slope=0.003).V[0]:.10g}" in run("steady", "a.toml", "--slope", "0.003")
+    assert f"{cylinder.steady(slope=0.003).V[0]:.10g}" in run(
+        "steady", "a.toml", "--slope", "0.003"
+    )
 
 
 def test_a_load_without_an_equilibrium_is_told(run, capsys):
     """Above a table, alone where there is no row, and beside a table for programs."""
-    reason = "load 0: force + torque = 0.12 exceeds the largest rolling moment 0.084471 (at V = 0.234265)\n"
+    reason = (
+        "load 0: force + torque = 0.12 exceeds the largest rolling moment 0.084471 (at V = "
+        "0.234265)\n"
+    )
     assert run("steady", *PRESET, "--force", "0.12") == reason
     assert run("steady", *PRESET, "--force", "0.12,0.01").startswith(f"{reason}\n state")
     with warnings.catch_warnings():
@@ -280,17 +331,20 @@ def test_output_for_machines_and_for_eyes(run, here):
 
 def test_result_files_and_scenes_are_drawn(run, here):
     for name, text in (
-        ("a.toml", ROLLER + RUBBER), ("m.toml", RUBBER), ("base.toml", "[base]\nE = 2e11\nnu = 0.3\n"),
+        ("a.toml", ROLLER + RUBBER),
+        ("m.toml", RUBBER),
+        ("base.toml", "[base]\nE = 2e11\nnu = 0.3\n"),
         ("run.toml", UNCERTAIN),
-    ):  # fmt: skip
+    ):
         (here / name).write_text(text)
     vr.presets.RUBBER_CYLINDER.material.to_netcdf("rubber.nc")
     motions = vr.presets.RUBBER_CYLINDER.ensemble([0.5, 1.0, 1.5], 0.0, [0.1, 0.2]).to_xarray()
     motions.to_netcdf("e.nc", engine="h5netcdf")
     for command in (
-        "roll PAPER --V0 1.5 --omega0 0.5 --t 0:3e-3:7 -o m.nc", "sensitivity run.toml -n 16 -o s.nc",
+        "roll PAPER --V0 1.5 --omega0 0.5 --t 0:3e-3:7 -o m.nc",
+        "sensitivity run.toml -n 16 -o s.nc",
         "contact PAPER --V 0.1:1:5 --delta -0.01:0.01:3 -o c.nc",
-    ):  # fmt: skip
+    ):
         run(*command.replace("PAPER", *PRESET).split())
     for name in ("m.nc", "c.nc", "s.nc", "e.nc", "rubber.nc", "a.toml", "m.toml", "base.toml"):
         run("plot", name, "-o", f"{name}.png")
@@ -299,7 +353,9 @@ def test_result_files_and_scenes_are_drawn(run, here):
 
 def test_doctor_names_what_is_required(run):
     required = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]["dependencies"]
-    assert {re.split("[^a-z0-9]", each)[0] for each in required} <= set(re.findall(r"\w+", run("doctor")))
+    assert {re.split("[^a-z0-9]", each)[0] for each in required} <= set(
+        re.findall(r"\w+", run("doctor"))
+    )
 
 
 def test_doctor_tells_why_a_cache_is_not_used(run, here, monkeypatch):
@@ -307,7 +363,10 @@ def test_doctor_tells_why_a_cache_is_not_used(run, here, monkeypatch):
     (here / "shared").mkdir()
     assert "NOT USED" not in run("doctor")
     (here / "shared").chmod(0o777)
-    assert f"it is NOT USED: {here}/shared: others may write to it; `chmod go-w {here}/shared`" in run("doctor")
+    assert (
+        f"it is NOT USED: {here}/shared: others may write to it; `chmod go-w {here}/shared`"
+        in run("doctor")
+    )
 
 
 def test_a_warning_is_one_line(capsys):
@@ -315,21 +374,35 @@ def test_a_warning_is_one_line(capsys):
         warnings.simplefilter("default")
         assert main(["roll", *START, "--t", "1e-6"]) == 0
     (line,) = capsys.readouterr().err.splitlines()
-    assert line.startswith("viscoroll: warning: the model does not hold for this motion: it is too slow ")
+    assert line.startswith(
+        "viscoroll: warning: the model does not hold for this motion: it is too slow "
+    )
 
 
 def test_a_warning_is_printed_once(here):
-    """SciPy, which the fit imports, sets filters between two warnings: one of the fit, one of its material."""
-    command = ["material", "fit", str(ROOT / "src/viscoroll/datasets/dma.csv"), "--temperature", "293.15"]
+    """SciPy, which the fit imports, sets filters between two warnings: one of the fit, one of its
+    material.
+    """
+    command = [
+        "material",
+        "fit",
+        str(ROOT / "src/viscoroll/datasets/dma.csv"),
+        "--temperature",
+        "293.15",
+    ]
     found = subprocess.run([*PROGRAM, *command], capture_output=True, text=True, check=True)
     assert found.stderr.count("this looks like kelvin") == 1
 
 
-PAPER, T = vr.presets.PAPER_SECTION_5, np.linspace(0.0, 3e-3, 7)
-V, OMEGA = np.array([-1.0, 0.0, 1.0, 2.0])[:, None], np.geomspace(1e-3, 1.0, 4)
+PAPER = vr.presets.PAPER_SECTION_5
+T = np.linspace(0.0, 3e-3, 7)
+V = np.array([-1.0, 0.0, 1.0, 2.0])[:, None]
+OMEGA = np.geomspace(1e-3, 1.0, 4)
 SAME = {
     "contact --V -1:1:3,2 --omega 1e-3:1:4:log": lambda _: vr.contact(PAPER, V, omega=OMEGA),
-    "stress --V -0.5 --delta 0.01": lambda data: vr.stress(PAPER, data["x"].values, -0.5, delta=0.01),
+    "stress --V -0.5 --delta 0.01": lambda data: vr.stress(
+        PAPER, data["x"].values, -0.5, delta=0.01
+    ),
     "roll --V0 1.5 --omega0 0.5 --t 0:3e-3:7": lambda _: vr.roll(PAPER, 1.5, 0.5, T),
 }
 
@@ -343,9 +416,13 @@ def test_csv_and_netcdf_hold_the_bits_of_the_call(run, argv):
         expected = SAME[argv](data).to_xarray()
         axes = [*expected.sizes]
         table = xr.Dataset.from_dataframe(pd.read_csv("a.csv").set_index(axes))
-        for name in (name for name, each in expected.variables.items() if each.ndim and name != "regime"):
+        for name in (
+            name for name, each in expected.variables.items() if each.ndim and name != "regime"
+        ):
             for found in (data, table):
-                assert np.array_equal(found[name].values, expected[name].values, equal_nan=True), name
+                assert np.array_equal(found[name].values, expected[name].values, equal_nan=True), (
+                    name
+                )
         if command == "stress":
             assert close(data["p"][[0, -1]], 0.0, tol.CLI_EDGE, scale=data["p"].values.max())
             assert (data["p"][1:-1] > 0.0).all()
@@ -399,7 +476,9 @@ def test_tables_validate(run, capsys, tables):
     assert "EXCEEDED" not in run("tables", "validate", str(tables / "rubber.nc"), "-n", "500")
     wrong = vr.tables.load(tables / "rubber.nc")
     wrong["press"].values[9] *= 1.0 + tol.CLI_WRONG
-    vr.tables.save(wrong.assign_attrs(sha256_of_numbers=checksum(dataset_content(wrong).numbers)), "wrong.nc")
+    vr.tables.save(
+        wrong.assign_attrs(sha256_of_numbers=checksum(dataset_content(wrong).numbers)), "wrong.nc"
+    )
     assert main(["tables", "validate", "wrong.nc", "-n", "500"]) == 1
     out, err = capsys.readouterr()
     assert err == ""
@@ -420,10 +499,14 @@ def test_answered(run, refuse, here, tables):
     (here / "rubber.nc").write_bytes(whole)
     (here / "dma.csv").write_bytes((ROOT / "src/viscoroll/datasets/dma.csv").read_bytes())
     for name, text in (
-        ("file", "as it was"), ("s.toml", SCENE), ("bad.toml", "[scene]\nalhpa = 11\n"), ("rubber.toml", ONE),
-        ("tread.toml", RUBBER), ("warm.toml", RUBBER + "temperature = 30.0\n"),
+        ("file", "as it was"),
+        ("s.toml", SCENE),
+        ("bad.toml", "[scene]\nalhpa = 11\n"),
+        ("rubber.toml", ONE),
+        ("tread.toml", RUBBER),
+        ("warm.toml", RUBBER + "temperature = 30.0\n"),
         ("pair.toml", RUBBER + "[base]\nE = 2e11\nnu = 0.3\n"),
-    ):  # fmt: skip
+    ):
         (here / name).write_text(text)
     for command, answer in lines_of("cli/answers.txt"):
         _, shown, words = answer.replace("PAPER", *PRESET).rpartition("shows! ")

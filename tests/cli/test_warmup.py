@@ -43,13 +43,13 @@ vr.ensemble(cover, [1.0, 1.5], 0.5, [1e-3], force=0.01, fields=("V", "slip_loss"
 vr.steady(cover, V=V[:3], force=0.0)
 vr.law(cover)(0.1, 0.2)
 vr.ensemble(cover.replace(material=vr.Cover(1.0, nu=0.5, thickness=[0.5, 0.6])), 1.0, 0.5, [1e-3])
-"""
+"""  # noqa: E501
 CODE = f"""
 import importlib
 import numpy as np
 import viscoroll as vr
-from viscoroll.app.cli import main
-from viscoroll.kernels.compile.cache import KERNELS as folder
+from viscoroll.cli import main
+from viscoroll.kernels.numerics.jit import KERNELS as folder
 assert main(["warmup"]) == 0
 modules = [
     importlib.import_module(f"viscoroll.kernels.{{path.parent.name}}.{{path.stem}}")
@@ -62,7 +62,7 @@ before = ready()
 scene = vr.presets.PAPER_SECTION_5
 {CALLS}
 print("anew:", *sorted(name for name, _ in ready() - before))
-"""
+"""  # noqa: E501
 
 
 def test_after_it_no_call_compiles():

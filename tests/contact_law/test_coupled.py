@@ -1,4 +1,6 @@
-"""Pressure and shear solved together: references, limits, symmetries, powers computed apart, random pairs."""
+"""Pressure and shear solved together: references, limits, symmetries, powers computed apart, random
+pairs.
+"""
 
 import csv
 import math
@@ -11,19 +13,28 @@ from places import ROOT
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from viscoroll.contact_law.coupled import CoupledBody, CoupledPair, CoupledRow
-from viscoroll.contact_law.coupled_kernels import layer_transforms, transforms
+from viscoroll.contact_mechanics.coupled_pair import (
+    CoupledBody,
+    CoupledPair,
+    CoupledRow,
+    layer_transforms,
+    transforms,
+)
 
 SERIES = {
     "elastic": vr.Prony.elastic(),
     "one": vr.Prony([10.0], [1.0 / 11.0]),
     "three": vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003]),
 }
-ONE, THREE = SERIES["one"], SERIES["three"]
-KAPPA, MU = 4.0, 0.3
+ONE = SERIES["one"]
+THREE = SERIES["three"]
+KAPPA = 4.0
+MU = 0.3
 BELT = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
 LINING = vr.Cover(ONE, nu=0.5, thickness=0.5, on="cylinder")
-NIP = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base", part=0.6, other=THREE, other_nu=0.4, other_thickness=0.3)
+NIP = vr.Cover(
+    ONE, nu=0.5, thickness=0.5, on="base", part=0.6, other=THREE, other_nu=0.4, other_thickness=0.3
+)
 MIXED = vr.Cover(ONE, nu=0.45, thickness=0.5, on="base", part=0.7, other=THREE, other_nu=0.3)
 CREEPS = np.array([-0.25, -0.05, 0.03, 0.1, 0.3, 0.8])
 
@@ -44,7 +55,8 @@ def test_boundary_elements_of_another_program():
         cover = vr.Cover(SERIES[key[0]], nu=nu, thickness=thickness, on="base")
         mine = [row for row in rows if tuple(row.values())[:5] == key]
         creep, lam, epsilon, moment, Q = (
-            np.array([float(row[name]) for row in mine]) for name in ("creep", "lam", "epsilon", "kappa_M", "Q")
+            np.array([float(row[name]) for row in mine])
+            for name in ("creep", "lam", "epsilon", "kappa_M", "Q")
         )
         found = coupled(scene_of(cover, mu, 1.0), u, delta=0.5 * creep)
         assert close(found.Q, Q, tol.COUPLED_Q, scale=mu)
@@ -56,11 +68,13 @@ def test_boundary_elements_of_another_program():
 def test_dundurs_constant_as_contact_publishes_it():
     with open(ROOT / "data/reference/bentall.csv") as file:
         rows = [row for row in csv.DictReader(file) if row["mu"] != "inf"]
-    one, other = (1.0 - 0.31) / 23000.0, (1.0 - 0.28) / 82000.0
+    one = (1.0 - 0.31) / 23000.0
+    other = (1.0 - 0.28) / 82000.0
     elastic = vr.Prony.elastic()
     pair = vr.Bodies(elastic, elastic, share=other / (one + other), poisson=(0.28, 0.31))
     for row in rows:
-        mu, Q = float(row["mu"]), float(row["Q_over_mu_P"])
+        mu = float(row["mu"])
+        Q = float(row["Q_over_mu_P"])
         states = CoupledRow(CoupledPair.of_scene(scene_of(pair)), 1.0, mu)
         creep = brentq(lambda x, on=states, Q=Q: on.states([x]).Q_over_mu[0] - Q, *states.onsets())
         assert close(abs(creep) * 0.1 / 25.0, float(row["creep"]), tol.BENTALL)
@@ -72,7 +86,8 @@ def test_half_spaces_have_the_law_of_the_table(material):
     V = 0.1
     star = scene.contact(V, delta=0.0).delta_star
     delta = star * np.array([-2.0, -0.7, 0.1, 0.5, 0.9])
-    found, exact = coupled(scene, V, delta=delta), scene.contact(V, delta=delta, fields=coupled_names())
+    found = coupled(scene, V, delta=delta)
+    exact = scene.contact(V, delta=delta, fields=coupled_names())
     assert close(found.Q, exact.Q, tol.COUPLED_HALF_SPACE, scale=MU)
     assert close(KAPPA * found.M, KAPPA * exact.M, tol.COUPLED_HALF_SPACE, scale=1.0)
     assert close(found.lam, exact.lam, tol.COUPLED_EDGES)
@@ -87,15 +102,26 @@ def coupled_names():
 
 def test_a_thick_layer_is_a_half_space():
     thick = coupled(scene_of(BELT.of_thickness(1e6)), 0.1, delta=0.02)
-    plain = coupled(scene_of(vr.Bodies(vr.Prony.elastic(), ONE, 0.0, poisson=(0.5, 0.5))), 0.1, delta=0.02)
+    plain = coupled(
+        scene_of(vr.Bodies(vr.Prony.elastic(), ONE, 0.0, poisson=(0.5, 0.5))), 0.1, delta=0.02
+    )
     assert close(thick.Q, plain.Q, tol.COUPLED_HALF_SPACE, scale=MU)
     assert close(thick.M, plain.M, tol.COUPLED_HALF_SPACE, scale=1.0)
 
 
 def test_sides_and_directions():
-    belt, lining = (coupled(scene_of(cover), 0.1, delta=sign * CREEPS) for cover, sign in ((BELT, 1), (LINING, -1)))
+    belt, lining = (
+        coupled(scene_of(cover), 0.1, delta=sign * CREEPS)
+        for cover, sign in ((BELT, 1), (LINING, -1))
+    )
     back = coupled(scene_of(BELT), -0.1, delta=CREEPS)
-    for name, swapped, turned in (("Q", -1, -1), ("M", 1, -1), ("lam", 1, 1), ("epsilon", 1, 1), ("loss_slip", 1, 1)):
+    for name, swapped, turned in (
+        ("Q", -1, -1),
+        ("M", 1, -1),
+        ("lam", 1, 1),
+        ("epsilon", 1, 1),
+        ("loss_slip", 1, 1),
+    ):
         assert (lining[name] == swapped * belt[name]).all(), name
         assert (back[name] == turned * belt[name]).all(), name
     assert (lining.M_cylinder == belt.M_half_space).all()
@@ -103,8 +129,19 @@ def test_sides_and_directions():
 
 
 def test_two_like_covers_do_not_couple():
-    nip = vr.Cover(ONE, nu=0.3, thickness=0.5, on="base", part=0.5, other=ONE, other_nu=0.3, other_thickness=0.5)
-    found = coupled(scene_of(nip), 0.1, delta=[0.0, 0.02], fields=["Q", "M_half_space", "M_cylinder", "delta_0"])
+    nip = vr.Cover(
+        ONE,
+        nu=0.3,
+        thickness=0.5,
+        on="base",
+        part=0.5,
+        other=ONE,
+        other_nu=0.3,
+        other_thickness=0.5,
+    )
+    found = coupled(
+        scene_of(nip), 0.1, delta=[0.0, 0.02], fields=["Q", "M_half_space", "M_cylinder", "delta_0"]
+    )
     assert close(found.Q[0], 0.0, tol.COUPLED_HALF_SPACE, scale=MU)
     assert close(found.delta_0, 0.0, tol.COUPLED_HALF_SPACE, scale=1.0)
     assert close(found.M_half_space[0], found.M_cylinder[0], tol.COUPLED_HALF_SPACE)
@@ -113,7 +150,9 @@ def test_two_like_covers_do_not_couple():
 
 
 def losses_by_transforms(pair, u, profile):
-    """Power lost in all bodies over kappa |V| P, by Parseval's theorem from the loss compliance alone."""
+    """Power lost in all bodies over kappa |V| P, by Parseval's theorem from the loss compliance
+    alone.
+    """
     half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
     s = np.arange(-40.0, 150.0, 0.2)
     k = np.logaddexp(0.0, s) / half
@@ -123,10 +162,20 @@ def losses_by_transforms(pair, u, profile):
         J = sum(j / (1.0 - 1j * k * t * u) for j, t in zip(body.J, body.T, strict=True)).imag
         local = (1.0 - 2.0 * body.nu) / (2.0 - 2.0 * body.nu)
         wave = np.minimum(k * body.thickness, 300.0)
-        L, T, C = layer_transforms(body.nu, wave) if math.isfinite(body.thickness) else (1.0, 1.0, local)
+        L, T, C = (
+            layer_transforms(body.nu, wave) if math.isfinite(body.thickness) else (1.0, 1.0, local)
+        )
         t = -q if body.side == "base" else q
-        total += body.share * J * (L * abs(p) ** 2 + T * abs(t) ** 2 - 2.0 * C * np.imag(p * np.conj(t)))
-    return (total / (1.0 + np.exp(-s))).sum() * 0.2 / half / np.pi / np.trapezoid(profile.p, profile.nodes)
+        total += (
+            body.share * J * (L * abs(p) ** 2 + T * abs(t) ** 2 - 2.0 * C * np.imag(p * np.conj(t)))
+        )
+    return (
+        (total / (1.0 + np.exp(-s))).sum()
+        * 0.2
+        / half
+        / np.pi
+        / np.trapezoid(profile.p, profile.nodes)
+    )
 
 
 @pytest.mark.parametrize("cover", [BELT, LINING, NIP, MIXED])
@@ -144,21 +193,33 @@ def test_friction_and_losses_of_the_bodies_take_the_power_of_the_loads(cover):
     state = coupled(scene, 0.35 / KAPPA, delta=0.5 * CREEPS / KAPPA)
     parts = state.loss_slip, state.loss_half_space, state.loss_cylinder
     assert min(part.min() for part in parts) > -tol.COUPLED_POWER
-    assert close(sum(parts), 0.35 / KAPPA * (state.M + state.delta * state.Q), tol.COUPLED_SUM, scale=1.0)
+    assert close(
+        sum(parts), 0.35 / KAPPA * (state.M + state.delta * state.Q), tol.COUPLED_SUM, scale=1.0
+    )
 
 
 def random_pair(rng):
-    """One or two bodies of any kind, with up to 20 modes over 12 decades, alpha up to 1000; u and mu."""
+    """One or two bodies of any kind, with up to 20 modes over 12 decades, alpha up to 1000; u and
+    mu.
+    """
     bodies = []
     number = rng.integers(1, 3)
     part = rng.uniform(0.2, 0.8)
-    for share, side in zip((1.0,) if number == 1 else (part, 1.0 - part), rng.permuted(["base", "cylinder"])):
+    for share, side in zip(
+        (1.0,) if number == 1 else (part, 1.0 - part), rng.permuted(["base", "cylinder"])
+    ):
         modes = int(rng.choice([0, 1, 2, 3, 10, 20]))
         J = (1.0 - 10.0 ** -rng.uniform(0.1, 3.0)) * rng.dirichlet(np.ones(max(modes, 1)))[:modes]
         T = 10.0 ** rng.uniform(-12.0, 0.0, modes) if modes > 1 else np.ones(modes)
         thickness = rng.choice([0.2, 0.5, 2.0, 20.0, math.inf])
-        bodies.append(CoupledBody(side, share, rng.uniform(0.0, 0.5), thickness, tuple(J), tuple(T)))
-    return CoupledPair(tuple(bodies)), 10.0 ** rng.uniform(-6.0, 6.0), 10.0 ** rng.uniform(-1.7, 0.0)
+        bodies.append(
+            CoupledBody(side, share, rng.uniform(0.0, 0.5), thickness, tuple(J), tuple(T))
+        )
+    return (
+        CoupledPair(tuple(bodies)),
+        10.0 ** rng.uniform(-6.0, 6.0),
+        10.0 ** rng.uniform(-1.7, 0.0),
+    )
 
 
 def test_random_pairs_are_solved_and_refined_meshes_agree():
@@ -168,7 +229,8 @@ def test_random_pairs_are_solved_and_refined_meshes_agree():
         coarse = CoupledRow(pair, u, mu)
         fine = CoupledRow(pair, u, mu, 110)
         creeps = rng.uniform(*coarse.onsets(), 4)
-        one, other = coarse.states(creeps), fine.states(creeps)
+        one = coarse.states(creeps)
+        other = fine.states(creeps)
         assert (one.converged & other.converged).all(), (pair, u, mu)
         assert (np.abs(one.Q_over_mu) <= 1.0).all()
         assert close(one.Q_over_mu, other.Q_over_mu, tol.COUPLED_Q, scale=1.0)

@@ -16,17 +16,22 @@ import viscoroll as vr
 SOURCE = ROOT / "src"
 MODULES = [
     ".".join(path.relative_to(SOURCE).with_suffix("").parts).removesuffix(".__init__")
-    for path in sorted(SOURCE.rglob("*.py")) if ">>> " in path.read_text(encoding="utf-8")
-]  # fmt: skip
+    for path in sorted(SOURCE.rglob("*.py"))
+    if ">>> " in path.read_text(encoding="utf-8")
+]
 
 
 def callables(name, thing):
-    """Yield name and function: the public functions of a module, the methods of a class, or a function itself."""
+    """Yield name and function: the public functions of a module, the methods of a class, or a
+    function itself.
+    """
     if inspect.ismodule(thing):
         for part in thing.__all__:
             yield from callables(f"{name}.{part}", getattr(thing, part))
     elif inspect.isclass(thing):
-        for part, method in inspect.getmembers(thing, lambda each: inspect.isfunction(each) or inspect.ismethod(each)):
+        for part, method in inspect.getmembers(
+            thing, lambda each: inspect.isfunction(each) or inspect.ismethod(each)
+        ):
             if not part.startswith("_") and method.__module__.startswith("viscoroll"):
                 yield f"{name}.{part}", inspect.unwrap(getattr(method, "__func__", method))
     elif inspect.isfunction(thing):
@@ -54,7 +59,9 @@ def shown_on_the_site():
 SHOWN = shown_on_the_site()
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+@pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 @pytest.mark.parametrize("name", MODULES)
 def test_examples_of_docstrings(name, tmp_path, monkeypatch):
     """Every line of every Examples section, with its output; files go to a temporary folder."""
@@ -67,7 +74,9 @@ def test_examples_of_docstrings(name, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("function", SHOWN, ids=SHOWN.get)
 def test_sections_of_docstrings(function):
-    """Parameters, Returns or Yields, and Raises where there are any, and Examples; lines are as long as titles."""
+    """Parameters, Returns or Yields, and Raises where there are any, and Examples; lines are as
+    long as titles.
+    """
     signature = inspect.signature(function)
     result = "Yields" if inspect.isgeneratorfunction(function) else "Returns"
     needed = {

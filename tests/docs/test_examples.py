@@ -25,7 +25,9 @@ def test_solve_ivp_is_roll(capsys):
 
 def test_a_users_loop_is_roll_to_its_first_order():
     found = example("law_njit")
-    scene, t, h = vr.presets.RUBBER_ROLLER, 0.05, 1e-5
+    scene = vr.presets.RUBBER_ROLLER
+    t = 0.05
+    h = 1e-5
     m = vr.roll(scene, 0.5, 0.5, t, force=0.01, rtol=1e-10)
     off = []
     for step in (2.0 * h, h):

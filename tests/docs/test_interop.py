@@ -15,18 +15,21 @@ from closeness import close
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.io.config import read_law_source
+from viscoroll.roller_toml import read_law_source
 
-LOADING, HEADERS = ROOT / "docs/loading", ROOT / "src/viscoroll/io/tables/c"
+LOADING = ROOT / "docs/loading"
+HEADERS = ROOT / "src/viscoroll/tables/c"
 RUBBER = vr.Prony([0.3, 0.6, 1.5], [2e-2, 1e-3, 1e-5])
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), RUBBER, 0.3)
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M", "M_half_space", "M_cylinder", "N")
-#: A language -> a program that prints the fields of every state, what runs it, and what succeeds where it can run.
+#: A language -> a program that prints the fields of every state, what runs it, and what succeeds
+#: where it can run.
 PROGRAMS = {
     "python": (
         "for x in np.loadtxt('states.csv', delimiter=','):\n"
         "    print(','.join(repr(float(value)) for value in contact(*x).values()))\n",
-        "{ echo 'import numpy as np; from read_law import read_law; contact = read_law(\"law.nc\")'; cat program; }"
+        "{ echo 'import numpy as np; from read_law import read_law; contact = "
+        'read_law("law.nc")\'; cat program; }'
         f" | '{sys.executable}' -",
         "true",
     ),
@@ -40,7 +43,8 @@ PROGRAMS = {
         "octave-cli --eval 'pkg load netcdf'",
     ),
     "R": (
-        'source("read_law.R"); contact <- read_law("law.nc"); x <- read.csv("states.csv", header = FALSE)\n'
+        'source("read_law.R"); contact <- read_law("law.nc"); x <- read.csv("states.csv", header = '
+        "FALSE)\n"
         "for (n in seq_len(nrow(x))) {\n"
         "  s <- contact(x[n, 1], x[n, 2], x[n, 3], x[n, 4])\n"
         '  cat(sprintf("%.17g", unlist(s)), sep = ","); cat("\\n")\n'
@@ -57,11 +61,14 @@ PROGRAMS = {
         "command -v node",
     ),
     "fortran": (
-        "program states\n  use read_law_file\n  implicit none\n  type(law) :: a\n  real(8) :: x(4)\n  integer :: end\n"
+        "program states\n  use read_law_file\n  implicit none\n  type(law) :: a\n  real(8) :: "
+        "x(4)\n  integer :: end\n"
         "  a = read_law('law.nc')\n  open (1, file='states.csv')\n"
         "  do\n    read (1, *, iostat=end) x\n    if (end /= 0) exit\n"
-        "    print '(8(es25.17e3, \",\"), es25.17e3)', contact(a, x(1), x(2), x(3), x(4))\n  end do\nend program\n",
-        "mv program program.f90 && gfortran -O2 -Wall read_law.f90 program.f90 -o program $(nf-config --fflags --flibs)"
+        "    print '(8(es25.17e3, \",\"), es25.17e3)', contact(a, x(1), x(2), x(3), x(4))\n  end "
+        "do\nend program\n",
+        "mv program program.f90 && gfortran -O2 -Wall read_law.f90 program.f90 -o program "
+        "$(nf-config --fflags --flibs)"
         " && ./program",
         "command -v gfortran && command -v nf-config",
     ),
@@ -83,25 +90,32 @@ int main(void) {{
   }}
   return 0;
 }}
-"""
+"""  # noqa: E501
 SLOPES = ("dQ_dV", "dQ_domega", "dM_dV", "dM_half_space_dV", "dM_cylinder_dV")
 _STRICT = "-O2 -Wall -Wextra -Werror -pedantic"
 _HEADER = {"include": '#include "rubber.h"', "open": "law = rubber;"}
-_NETCDF = {"include": '#include "vr_law_netcdf.h"', "open": 'if (vr_law_open("law.nc", &law)) return 2;'}
+_NETCDF = {
+    "include": '#include "vr_law_netcdf.h"',
+    "open": 'if (vr_law_open("law.nc", &law)) return 2;',
+}
 for _name, _filled, _compile, _needed in (
     ("c", _HEADER, f"cc -std=c99 {_STRICT} -x c program -o run -lm", "command -v cc"),
     ("c++", _HEADER, f"c++ -std=c++11 {_STRICT} -x c++ program -o run -lm", "command -v c++"),
     (
-        "c-netcdf", _NETCDF, f"cc -std=c99 {_STRICT} -x c program -x none -o run $(nc-config --cflags --libs) -lm",
+        "c-netcdf",
+        _NETCDF,
+        f"cc -std=c99 {_STRICT} -x c program -x none -o run $(nc-config --cflags --libs) -lm",
         "command -v cc && command -v nc-config",
     ),
-):  # fmt: skip
+):
     PROGRAMS[_name] = (_C.format(**_filled), f"{_compile} && ./run < states.csv", _needed)
 
 
 def output(command, folder=None):
     """What a command of the shell prints that must succeed."""
-    done = subprocess.run(command, shell=True, cwd=folder, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, shell=True, cwd=folder, capture_output=True, text=True, check=False
+    )
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
@@ -117,7 +131,16 @@ def need(command):
         pytest.skip(f"not installed (make interop): {command}")
 
 
-NIP = vr.Cover(RUBBER, nu=0.45, thickness=0.5, on="base", part=0.6, other=RUBBER, other_nu=0.3, other_thickness=0.8)
+NIP = vr.Cover(
+    RUBBER,
+    nu=0.45,
+    thickness=0.5,
+    on="base",
+    part=0.6,
+    other=RUBBER,
+    other_nu=0.3,
+    other_thickness=0.8,
+)
 LINING = vr.Cover(1.0, nu=0.5, thickness=1.0)
 
 
@@ -141,17 +164,26 @@ def folder(request, tmp_path_factory):
 
 
 def states(material):
-    """kappa, mu, V and slip: any speed from far below the slowest time to far beyond the fastest, any creep, rest."""
-    random, count = np.random.default_rng(8), 400
-    kappa, mu = 10.0 ** random.uniform(0.0, 2.0, count), 10.0 ** random.uniform(-3.0, 0.0, count)
+    """kappa, mu, V and slip: any speed from far below the slowest time to far beyond the fastest,
+    any creep, rest.
+    """
+    random = np.random.default_rng(8)
+    count = 400
+    kappa = 10.0 ** random.uniform(0.0, 2.0, count)
+    mu = 10.0 ** random.uniform(-3.0, 0.0, count)
     V = 10.0 ** random.uniform(-8.0, 12.0, count) / kappa * random.choice([-1.0, 1.0], count)
     star = vr.contact(vr.Scene(kappa=kappa, mu=mu, material=material), V, delta=0.0).delta_star
     share = np.where(
-        random.random(count) < 0.5, 10.0 ** random.uniform(-12.0, -0.1, count), random.uniform(0, 1.3, count)
+        random.random(count) < 0.5,
+        10.0 ** random.uniform(-12.0, -0.1, count),
+        random.uniform(0, 1.3, count),
     )
-    share = np.where(np.abs(share - 1.0) < 1e-3, 0.5, share)  # there beta has no digits but those of its condition
+    share = np.where(
+        np.abs(share - 1.0) < 1e-3, 0.5, share
+    )  # there beta has no digits but those of its condition
     slip = share * star * V * random.choice([-1.0, 1.0], count)
-    V[:3], slip[:3] = 0.0, (0.0, 0.1, -0.1)
+    V[:3] = 0.0
+    slip[:3] = (0.0, 0.1, -0.1)
     slip[3] = 0.0
     return np.column_stack([kappa, mu, V, slip])
 
@@ -184,15 +216,22 @@ def test_programs_have_the_contact_of_covers(name, material, tmp_path):
     kappa, mu, V, slip = states(material).T
     scene = vr.Scene(kappa=kappa, mu=mu, material=material)
     slip = slip + V * vr.contact(scene, V, delta=0.0).delta_0
-    V[1:5], slip[3:5] = -0.0, 0.0
+    V[1:5] = -0.0
+    slip[3:5] = 0.0
     folder = folder_of(material, tmp_path)
     (folder / "program").write_text(program)
-    np.savetxt(folder / "states.csv", np.column_stack([kappa, mu, V, slip]), fmt="%.17g", delimiter=",")
-    found = np.array([row for row in csv.reader(io.StringIO(output(command, folder))) if row], dtype=float)
+    np.savetxt(
+        folder / "states.csv", np.column_stack([kappa, mu, V, slip]), fmt="%.17g", delimiter=","
+    )
+    found = np.array(
+        [row for row in csv.reader(io.StringIO(output(command, folder))) if row], dtype=float
+    )
     exact = vr.contact(scene, V, omega=V + slip, fields=FIELDS[:-1])
     scales = {"beta": 1.0, "Q": mu, "epsilon": 1.0} | dict.fromkeys(FIELDS[5:8], mu / kappa)
     for n, field in enumerate(FIELDS[:-1]):
-        assert close(found[:, n], exact[field], tol.INTEROP_OF_COVERS, scale=scales.get(field, 0.0)), (name, field)
+        assert close(
+            found[:, n], exact[field], tol.INTEROP_OF_COVERS, scale=scales.get(field, 0.0)
+        ), (name, field)
 
 
 @pytest.mark.parametrize("name", PROGRAMS)
@@ -205,10 +244,13 @@ def test_programs_have_the_contact_of_the_package(folder, name):
     nan, infinity = SPELLED.get(name, ("nan", "inf"))
     no_states = NO_STATES.replace("nan", nan).replace("inf", infinity)
     (folder / "states.csv").write_text((folder / "moving.csv").read_text() + no_states)
-    found = np.array([row for row in csv.reader(io.StringIO(output(command, folder))) if row], dtype=float)
+    found = np.array(
+        [row for row in csv.reader(io.StringIO(output(command, folder))) if row], dtype=float
+    )
     assert len(found) == len(given) + NO_STATES.count("\n")
     assert np.isnan(found[len(given) :]).all()
-    found, (kappa, mu, V, slip) = found[: len(given)], given.T
+    found = found[: len(given)]
+    (kappa, mu, V, slip) = given.T
     scene = vr.Scene(kappa=kappa, mu=mu, material=vr.load_law(folder / "law.nc"))
     still = V == 0.0
     with np.errstate(invalid="ignore"):
@@ -221,7 +263,9 @@ def test_programs_have_the_contact_of_the_package(folder, name):
             (slip == 0.0) if field == "beta" else np.sign(slip) * mu,
             getattr(exact, field),
         )
-        scale = {"M_half_space": exact.M, "M_cylinder": exact.M, "N": np.abs(exact.N).max()}.get(field, 0.0)
+        scale = {"M_half_space": exact.M, "M_cylinder": exact.M, "N": np.abs(exact.N).max()}.get(
+            field, 0.0
+        )
         assert close(found[:, n], value, tol.INTEROP, scale=scale), (name, field)
     if more:
         moving = ~still
@@ -232,10 +276,13 @@ def test_programs_have_the_contact_of_the_package(folder, name):
         )
         for n, field in enumerate(SLOPES, len(FIELDS)):
             scale = np.broadcast_to(np.abs(scales[field]), V.shape)[moving]
-            assert close(found[moving, n], wanted[field][moving], tol.INTEROP_SLOPES, scale=scale), (name, field)
+            assert close(
+                found[moving, n], wanted[field][moving], tol.INTEROP_SLOPES, scale=scale
+            ), (name, field)
 
 
-#: motions: V and slip at the start, force and torque; a throw, and drives that pass through rest or start from it
+#: motions: V and slip at the start, force and torque; a throw, and drives that pass through rest or
+#: start from it
 ROLLED = {
     "thrown": (0.5, -0.3, 0.0, 0.0),
     "pulled back": (0.3, 0.0, -0.05, 0.0),
@@ -246,7 +293,9 @@ ROLLED = {
 
 @pytest.fixture(scope="module")
 def roller(tmp_path_factory):
-    """A program of vr_roll.h: numbers of a roller and of its motion -> what each call gave, V, omega, x at the end."""
+    """A program of vr_roll.h: numbers of a roller and of its motion -> what each call gave, V,
+    omega, x at the end.
+    """
     need("command -v cc")
     place = tmp_path_factory.mktemp("roll")
     vr.tables.export(vr.tables.law(11.0), place / "paper.h")
@@ -256,9 +305,11 @@ def roller(tmp_path_factory):
         "int main(int count, char **text) {\n"
         "  double a[9];\n  long n, calls;\n  int worst = 0;\n"
         "  for (n = 1; n < count && n < 10; n++) a[n - 1] = atof(text[n]);\n"
-        "  vr_roller r = {&paper, 10.0, 0.3, a[0], 0.5, a[1], a[2], a[3], a[4], a[5], 0.0, 0.0, 0, 0};\n"
+        "  vr_roller r = {&paper, 10.0, 0.3, a[0], 0.5, a[1], a[2], a[3], a[4], a[5], 0.0, 0.0, 0, "
+        "0};\n"
         "  calls = (long)a[7];\n"
-        "  for (n = 0; n < calls; n++) { int e = vr_roll(&r, a[6] / calls, a[8]); if (e > worst) worst = e; }\n"
+        "  for (n = 0; n < calls; n++) { int e = vr_roll(&r, a[6] / calls, a[8]); if (e > worst) "
+        "worst = e; }\n"
         '  printf("%d %.17g %.17g %.17g\\n", worst, r.V, r.V + r.slip, r.x);\n'
         "  return 0;\n}\n"
     )
@@ -276,12 +327,21 @@ def c_rolled(program, *numbers):
 @pytest.mark.parametrize("calls", [1, 40, 40_000])
 @pytest.mark.parametrize("name", ROLLED)
 def test_a_roller_of_c_in_steps_of_any_length(roller, name, calls, rest):
-    """40 units of time in one call or in calls of 1e-3: a drive that turned the roller stopped it there for good."""
+    """40 units of time in one call or in calls of 1e-3: a drive that turned the roller stopped it
+    there for good.
+    """
     V, slip, force, torque = ROLLED[name]
-    gamma, end = 0.5, 40.0
+    gamma = 0.5
+    end = 40.0
     status, *found = c_rolled(roller, gamma, force, torque, rest, V, slip, end, calls, 1e-9)
     motion = vr.roll(
-        vr.Scene(11.0, 10.0, 0.3, gamma), V, V + slip, [end], rtol=1e-11, force=force or None, torque=torque or None
+        vr.Scene(11.0, 10.0, 0.3, gamma),
+        V,
+        V + slip,
+        [end],
+        rtol=1e-11,
+        force=force or None,
+        torque=torque or None,
     )
     exact = np.array([motion.V[0], motion.omega[0], motion.x[0]])
     assert status == 0
@@ -299,7 +359,9 @@ def test_a_roller_of_c_stays_at_rest_and_starts_from_it(roller):
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 @pytest.mark.parametrize("place", range(9))
 def test_a_roller_of_c_refuses_what_is_no_number(roller, place, bad):
-    """Status 2, and a state as it was, whatever is NaN or infinite; a time or tolerance below 0 too."""
+    """Status 2, and a state as it was, whatever is NaN or infinite; a time or tolerance below 0
+    too.
+    """
     numbers = [0.5, 0.01, 0.0, 1e-6, 0.5, -0.3, 1.0, 1, 1e-8]
     if place != 7:  # number of calls
         numbers[place] = bad
@@ -310,7 +372,9 @@ def test_a_roller_of_c_refuses_what_is_no_number(roller, place, bad):
         assert c_rolled(roller, *numbers) == [2, 0.5, 0.2, 0.0]
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # compared is the integrator, not its validity
+@pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # compared is the integrator, not its validity
 def test_the_roller_of_the_page(tmp_path):
     """The program of docs/loading/README.md against roll, for the pair of its file."""
     need("command -v cc")
@@ -322,7 +386,9 @@ def test_the_roller_of_the_page(tmp_path):
     (tmp_path / "roll.c").write_text(page.split("```c\n")[1].split("```")[0])
     printed = output(f"cc -std=c99 {_STRICT} roll.c -o roll -lm && ./roll", tmp_path)
     speed, distance = (float(part.split()[0]) for part in printed.split(","))
-    roller = vr.Cylinder(R=0.1, m=35.5, mu=0.3, load=348.0, material=vr.load_law(tmp_path / "rubber.nc"))
+    roller = vr.Cylinder(
+        R=0.1, m=35.5, mu=0.3, load=348.0, material=vr.load_law(tmp_path / "rubber.nc")
+    )
     m = roller.roll(2.0, 0.0, 1.0)
     assert close(speed, m.V[-1], tol.RIGID_STEEL)
     assert close(distance, m.x[-1], tol.RIGID_STEEL)
@@ -337,10 +403,14 @@ def test_readers_in_c_refuse_what_is_no_law(tmp_path):
     law.to_netcdf(tmp_path / "later.nc", engine="h5netcdf")
     (tmp_path / "open.c").write_text(
         '#include <stdio.h>\n#include "vr_law_netcdf.h"\n'
-        'int main(int n, char **path) { vr_law a; int e = n == 2 ? vr_law_open(path[1], &a) : 0; printf("%d", e); '
+        "int main(int n, char **path) { vr_law a; int e = n == 2 ? vr_law_open(path[1], &a) : 0; "
+        'printf("%d", e); '
         "if (!e) vr_law_close(&a); return 0; }\n"
     )
-    output(f"cc -std=c99 {_STRICT} -I'{HEADERS}' open.c -o open $(nc-config --cflags --libs) -lm", tmp_path)
+    output(
+        f"cc -std=c99 {_STRICT} -I'{HEADERS}' open.c -o open $(nc-config --cflags --libs) -lm",
+        tmp_path,
+    )
     for name, expected in (("grid.nc", -1000), ("later.nc", -1000), ("none.nc", 2)):
         assert int(output(f"./open {name}", tmp_path)) == expected, name
 
@@ -349,8 +419,11 @@ def test_readers_in_c_refuse_what_is_no_law(tmp_path):
 def test_cf_checker_finds_nothing(tmp_path, kind):
     checker = Path(sys.executable).with_name("compliance-checker")
     need(f"test -x '{checker}'")
-    path, law = tmp_path / f"{kind}.nc", vr.tables.law(PAIR)
-    vr.tables.save(law if kind == "law" else vr.tables.build(law, V=[0.1, 1.0], delta=[0.0, 0.1, 0.2]), path)
+    path = tmp_path / f"{kind}.nc"
+    law = vr.tables.law(PAIR)
+    vr.tables.save(
+        law if kind == "law" else vr.tables.build(law, V=[0.1, 1.0], delta=[0.0, 0.1, 0.2]), path
+    )
     command = f"HOME='{tmp_path}' '{checker}' --test cf:1.11 --criteria strict '{path}'"
     assert "All tests passed!" in output(command, tmp_path)
 
@@ -365,12 +438,18 @@ def test_netcdf_of_a_law_by_ncdump(folder):
 #: A program -> what prints the sum of Q over grid.nc, and what succeeds where it can run.
 READERS = {
     "xarray": (
-        f"'{sys.executable}' -W error -c 'import xarray as xr; print(float(xr.open_dataset(\"grid.nc\").Q.sum()))'",
+        f"'{sys.executable}' -W error -c 'import xarray as xr; "
+        'print(float(xr.open_dataset("grid.nc").Q.sum()))\'',
         "true",
     ),
-    "h5py": (f"'{sys.executable}' -W error -c 'import h5py; print(h5py.File(\"grid.nc\")[\"Q\"][()].sum())'", "true"),
+    "h5py": (
+        f"'{sys.executable}' -W error -c 'import h5py; "
+        'print(h5py.File("grid.nc")["Q"][()].sum())\'',
+        "true",
+    ),
     "netCDF4": (
-        f"'{sys.executable}' -W error -c 'import netCDF4; print(netCDF4.Dataset(\"grid.nc\")[\"Q\"][...].sum())'",
+        f"'{sys.executable}' -W error -c 'import netCDF4; "
+        'print(netCDF4.Dataset("grid.nc")["Q"][...].sum())\'',
         f"'{sys.executable}' -c 'import netCDF4'",
     ),
     "ncdump": (
@@ -383,7 +462,8 @@ READERS = {
         "octave-cli --eval 'pkg load netcdf'",
     ),
     "R": (
-        'Rscript -e \'library(ncdf4); cat(sprintf("%.17g", sum(ncvar_get(nc_open("grid.nc"), "Q"))))\'',
+        'Rscript -e \'library(ncdf4); cat(sprintf("%.17g", sum(ncvar_get(nc_open("grid.nc"), '
+        '"Q"))))\'',
         "Rscript -e 'library(ncdf4)'",
     ),
 }
@@ -392,8 +472,11 @@ READERS = {
 @pytest.fixture(scope="module")
 def grid(tmp_path_factory):
     """A grid in a file."""
-    scene, V = vr.presets.PAPER_SECTION_5, np.geomspace(1e-3, 2.0, 12)
-    grid = vr.tables.build(scene, V, delta=np.linspace(-0.01, 0.03, 9), alpha=[1.0, 11.0], method="direct")
+    scene = vr.presets.PAPER_SECTION_5
+    V = np.geomspace(1e-3, 2.0, 12)
+    grid = vr.tables.build(
+        scene, V, delta=np.linspace(-0.01, 0.03, 9), alpha=[1.0, 11.0], method="direct"
+    )
     path = tmp_path_factory.mktemp("grid") / "grid.nc"
     vr.tables.save(grid, path)
     return path
@@ -403,7 +486,9 @@ def grid(tmp_path_factory):
 def test_programs_open_a_grid_without_a_warning(grid, name):
     command, needed = READERS[name]
     need(needed)
-    done = subprocess.run(command, shell=True, cwd=grid.parent, capture_output=True, text=True, check=False)
+    done = subprocess.run(
+        command, shell=True, cwd=grid.parent, capture_output=True, text=True, check=False
+    )
     told = [
         line for line in done.stderr.splitlines() if "execution_exception" not in line
     ]  # Octave 7 at the end of all

@@ -16,13 +16,22 @@ from processes import made
 from run_files import run_of
 
 import viscoroll as vr
-from viscoroll.app import cli
-from viscoroll.app.fmu.variables import MODELS
+from viscoroll import cli
+from viscoroll.fmu.fmu_build import MODELS
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 HOME = [ROOT / name for name in ("README.md", "CHANGELOG.md", "CONTRIBUTING.md")]
-PAGES = [*HOME, *(page for folder in ("docs", "data", "pipeline") for page in sorted((ROOT / folder).rglob("*.md")))]
+PAGES = [
+    *HOME,
+    *(
+        page
+        for folder in ("docs", "data", "pipeline")
+        for page in sorted((ROOT / folder).rglob("*.md"))
+    ),
+]
 FMUS = ROOT / "docs/loading/fmu_variables.md"
 
 
@@ -51,9 +60,12 @@ def test_readme_block_runs(capsys):
 
 @pytest.mark.parametrize("model", MODELS)
 def test_variables_of_fmus_are_listed(model):
-    """Every variable of a model in order, with its start and unit, as in its modelDescription.xml."""
+    """Every variable of a model in order, with its start and unit, as in its
+    modelDescription.xml.
+    """
     rows = [
-        f"| `{v.name}` | {v.causality} | {v.unit} | {'' if v.start is None else f'{v.start:g}'} | {v.text} |"
+        f"| `{v.name}` | {v.causality} | {v.unit} | {'' if v.start is None else f'{v.start:g}'} | "
+        f"{v.text} |"
         for v in MODELS[model].variables
     ]
     head = f"| `{model}` | causality | unit | start | meaning |\n| --- | --- | --- | --- | --- |\n"
@@ -63,7 +75,8 @@ def test_variables_of_fmus_are_listed(model):
 def test_readme_grid(tmp_path, monkeypatch, capsys):
     """The lines on a grid, of one that holds the points which they name."""
     monkeypatch.chdir(tmp_path)
-    scene, V = vr.presets.PAPER_SECTION_5_ROUNDED, np.geomspace(0.1, 1.0, 31)
+    scene = vr.presets.PAPER_SECTION_5_ROUNDED
+    V = np.geomspace(0.1, 1.0, 31)
     grid = vr.tables.build(scene, V, delta=np.linspace(-0.01, 0.01, 41), alpha=[7.0, 11.0, 16.0])
     (tmp_path / "data/tables").mkdir(parents=True)
     vr.tables.save(grid, "data/tables/grid.nc")
@@ -102,14 +115,24 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys, tmp_path):
     """And finds the truth by which its data were made, in any folder."""
     monkeypatch.chdir(tmp_path)
     session = {}
-    codes = [code for page in ("identify", "identify_design") for code in blocks(ROOT / f"docs/{page}.md", "python")]
+    codes = [
+        code
+        for page in ("identify", "identify_design")
+        for code in blocks(ROOT / f"docs/{page}.md", "python")
+    ]
     for code in codes:
         shortened = code.replace("starts=2", "starts=1").replace("print(fit)", "print(repr(fit))")
         exec(compile(shortened, "identify", "exec"), session)
     bearing = {"brake": BRAKE, "drag": DRAG}
-    for fit, truth in (("launch", {name: TRUTH[name] for name in ("mu", "E")} | bearing), ("fit", TRUTH | bearing)):
+    for fit, truth in (
+        ("launch", {name: TRUTH[name] for name in ("mu", "E")} | bearing),
+        ("fit", TRUTH | bearing),
+    ):
         for name, value in truth.items():
-            assert abs(session[fit].values[name] - value) < 3.0 * session[fit].stderr[name], (fit, name)
+            assert abs(session[fit].values[name] - value) < 3.0 * session[fit].stderr[name], (
+                fit,
+                name,
+            )
         assert not session[fit].misfit
     shown = capsys.readouterr().out
     assert "Identification of 7 unknowns from 240 points" in shown
@@ -117,9 +140,11 @@ def test_the_page_of_measurements_runs(monkeypatch, capsys, tmp_path):
 
 
 def test_howto_scene_files_are_read(tmp_path):
-    from viscoroll.io.config import read_roller
+    from viscoroll.roller_toml import read_roller
 
-    for text in (text for page in (ROOT / "docs/howto").glob("*.md") for text in blocks(page, "toml")):
+    for text in (
+        text for page in (ROOT / "docs/howto").glob("*.md") for text in blocks(page, "toml")
+    ):
         if text.startswith("[heat]"):  # of a run file
             continue
         (tmp_path / "scene.toml").write_text(text)
@@ -130,7 +155,9 @@ def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):
     """Every command and snippet in its order; the sample files are made as small as a test."""
     monkeypatch.chdir(tmp_path)
     for page in (ROOT / "docs/ensembles.md", ROOT / "docs/sensitivity.md"):
-        for language, code in re.findall(r"^```(sh|python)\n(.*?)^```$", page.read_text(), re.S | re.M):
+        for language, code in re.findall(
+            r"^```(sh|python)\n(.*?)^```$", page.read_text(), re.S | re.M
+        ):
             if language == "python":
                 exec(compile(code.replace("n=4096", "n=16"), page.name, "exec"), {})
                 continue
@@ -144,14 +171,24 @@ def test_run_file_pages_can_be_followed(tmp_path, monkeypatch, capsys):
                     file.write_text(file.read_text().replace("n = 20_000", "n = 64"))
     assert "mm" in capsys.readouterr().out
     made = {path.name for path in tmp_path.iterdir()}
-    assert made == {"samples", "results.zarr", "results.png", "results.nc", "sensitivity.png", "sensitivity.nc"}
+    assert made == {
+        "samples",
+        "results.zarr",
+        "results.png",
+        "results.nc",
+        "sensitivity.png",
+        "sensitivity.nc",
+    }
 
 
 def test_forms_of_an_input_are_read(tmp_path):
     page = (ROOT / "docs/ensembles.md").read_text()
     (tmp_path / "measured.csv").write_text("friction\n0.1\n0.2\n")
     for form in re.findall(r"^mu = .*$", page, re.M):
-        text = f'preset = "paper-section-5"\n[scene]\n{form}\n[start]\nV0 = 1.0\nomega0 = 0.0\n[run]\nn = 1\nt = 1.0'
+        text = (
+            f'preset = "paper-section-5"\n[scene]\n{form}\n[start]\nV0 = 1.0\nomega0 = '
+            "0.0\n[run]\nn = 1\nt = 1.0"
+        )
         inputs = run_of(text, tmp_path).inputs
         assert inputs.uncertain == (() if form == "mu = 0.2" else ("mu",))
 
@@ -159,7 +196,9 @@ def test_forms_of_an_input_are_read(tmp_path):
 def test_relative_links_exist():
     for page in PAGES:
         for target in re.findall(r"\]\(([^)\s]+)\)", page.read_text()):
-            if target.startswith(("http://", "https://", "#viscoroll.")):  # the last: names, which Sphinx looks up
+            if target.startswith(
+                ("http://", "https://", "#viscoroll.")
+            ):  # the last: names, which Sphinx looks up
                 continue
             name, _, anchor = target.partition("#")
             # pages of the gallery are made from its examples
@@ -168,7 +207,9 @@ def test_relative_links_exist():
             assert found.exists(), (page, target)
             if anchor:
                 headings = re.findall(r"^#+ (.+)$", found.read_text(), re.MULTILINE)
-                assert anchor in [re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings], (page, target)
+                assert anchor in [
+                    re.sub(r"[^\w -]", "", h).lower().replace(" ", "-") for h in headings
+                ], (page, target)
 
 
 def test_files_named_in_the_text_exist():
@@ -182,13 +223,19 @@ def test_files_named_in_the_text_exist():
 def test_the_pages_of_data_and_pipeline_name_what_is_there():
     """Every file of data, and every stage, by name; no others."""
     page = (ROOT / "data/README.md").read_text()
-    here = {path.name for folder in ("reference", "results") for path in (ROOT / "data" / folder).glob("*.[!p]*")}
+    here = {
+        path.name
+        for folder in ("reference", "results")
+        for path in (ROOT / "data" / folder).glob("*.[!p]*")
+    }
     said = set(re.findall(r"`(?:\w+/)*([\w-]+\.(?:csv|json|nc))`", page))
     tables = tomllib.loads((ROOT / "pipeline/config.toml").read_text())["tables"]["laws"]
     made = {"law.nc", *(f"{name}.nc" for name in tables)}
     assert said == here | made
     card = (ROOT / "pipeline/README.md").read_text()
-    assert set(re.findall(r"`(\w+\.py)`", card)) == {path.name for path in (ROOT / "pipeline").glob("[!_]*.py")}
+    assert set(re.findall(r"`(\w+\.py)`", card)) == {
+        path.name for path in (ROOT / "pipeline").glob("[!_]*.py")
+    }
     page = (ROOT / "pipeline/evidence/README.md").read_text()
     assert set(re.findall(r"`(\w+\.py)`", page)) == {
         path.name for path in (ROOT / "pipeline/evidence").glob("[!_]*.py")

@@ -1,4 +1,6 @@
-"""The benchmark runs at smoke sizes: results complete, errors sane.  Its times are of no interest here."""
+"""The benchmark runs at smoke sizes: results complete, errors sane.  Its times are of no interest
+here.
+"""
 
 import json
 import tomllib
@@ -22,23 +24,34 @@ def results(tmp_path_factory):
 def measured(results, *parts):
     made("evidence.bench", "--only", *parts, "--quick", "-o", results)
     found = json.loads(results.read_text())["parts"]
-    assert all({"cpu", "cores", "date", "numba", "python"} <= found[part]["machine"].keys() for part in parts)
+    assert all(
+        {"cpu", "cores", "date", "numba", "python"} <= found[part]["machine"].keys()
+        for part in parts
+    )
     return [found[part] for part in parts]
 
 
 def check_rows(result):
-    assert {row["method"] for row in result["rows"]} == set(result["methods"]) - set(result["skipped"])
+    assert {row["method"] for row in result["rows"]} == set(result["methods"]) - set(
+        result["skipped"]
+    )
     for row in result["rows"]:
         assert row["us"] > 0.0
         assert row["failed"] == 0, row
         for name in ("max", "p99"):
-            assert 0.0 <= row[name] < (tol.BENCH_OWN if row["method"] in ("table", "flow") else tol.BENCH_PEER), row
+            assert (
+                0.0
+                <= row[name]
+                < (tol.BENCH_OWN if row["method"] in ("table", "flow") else tol.BENCH_PEER)
+            ), row
     for group in result["reference"].values():
         assert group["max"] < tol.BENCH_REFERENCE
 
 
 def test_motions(results):
-    """Every method and peer that can run here; the paper's method in C is skipped where GSL is missing."""
+    """Every method and peer that can run here; the paper's method in C is skipped where GSL is
+    missing.
+    """
     work, own = measured(results, "work-precision", "own-parameters")
     check_rows(work)
     check_rows(own)
@@ -83,16 +96,28 @@ def test_first_calls(results):
 
 
 def test_last_release(tmp_path):
-    """Told for every case, here of a release that is this commit; a clone without the commit says so."""
+    """Told for every case, here of a release that is this commit; a clone without the commit says
+    so.
+    """
     section = tomllib.loads(CONFIG.read_text())["bench"]["last-release"]
 
     def at(commit):
         config = tmp_path / "config.toml"
         text = CONFIG.read_text().replace(section["commit"], commit).replace("20_000", "5000")
         config.write_text(text)
-        return "--only", "last-release", "--quick", "--config", config, "-o", tmp_path / "bench.json"
+        return (
+            "--only",
+            "last-release",
+            "--quick",
+            "--config",
+            config,
+            "-o",
+            tmp_path / "bench.json",
+        )
 
-    assert "no commit 0000000 here; a shallow clone has few" in stage_refused("evidence.bench", *at("0000000"))
+    assert "no commit 0000000 here; a shallow clone has few" in stage_refused(
+        "evidence.bench", *at("0000000")
+    )
     if not (ROOT / ".git").exists():
         pytest.skip("not a clone")
     said = made("evidence.bench", *at("HEAD"))

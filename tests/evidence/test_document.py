@@ -7,7 +7,9 @@ import pytest
 from places import full_sizes, kept
 from processes import made, stage, stage_refused
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 
 def test_document_fills_and_refuses(tmp_path):
@@ -23,11 +25,14 @@ def test_document_fills_and_refuses(tmp_path):
         page.write_text(text)
         assert stage_refused("evidence.document", page).startswith("document: ")
         assert page.read_text() == text
-    assert "nowhere: no folder" in stage_refused("evidence.document", "--results", tmp_path / "nowhere", page)
+    assert "nowhere: no folder" in stage_refused(
+        "evidence.document", "--results", tmp_path / "nowhere", page
+    )
 
 
 def test_measure_runs_and_document_reads_it(tmp_path):
-    results, page = tmp_path / "measured.json", tmp_path / "README.md"
+    results = tmp_path / "measured.json"
+    page = tmp_path / "README.md"
     made("evidence.measure", "--quick", "-o", results)
     measured = json.loads(results.read_text())
     committed = kept("measured.json")
@@ -40,8 +45,15 @@ def test_measure_runs_and_document_reads_it(tmp_path):
 
 @pytest.mark.parametrize(
     ("file", "section"),
-    [("measured", "measure"), ("ensembles", "ensembles"), ("outside", "outside"), ("torture", "torture")],
+    [
+        ("measured", "measure"),
+        ("ensembles", "ensembles"),
+        ("outside", "outside"),
+        ("torture", "torture"),
+    ],
 )
 def test_committed_sizes_are_those_of_production(file, section):
     found = kept(f"{file}.json")
-    assert all(part["sizes"] == full_sizes(section) for part in found.get("parts", {"": found}).values())
+    assert all(
+        part["sizes"] == full_sizes(section) for part in found.get("parts", {"": found}).values()
+    )

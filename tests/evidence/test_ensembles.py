@@ -10,7 +10,7 @@ from places import kept
 from processes import made
 
 import viscoroll as vr
-from viscoroll.io.runs import read_run, run_ensemble
+from viscoroll.runs import read_run, run_ensemble
 
 
 def test_a_cluster_gives_the_same_files(tmp_path):
@@ -20,14 +20,28 @@ def test_a_cluster_gives_the_same_files(tmp_path):
 
     text = vr.datasets.path("ensemble.toml").read_text().replace("20_000", "1_200\nblock = 100")
     (tmp_path / "run.toml").write_text(text)
-    alone, store = tmp_path / "alone.zarr", tmp_path / "store.zarr"
+    alone = tmp_path / "alone.zarr"
+    store = tmp_path / "store.zarr"
     run_ensemble(read_run(tmp_path / "run.toml"), alone)
     options = ["--cluster", "local", "--threads", "2"]
-    command = [sys.executable, "-m", "viscoroll", "ensemble", tmp_path / "run.toml", "-o", store, *options]
+    command = [
+        sys.executable,
+        "-m",
+        "viscoroll",
+        "ensemble",
+        tmp_path / "run.toml",
+        "-o",
+        store,
+        *options,
+    ]
     process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
     while process.poll() is None and len(list(store.glob("records/0*"))) < 2:
         time.sleep(0.01)
-    workers = [p for p in psutil.Process(process.pid).children(recursive=True) if "spawn_main" in " ".join(p.cmdline())]
+    workers = [
+        p
+        for p in psutil.Process(process.pid).children(recursive=True)
+        if "spawn_main" in " ".join(p.cmdline())
+    ]
     workers[-1].kill()
     assert process.wait(timeout=120) == 0
     files = {path.relative_to(alone) for path in alone.rglob("*") if path.is_file()}
@@ -35,7 +49,9 @@ def test_a_cluster_gives_the_same_files(tmp_path):
     assert all((store / file).read_bytes() == (alone / file).read_bytes() for file in files)
 
 
-@pytest.mark.parametrize(("name", "key"), [("evidence.measure.ensembles", "rows"), ("evidence.torture", "parts")])
+@pytest.mark.parametrize(
+    ("name", "key"), [("evidence.measure.ensembles", "rows"), ("evidence.torture", "parts")]
+)
 def test_stages_run(tmp_path, name, key):
     options = ["--only", "ensembles"] if name == "evidence.torture" else []
     made(name, *options, "--quick", "-o", tmp_path / "results.json")
@@ -43,7 +59,9 @@ def test_stages_run(tmp_path, name, key):
 
 
 def test_committed_figures():
-    """10^8 motions of a scene, and 10^6 with seven uncertain inputs, in a minute of two free cores and 1 GB."""
+    """10^8 motions of a scene, and 10^6 with seven uncertain inputs, in a minute of two free cores
+    and 1 GB.
+    """
     committed = kept("ensembles.json")
     for name in ("100000000 motions of a scene", "1000000 motions, seven uncertain inputs"):
         assert committed["rows"][name]["cpu_s"] / committed["threads"] < 60.0

@@ -1,4 +1,6 @@
-"""Every figure draws without a warning, is labelled, and is saved whole or not at all; the stages behind them."""
+"""Every figure draws without a warning, is labelled, and is saved whole or not at all; the stages
+behind them.
+"""
 
 import csv
 import json
@@ -14,17 +16,24 @@ from processes import made, stage_refused
 import viscoroll as vr
 from pipeline.figures import FIGURES, GALLERY
 from pipeline.figures.captions import SECTIONS
-from viscoroll.core.plots.style import save
+from viscoroll.core.plots import save
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 
 @pytest.fixture(scope="module")
 def drawn():
     starts = np.random.default_rng(0).uniform(-2.0, 2.0, (2, 200))
-    few = vr.ensemble(vr.presets.PAPER_SECTION_5_ROUNDED, *starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4)
-    scene, V = vr.presets.PAPER_SECTION_5_ROUNDED, np.geomspace(1e-2, 4.0, 21)
-    grid = vr.tables.build(scene, V, delta=vr.tables.creep_nodes(scene, V, 21), alpha=[1.5, 11.0, 81.5])
+    few = vr.ensemble(
+        vr.presets.PAPER_SECTION_5_ROUNDED, *starts, np.linspace(0.0, 4e-3, 9), rtol=1e-4
+    )
+    scene = vr.presets.PAPER_SECTION_5_ROUNDED
+    V = np.geomspace(1e-2, 4.0, 21)
+    grid = vr.tables.build(
+        scene, V, delta=vr.tables.creep_nodes(scene, V, 21), alpha=[1.5, 11.0, 81.5]
+    )
     given = {"ensemble": (few.to_xarray(),), "grid": (grid,)}
     return {name: draw(*given.get(name, ())) for name, draw in FIGURES.items()}
 
@@ -102,10 +111,13 @@ kept = 40
 def demo(tmp_path_factory):
     """Configuration and output folder of a small run of every stage."""
     folder = tmp_path_factory.mktemp("demo")
-    config, out = folder / "small.toml", folder / "out"
+    config = folder / "small.toml"
+    out = folder / "out"
     config.write_text(_SMALL.format(law=folder / "paper.nc", folder=folder))
     assert "report: " in made("", "--config", config, "-o", out, "--tables", folder)
-    assert made("", "--config", config, "-o", out, "--tables", folder) == ""  # nothing is out of date
+    assert (
+        made("", "--config", config, "-o", out, "--tables", folder) == ""
+    )  # nothing is out of date
     return config, out
 
 
@@ -119,7 +131,12 @@ def test_stages_leave_records(demo):
 
 def test_motions_from_tables_are_those_of_root_solves(demo):
     rows = list(csv.DictReader((demo[1] / "benchmark.csv").read_text().splitlines()))
-    assert [row["law by"] for row in rows] == ["grid, 15 by 15", "law file", "numerical roots", "vr.roll"]
+    assert [row["law by"] for row in rows] == [
+        "grid, 15 by 15",
+        "law file",
+        "numerical roots",
+        "vr.roll",
+    ]
     for kind in ("paper", "random"):
         grid, *exact = (float(row[f"error, {kind}"]) / float(row["rtol"]) for row in rows)
         assert 0.0 < max(exact) < tol.DEMO_MOTION < grid
@@ -131,20 +148,25 @@ def test_summary_page(demo):
     _, out = demo
     text = (out / "index.html").read_text()
     links = set(re.findall('href="([^"]+)"', text))
-    assert all(escape(caption) in text for figures in SECTIONS.values() for caption in figures.values())
+    assert all(
+        escape(caption) in text for figures in SECTIONS.values() for caption in figures.values()
+    )
     assert (
         text.index("preset paper-section-5")
         < text.index("Free motion from three initial conditions")
         < text.index("Duration of the stages")
     )
     assert "below the range of the quasi-steady assumption" in text
-    assert text.count("data:image/png;base64,") == sum(map(len, SECTIONS.values())) + 1  # and the benchmark's
+    assert (
+        text.count("data:image/png;base64,") == sum(map(len, SECTIONS.values())) + 1
+    )  # and the benchmark's
     assert {"ensemble.nc", "validation.csv", "validation.txt"} <= links
     assert all((out / target).exists() for target in links)
 
 
 def test_stage_refuses_in_one_line(demo, tmp_path):
-    config, small = tmp_path / "bad.toml", demo[0].read_text()
+    config = tmp_path / "bad.toml"
+    small = demo[0].read_text()
     for name, old, new, words in (
         ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
         ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),

@@ -15,14 +15,24 @@ from pipeline.evidence.results import rows_of
 
 
 def test_stage_plans_an_experiment(tmp_path):
-    made("evidence.measure.identification", "--quick", "--only", "learn", "-o", tmp_path / "identification.json")
+    made(
+        "evidence.measure.identification",
+        "--quick",
+        "--only",
+        "learn",
+        "-o",
+        tmp_path / "identification.json",
+    )
     (row, *_) = json.loads((tmp_path / "identification.json").read_text())["parts"]["learn"]["rows"]
     committed = committed_rows("learn")[0]
-    found, known = row.pop("unknowns"), committed.pop("unknowns")
+    found = row.pop("unknowns")
+    known = committed.pop("unknowns")
     assert row == committed
     for name, one in known.items():
         for key, value in one.items():
-            assert found[name][key] == value is None or close(found[name][key], value, tol.INTERVAL), (name, key)
+            assert found[name][key] == value is None or close(
+                found[name][key], value, tol.INTERVAL
+            ), (name, key)
 
 
 def committed_rows(part):
@@ -80,7 +90,8 @@ def test_an_end_that_a_range_makes_is_told():
 
 
 def test_an_interval_reaches_over_its_branches():
-    """A walk from the best fit, a narrow well, ends at its rim; the truth lies on the plateau behind it.
+    """A walk from the best fit, a narrow well, ends at its rim; the truth lies on the plateau
+    behind it.
 
     By a dense scan chi2 rises by 2.91 up to the upper bound.
     """
@@ -93,7 +104,9 @@ def test_an_interval_reaches_over_its_branches():
 
 
 def test_ends_of_an_interval_are_seen_from_what_fits_of_other_unknowns():
-    """Q at one speed: along T_ref at its bound a softer roller fits; the walk from the best fit never comes there."""
+    """Q at one speed: along T_ref at its bound a softer roller fits; the walk from the best fit
+    never comes there.
+    """
     data = [traction((0.1,), seed=0)]
     fit = vr.identify(roller(), WIDE, data, starts=1)
     low, high = fit.intervals()["E"]
@@ -101,7 +114,12 @@ def test_ends_of_an_interval_are_seen_from_what_fits_of_other_unknowns():
     others = {name: span for name, span in WIDE.items() if name != "E"}
     for end in (low, high):
         held = [
-            vr.identify(roller(**fit.values | {"E": end, "E_1": E_1, "T_ref": T_ref}), others, data, starts=1).chi2
+            vr.identify(
+                roller(**fit.values | {"E": end, "E_1": E_1, "T_ref": T_ref}),
+                others,
+                data,
+                starts=1,
+            ).chi2
             for E_1, T_ref in ((9.0, 1e-3), (0.8, 0.099))
         ]
         assert close(min(held) - fit.chi2, 3.841, tol.INTERVAL)

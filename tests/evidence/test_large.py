@@ -11,7 +11,9 @@ from processes import printed
 
 @pytest.mark.parametrize("name", ["grid", "flow map", "integrated"])
 def test_large_arrays_in_bounded_memory(name):
-    """Beside input and result a call takes the same few megabytes whatever its size (10^8 elements: make prove)."""
+    """Beside input and result a call takes the same few megabytes whatever its size (10^8 elements:
+    make prove).
+    """
     measured = importlib.import_module("pipeline.evidence.measure.large").measured
     if not Path("/proc/self/status").exists():
         pytest.skip("the system does not tell a process its peak")

@@ -1,4 +1,6 @@
-"""How thick a layer has to be: its kernel by elasticity, both ends of thickness, and what the page says."""
+"""How thick a layer has to be: its kernel by elasticity, both ends of thickness, and what the page
+says.
+"""
 
 import json
 import re
@@ -10,7 +12,7 @@ from closeness import close
 from places import DOCS
 
 from data.reference import layer
-from viscoroll.contact_law.validity.assumptions import THICK_LIMIT
+from viscoroll.contact_mechanics.assumptions import THICK_LIMIT
 
 
 @pytest.mark.parametrize("nu", layer.RATIOS)
@@ -24,24 +26,38 @@ def test_a_thick_layer_is_a_half_space(nu):
 
 @pytest.mark.parametrize("nu", [0.3, 0.5])
 def test_a_thin_layer_is_a_foundation(nu):
-    """Springs where it is compressible, a^3/h; else what is squeezed flows aside, 2 E a^5/(45 R h^3).
+    """Springs where it is compressible, a^3/h; else what is squeezed flows aside, 2 E a^5/(45 R
+    h^3).
 
-    K. L. Johnson, Contact Mechanics, 1985, Sect. 5.8.  At its edges the contact is as if longer, by a part of h.
+    K. L. Johnson, Contact Mechanics, 1985, Sect. 5.8.  At its edges the contact is as if longer, by
+    a part of h.
     """
     springs = 2.0 / 3.0 * (1.0 - nu) / ((1.0 + nu) * (1.0 - 2.0 * nu)) if nu < 0.5 else 2.0 / 45.0
-    hertz, power = 0.25 * np.pi / (1.0 - nu**2), 1 if nu < 0.5 else 3
-    far, near = ((layer.load(h, nu, 121) * hertz / (springs / h**power)) ** (1.0 / (power + 2)) for h in (0.08, 0.04))
+    hertz = 0.25 * np.pi / (1.0 - nu**2)
+    power = 1 if nu < 0.5 else 3
+    far, near = (
+        (layer.load(h, nu, 121) * hertz / (springs / h**power)) ** (1.0 / (power + 2))
+        for h in (0.08, 0.04)
+    )
     assert close(2.0 * near - far, 1.0, tol.LAYER_THIN)
 
 
 def test_the_page_states_what_is_kept():
-    """And what is kept is what is computed; validity takes the least of the limits, rounded down."""
+    """And what is kept is what is computed; validity takes the least of the limits, rounded
+    down.
+    """
     rows = json.loads(layer.TARGET.read_text())["rows"]
     assert [row["nu"] for row in rows] == list(layer.RATIOS)
     page = (DOCS / "validity_covers.md").read_text()
-    cells = [re.findall(r"[\d.]+", line) for line in re.findall(r"^\| \d\.\d+ \|(?: \d\.\d\d \|)+$", page, re.M)]
+    cells = [
+        re.findall(r"[\d.]+", line)
+        for line in re.findall(r"^\| \d\.\d+ \|(?: \d\.\d\d \|)+$", page, re.M)
+    ]
     stated = [list(map(float, line)) for line in cells if len(line) == 2 + len(layer.LENGTHS)]
-    assert stated == [[row["nu"], *(round(v, 2) for v in (*row["shorter"].values(), row["limit"]))] for row in rows]
+    assert stated == [
+        [row["nu"], *(round(v, 2) for v in (*row["shorter"].values(), row["limit"]))]
+        for row in rows
+    ]
     assert close(layer.longest(0.5), rows[-1]["limit"], tol.LAYER_KEPT)
     assert close(layer.shorter(0.3, 2.0), rows[0]["shorter"]["2"], tol.LAYER_KEPT)
     least = min(row["limit"] for row in rows)

@@ -1,4 +1,6 @@
-"""The results of the planted defects (pipeline/evidence/mutate/) are of all of them; stages that want more say so."""
+"""The results of the planted defects (pipeline/evidence/mutate/) are of all of them; stages that
+want more say so.
+"""
 
 import tolerances as tol
 from places import kept
@@ -8,7 +10,9 @@ from pipeline.evidence.mutate.mutants import MUTANTS
 
 def test_results_are_of_known_defects():
     results = kept("mutants.json")
-    assert set(results) == {f"{mutant.file}: {mutant.old.strip()} -> {mutant.new.strip()}" for mutant in MUTANTS}
+    assert set(results) == {
+        f"{mutant.file}: {mutant.old.strip()} -> {mutant.new.strip()}" for mutant in MUTANTS
+    }
     survived = sum(result["outcome"] == "survived" for result in results.values())
     assert survived <= (1.0 - tol.MUTANTS_KILLED) * len(results)
     for result in results.values():

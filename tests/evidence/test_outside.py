@@ -11,7 +11,9 @@ from processes import made, stage_refused
 MISSING = [name for name in ("chromium", "node", "cc") if shutil.which(name) is None]
 
 
-@pytest.mark.skipif(bool(MISSING), reason=f"not installed (make interop site-tools): {', '.join(MISSING)}")
+@pytest.mark.skipif(
+    bool(MISSING), reason=f"not installed (make interop site-tools): {', '.join(MISSING)}"
+)
 def test_stage_finds_the_law_in_every_program(tmp_path):
     made("evidence.measure.outside", "--quick", "-o", tmp_path / "outside.json")
     found = json.loads((tmp_path / "outside.json").read_text())

@@ -16,7 +16,9 @@ from data.reference.check_motions import roll_precise
 from pipeline.evidence.truth.reference import DRIVEN, FREE, PATHS, driven_motion, free_motion
 from pipeline.stage import read_rows
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 FREE_MOTIONS = [list(rows) for _, rows in groupby(read_rows(FREE), itemgetter("motion"))]
 DRIVEN_MOTIONS = json.loads(DRIVEN.read_text(encoding="utf-8"))["motions"]
@@ -38,16 +40,26 @@ def test_free_motions_hold_together():
 
 
 def test_driven_motions_hold_together():
-    """Thirty motions, each shown to 1e-17 by a second one; every regime and V = 0 in stick and in slip among them."""
+    """Thirty motions, each shown to 1e-17 by a second one; every regime and V = 0 in stick and in
+    slip among them.
+    """
     assert len(DRIVEN_MOTIONS) == 30
     assert max(row["difference"] for row in DRIVEN_MOTIONS) < tol.PRECISE_MOTION
     assert {regime for row in DRIVEN_MOTIONS for _, regime in row["switches"]} == {
-        "full slip", "partial slip", "locked", "held"
-    }  # fmt: skip
+        "full slip",
+        "partial slip",
+        "locked",
+        "held",
+    }
     assert sum(bool(row["reversals"]) for row in DRIVEN_MOTIONS) >= 6
     assert {name for row in DRIVEN_MOTIONS for name in row["drive"]} == {
-        "force", "torque", "slope", "brake", "V", "omega"
-    }  # fmt: skip
+        "force",
+        "torque",
+        "slope",
+        "brake",
+        "V",
+        "omega",
+    }
 
 
 @pytest.mark.parametrize("number", [0, 9, 10, 37])
@@ -60,7 +72,9 @@ def test_free_motions_are_found_again(number):
     assert len(motion.switches) == rows[0]["switches"]
 
 
-@pytest.mark.parametrize("name", ["pushed from rest", "slid off rest by a torque", "a jump there and back"])
+@pytest.mark.parametrize(
+    "name", ["pushed from rest", "slid off rest by a torque", "a jump there and back"]
+)
 def test_driven_motions_are_found_again(name):
     row = next(row for row in DRIVEN_MOTIONS if row["name"] == name)
     found_again(driven_motion(row), row, ("V", "omega", *PATHS))

@@ -11,13 +11,19 @@ CHECK_VALUES = DATA / "reference/check_values.csv"
 
 
 def test_check_values_are_made_again(tmp_path):
-    """The first states and motions, to the last digit, from the inputs that they hold; driven: ``test_precise.py``."""
+    """The first states and motions, to the last digit, from the inputs that they hold; driven:
+    ``test_precise.py``.
+    """
     for make, count, name, lines in (
-        (check_values.make, 40, "check_values.csv", 40), (check_motions.free, 1, "check_motions.csv", 7),
-    ):  # fmt: skip
+        (check_values.make, 40, "check_values.csv", 40),
+        (check_motions.free, 1, "check_motions.csv", 7),
+    ):
         make(tmp_path, count)
         again, kept = (
-            [row | {"difference": ""} for row in csv.DictReader((folder / name).read_text().splitlines())]
+            [
+                row | {"difference": ""}
+                for row in csv.DictReader((folder / name).read_text().splitlines())
+            ]
             for folder in (tmp_path, CHECK_VALUES.parent)
         )
         assert again == kept[:lines]

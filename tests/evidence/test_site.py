@@ -1,4 +1,6 @@
-"""The site as a reader meets it: built without a warning, and open in a real browser, which reaches nothing else."""
+"""The site as a reader meets it: built without a warning, and open in a real browser, which reaches
+nothing else.
+"""
 
 import functools
 import html
@@ -21,9 +23,15 @@ import viscoroll as vr
 
 SITE = ROOT / "docs/_build/html"
 NEEDED = (
-    "fmpy", "myst_parser", "numpydoc", "pydata_sphinx_theme", "sphinx", "sphinx_copybutton", "sphinx_design",
+    "fmpy",
+    "myst_parser",
+    "numpydoc",
+    "pydata_sphinx_theme",
+    "sphinx",
+    "sphinx_copybutton",
+    "sphinx_design",
     "sphinx_gallery",
-)  # fmt: skip
+)
 BUILD = "-W --keep-going -n -E -q -b html docs docs/_build/html"
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 FEWEST_GALLERY_PAGES = 12
@@ -35,7 +43,9 @@ REMARKS = ("[PST]", "Got invalid theme mode")
 
 @pytest.fixture(scope="module")
 def site(tmp_path_factory):
-    """The site as `make docs` builds it: any warning is an error.  Of several workers one builds, the others wait."""
+    """The site as `make docs` builds it: any warning is an error.  Of several workers one builds,
+    the others wait.
+    """
     missing = [name for name in NEEDED if importlib.util.find_spec(name) is None]
     if missing:
         pytest.skip(f"not installed (make docs): {', '.join(missing)}")
@@ -43,7 +53,12 @@ def site(tmp_path_factory):
     folder = folder.parent if "PYTEST_XDIST_WORKER" in os.environ else folder
     with FileLock(folder / "site.lock"):
         if not (folder / "site.built").exists():
-            for made in ("_build", "api", "gallery", "tutorial"):  # of examples and names that may be gone
+            for made in (
+                "_build",
+                "api",
+                "gallery",
+                "tutorial",
+            ):  # of examples and names that may be gone
                 shutil.rmtree(ROOT / "docs" / made, ignore_errors=True)
             command = [sys.executable, "-m", "sphinx", *BUILD.split()]
             built = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
@@ -77,9 +92,11 @@ def test_every_gallery_page_shows_a_picture(site):
 
 @pytest.fixture(scope="module")
 def browse(site, tmp_path_factory):
-    """A browser on a server of the site: a function from a path to the page as it stands, and what went wrong.
+    """A browser on a server of the site: a function from a path to the page as it stands, and what
+    went wrong.
 
-    ``probe.html`` may be written into the folder that it gives; all names but the server's are unknown to the browser.
+    ``probe.html`` may be written into the folder that it gives; all names but the server's are
+    unknown to the browser.
     """
     browser = next(filter(None, map(shutil.which, BROWSERS)), None)
     if browser is None:
@@ -90,10 +107,13 @@ def browse(site, tmp_path_factory):
 
     class Handler(SimpleHTTPRequestHandler):
         def translate_path(self, path):
-            return str(probe) if urlsplit(path).path == "/probe.html" else super().translate_path(path)
+            return (
+                str(probe) if urlsplit(path).path == "/probe.html" else super().translate_path(path)
+            )
 
         def end_headers(self):
-            # else two probes written within one second are one page to the browser: "not modified since" counts seconds
+            # else two probes written within one second are one page to the browser: "not modified
+            # since" counts seconds
             self.send_header("Cache-Control", "no-store")
             super().end_headers()
 
@@ -106,16 +126,36 @@ def browse(site, tmp_path_factory):
     def open_page(path, milliseconds=10_000):
         missing.clear()
         done = subprocess.run(
-            [browser, "--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--disable-extensions",
-             "--enable-logging=stderr", "--v=0", f"--user-data-dir={profile / 'profile'}",
-             "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1", f"--virtual-time-budget={milliseconds}",
-             "--dump-dom", f"http://127.0.0.1:{server.server_port}/{path}"],
-            capture_output=True, text=True, check=True, env=os.environ | {"HOME": str(profile)},
-        )  # fmt: skip
-        said = [line for line in done.stderr.splitlines() if "CONSOLE" in line and not any(r in line for r in REMARKS)]
+            [
+                browser,
+                "--headless",
+                "--no-sandbox",
+                "--disable-gpu",
+                "--disable-dev-shm-usage",
+                "--disable-extensions",
+                "--enable-logging=stderr",
+                "--v=0",
+                f"--user-data-dir={profile / 'profile'}",
+                "--host-resolver-rules=MAP * ~NOTFOUND, EXCLUDE 127.0.0.1",
+                f"--virtual-time-budget={milliseconds}",
+                "--dump-dom",
+                f"http://127.0.0.1:{server.server_port}/{path}",
+            ],
+            capture_output=True,
+            text=True,
+            check=True,
+            env=os.environ | {"HOME": str(profile)},
+        )
+        said = [
+            line
+            for line in done.stderr.splitlines()
+            if "CONSOLE" in line and not any(r in line for r in REMARKS)
+        ]
         return done.stdout, missing + said
 
-    with ThreadingHTTPServer(("127.0.0.1", 0), functools.partial(Handler, directory=str(site))) as server:
+    with ThreadingHTTPServer(
+        ("127.0.0.1", 0), functools.partial(Handler, directory=str(site))
+    ) as server:
         threading.Thread(target=server.serve_forever, daemon=True).start()
         open_page.probe = probe
         yield open_page
@@ -133,7 +173,7 @@ addEventListener("load", () => {{
   }}).join("\\n");
 }});
 </script>
-"""
+"""  # noqa: E501
 
 
 def test_the_browser_tells_what_is_wrong(browse):
@@ -145,15 +185,24 @@ def test_the_browser_tells_what_is_wrong(browse):
 
 def test_pages_load_in_a_browser(browse):
     """With all that they load; links are Sphinx's and ``docs/test_readme.py``'s to hold."""
-    paths = [path.relative_to(SITE).as_posix() for path in SITE.rglob("*.html") if "_static" not in path.parts]
+    paths = [
+        path.relative_to(SITE).as_posix()
+        for path in SITE.rglob("*.html")
+        if "_static" not in path.parts
+    ]
     found = {}
     for first in range(0, len(paths), AT_ONCE):
-        frames = "\n".join(f'<iframe src="/{html.escape(path)}"></iframe>' for path in paths[first : first + AT_ONCE])
+        frames = "\n".join(
+            f'<iframe src="/{html.escape(path)}"></iframe>'
+            for path in paths[first : first + AT_ONCE]
+        )
         browse.probe.write_text(FRAMES.format(frames=frames))
         page, wrong = browse("probe.html")
         assert not wrong, "\n".join(wrong)
         report = html.unescape(re.search(r'<pre id="found">(.*?)</pre>', page, re.S)[1])
-        found |= {line.split("\t")[0][1:]: tuple(line.split("\t")[1:]) for line in report.splitlines()}
+        found |= {
+            line.split("\t")[0][1:]: tuple(line.split("\t")[1:]) for line in report.splitlines()
+        }
     assert found.keys() == set(paths)
     for path, (title, heading) in found.items():
         assert "viscoroll" in title, path

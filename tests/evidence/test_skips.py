@@ -6,14 +6,18 @@ from processes import printed
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 
 
 def test_outputs_after_rest_are_filled_not_integrated():
     steps = [
-        vr.ensemble(SCENE, [1.5], [0.5], np.linspace(0.0, end, 11), rest=1e-3, method="integrate").steps[0]
+        vr.ensemble(
+            SCENE, [1.5], [0.5], np.linspace(0.0, end, 11), rest=1e-3, method="integrate"
+        ).steps[0]
         for end in (1e-2, 1e3)
     ]
     assert steps[0] == steps[1]
@@ -21,7 +25,9 @@ def test_outputs_after_rest_are_filled_not_integrated():
 
 
 def test_no_table_file_is_read_at_run_time():
-    """Neither the atlas nor any other netCDF file: the coefficients of the ratios are all that is read."""
+    """Neither the atlas nor any other netCDF file: the coefficients of the ratios are all that is
+    read.
+    """
     printed(
         """
 import sys

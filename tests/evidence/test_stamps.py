@@ -36,14 +36,18 @@ def block(name, folder):
 
 
 def test_words_outdate_no_result(tmp_path):
-    kernels = shutil.copytree(stamps.KERNELS, tmp_path / "kernels", ignore=shutil.ignore_patterns("__pycache__"))
+    kernels = shutil.copytree(
+        stamps.KERNELS, tmp_path / "kernels", ignore=shutil.ignore_patterns("__pycache__")
+    )
     for path in kernels.rglob("*.py"):
         text = re.sub(r'"""(?=\w)', '"""In other words. ', path.read_text())
         path.write_text(f"# a comment\n\n{text}\n\n")
     assert digest_of(kernels) == stamps.kernels_digest()
 
 
-@pytest.mark.parametrize(("old", "new"), [("2.0", "3.0"), ("*", "/"), ("@njit", ""), ("law", "flow")])
+@pytest.mark.parametrize(
+    ("old", "new"), [("2.0", "3.0"), ("*", "/"), ("@njit", ""), ("law", "flow")]
+)
 def test_what_computes_outdates_it(tmp_path, old, new):
     file = tmp_path / "law.py"
     file.write_text(KERNEL)
@@ -52,7 +56,9 @@ def test_what_computes_outdates_it(tmp_path, old, new):
     assert digest_of(tmp_path) != before
 
 
-@pytest.mark.parametrize("name", [name for name, given in BLOCKS.items() if given["stage"] != "document"])
+@pytest.mark.parametrize(
+    "name", [name for name, given in BLOCKS.items() if given["stage"] != "document"]
+)
 def test_a_block_says_where_it_is_of_other_kernels(name, results):
     said = block(name, results(OTHER))
     assert said.count("an earlier version") == said.count(SENTENCE) == 1

@@ -7,14 +7,19 @@ from processes import made
 
 from pipeline.evidence.results import rows_of
 
-#: seconds of the processor that a load may take, and MB that a process may take in all; issue and RLIMIT_AS
-SLOWEST, MOST_MEMORY = 5.0, 1000.0
+#: seconds of the processor that a load may take, and MB that a process may take in all; issue and
+#: RLIMIT_AS
+SLOWEST = 5.0
+MOST_MEMORY = 1000.0
 
 
 def test_nothing_goes_unnoticed(tmp_path):
     """A sealed file is hardly ever unharmed: a flip must hit the few bytes that make a seal one."""
     made("evidence.torture", "--quick", "--only", "tables", "-o", tmp_path / "torture.json")
-    rows = {row["done"]: row for row in json.loads((tmp_path / "torture.json").read_text())["parts"]["tables"]["rows"]}
+    rows = {
+        row["done"]: row
+        for row in json.loads((tmp_path / "torture.json").read_text())["parts"]["tables"]["rows"]
+    }
     assert [(name, row["how"]) for name, row in rows.items() if row["wrong"]] == []
     for name in ("one bit flipped", "1-16 bytes of headers and B-trees replaced"):
         assert rows[name]["refused"] >= 0.9 * rows[name]["tried"]

@@ -1,4 +1,6 @@
-"""The transient solver behind "may I use this law?": contact at rest and run in, and motions of finer cells."""
+"""The transient solver behind "may I use this law?": contact at rest and run in, and motions of
+finer cells.
+"""
 
 import numpy as np
 import pytest
@@ -16,8 +18,10 @@ CELLS = grid(0.04)
 @pytest.mark.parametrize("motion", [MOTIONS[0], MOTIONS[11], MOTIONS[15]])
 def test_run_in_it_is_the_steady_contact(motion):
     """Of one, two and four relaxation times."""
-    scene, u = scene_of(motion[0], motion[2]), motion[1]
-    series, c = scene.material, vr.contact(scene, u, delta=0.0)
+    scene = scene_of(motion[0], motion[2])
+    u = motion[1]
+    series = scene.material
+    c = vr.contact(scene, u, delta=0.0)
     contact = Contact((series.J, series.T, series.alpha), CELLS, 10.0, u, c.lam)
     low, high, *_ = contact.where
     assert close(contact.kM, c.M, tol.TRANSIENT_M)
@@ -31,7 +35,8 @@ def test_at_rest_it_is_hertz():
 
 
 @pytest.mark.parametrize(
-    ("which", "steady", "rest"), [(3, (0.092, 0.50), (0.100, -1.46)), (15, (0.061, 0.29), (0.091, -1.6))]
+    ("which", "steady", "rest"),
+    [(3, (0.092, 0.50), (0.100, -1.46)), (15, (0.061, 0.29), (0.091, -1.6))],
 )
 def test_errors_and_ways_are_those_of_finer_cells(which, steady, rest):
     """gamma 10.7 at alpha 11, and the DMA roller at 0.094 m/s, as found with cells of 0.01."""
@@ -43,11 +48,15 @@ def test_errors_and_ways_are_those_of_finer_cells(which, steady, rest):
 
 
 def test_the_added_mass_cuts_the_error():
-    """Within 2 % of V up to an unsteadiness of 0.03, but while a start from rest lasts; a quarter of it up to 0.1."""
+    """Within 2 % of V up to an unsteadiness of 0.03, but while a start from rest lasts; a quarter
+    of it up to 0.1.
+    """
     rows = kept("transient.json")["rows"]
     for start, lasts in (("steady", 0.0), ("rest", 0.3)):
         found = [e for row in rows for e in row[start]["e"]]
-        assert all(abs(added) < 0.02 for level, _, added, time in found if level <= 0.03 and time >= lasts)
+        assert all(
+            abs(added) < 0.02 for level, _, added, time in found if level <= 0.03 and time >= lasts
+        )
         early = [(abs(law), abs(added)) for level, law, added, _ in found if level <= 0.1]
         law, added = np.median(early, axis=0)
         assert added <= 0.25 * law

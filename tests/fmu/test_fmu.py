@@ -1,4 +1,6 @@
-"""FMUs as a tool drives them: the rules of the standard, forces and motions of the package, refusals in words."""
+"""FMUs as a tool drives them: the rules of the standard, forces and motions of the package,
+refusals in words.
+"""
 
 import ctypes
 import dataclasses
@@ -13,24 +15,37 @@ from closeness import close
 
 import viscoroll as vr
 from viscoroll import fmu
-from viscoroll.app.cli import main
-from viscoroll.app.fmu.variables import MODELS
+from viscoroll.cli import main
 from viscoroll.core.errors import MissingDependencyError
+from viscoroll.fmu.fmu_build import MODELS
 
 pytestmark = pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
 fmpy = pytest.importorskip("fmpy", reason="not installed (make interop): fmpy")
 validation = pytest.importorskip("fmpy.validation")
 
-RUBBER = vr.Material(E=3e6, nu=0.5, prony=vr.Prony(E=[0.4, 0.6, 1.5], tau=[1.0, 1e-2, 1e-4]), T_ref=0.2, name="rubber")
+RUBBER = vr.Material(
+    E=3e6,
+    nu=0.5,
+    prony=vr.Prony(E=[0.4, 0.6, 1.5], tau=[1.0, 1e-2, 1e-4]),
+    T_ref=0.2,
+    name="rubber",
+)
 STEEL = vr.Material(E=2.1e11, nu=0.3, name="steel")
 #: like bodies, and a rubber on steel, of which the cylinder alone loses work
 CYLINDERS = {
     "alike": vr.Cylinder(R=0.1, m=35.5, material=RUBBER, mu=0.3),
-    "unlike": vr.Cylinder(R=0.05, m=9.0, material=RUBBER, base=STEEL, mu=0.6, load=2000.0, coupled=False),
+    "unlike": vr.Cylinder(
+        R=0.05, m=9.0, material=RUBBER, base=STEEL, mu=0.6, load=2000.0, coupled=False
+    ),
 }
 #: a steel roller with a rubber cover
 COVERED = vr.Cylinder(
-    R=0.05, m=9.0, material=dataclasses.replace(RUBBER, thickness=5e-3), base=vr.Material.rigid(), mu=0.6, load=2000.0
+    R=0.05,
+    m=9.0,
+    material=dataclasses.replace(RUBBER, thickness=5e-3),
+    base=vr.Material.rigid(),
+    mu=0.6,
+    load=2000.0,
 )
 ROLLERS = CYLINDERS | {"covered": COVERED}
 OUTPUTS = ("force", "torque", "moment_half_space", "moment_cylinder")
@@ -39,7 +54,8 @@ OUTPUTS = ("force", "torque", "moment_half_space", "moment_cylinder")
 @pytest.fixture(scope="module")
 def built(tmp_path_factory):
     """A function from (cylinder, model, version) to its FMU, made once."""
-    folder, made = tmp_path_factory.mktemp("fmu"), {}
+    folder = tmp_path_factory.mktemp("fmu")
+    made = {}
 
     def path(*key):
         if key not in made:
@@ -98,7 +114,10 @@ class Instance:
 
     def slopes(self, unknowns, knowns):
         """A row for each unknown."""
-        columns = [self.fmu.getDirectionalDerivative(self.at(unknowns), self.at([one]), [1.0]) for one in knowns]
+        columns = [
+            self.fmu.getDirectionalDerivative(self.at(unknowns), self.at([one]), [1.0])
+            for one in knowns
+        ]
         return np.array(columns).T
 
 
@@ -115,9 +134,14 @@ def opened(path, kind="ModelExchange", ready=True, **given):
 def simulated(path, t, kind="CoSimulation", rtol=None, **starts):
     """v, omega and x of a roller at these even times from 0, by FMPy."""
     return fmpy.simulate_fmu(
-        path, stop_time=t[-1], output_interval=t[1], fmi_type=kind, relative_tolerance=rtol, start_values=starts,
+        path,
+        stop_time=t[-1],
+        output_interval=t[1],
+        fmi_type=kind,
+        relative_tolerance=rtol,
+        start_values=starts,
         output=["v", "omega", "x"],
-    )  # fmt: skip
+    )
 
 
 @pytest.mark.parametrize("version", [2, 3])
@@ -131,8 +155,11 @@ def test_the_standard_is_kept(built, name, model, version):
 @pytest.mark.parametrize("name", CYLINDERS)
 def test_element_has_forces_and_slopes_of_the_law(built, name, version):
     cylinder = CYLINDERS[name]
-    law, random = vr.law(cylinder.scene()), np.random.default_rng(3)
-    P, R, T = cylinder.load, cylinder.R, cylinder.T_ref
+    law = vr.law(cylinder.scene())
+    random = np.random.default_rng(3)
+    P = cylinder.load
+    R = cylinder.R
+    T = cylinder.T_ref
     with opened(built(name, "ContactElement", version)) as element:
         for _ in range(100):
             v = random.choice([-1.0, 1.0]) * 10.0 ** random.uniform(-4.0, 2.0)
@@ -141,13 +168,27 @@ def test_element_has_forces_and_slopes_of_the_law(built, name, version):
             element.set(v=v, omega=omega, load=P)
             f = law(v * T / R, omega * T, slopes=True)
             exact = P * np.array(
-                [f.Q - f.M_half_space, -R * (f.Q + f.M_cylinder), R * f.M_half_space, R * f.M_cylinder]
+                [
+                    f.Q - f.M_half_space,
+                    -R * (f.Q + f.M_cylinder),
+                    R * f.M_half_space,
+                    R * f.M_cylinder,
+                ]
             )
             scale = P * np.array([1.0, R, R, R])
             # omega and v of the law are rounded, which a creep of little counts
             assert close(element.get(*OUTPUTS), exact, tol.FMU_FORCES, scale=scale)
-            by_v = [f.dQ_dV - f.dM_half_space_dV, -f.dQ_dV - f.dM_cylinder_dV, f.dM_half_space_dV, f.dM_cylinder_dV]
-            slopes = np.column_stack([by_v, [f.dQ_domega, -f.dQ_domega, 0.0, 0.0]]) * scale[:, np.newaxis] * [T / R, T]
+            by_v = [
+                f.dQ_dV - f.dM_half_space_dV,
+                -f.dQ_dV - f.dM_cylinder_dV,
+                f.dM_half_space_dV,
+                f.dM_cylinder_dV,
+            ]
+            slopes = (
+                np.column_stack([by_v, [f.dQ_domega, -f.dQ_domega, 0.0, 0.0]])
+                * scale[:, np.newaxis]
+                * [T / R, T]
+            )
             found = element.slopes(OUTPUTS, ("v", "omega"))
             assert close(found, slopes, tol.FMU_SLOPES, scale=np.abs(slopes).max(axis=0))
 
@@ -156,7 +197,11 @@ def test_element_has_forces_and_slopes_of_the_law(built, name, version):
 def test_slopes_of_the_element_are_those_of_its_forces(built, v):
     """By v, omega and load, below v_min too, where the law is that of v_min."""
     with opened(built("unlike", "ContactElement", 2)) as element:
-        at = {"v": v, "omega": (v - 1e-3 * max(abs(v), 1e-6)) / CYLINDERS["unlike"].R, "load": 2000.0}
+        at = {
+            "v": v,
+            "omega": (v - 1e-3 * max(abs(v), 1e-6)) / CYLINDERS["unlike"].R,
+            "load": 2000.0,
+        }
 
         def forces(**changed):
             element.set(**(at | changed))
@@ -165,13 +210,16 @@ def test_slopes_of_the_element_are_those_of_its_forces(built, v):
         element.set(**at)
         slopes = element.slopes(OUTPUTS, tuple(at))
         for column, (name, value) in zip(slopes.T, at.items(), strict=True):
-            h = 1e-5 * (2000.0 if name == "load" else max(abs(v), 1e-6) * (1.0 if name == "v" else 20.0))
+            h = 1e-5 * (
+                2000.0 if name == "load" else max(abs(v), 1e-6) * (1.0 if name == "v" else 20.0)
+            )
             ends = {k: forces(**{name: value + k * h}) for k in (-2, -1, 1, 2)}
             quotient = (8.0 * (ends[1] - ends[-1]) - (ends[2] - ends[-2])) / (12.0 * h)
             assert close(column, quotient, tol.FMU_QUOTIENTS, scale=np.abs(quotient).max()), name
 
 
-#: thrown, and thrown the other way with a drive: V0, omega0, force on the axis, torque, over the weight
+#: thrown, and thrown the other way with a drive: V0, omega0, force on the axis, torque, over the
+#: weight
 THROWS = {"thrown": (1.0, 0.0, 0.0, 0.0), "driven": (-0.5, 20.0, 0.02, 0.1)}
 
 
@@ -181,7 +229,9 @@ THROWS = {"thrown": (1.0, 0.0, 0.0, 0.0), "driven": (-0.5, 20.0, 0.02, 0.1)}
 def test_roller_by_co_simulation_is_that_of_roll(built, name, throw, version):
     cylinder = ROLLERS[name]
     V0, omega0, force, torque = THROWS[throw]
-    force, torque, t = force * cylinder.load, torque * cylinder.load * cylinder.R, np.linspace(0.0, 0.5, 11)
+    force = force * cylinder.load
+    torque = torque * cylinder.load * cylinder.R
+    t = np.linspace(0.0, 0.5, 11)
     exact = cylinder.roll(V0, omega0, t, rtol=1e-11, force=force, torque=torque)
     path = built(name, "Roller", version)
     found = simulated(path, t, v0=V0, omega0=omega0, drive_force=force, drive_torque=torque)
@@ -204,11 +254,14 @@ def test_the_law_of_a_cover_holds_at_its_load(built, tmp_path):
     fmu.build(vr.load_law(path), tmp_path / "roller.fmu")
     with opened(str(tmp_path / "roller.fmu"), "CoSimulation", v0=1.0) as roller:
         roller.step(0.0, 0.1)
-        assert close(roller.get("load") * roller.get("R"), COVERED.load * COVERED.R, tol.FMU_ROUNDED)
+        assert close(
+            roller.get("load") * roller.get("R"), COVERED.load * COVERED.R, tol.FMU_ROUNDED
+        )
 
 
 def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):
-    path, t = built("alike", "Roller", 2), [0.0, 0.1, 0.2]
+    path = built("alike", "Roller", 2)
+    t = [0.0, 0.1, 0.2]
     assert np.abs(simulated(path, t, v0=0.0)["v"]).max() < 1e-6  # v_min
     pulled = simulated(path, t, v0=0.0, drive_force=-20.0)
     exact = CYLINDERS["alike"].roll(0.0, 0.0, [0.1, 0.2], rtol=1e-10, force=-20.0)
@@ -216,7 +269,8 @@ def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):
 
 
 def test_roller_by_an_integrator_of_the_tool(built):
-    cylinder, t = CYLINDERS["unlike"], np.linspace(0.0, 0.3, 4)
+    cylinder = CYLINDERS["unlike"]
+    t = np.linspace(0.0, 0.3, 4)
     found = simulated(built("unlike", "Roller", 3), t, "ModelExchange", 1e-8, v0=1.0)
     exact = cylinder.roll(1.0, 0.0, t, rtol=1e-11)
     assert close(found["v"], exact.V, tol.FMU_TOOL)
@@ -238,13 +292,19 @@ NEAR_REST = {
 @pytest.mark.parametrize("throw", NEAR_REST)
 @pytest.mark.parametrize("name", CYLINDERS)
 def test_an_integrator_of_the_tool_passes_through_rest(built, name, throw):
-    """CVode stopped there, with error -4: it saw the law below v_min as it is, with slopes without bounds."""
+    """CVode stopped there, with error -4: it saw the law below v_min as it is, with slopes without
+    bounds.
+    """
     V0, omega0, force, torque = NEAR_REST[throw]
     omega0 *= 0.1 / CYLINDERS[name].R
     t = np.linspace(0.0, 20.0, 21)
     path = built(name, "Roller", 2)
-    found = simulated(path, t, "ModelExchange", v0=V0, omega0=omega0, drive_force=force, drive_torque=torque)
-    exact = CYLINDERS[name].roll(V0, omega0, t, rtol=1e-10, force=force or None, torque=torque or None)
+    found = simulated(
+        path, t, "ModelExchange", v0=V0, omega0=omega0, drive_force=force, drive_torque=torque
+    )
+    exact = CYLINDERS[name].roll(
+        V0, omega0, t, rtol=1e-10, force=force or None, torque=torque or None
+    )
     for column, values in {"v": exact.V, "omega": exact.omega}.items():
         scale = max(np.abs(values).max(), 1.0 if column == "v" else 1.0 / CYLINDERS[name].R)
         assert close(found[column], values, tol.FMU_NEAR_REST, scale=scale), column
@@ -255,12 +315,16 @@ def test_an_integrator_of_the_tool_passes_through_rest(built, name, throw):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_a_state_that_was_taken_is_gone_on_from_with_the_same_bits(built, version):
-    """Of another time, with other parameters and inputs; by itself and as bytes, also in another instance."""
+    """Of another time, with other parameters and inputs; by itself and as bytes, also in another
+    instance.
+    """
     names = ("v", "slip", "x", "omega", "drive_force", "mu", "load")
-    path, given = built("alike", "Roller", version), {"v0": 1.0, "omega0": 2.0, "drive_force": 3.0, "mu": 0.2}
+    path = built("alike", "Roller", version)
+    given = {"v0": 1.0, "omega0": 2.0, "drive_force": 3.0, "mu": 0.2}
     with opened(path, "CoSimulation", **given) as one, opened(path, "CoSimulation") as other:
         one.step(0.0, 0.05)
-        state, then = one.fmu.getFMUState(), one.get(*names)
+        state = one.fmu.getFMUState()
+        then = one.get(*names)
         kept = one.fmu.serializeFMUState(state)
         one.step(0.05, 0.1)
         exact = one.get(*names)
@@ -275,7 +339,9 @@ def test_a_state_that_was_taken_is_gone_on_from_with_the_same_bits(built, versio
         other.step(0.05, 0.1)
         assert np.array_equal(other.get(*names), exact)
         for damaged in (kept[:-1], b"x" + kept[1:]):
-            other.refuses("those that this FMU has serialized", other.fmu.deserializeFMUState, damaged)
+            other.refuses(
+                "those that this FMU has serialized", other.fmu.deserializeFMUState, damaged
+            )
         one.fmu.freeFMUState(state)
         other.fmu.freeFMUState(same)
 
@@ -284,14 +350,20 @@ def test_a_state_that_was_taken_is_gone_on_from_with_the_same_bits(built, versio
 @pytest.mark.parametrize("model", MODELS)
 def test_that_states_can_be_taken_is_declared(built, model, version):
     about = fmpy.read_model_description(built("alike", model, version))
-    for kind in (about.modelExchange, about.coSimulation) if MODELS[model].states else (about.modelExchange,):
+    for kind in (
+        (about.modelExchange, about.coSimulation)
+        if MODELS[model].states
+        else (about.modelExchange,)
+    ):
         assert kind.canGetAndSetFMUstate
         assert kind.canSerializeFMUstate
 
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_steps_that_are_none_are_refused_in_words(built, version):
-    """Backwards, NaN, infinite, or from another time than the end of the last one; the state stays as it was."""
+    """Backwards, NaN, infinite, or from another time than the end of the last one; the state stays
+    as it was.
+    """
     with opened(built("alike", "Roller", version), "CoSimulation", v0=1.0) as roller:
         roller.step(0.0, 0.05)
         at = roller.get("v", "omega", "x")
@@ -352,17 +424,26 @@ def call_of(one, name):
     if "Mode" in name:
         return change
     steps = type(one.fmu).__name__.endswith("Slave")
-    if name in ("setTime", "states", "discrete", "completedIntegratorStep") if steps else name == "step":
+    if (
+        name in ("setTime", "states", "discrete", "completedIntegratorStep")
+        if steps
+        else name == "step"
+    ):
         return None
     return {
         "begin": one.begin,
-        "discrete": getattr(one.fmu, "newDiscreteStates" if one.two else "updateDiscreteStates", None),
+        "discrete": getattr(
+            one.fmu, "newDiscreteStates" if one.two else "updateDiscreteStates", None
+        ),
         "setTime": lambda: one.fmu.setTime(0.0),
         "states": lambda: one.fmu.setContinuousStates(*_pointer(np.array([1.0, 0.0, 0.0]))),
         "step": lambda: one.step(0.0, 0.1),
         "get": lambda: one.get("v"),
         "slopes": lambda: one.slopes(["der_v"], ["v"]),
-        **{given: lambda given=given: one.set(**{given: 0.5}) for given in ("drive_force", "mu", "v0")},
+        **{
+            given: lambda given=given: one.set(**{given: 0.5})
+            for given in ("drive_force", "mu", "v0")
+        },
     }.get(name) or getattr(one.fmu, name)
 
 
@@ -373,7 +454,9 @@ def call_of(one, name):
     + [("CoSimulation", mode) for mode in WAYS if mode not in ("event", "continuous")],
 )
 def test_what_a_mode_allows(built, kind, mode, version):
-    """Every call in every mode: allowed as the standard says, or an error in words that leaves the mode as it was."""
+    """Every call in every mode: allowed as the standard says, or an error in words that leaves the
+    mode as it was.
+    """
     with opened(built("alike", "Roller", version), kind, ready=False, v0=1.0) as one:
         for name, modes in ALLOWED.items():
             one.fmu.reset()
@@ -405,7 +488,9 @@ def test_an_announced_end_is_kept(built, version):
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_a_state_has_its_mode_and_initialization_has_the_speeds_of_the_start(built, version):
-    with opened(built("alike", "Roller", version), "CoSimulation", ready=False, v0=1.0, omega0=4.0) as one:
+    with opened(
+        built("alike", "Roller", version), "CoSimulation", ready=False, v0=1.0, omega0=4.0
+    ) as one:
         one.begin()
         assert close(one.get("v", "omega"), [1.0, 4.0], tol.FMU_ROUNDED)
         one.fmu.exitInitializationMode()
@@ -425,12 +510,16 @@ def test_a_state_that_is_no_number_is_refused_in_words(built):
 
 
 def test_slopes_of_the_roller_are_those_of_its_rates(built):
-    cylinder, knowns = CYLINDERS["alike"], ("v", "slip", "x", "drive_force", "drive_torque")
+    cylinder = CYLINDERS["alike"]
+    knowns = ("v", "slip", "x", "drive_force", "drive_torque")
     unknowns = ("der_v", "der_slip", "der_x", "v", "slip", "x", "omega")
-    with opened(built("alike", "Roller", 2), v0=1.0, omega0=0.999 / cylinder.R, drive_force=3.0) as roller:
+    with opened(
+        built("alike", "Roller", 2), v0=1.0, omega0=0.999 / cylinder.R, drive_force=3.0
+    ) as roller:
         slopes = roller.slopes(unknowns, knowns)
         roller.fmu.enterContinuousTimeMode()
-        h, start = 1e-6, roller.get("v", "slip", "x")
+        h = 1e-6
+        start = roller.get("v", "slip", "x")
 
         def around(column, by):
             if column < 3:
@@ -444,7 +533,9 @@ def test_slopes_of_the_roller_are_those_of_its_rates(built):
             step = h if column < 3 else 1.0
             quotient = (around(column, step) - around(column, -step)) / (2.0 * step)
             scale = np.maximum(np.abs(quotient).max(), np.abs(slopes).max() * 1e-6)
-            assert close(slopes[:, column], quotient, tol.FMU_QUOTIENTS, scale=scale), knowns[column]
+            assert close(slopes[:, column], quotient, tol.FMU_QUOTIENTS, scale=scale), knowns[
+                column
+            ]
 
 
 def _pointer(values):
@@ -455,7 +546,8 @@ def _pointer(values):
 def test_adjoint_slopes_are_the_same(built):
     with opened(built("unlike", "ContactElement", 3), v=0.4, omega=7.9) as element:
         slopes = element.slopes(OUTPUTS, ("v", "omega", "load"))
-        unknowns, knowns = element.at(OUTPUTS), element.at(("v", "omega", "load"))
+        unknowns = element.at(OUTPUTS)
+        knowns = element.at(("v", "omega", "load"))
         for row, seed in zip(slopes, np.eye(4), strict=True):
             found = element.fmu.getAdjointDerivative(unknowns, knowns, seed.tolist(), 3)
             assert close(np.array(found), row, tol.FMU_ROUNDED)
@@ -466,7 +558,10 @@ def test_what_is_out_of_range_is_refused_in_words(built, version):
     with opened(built("alike", "ContactElement", version)) as element:
         element.set(load=-5.0, v=1.0)
         assert not element.get(*OUTPUTS, "contact_length").any()
-        for given, said in (({"R": -1.0}, "R = -1: must be > 0"), ({"v": np.nan}, "v = nan: must be finite")):
+        for given, said in (
+            ({"R": -1.0}, "R = -1: must be > 0"),
+            ({"v": np.nan}, "v = nan: must be finite"),
+        ):
             element.set(**given)
             element.refuses(said, element.get, "force")
             element.set(R=0.1, v=1.0)
@@ -477,7 +572,8 @@ def test_what_is_out_of_range_is_refused_in_words(built, version):
 @pytest.mark.filterwarnings("always::viscoroll.ModelWarning")  # printed by the program
 def test_program(tmp_path, capsys):
     """The same bytes for the same cylinder, so that they can be kept."""
-    law, roller = tmp_path / "law.nc", tmp_path / "roller.fmu"
+    law = tmp_path / "law.nc"
+    roller = tmp_path / "roller.fmu"
     vr.tables.save(vr.tables.law(CYLINDERS["unlike"].pair), law)
     assert main(["fmu", str(law), "-o", str(roller), "--fmi", "3"]) == 0
     assert main(["fmu", str(law), "-o", str(tmp_path / "again.fmu"), "--fmi", "3"]) == 0
@@ -491,10 +587,15 @@ def test_program(tmp_path, capsys):
     capsys.readouterr()
     for what in (str(scene), "rubber-roller"):
         assert main(["fmu", what, "-o", str(roller)]) == 0
-        assert "kappa, mu, gamma and j of the dimensionless scene are not used" in capsys.readouterr().err
+        assert (
+            "kappa, mu, gamma and j of the dimensionless scene are not used"
+            in capsys.readouterr().err
+        )
     toml = "src/viscoroll/datasets/rubber.toml"
     assert main(["fmu", toml, "-o", str(roller), "--model", "ContactElement"]) == 0
-    assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}["load"] == "2000.0"
+    assert {v.name: v.start for v in fmpy.read_model_description(str(roller)).modelVariables}[
+        "load"
+    ] == "2000.0"
 
 
 @pytest.mark.parametrize("missing", ["fmpy", "cc"])

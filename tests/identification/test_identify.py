@@ -1,4 +1,6 @@
-"""From synthetic measurements back to the parameters, and what is said where they do not hold them."""
+"""From synthetic measurements back to the parameters, and what is said where they do not hold
+them.
+"""
 
 import itertools
 
@@ -23,9 +25,9 @@ from experiments import (
 from scipy.signal import lfilter
 
 import viscoroll as vr
-from viscoroll.app.identification.problem import Minimum
-from viscoroll.app.identification.profile import Likelihood
-from viscoroll.app.identification.report import _product_text
+from viscoroll.measurements.identification_report import _product_text
+from viscoroll.measurements.least_squares import Minimum
+from viscoroll.measurements.profile import Likelihood
 
 V = HUMP
 M = roller().contact(V, delta=0.0, fields="M").M
@@ -46,7 +48,9 @@ def late():
     """A motion under the bearing, by a clock that is late."""
     t = np.linspace(0.0, 30.0, 200)
     m = roller().roll(3.0, 30.0, t, rtol=1e-10, brake=BRAKE, torque=vr.Feedback(0.0, omega=-DRAG))
-    return vr.Coastdown(t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5))
+    return vr.Coastdown(
+        t + 0.15, m.V, m.omega, sigma={"V": 5e-3, "omega": 0.05}, V0=3.0, t0=(-0.5, 0.5)
+    )
 
 
 def warm():
@@ -58,11 +62,17 @@ def warm():
 #: data without noise, what they hold, and what else is told
 HELD = {
     "M over the hump": (lambda: [resistance()], ranges("E", "E_1", "T_ref")),
-    "pull over the hump": (lambda: [vr.Resistance(V, F=M / 0.1, sigma=0.1)], ranges("E", "E_1", "T_ref")),
+    "pull over the hump": (
+        lambda: [vr.Resistance(V, F=M / 0.1, sigma=0.1)],
+        ranges("E", "E_1", "T_ref"),
+    ),
     "Q at three speeds": (lambda: [traction((0.1, 1.0, 10.0))], ranges("mu", "E")),
     "M and Q": (lambda: [resistance(), traction()], ranges("mu", "E", "E_1", "T_ref")),
     "a throw": (lambda: [thrown()], ranges("mu", "E", "E_1", "T_ref")),
-    "a throw and M, the series known": (lambda: [thrown(), resistance()], ranges("mu", "E", "T_ref")),
+    "a throw and M, the series known": (
+        lambda: [thrown(), resistance()],
+        ranges("mu", "E", "T_ref"),
+    ),
     "a bearing at two loads": (lambda: [drum(100.0), drum(700.0)], ranges("E", "T_ref") | BEARING),
     "a bearing and a late clock": (lambda: [late()], ranges("T_ref") | BEARING),
     "two temperatures": (lambda: [resistance(), warm()], ranges("E", "T_ref")),
@@ -73,10 +83,14 @@ HELD = {
 def test_exact_data_give_the_truth(case):
     data, unknown = HELD[case]
     start = roller(**{name: OFF[name] for name in OFF.keys() & unknown})
-    fit = vr.identify(start, unknown, data(), starts=1, shift=SHIFT if case == "two temperatures" else None)
+    fit = vr.identify(
+        start, unknown, data(), starts=1, shift=SHIFT if case == "two temperatures" else None
+    )
     for name, value in fit.values.items():
         exact = {"V0:throw": 4.0}.get(name) or KNOWN[name]
-        assert close(value, exact, tol.IDENTIFIED_DRIVEN if "clock" in case else tol.IDENTIFIED), name
+        assert close(value, exact, tol.IDENTIFIED_DRIVEN if "clock" in case else tol.IDENTIFIED), (
+            name
+        )
     assert fit.chi2 < tol.IDENTIFIED_CHI2
     assert fit.cylinder.mu == fit.values.get("mu", TRUTH["mu"])
     assert not fit.does_not_act
@@ -93,11 +107,17 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
 
     width = high - low
     for end, inward in ((low, 1.0), (high, -1.0)):
-        assert rise(end + inward * tol.INTERVAL * width) < tol.CHI2_95 < rise(end - inward * tol.INTERVAL * width)
+        assert (
+            rise(end + inward * tol.INTERVAL * width)
+            < tol.CHI2_95
+            < rise(end - inward * tol.INTERVAL * width)
+        )
 
 
 def test_slow_rolling_tells_a_product_alone():
-    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), [resistance(SLOW[::4], seed=2)], starts=1)
+    fit = vr.identify(
+        roller(), ranges("mu", "E", "E_1", "T_ref"), [resistance(SLOW[::4], seed=2)], starts=1
+    )
     assert fit.does_not_act == ("mu",)
     assert fit.undetermined == ("E", "E_1", "T_ref")
     assert fit.intervals()["mu"] == (None, None)
@@ -110,18 +130,27 @@ def test_slow_rolling_tells_a_product_alone():
 
 
 def test_a_product_that_a_range_limits_is_told():
-    """M at one speed tells a product; E and E/T_ref end where T_ref comes to an end of its range."""
+    """M at one speed tells a product; E and E/T_ref end where T_ref comes to an end of its
+    range.
+    """
     plan = vr.Resistance([2.0, 2.0], sigma=1e-3)
     fit = vr.identify(roller(), {"E": (1e6, 1e7), "T_ref": (0.8e-3, 1.2e-3)}, [plan])
     known, ratio = fit.products()
     assert known.limited_by == [["T_ref"], []]
     assert ratio.powers == {"E": -1.0, "T_ref": 1.0}
-    assert ratio.limited_by == fit._likelihood.axes(tol.CHI2_95)[0].limited_by == [["T_ref"], ["T_ref"]]
-    said = str(fit)
-    assert "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end by the range of T_ref) and" in said
     assert (
-        "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are bounded within the ranges"
-        in said
+        ratio.limited_by
+        == fit._likelihood.axes(tol.CHI2_95)[0].limited_by
+        == [["T_ref"], ["T_ref"]]
+    )
+    said = str(fit)
+    assert (
+        "E T_ref^0.77 = 1.469e+04 (95%: -0.65 % to +0.34 %, the lower end by the range of T_ref) "
+        "and" in said
+    )
+    assert (
+        "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are bounded "
+        "within the ranges" in said
     )
 
 
@@ -142,7 +171,9 @@ def test_a_wrong_model_is_told_before_any_interval():
     fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), [measured], starts=1)
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
-    assert lines[1].startswith("  ! the residuals of M of resistance are autocorrelated (lag-1 correlation 0.8")
+    assert lines[1].startswith(
+        "  ! the residuals of M of resistance are autocorrelated (lag-1 correlation 0.8"
+    )
     assert "the intervals are meaningless" in lines[1]
 
 
@@ -164,14 +195,18 @@ def test_outliers_count_less_where_asked():
     bad[[5, 25]] += 0.2, -0.2
     names = ("E", "E_1", "T_ref")
     for robust, bound in ((False, 1.0), (True, tol.OUTLIERS)):
-        fit = vr.identify(roller(), ranges(*names), [vr.Resistance(V, bad, sigma=0.01)], starts=1, robust=robust)
+        fit = vr.identify(
+            roller(), ranges(*names), [vr.Resistance(V, bad, sigma=0.01)], starts=1, robust=robust
+        )
         off = max(abs(np.log(fit.values[name] / TRUTH[name])) for name in names)
         assert tol.OUTLIERS * (not robust) < off < bound
 
 
 @pytest.mark.parametrize("points", [40, 400])
 def test_a_robust_fit_tells_outliers_from_a_wrong_model(points):
-    """With 5 % of outliers good data are no misfit of it; a wrong model is one, and a sigma far below the noise too."""
+    """With 5 % of outliers good data are no misfit of it; a wrong model is one, and a sigma far
+    below the noise too.
+    """
     V = np.geomspace(0.02, 20.0, points)
     one = roller().contact(V, delta=0.0, fields="M").M
     two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
@@ -180,7 +215,9 @@ def test_a_robust_fit_tells_outliers_from_a_wrong_model(points):
 
     def misfit(M, robust=True):
         data = [vr.Resistance(V, M + spoilt, sigma=0.01)]
-        return bool(vr.identify(roller(), ranges("E", "E_1", "T_ref"), data, starts=1, robust=robust).misfit)
+        return bool(
+            vr.identify(roller(), ranges("E", "E_1", "T_ref"), data, starts=1, robust=robust).misfit
+        )
 
     good = noise(1, one, 0.01)
     assert (misfit(good, robust=False), misfit(good)) == (True, False)
@@ -217,9 +254,13 @@ def test_a_plan_tells_what_a_fit_will_know():
 def test_a_prediction_has_bands():
     """And the labels of what it was asked at."""
     fit = vr.identify(roller(), ranges("E", "T_ref"), [resistance(seed=1)], starts=1)
-    speeds = xr.DataArray([0.1, 1.0], dims="speed", coords={"speed": ["slow", "fast"]}, attrs={"units": "m/s"})
+    speeds = xr.DataArray(
+        [0.1, 1.0], dims="speed", coords={"speed": ["slow", "fast"]}, attrs={"units": "m/s"}
+    )
     band = fit.predict(vr.Resistance(speeds)).M
-    assert float(band.value.sel(speed="fast")) == float(fit.cylinder.contact(1.0, delta=0.0, fields="M").M)
+    assert float(band.value.sel(speed="fast")) == float(
+        fit.cylinder.contact(1.0, delta=0.0, fields="M").M
+    )
     t = np.linspace(0.0, 30.0, 7)
     by_slopes, drawn = (fit.predict(vr.Coastdown(t, V0=3.0), draws=draws) for draws in (0, 200))
     exact = roller().roll(3.0, 30.0, t).V
@@ -256,7 +297,10 @@ def test_slopes_outside_of_a_range_are_those_of_the_residuals():
         up, down = (fit.residuals(at | {name: at[name] + sign * step}) for sign in (1.0, -1.0))
         column = fit.jacobian(at)[:, [*fit.values].index(name)]
         expected = (up - down) / (2.0 * step)
-        assert close(column, expected, tol.IDENTIFIED_OUTSIDE, scale=np.abs(expected).max()), (name, factor)
+        assert close(column, expected, tol.IDENTIFIED_OUTSIDE, scale=np.abs(expected).max()), (
+            name,
+            factor,
+        )
 
 
 def test_a_product_with_a_negative_speed_is_real():
@@ -266,17 +310,25 @@ def test_a_product_with_a_negative_speed_is_real():
     powers = np.array([1.0 if name == "E" else 0.5 for name in fit.values])
     (product,) = fit._likelihood._bounded_products([powers], tol.CHI2_95, near=True)
     name, exponent = next((name, p) for name, p in product.powers.items() if name != "E")
-    assert close(product.value, fit.values["E"] ** product.powers["E"] * abs(fit.values[name]) ** exponent, tol.PRODUCT)
+    assert close(
+        product.value,
+        fit.values["E"] ** product.powers["E"] * abs(fit.values[name]) ** exponent,
+        tol.PRODUCT,
+    )
     assert f"|{name}|^" in _product_text(product, fit.values)
 
 
 def test_slopes_are_those_of_the_residuals():
-    fit = vr.identify(roller(), ranges("mu", "E") | {"V0:throw": (3.0, 5.0)}, [thrown(), traction()], starts=1)
+    fit = vr.identify(
+        roller(), ranges("mu", "E") | {"V0:throw": (3.0, 5.0)}, [thrown(), traction()], starts=1
+    )
     J = fit.jacobian(fit.values)
     for i, (name, value) in enumerate(fit.values.items()):
         step = 1e-4 * value
         up, down = (fit.residuals(fit.values | {name: value + sign * step}) for sign in (1.0, -1.0))
-        assert close(J[:, i], (up - down) / (2.0 * step), tol.IDENTIFIED_SLOPES, scale=np.abs(J[:, i]).max()), name
+        assert close(
+            J[:, i], (up - down) / (2.0 * step), tol.IDENTIFIED_SLOPES, scale=np.abs(J[:, i]).max()
+        ), name
 
 
 def test_slopes_take_values_with_units():
@@ -290,7 +342,11 @@ def test_slopes_take_values_with_units():
 def test_a_dataset_and_a_figure_hold_all_of_it(tmp_path):
     fit = vr.identify(roller(), ranges("mu", "E"), [resistance(seed=1), thrown(seed=2)], starts=1)
     data = fit.to_xarray()
-    assert close(data["throw V"] - data["throw V fit"], -fit.residuals(fit.values)[V.size :] * 5e-3, tol.IDENTIFIED)
+    assert close(
+        data["throw V"] - data["throw V fit"],
+        -fit.residuals(fit.values)[V.size :] * 5e-3,
+        tol.IDENTIFIED,
+    )
     assert data["throw V"].attrs["units"] == "m s-1"
     fit.plot(tmp_path / "fit.png")
     assert (tmp_path / "fit.png").stat().st_size > 10_000
@@ -298,7 +354,9 @@ def test_a_dataset_and_a_figure_hold_all_of_it(tmp_path):
 
 
 def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
-    """V of a coast-down has a second valley, of a short time and a large strength, in which this start lies."""
+    """V of a coast-down has a second valley, of a short time and a large strength, in which this
+    start lies.
+    """
     t = np.linspace(0.0, 40.0, 200)
     run = vr.Coastdown(t, noise(0, roller().roll(3.0, 30.0, t).V, 5e-3), sigma=5e-3, V0=3.0)
     near, far = (
@@ -309,11 +367,14 @@ def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
 
 
 class Slow:
-    """Least squares of one coordinate whose root of chi2 rises to 99 % of the bound at 1, then by 2.8 % of it per unit,
-    or no more.
+    """Least squares of one coordinate whose root of chi2 rises to 99 % of the bound at 1, then by
+    2.8 % of it per unit, or no more.
     """
 
-    low, high, start, active = np.array([-6.0]), np.array([6.0]), np.array([0.0]), [0]
+    low = np.array([-6.0])
+    high = np.array([6.0])
+    start = np.array([0.0])
+    active = np.array([0])
 
     def __init__(self, rate):
         self.rate = rate
@@ -335,7 +396,9 @@ class Slow:
 @pytest.mark.parametrize(("rate", "end"), [(0.028, 1.0 + 0.01 / 0.028), (0.0, None)])
 def test_a_walk_does_not_stop_just_below_the_bound(rate, end):
     problem = Slow(rate)
-    ends = Likelihood(problem, [problem.minimize(problem.start)]).profile(np.ones(1), tol.CHI2_95).ends
+    ends = (
+        Likelihood(problem, [problem.minimize(problem.start)]).profile(np.ones(1), tol.CHI2_95).ends
+    )
     if end is None:
         assert ends == [None, None]
     else:
@@ -343,26 +406,38 @@ def test_a_walk_does_not_stop_just_below_the_bound(rate, end):
 
 
 def test_intervals_of_autocorrelated_residuals_cover_the_truth():
-    """Noise of an autoregression with 0.6: by all points 70 % of the intervals would; the report states the points."""
-    V, rng = np.geomspace(0.02, 20.0, 200), np.random.default_rng(7)
-    M, inside, narrow = resistance(V).M, [], []
+    """Noise of an autoregression with 0.6: by all points 70 % of the intervals would; the report
+    states the points.
+    """
+    V = np.geomspace(0.02, 20.0, 200)
+    rng = np.random.default_rng(7)
+    M = resistance(V).M
+    inside = []
+    narrow = []
     for _ in range(40):
         noise = lfilter([0.8], [1.0, -0.6], rng.standard_normal(250))[50:]
         data = vr.Resistance(V, M + 0.01 * noise, sigma=0.01)
         fit = vr.identify(roller(), ranges("E", "T_ref"), [data], starts=1)
-        far = np.array([abs(fit.values[name] - TRUTH[name]) / fit.stderr[name] for name in fit.values])
+        far = np.array(
+            [abs(fit.values[name] - TRUTH[name]) / fit.stderr[name] for name in fit.values]
+        )
         inside += [*(far < 1.96)]
         narrow += [*(far * np.sqrt(fit.noise["M of resistance"].repeats) < 1.96)]
     assert np.mean(inside) > tol.IDENTIFY_COVERAGE
     assert np.mean(narrow) < tol.IDENTIFY_COVERAGE_NARROW
     assert "points in place of 200" in str(fit)
-    wide, one = (fit.intervals()["E"], fit.values["E"])
+    wide = fit.intervals()["E"]
+    one = fit.values["E"]
     assert wide[0] < one - 1.5 * fit.stderr["E"] < one + 1.5 * fit.stderr["E"] < wide[1]
 
 
 def test_residuals_that_are_only_large_are_named_as_such():
-    """White noise of three times the sigma that is given: the cause is its size, and no correlation is named."""
+    """White noise of three times the sigma that is given: the cause is its size, and no correlation
+    is named.
+    """
     data = resistance(seed=1, sigma=0.03)
-    fit = vr.identify(roller(), ranges("E", "T_ref"), [vr.Resistance(data.V, data.M, sigma=0.01)], starts=1)
+    fit = vr.identify(
+        roller(), ranges("E", "T_ref"), [vr.Resistance(data.V, data.M, sigma=0.01)], starts=1
+    )
     assert "are larger than noise (rms 2.77 sigma)" in str(fit)
     assert "autocorrelated" not in str(fit)

@@ -8,8 +8,8 @@ from calls import names_in
 from experiments import FILE, measurements
 
 import viscoroll as vr
-from viscoroll.app import cli
-from viscoroll.app.identification.measurements_toml import read_measurements
+from viscoroll import cli
+from viscoroll.measurements.identify import read_measurements
 
 EXAMPLE = vr.datasets.path("measured.toml")
 
@@ -45,7 +45,9 @@ def test_the_program_reports(folder, capsys):
     assert (folder / "fit.png").exists()
     assert cli.main([*given, "-o", out[2]]) == 0
     assert (folder / "fit.nc").exists()
-    for name, same in zip(out[3:], (out[0], out[2]), strict=True):  # the case of the suffix does not matter
+    for name, same in zip(
+        out[3:], (out[0], out[2]), strict=True
+    ):  # the case of the suffix does not matter
         assert cli.main([*given, "-o", name]) == 0
         assert Path(name).read_bytes()[:4] == Path(same).read_bytes()[:4]
 
@@ -64,8 +66,12 @@ def test_columns_that_are_left_aside_are_told(tmp_path):
 
 
 def test_columns_without_units_are_told_and_the_advice_leads_to_the_right_speed(tmp_path):
-    """A drum in km/h: without units a word for each column; with the heading as advised none, and speeds in m/s."""
+    """A drum in km/h: without units a word for each column; with the heading as advised none, and
+    speeds in m/s.
+    """
     data = names_in(tmp_path)["data"]
     assert data("V [km/h],M [N m m-1]\n0.36,0.2\n0.72,0.3\n").V.tolist() == [0.1, 0.2]
-    with pytest.warns(vr.ModelWarning, match=r"column 'V' has no unit, and is taken in m s-1.*'V \[m s-1\]'"):
+    with pytest.warns(
+        vr.ModelWarning, match=r"column 'V' has no unit, and is taken in m s-1.*'V \[m s-1\]'"
+    ):
         data("V,M [N m m-1]\n0.1,0.2\n0.2,0.3\n")

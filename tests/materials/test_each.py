@@ -1,4 +1,6 @@
-"""A material or a pair of bodies for each motion: as one after the other, whatever their company."""
+"""A material or a pair of bodies for each motion: as one after the other, whatever their
+company.
+"""
 
 import memory
 import numpy as np
@@ -9,7 +11,9 @@ from many import MATERIALS, rubbers
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 SCENE = {"kappa": 2.91, "mu": 0.2, "gamma": 700.0}
 T = np.linspace(0.0, 3e-2, 9)
@@ -23,9 +27,13 @@ def scene_of(material, **changes):
 
 @pytest.mark.parametrize("name", MATERIALS)
 def test_an_ensemble_is_its_motions(name):
-    """To what rounding of its rows moves each; and to the bit in blocks and on threads that are cut elsewhere."""
-    many, draw = MATERIALS[name](), np.random.default_rng(5)
-    start, mu = draw.uniform(-2.0, 2.0, (2, len(many))), draw.uniform(0.1, 0.3, len(many))
+    """To what rounding of its rows moves each; and to the bit in blocks and on threads that are cut
+    elsewhere.
+    """
+    many = MATERIALS[name]()
+    draw = np.random.default_rng(5)
+    start = draw.uniform(-2.0, 2.0, (2, len(many)))
+    mu = draw.uniform(0.1, 0.3, len(many))
     fields = ("V", "omega", "x", "angle", "delta", "slip_loss", "rolling_loss")
     asked = {"rtol": 1e-6, "rest": 1e-3, "fields": fields, "method": "integrate"}
     found = vr.ensemble(scene_of(many, mu=mu), *start, T, **asked, threads=1)
@@ -34,20 +42,25 @@ def test_an_ensemble_is_its_motions(name):
         for field in fields:
             exact = getattr(motion, field)
             scale = max(np.nanmax(np.abs(exact)), float(field.endswith("loss")))
-            assert close(getattr(found, field)[i], exact, tol.MOTION_EACH, scale=scale, what=(field, i))
+            assert close(
+                getattr(found, field)[i], exact, tol.MOTION_EACH, scale=scale, what=(field, i)
+            )
         times = motion.onset_time, motion.rest_time
         assert close((found.onset_time[i], found.rest_time[i]), times, tol.MOTION_EACH)
     some = slice(1, len(many) - 1)
     again = vr.ensemble(scene_of(many[some], mu=mu[some]), *start[:, some], T, **asked, threads=3)
     for field in (*fields, *KEPT):
-        assert np.array_equal(getattr(found, field)[some], getattr(again, field), equal_nan=True), field
+        assert np.array_equal(getattr(found, field)[some], getattr(again, field), equal_nan=True), (
+            field
+        )
     kept = 0.5 * (found.V**2 + 0.5 * found.omega**2) + found.slip_loss + found.rolling_loss
     assert close(kept, np.broadcast_to(kept[:, :1], kept.shape), tol.ENERGY_OF_PAIRS)
 
 
 @of_both
 def test_stress(name):
-    many, x = MATERIALS[name](), np.linspace(-0.6, 0.9, 7)[:, None]
+    many = MATERIALS[name]()
+    x = np.linspace(-0.6, 0.9, 7)[:, None]
     found = vr.stress(scene_of(many), x, 0.3, delta=1e-3)
     for i, one in enumerate(many):
         alone = vr.stress(scene_of(one), x[:, 0], 0.3, delta=1e-3)
@@ -61,8 +74,12 @@ def test_memory_is_bounded_by_a_block():
 
     def beside(count):
         draw = np.random.default_rng(2)
-        scene = scene_of(vr.Bodies(rubbers(draw, 3, count=count), rubbers(draw, 3, count=count), 0.4))
-        return memory.taken_beside(lambda: vr.ensemble(scene, 1.0, 0.0, T[::4], rtol=1e-3, fields="V", threads=1))
+        scene = scene_of(
+            vr.Bodies(rubbers(draw, 3, count=count), rubbers(draw, 3, count=count), 0.4)
+        )
+        return memory.taken_beside(
+            lambda: vr.ensemble(scene, 1.0, 0.0, T[::4], rtol=1e-3, fields="V", threads=1)
+        )
 
     beside(64)
     assert beside(1024) - beside(256) <= tol.MEMORY_SLACK / 10

@@ -3,7 +3,7 @@
 from concurrent.futures import ThreadPoolExecutor
 
 import viscoroll as vr
-from viscoroll.materials.law.table import law_table
+from viscoroll.laws.law_table import law_table
 
 SOFT = vr.Prony([2.0, 5.0], [1.0, 1e-3])
 
@@ -14,5 +14,10 @@ def test_a_table_is_made_once_and_shared():
     assert all(table is tables[0] for table in tables)
     assert law_table(tables[0]) is tables[0]
     assert law_table(vr.Bodies(SOFT, SOFT)) is law_table(SOFT)
-    for values in (tables[0].coefficients, tables[0].steady_coefficients, tables[0].fast_limit, tables[0].record.rows):
+    for values in (
+        tables[0].coefficients,
+        tables[0].steady_coefficients,
+        tables[0].fast_limit,
+        tables[0].record.rows,
+    ):
         assert not values.flags.writeable

@@ -1,4 +1,6 @@
-"""Material: SI moduli, shifts with temperature, conventions of other programs; more numbers by hand: values.txt."""
+"""Material: SI moduli, shifts with temperature, conventions of other programs; more numbers by
+hand: values.txt.
+"""
 
 import dataclasses
 
@@ -32,7 +34,9 @@ def test_moduli_are_the_sums_over_modes():
     assert close(RUBBER.loss(inner), exact.imag, tol.MATERIAL)
     assert close(RUBBER.tan_delta(inner), exact.imag / exact.real, tol.MATERIAL)
     times = RUBBER.T_ref * RUBBER.prony.tau
-    spelt_out = RUBBER.E * (1.0 + sum(E * np.exp(-T / tau) for E, tau in zip(RUBBER.prony.E, times, strict=True)))
+    spelt_out = RUBBER.E * (
+        1.0 + sum(E * np.exp(-T / tau) for E, tau in zip(RUBBER.prony.E, times, strict=True))
+    )
     assert close(RUBBER.relaxation(T), spelt_out, tol.MATERIAL)
 
 
@@ -68,7 +72,9 @@ def test_a_shift_whose_constants_are_of_another_temperature(reference):
 
 def test_what_the_contact_feels_under_a_constant_bulk_modulus():
     """E/(1 - nu^2) = 4 G (3 K + G)/(3 K + 4 G) at every frequency, with 17 modes over 8 decades."""
-    tau, G, omega = np.logspace(-8.0, 0.0, 17), np.linspace(1e6, 30e6, 17), np.logspace(-3.0, 10.0, 200)
+    tau = np.logspace(-8.0, 0.0, 17)
+    G = np.linspace(1e6, 30e6, 17)
+    omega = np.logspace(-3.0, 10.0, 200)
     product = 1j * omega[:, None] * tau
     shear = 1e6 + (G * product / (1.0 + product)).sum(axis=1)
     for K in (3e8, 1e9):
@@ -87,12 +93,19 @@ def test_what_the_contact_feels_under_a_constant_bulk_modulus():
     ],
 )
 def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
-    """E/(1 - nu^2) = 4 G (3 K + G)/(3 K + 4 G) at every frequency, by every program's way to say it."""
-    g, k, tau, omega = np.array(g), np.array(k), np.array([0.01, 1.0]), np.logspace(-3.0, 5.0, 50)
+    """E/(1 - nu^2) = 4 G (3 K + G)/(3 K + 4 G) at every frequency, by every program's way to say
+    it.
+    """
+    g = np.array(g)
+    k = np.array(k)
+    tau = np.array([0.01, 1.0])
+    omega = np.logspace(-3.0, 5.0, 50)
     product = 1j * omega[:, None] * tau
-    G0, K0 = 1e6 / (2.0 * (1.0 + nu)), 1e6 / (3.0 * (1.0 - 2.0 * nu))
+    G0 = 1e6 / (2.0 * (1.0 + nu))
+    K0 = 1e6 / (3.0 * (1.0 - 2.0 * nu))
     G, K = (X * (1.0 - x.sum() + (product / (1.0 + product)) @ x) for X, x in ((G0, g), (K0, k)))
-    G_inf, K_inf = G0 * (1.0 - g.sum()), K0 * (1.0 - k.sum())
+    G_inf = G0 * (1.0 - g.sum())
+    K_inf = K0 * (1.0 - k.sum())
     late = (3.0 * K_inf - 2.0 * G_inf) / (6.0 * K_inf + 2.0 * G_inf)
     for found in (
         vr.Material.abaqus(1e6, nu, g, tau, k=k),
@@ -128,7 +141,14 @@ def test_bulk_terms_in_another_unit_than_shear_warn(make):
 # --- as netCDF ---
 
 STORED = (
-    vr.Material(1.0 / 3.0, 0.1, vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]), 1e9 / 7.0, 'the "soft" one', 1100.0 / 3.0),
+    vr.Material(
+        1.0 / 3.0,
+        0.1,
+        vr.Prony([2.0 / 3.0, 1e-9], [0.1, 1e-17]),
+        1e9 / 7.0,
+        'the "soft" one',
+        1100.0 / 3.0,
+    ),
     vr.Material.sls(2.3e5, 0.49, 10.7, 0.97),
     vr.Material(3e6, 0.5, vr.Prony.creep([0.3, 0.69], [3.0, 1e-5], alpha=100.00000000000001)),
     vr.Material.elastic(2e11, 0.3),
@@ -164,16 +184,24 @@ def test_what_other_programs_read(tmp_path):
     rubber.to_netcdf(tmp_path / "rubber.nc")
     with xr.open_dataset(tmp_path / "rubber.nc", engine="h5netcdf") as found:
         assert (found.E_long.item(), found.E_long.units) == (rubber.E, "Pa")
-        assert all(np.array_equal(found[name], getattr(rubber.prony, name)) for name in ("E", "tau", "J", "T"))
+        assert all(
+            np.array_equal(found[name], getattr(rubber.prony, name))
+            for name in ("E", "tau", "J", "T")
+        )
 
 
 def test_a_material_of_another_toml_file(tmp_path):
-    """As ``material fit -o dma.toml`` leaves it, for either body; the layer may be given beside it."""
-    rubber, belt = STORED[0], STORED[1]
+    """As ``material fit -o dma.toml`` leaves it, for either body; the layer may be given beside
+    it.
+    """
+    rubber = STORED[0]
+    belt = STORED[1]
     (tmp_path / "dma.toml").write_text(material_as_toml(rubber))
     (tmp_path / "two.toml").write_text(material_as_toml(rubber) + material_as_toml(belt, "base"))
     scene = tmp_path / "scene.toml"
-    scene.write_text('[material]\nfile = "dma.toml"\n[base]\nfile = "dma.toml"\nthickness = 0.006\n')
+    scene.write_text(
+        '[material]\nfile = "dma.toml"\n[base]\nfile = "dma.toml"\nthickness = 0.006\n'
+    )
     thin = dataclasses.replace(rubber, thickness=0.006)
     assert read_materials(scene) == {"material": rubber, "base": thin}
     scene.write_text('[material]\nfile = "two.toml"\n[base]\nfile = "two.toml"\n')

@@ -1,4 +1,6 @@
-"""Materials of several relaxation times: both forms of a series, its functions, and what rolls on it."""
+"""Materials of several relaxation times: both forms of a series, its functions, and what rolls on
+it.
+"""
 
 import numpy as np
 import pytest
@@ -10,16 +12,22 @@ from many import UNLIKE
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 WIDE = vr.Prony(E=[0.5, 3.0, 8.0, 20.0], tau=[1.0, 3e-2, 4e-5, 1e-9])
 #: random series: modes, decades that their times span, size of the strengths
-SERIES = st.tuples(st.integers(1, 12), st.floats(0.01, 14.0), st.floats(-3.0, 3.0), st.integers(0, 2**32 - 1))
+SERIES = st.tuples(
+    st.integers(1, 12), st.floats(0.01, 14.0), st.floats(-3.0, 3.0), st.integers(0, 2**32 - 1)
+)
 
 
 def random_series(modes, decades, size, seed):
     draw = np.random.default_rng(seed)
-    return vr.Prony(10.0 ** draw.uniform(size - 2.0, size, modes), 10.0 ** draw.uniform(-decades, 0.0, modes))
+    return vr.Prony(
+        10.0 ** draw.uniform(size - 2.0, size, modes), 10.0 ** draw.uniform(-decades, 0.0, modes)
+    )
 
 
 # --- the two forms ---
@@ -45,7 +53,9 @@ def test_a_series_is_read_only():
 
 
 def scene(material, **changes):
-    return vr.Scene(material=material, **({"kappa": 10.0, "mu": 0.3, "gamma": 1e4, "j": 0.5} | changes))
+    return vr.Scene(
+        material=material, **({"kappa": 10.0, "mu": 0.3, "gamma": 1e4, "j": 0.5} | changes)
+    )
 
 
 @pytest.mark.parametrize("unit", [2.0**40, 3.7e-9])
@@ -70,19 +80,32 @@ PARTS = ("M_half_space", "M_cylinder")
 
 
 def test_slopes_of_the_parts_of_M():
-    """Against differences, and both together against dM/dV; at V = 0 the slow limit, half of M for like bodies."""
+    """Against differences, and both together against dM/dV; at V = 0 the slow limit, half of M for
+    like bodies.
+    """
     V = np.geomspace(1e-5, 1e7, 40)
     slopes = vr.contact(scene(UNLIKE), V, delta=0.0, slopes=True)
     step = 1e-4 * V
-    above, below = (vr.contact(scene(UNLIKE), at, delta=0.0, fields=(*PARTS, "M")) for at in (V + step, V - step))
+    above, below = (
+        vr.contact(scene(UNLIKE), at, delta=0.0, fields=(*PARTS, "M"))
+        for at in (V + step, V - step)
+    )
     for name in (*PARTS, "M"):
         size = abs(getattr(slopes, name)) / V
         difference = (getattr(above, name) - getattr(below, name)) / (2.0 * step)
-        assert (abs(getattr(slopes, f"d{name}_dV") - difference) <= tol.BODIES_DIFFERENCE * size).all()
+        assert (
+            abs(getattr(slopes, f"d{name}_dV") - difference) <= tol.BODIES_DIFFERENCE * size
+        ).all()
     rest = vr.contact(scene(UNLIKE), 0.0, delta=0.0, slopes=True)
-    half_space, cylinder = 0.7 * UNLIKE.base.T_mean, 0.3 * UNLIKE.cylinder.T_mean
+    half_space = 0.7 * UNLIKE.base.T_mean
+    cylinder = 0.3 * UNLIKE.cylinder.T_mean
     assert close((rest.dM_half_space_dV, rest.dM_cylinder_dV), (half_space, cylinder), tol.BODIES)
-    like = vr.contact(scene(vr.Bodies(WIDE, WIDE)), 0.3, delta=0.0, fields=("dM_dV", "dM_cylinder_dV", "M", *PARTS))
+    like = vr.contact(
+        scene(vr.Bodies(WIDE, WIDE)),
+        0.3,
+        delta=0.0,
+        fields=("dM_dV", "dM_cylinder_dV", "M", *PARTS),
+    )
     assert like.dM_cylinder_dV == 0.5 * like.dM_dV
     assert like.M_cylinder == like.M_half_space == 0.5 * like.M
 
@@ -107,9 +130,17 @@ def test_the_fastest_rolling(V):
 
 
 def test_slip_is_lost_and_regained_in_two_bands():
-    """M(V) has two humps (E = 2, 6, tau = 1, 1e-5): stick goes twice, where the condition of each says."""
-    two = vr.Scene(material=vr.Prony([2.0, 6.0], [1.0, 1e-5]), kappa=10.0, mu=1.39e-3, gamma=1.0, j=0.5)
+    """M(V) has two humps (E = 2, 6, tau = 1, 1e-5): stick goes twice, where the condition of each
+    says.
+    """
+    two = vr.Scene(
+        material=vr.Prony([2.0, 6.0], [1.0, 1e-5]), kappa=10.0, mu=1.39e-3, gamma=1.0, j=0.5
+    )
     motion = vr.roll(two, 5000.0, 5000.0, np.geomspace(1.0, 1e9, 50))
-    assert [switch.regime for switch in motion.switches[:3]] == ["full slip", "partial slip", "full slip"]
+    assert [switch.regime for switch in motion.switches[:3]] == [
+        "full slip",
+        "partial slip",
+        "full slip",
+    ]
     V = [motion.at([switch.t]).V.item() for switch in motion.switches[:3]]
     assert close(V, [1264.0, 804.0, 0.0840], tol.SERIES_BANDS)

@@ -1,4 +1,6 @@
-"""The advice of every refusal of a file, followed, leads to a right result or to another refusal."""
+"""The advice of every refusal of a file, followed, leads to a right result or to another
+refusal.
+"""
 
 import ast
 import re
@@ -14,7 +16,9 @@ from hypothesis import strategies as st
 
 import viscoroll as vr
 
-THOUSANDS = rubbers.filled("f [Hz];E' [kPa];E'' [kPa]\n<f; S/1e3; L/1e3>\n", {"sep": ";", "format": "%.9g"})
+THOUSANDS = rubbers.filled(
+    "f [Hz];E' [kPa];E'' [kPa]\n<f; S/1e3; L/1e3>\n", {"sep": ";", "format": "%.9g"}
+)
 THOUSANDS = THOUSANDS.replace(";3617", ";3,617")
 RIGHT = "f [Hz];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6>\n"
 
@@ -44,7 +48,8 @@ def quoted(which):
     return follow
 
 
-#: title -> the file, words of its refusal, and what its advice is; a refusal follows where words of it are given
+#: title -> the file, words of its refusal, and what its advice is; a refusal follows where words of
+#: it are given
 CASES = {
     "a workbook": (
         "PK\u0003\u0004",
@@ -55,7 +60,11 @@ CASES = {
     "a frequency of 0": (RIGHT + "0;3;2\n", "remove the row", without("0;3")),
     "a negative loss modulus": (RIGHT + "200;9;-2\n", "remove the row", without("200;9")),
     "thousands": (THOUSANDS, "write only decimal marks", change(",", "")),
-    "words among the rows": (RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n", "remove it", without("sample")),
+    "words among the rows": (
+        RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n",
+        "remove it",
+        without("sample"),
+    ),
     "words among the rows, in a comment": (
         RIGHT + "slipped\n<f; S/1e6; L/1e6>\n",
         "begin it with #",
@@ -76,14 +85,21 @@ CASES = {
     "two rows of headings, numbers above": (
         ",20,,30,\nw,Gp,Gpp,Gp,Gpp\n<w; S; L; S/2; L/2>\n",
         "keep it and the columns of one of its numbers",
-        lambda text, *_: ("".join(",".join(line.split(",")[:3]) + "\n" for line in text.split("\n")), {}),
+        lambda text, *_: (
+            "".join(",".join(line.split(",")[:3]) + "\n" for line in text.split("\n")),
+            {},
+        ),
     ),
     "different headings": (
         RIGHT + "f [Hz];E' [kPa];E'' [kPa]\n<f; S/1e3; L/1e3>\n",
         "keep one of them",
         lambda text, *_: (text[: text.rindex("f [Hz]")], {}),
     ),
-    "two tables": (RIGHT + RIGHT, "keep one of them", lambda text, *_: (text[: text.rindex("f [Hz]")], {})),
+    "two tables": (
+        RIGHT + RIGHT,
+        "keep one of them",
+        lambda text, *_: (text[: text.rindex("f [Hz]")], {}),
+    ),
     "two tables, with temperatures": (
         RIGHT + RIGHT,
         "write 'Temperature 20 °C' above each",
@@ -181,7 +197,10 @@ CASES = {
     "four columns without headings": (
         "<n; f; S/1e6; L/1e6>\n",
         "they are called 'column 0', 'column 1'",
-        give(columns={"frequency": "column 1", "storage": "column 2", "loss": "column 3"}, units=("Hz", "MPa")),
+        give(
+            columns={"frequency": "column 1", "storage": "column 2", "loss": "column 3"},
+            units=("Hz", "MPa"),
+        ),
     ),
     "headings that say nothing": (
         "a [Hz];b [MPa];c [MPa]\n<f; S/1e6; L/1e6>\n",
@@ -194,7 +213,11 @@ CASES = {
         give(columns={"frequency": "T [°C]"}),
         "is not a unit of frequency",
     ),
-    "headings and rows of other separators": ("f E' E''\n<f; S; L>\n", "columns", change("f E' E''", "f;E';E''")),
+    "headings and rows of other separators": (
+        "f E' E''\n<f; S; L>\n",
+        "columns",
+        change("f E' E''", "f;E';E''"),
+    ),
 }
 
 
@@ -207,7 +230,9 @@ def read(path, options):
         except vr.ViscorollError as error:
             return None, str(error)
     storage, loss = rubbers.moduli(found.omega)
-    return all(close(*pair, tol.DMA_DIGITS) for pair in ((found.storage, storage), (found.loss, loss))), ""
+    return all(
+        close(*pair, tol.DMA_DIGITS) for pair in ((found.storage, storage), (found.loss, loss))
+    ), ""
 
 
 @pytest.mark.parametrize("title", CASES)
@@ -229,58 +254,111 @@ def test_advice_helps(title, tmp_path):
 
 
 def test_a_column_of_temperature_helps(tmp_path):
-    """Two sweeps in one file are refused, and read where the column is written that the message asks for."""
+    """Two sweeps in one file are refused, and read where the column is written that the message
+    asks for.
+    """
     path = tmp_path / "dma.csv"
     both = "f [Hz];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6>\n<f; S/2e6; L/2e6>\n"
     path.write_text(rubbers.filled(both, {"sep": ";"}))
     with pytest.raises(vr.FileError, match="need a column of temperature"):
         vr.read_dma(path)
     rows = both.replace("f [Hz]", "T [°C];f [Hz]").replace("<f; S/1e6", "<20*one; f; S/1e6")
-    path.write_text(rubbers.filled(rows.replace("<f; S/2e6", "<40*one; f; S/2e6"), {"sep": ";"}), encoding="utf-8")
+    path.write_text(
+        rubbers.filled(rows.replace("<f; S/2e6", "<40*one; f; S/2e6"), {"sep": ";"}),
+        encoding="utf-8",
+    )
     assert np.array_equal(vr.read_dma(path).temperature, np.repeat([20.0, 40.0], 12))
 
 
-#: columns of a test: quantity, numbers in an SI unit, headings that are known or not, and unit in the file -> (the
-#: same as units= has it, how many of it are the SI unit); "!" begins a unit that no reader can know
+#: columns of a test: quantity, numbers in an SI unit, headings that are known or not, and unit in
+#: the file -> (the same as units= has it, how many of it are the SI unit); "!" begins a unit that
+#: no reader can know
 FREQUENCY = {
-    "Hz": ("Hz", 1.0), "cpm": ("rpm", 60.0), "r/min": ("rpm", 60.0), "1/min": ("rpm", 60.0), "tr/min": ("rpm", 60.0),
-    "kHz": ("kHz", 1e-3), "cps": ("Hz", 1.0), "!Schlag/s": ("Hz", 1.0), "!N/mm": ("Hz", 1.0), "!10^3 Hz": ("kHz", 1e-3),
-}  # fmt: skip
+    "Hz": ("Hz", 1.0),
+    "cpm": ("rpm", 60.0),
+    "r/min": ("rpm", 60.0),
+    "1/min": ("rpm", 60.0),
+    "tr/min": ("rpm", 60.0),
+    "kHz": ("kHz", 1e-3),
+    "cps": ("Hz", 1.0),
+    "!Schlag/s": ("Hz", 1.0),
+    "!N/mm": ("Hz", 1.0),
+    "!10^3 Hz": ("kHz", 1e-3),
+}
 MODULUS = {
-    "Pa": ("Pa", 1.0), "MPa": ("MPa", 1e-6), "kgf/cm²": ("kgf/cm^2", 1.0 / 98066.5), "N/mm²": ("MPa", 1e-6),
-    "kp/cm2": ("kgf/cm^2", 1.0 / 98066.5), "daN/cm²": ("bar", 1e-5), "!10^6 Pa": ("MPa", 1e-6), "!dNm": ("kPa", 1e-3),
-    "!kPa rel.": ("kPa", 1e-3), "!Einheiten": ("MPa", 1e-6),
-}  # fmt: skip
+    "Pa": ("Pa", 1.0),
+    "MPa": ("MPa", 1e-6),
+    "kgf/cm²": ("kgf/cm^2", 1.0 / 98066.5),
+    "N/mm²": ("MPa", 1e-6),
+    "kp/cm2": ("kgf/cm^2", 1.0 / 98066.5),
+    "daN/cm²": ("bar", 1e-5),
+    "!10^6 Pa": ("MPa", 1e-6),
+    "!dNm": ("kPa", 1e-3),
+    "!kPa rel.": ("kPa", 1e-3),
+    "!Einheiten": ("MPa", 1e-6),
+}
 TAN = {"": ("1", 1.0), "-": ("1", 1.0), "%": ("%", 100.0), "!Teile": ("1", 1.0)}
 CELSIUS = {"°C": ("degC", 1.0), "K": ("K", 1.0), "C": ("degC", 1.0)}
 COLUMNS = {
-    "frequency": (rubbers.FREQUENCY, FREQUENCY, ["f", "Frequenza", "Fréquence", "周波数", "Prüffrequenz", "Kanal 1"]),
+    "frequency": (
+        rubbers.FREQUENCY,
+        FREQUENCY,
+        ["f", "Frequenza", "Fréquence", "周波数", "Prüffrequenz", "Kanal 1"],
+    ),
     "storage": (
-        rubbers.STORAGE, MODULUS,
-        ["E'", "Modulo conservativo", "Module de conservation", "貯蔵弾性率", "Ep", "Modul 1", "E stor. x"],
+        rubbers.STORAGE,
+        MODULUS,
+        [
+            "E'",
+            "Modulo conservativo",
+            "Module de conservation",
+            "貯蔵弾性率",
+            "Ep",
+            "Modul 1",
+            "E stor. x",
+        ],
     ),
     "loss": (
-        rubbers.LOSS, MODULUS,
-        ["E''", "Modulo dissipativo", "Module de perte", "損失弾性率", "Epp", "Modul 2", "E loss x"],
+        rubbers.LOSS,
+        MODULUS,
+        [
+            "E''",
+            "Modulo dissipativo",
+            "Module de perte",
+            "損失弾性率",
+            "Epp",
+            "Modul 2",
+            "E loss x",
+        ],
     ),
     "tan delta": (
-        rubbers.LOSS / rubbers.STORAGE, TAN,
+        rubbers.LOSS / rubbers.STORAGE,
+        TAN,
         ["tan δ", "Fattore di perdita", "Facteur de perte", "損失正接", "Verhältnis"],
     ),
     "temperature": (np.full(12, 21.0), CELSIUS, ["T", "Temperatura", "温度", "Ts", "Kammer"]),
-}  # fmt: skip
+}
 
 
 @st.composite
 def stated(draw):
-    """A text of a file with units, perhaps logarithms, and the truth: quantity -> heading, and quantity -> unit."""
+    """A text of a file with units, perhaps logarithms, and the truth: quantity -> heading, and
+    quantity -> unit.
+    """
     names = draw(
         st.sampled_from(
-            [("storage", "loss"), ("storage", "tan delta"), ("loss", "tan delta"), ("storage", "loss", "tan delta")]
+            [
+                ("storage", "loss"),
+                ("storage", "tan delta"),
+                ("loss", "tan delta"),
+                ("storage", "loss", "tan delta"),
+            ]
         )
     )
     warm = draw(st.sampled_from([(), ("temperature",)]))
-    cells, headings, units = {}, {}, {}
+    cells = {}
+    headings = {}
+    units = {}
     way = draw(st.sampled_from(["{} [{}]", "{} ({})", "{} / {}"]))
     for name in ["frequency", *names, *warm]:
         values, known, words = COLUMNS[name]
@@ -288,12 +366,21 @@ def stated(draw):
         units[name], factor = known[unit]
         numbers = values * factor + 273.15 * (unit == "K")
         written = unit.removeprefix("!")
-        heading = way.format(draw(st.sampled_from(words)), written) if written else draw(st.sampled_from(words))
-        log = draw(st.sampled_from([None] * 8 + ["log ", "ln "])) if name in ("frequency", "storage", "loss") else None
+        heading = (
+            way.format(draw(st.sampled_from(words)), written)
+            if written
+            else draw(st.sampled_from(words))
+        )
+        log = (
+            draw(st.sampled_from([None] * 8 + ["log ", "ln "]))
+            if name in ("frequency", "storage", "loss")
+            else None
+        )
         if log:
             heading = log + heading
             numbers = (np.log10 if log == "log " else np.log)(numbers)
-        headings[name], cells[name] = heading, [f"{number:.10g}" for number in numbers]
+        headings[name] = heading
+        cells[name] = [f"{number:.10g}" for number in numbers]
     order = draw(st.permutations([*cells]))
     below = draw(st.sampled_from(["", "\nEnd of test\n", "Fine della prova: 12.03.2024\n"]))
     rows = zip(*(cells[name] for name in order), strict=True)
@@ -301,14 +388,17 @@ def stated(draw):
     return f"{text}\n{below}", headings, units
 
 
-@settings(max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@settings(
+    max_examples=100, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+)
 @given(stated())
 def test_units_and_names_given_as_advised_are_right(tmp_path, file):
     """A file is read right, or refused until the advice that its message gives is followed."""
     text, headings, units = file
     path = tmp_path / "dma.csv"
     path.write_text(text, encoding="utf-8")
-    options, given_before = {}, None
+    options = {}
+    given_before = None
     while options != given_before:
         given_before = dict(options)
         with warnings.catch_warnings(record=True) as said:

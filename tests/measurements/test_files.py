@@ -1,4 +1,6 @@
-"""Files of moduli as instruments and spreadsheets write them, in files.toml: each is read right, or refused."""
+"""Files of moduli as instruments and spreadsheets write them, in files.toml: each is read right, or
+refused.
+"""
 
 import tomllib
 import warnings
@@ -30,22 +32,30 @@ def test_each_file(title, tmp_path):
     case = CASES[title]
     path = written(tmp_path, case)
     options = case.get("options", {})
-    options = options | ({"units": tuple(options["units"])} if isinstance(options.get("units"), list) else {})
+    options = options | (
+        {"units": tuple(options["units"])} if isinstance(options.get("units"), list) else {}
+    )
     if "refused" in case:
         refused(lambda: vr.read_dma(path, **options), *case["refused"], error=vr.ViscorollError)
         return
     with warnings.catch_warnings(record=True) as said:
         warnings.simplefilter("always")
         found = vr.read_dma(path, **options)
-    assert [str(each.message) for each in said if "unit" in str(each.message)] == [] or case.get("warns"), said
+    assert [str(each.message) for each in said if "unit" in str(each.message)] == [] or case.get(
+        "warns"
+    ), said
     storage, loss = rubbers.moduli(found.omega)
     digits = case.get("digits", tol.DMA_DIGITS)
-    assert close(found.omega, np.tile(rubbers.OMEGA, case.get("repeated", 1))[: found.omega.size], digits)
+    assert close(
+        found.omega, np.tile(rubbers.OMEGA, case.get("repeated", 1))[: found.omega.size], digits
+    )
     assert close(found.storage, storage * case.get("times", 1.0), digits)
     assert close(found.loss, loss * case.get("times", 1.0), digits)
     assert found.mode == case.get("mode", "tension")
     if "temperature" in case:
-        assert close(found.temperature, np.full(found.omega.size, case["temperature"]), 1e-12, scale=1.0)
+        assert close(
+            found.temperature, np.full(found.omega.size, case["temperature"]), 1e-12, scale=1.0
+        )
     else:
         assert found.temperature is None
     shown = str(found)

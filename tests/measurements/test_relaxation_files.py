@@ -13,14 +13,18 @@ E = 1e6 * (2.0 + np.exp(-T / 0.5))
 
 
 def table(*columns, sep=";"):
-    return "".join(sep.join(f"{value:.9g}" for value in row) + "\n" for row in np.transpose(columns))
+    return "".join(
+        sep.join(f"{value:.9g}" for value in row) + "\n" for row in np.transpose(columns)
+    )
 
 
 FILES = {
     "Time [s];E(t) [MPa]\n" + table(T, E / 1e6): "tension",
     "t / min;G(t) / kPa\n" + table(T / 60.0, E / 1e3): "shear",
-    "Zeit\tRelaxationsmodul\tTemperatur\ns\tMPa\t°C\n" + table(T, E / 1e6, 23.0 + 0 * T, sep="\t"): "tension",
-    "Temps (s);Contrainte (MPa);Déformation (%)\n" + table(T, 0.05 * E / 1e6, 5.0 + 0 * T): "tension",
+    "Zeit\tRelaxationsmodul\tTemperatur\ns\tMPa\t°C\n"
+    + table(T, E / 1e6, 23.0 + 0 * T, sep="\t"): "tension",
+    "Temps (s);Contrainte (MPa);Déformation (%)\n"
+    + table(T, 0.05 * E / 1e6, 5.0 + 0 * T): "tension",
     "Tempo [s];Modulo di rilassamento [MPa];Sforzo [MPa]\n" + table(T, E / 1e6, E / 1e7): "tension",
     "時間[s];緩和弾性率[Pa]\n" + table(T, E): "tension",
     "Step time;Modulus;Torque\ns;MPa;N m\n" + table(T, E / 1e6, T) + "End of test\n": "shear",
@@ -50,13 +54,34 @@ def test_relaxation_is_read(text, tmp_path):
 @pytest.mark.parametrize(
     ("text", "words"),
     [
-        ("Time [s];Force [N]\n1;2\n2;1\n", ["no column was found for time, or none for the modulus", "'Force [N]'"]),
-        ("Time [Hz];E(t) [MPa]\n1;2\n2;1\n", ["unit 'Hz' is not a unit of time: give units={'time': ...}"]),
-        ("Time [s];E(t) [MPa]\n0;2\n2;1\n", ["line 2: the time is not > 0 and finite: remove the row"]),
-        ("Time [s];Stress [MPa];Strain\n1;2;5\n2;1;5\n", ["'Strain' has no unit", "give units={'strain': ...}"]),
-        ("Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n", ["temperatures from 20 to 40 °C: keep one"]),
-        ("Time [s];E(t) [MPa]\n1;2\n2;1.8\n1;1\n2;0.9\n", ["line 4: an earlier row has the same time and another"]),
-        ("Time [s];E(t) [MPa]\n1;2\nTime [s];E(t) [MPa]\n1;2\n", ["has 2 tables: keep one of them"]),
+        (
+            "Time [s];Force [N]\n1;2\n2;1\n",
+            ["no column was found for time, or none for the modulus", "'Force [N]'"],
+        ),
+        (
+            "Time [Hz];E(t) [MPa]\n1;2\n2;1\n",
+            ["unit 'Hz' is not a unit of time: give units={'time': ...}"],
+        ),
+        (
+            "Time [s];E(t) [MPa]\n0;2\n2;1\n",
+            ["line 2: the time is not > 0 and finite: remove the row"],
+        ),
+        (
+            "Time [s];Stress [MPa];Strain\n1;2;5\n2;1;5\n",
+            ["'Strain' has no unit", "give units={'strain': ...}"],
+        ),
+        (
+            "Time [s];E(t) [MPa];T [°C]\n1;2;20\n2;1;40\n",
+            ["temperatures from 20 to 40 °C: keep one"],
+        ),
+        (
+            "Time [s];E(t) [MPa]\n1;2\n2;1.8\n1;1\n2;0.9\n",
+            ["line 4: an earlier row has the same time and another"],
+        ),
+        (
+            "Time [s];E(t) [MPa]\n1;2\nTime [s];E(t) [MPa]\n1;2\n",
+            ["has 2 tables: keep one of them"],
+        ),
     ],
 )
 def test_relaxation_is_refused(text, words, tmp_path):
@@ -68,17 +93,23 @@ def test_relaxation_is_refused(text, words, tmp_path):
 def test_a_record_is_fitted_alone():
     record = vr.RelaxationModulus(T, E, mode="shear")
     refused(lambda: vr.fit_relaxation(record, E), "relaxation or mode is given: must be left out")
-    refused(lambda: vr.fit_relaxation(record, mode="tension"), "relaxation or mode is given: must be left out")
+    refused(
+        lambda: vr.fit_relaxation(record, mode="tension"),
+        "relaxation or mode is given: must be left out",
+    )
     refused(lambda: vr.fit_relaxation(T), "relaxation = None: must be given with t")
 
 
 def test_units_by_name_on_the_command_line(tmp_path, capsys):
-    from viscoroll.app.cli import main
+    from viscoroll.cli import main
 
     path = tmp_path / "dma.csv"
     omega = np.geomspace(0.1, 100.0, 10)
-    storage, loss = 2.0 + omega**2 / (1.0 + omega**2), omega / (1.0 + omega**2)
-    path.write_text("f [Schlag/min];E' [MPa];E'' [MPa]\n" + table(omega * 30.0 / np.pi, storage, loss))
+    storage = 2.0 + omega**2 / (1.0 + omega**2)
+    loss = omega / (1.0 + omega**2)
+    path.write_text(
+        "f [Schlag/min];E' [MPa];E'' [MPa]\n" + table(omega * 30.0 / np.pi, storage, loss)
+    )
     assert main(["material", "fit", str(path)]) == 2
     assert "give units={'frequency': ...}" in capsys.readouterr().err
     assert main(["material", "fit", str(path), "--units", "frequency=rpm"]) == 0

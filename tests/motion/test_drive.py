@@ -1,4 +1,6 @@
-"""Motions under force, torque, slope, brake and prescribed speeds; motions of bodies that differ."""
+"""Motions under force, torque, slope, brake and prescribed speeds; motions of bodies that
+differ.
+"""
 
 import numpy as np
 import pytest
@@ -9,7 +11,9 @@ from drives import ROLLER
 import viscoroll as vr
 from pipeline.evidence.prove.motion import balance, speed_error
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 SCENE = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
 T = np.linspace(0.0, 8.0, 33)
@@ -18,8 +22,12 @@ PAIR = vr.Bodies(cylinder=BROAD, base=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), s
 
 
 def test_how_a_schedule_is_written():
-    """A number is a schedule of one piece; one cut in pieces, and a callable, are the same drive."""
-    number, piece = (vr.roll(ROLLER, 0.2, 0.2, T, torque=q).V for q in (0.05, vr.Schedule([0.0], [0.05])))
+    """A number is a schedule of one piece; one cut in pieces, and a callable, are the same
+    drive.
+    """
+    number, piece = (
+        vr.roll(ROLLER, 0.2, 0.2, T, torque=q).V for q in (0.05, vr.Schedule([0.0], [0.05]))
+    )
     assert np.array_equal(number, piece)
     cut = vr.Schedule([0.0, 1.3, 5.0, 8.0], [0.0, 0.013, 0.05, 0.08])
     ramp, *others = (
@@ -27,13 +35,17 @@ def test_how_a_schedule_is_written():
         for q in (vr.Schedule([0.0, 8.0], [0.0, 0.08]), cut, lambda t: 0.01 * t)
     )
     assert all(speed_error(other, ramp, so_far=True).max() <= 30e-9 for other in others)
-    jumps = vr.roll(ROLLER, 0.2, 0.2, T, torque=vr.Schedule([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03]))
+    jumps = vr.roll(
+        ROLLER, 0.2, 0.2, T, torque=vr.Schedule([0.0, 2.0, 2.0, 8.0], [0.01, 0.01, 0.03, 0.03])
+    )
     assert jumps.torque[T == 2.0] == 0.03  # the later side
 
 
 @pytest.mark.parametrize("share", [0.7, 1.3])
 def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
-    """A cylinder thrown with backspin slides, Q = -mu; where omega has come to 0, mu - M/2 would turn it on."""
+    """A cylinder thrown with backspin slides, Q = -mu; where omega has come to 0, mu - M/2 would
+    turn it on.
+    """
     t = np.linspace(0.0, 2.0, 41)
     m = vr.roll(ROLLER, 2.0, -0.1, t, brake=share * ROLLER.mu)
     omega = m.omega[t >= 0.25]  # it comes to 0 at 0.20, and at 0.15
@@ -43,14 +55,16 @@ def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
 
 
 def test_bodies_that_differ():
-    """Energy closes; by the kernel of two bodies a pair that hardly differs rolls as one material."""
-    scene, t = (
-        vr.Scene(material=PAIR, kappa=10.0, mu=0.3, gamma=0.5, j=0.5),
-        np.append(0.0, np.geomspace(0.1, 300.0, 20)),
-    )
+    """Energy closes; by the kernel of two bodies a pair that hardly differs rolls as one
+    material.
+    """
+    scene = vr.Scene(material=PAIR, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
+    t = np.append(0.0, np.geomspace(0.1, 300.0, 20))
     assert balance(vr.roll(scene, 1.0, 0.4, t, rtol=1e-9)) <= 1e-7
     nearly = vr.Bodies(cylinder=BROAD, base=BROAD, share=0.5 + 1e-12)
-    one, two = (vr.roll(scene.replace(material=given), 1.0, 0.4, t, rtol=1e-10) for given in (nearly, BROAD))
+    one, two = (
+        vr.roll(scene.replace(material=given), 1.0, 0.4, t, rtol=1e-10) for given in (nearly, BROAD)
+    )
     assert speed_error(one, two, so_far=True).max() <= tol.DRIVE_FREE
 
 
@@ -63,7 +77,9 @@ def test_an_exception_of_a_callable_passes():
 
 
 def test_the_end_of_a_motion_of_bodies_that_differ():
-    """V decays by a closed form, as of like bodies: steps went on to the smallest number, 430 of them."""
+    """V decays by a closed form, as of like bodies: steps went on to the smallest number, 430 of
+    them.
+    """
     modes = vr.Prony(E=[3.0] * 10, tau=10.0 ** np.arange(-9, 1))
     on_steel = vr.Bodies(cylinder=modes, base=vr.Prony.elastic(), share=1.0)
     scene = vr.Scene(material=on_steel, kappa=2.91, mu=0.2, gamma=100.0)
@@ -77,7 +93,9 @@ def test_the_end_of_a_motion_of_bodies_that_differ():
 
 @pytest.mark.parametrize("V", [0.05, 0.5, 2.0])
 def test_traction_of_the_smallest_creep(V):
-    """The force that a prescribed V asks for is M/2 - Q, and Q what the contact says of creep that is nearly none."""
+    """The force that a prescribed V asks for is M/2 - Q, and Q what the contact says of creep that
+    is nearly none.
+    """
     edge = vr.contact(SCENE, V, delta=0.0).delta_star
     for share in (-9e-5, 3e-5, 9e-5):
         omega = V * (1.0 + share * edge)

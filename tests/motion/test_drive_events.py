@@ -1,4 +1,6 @@
-"""Where regimes of driven motions end: two events at nearly one time, soon behind the start, at bends of the law."""
+"""Where regimes of driven motions end: two events at nearly one time, soon behind the start, at
+bends of the law.
+"""
 
 import numpy as np
 import pytest
@@ -7,7 +9,9 @@ from drives import ROLLER
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 #: errors over rtol: of V and omega over the largest speed so far, and of times of events
 BOUND = 30.0
@@ -16,8 +20,11 @@ ELASTIC = vr.Scene(alpha=1.0, kappa=10.0, mu=0.2, gamma=1.0, j=0.5)
 
 @pytest.mark.parametrize("share", [1e-6, 1e-9, 1e-12])
 def test_a_faint_push_the_other_way(share):
-    """A ramp that begins on the other side, by a share of what it reaches: V turns at twice the time of its zero."""
-    scene, t = ROLLER, np.linspace(0.0, 8.0, 33)
+    """A ramp that begins on the other side, by a share of what it reaches: V turns at twice the
+    time of its zero.
+    """
+    scene = ROLLER
+    t = np.linspace(0.0, 8.0, 33)
     plain = vr.roll(scene, 0.0, 0.0, t, rtol=1e-10, torque=vr.Schedule([0.0, 8.0], [0.0, 0.2]))
     m = vr.roll(scene, 0.0, 0.0, t, rtol=1e-10, torque=vr.Schedule([0.0, 8.0], [-0.2 * share, 0.2]))
     assert m.status == vr.MotionStatus.DONE
@@ -28,16 +35,21 @@ def test_a_faint_push_the_other_way(share):
 
 @pytest.mark.parametrize("early", [0.02, 0.1, 0.3])
 def test_a_brake_locks_just_before_v_is_zero(early):
-    """Sliding at V > 0 > omega: omega comes to 0 first, and only then do V and with it the slip vanish.
+    """Sliding at V > 0 > omega: omega comes to 0 first, and only then do V and with it the slip
+    vanish.
 
-    On one panel both the stop and, beyond it, the end of slip lie between the same two nodes.  An elastic cylinder:
-    V' is the force less mu until then, V a parabola; then the brake holds it.
+    On one panel both the stop and, beyond it, the end of slip lie between the same two nodes.  An
+    elastic cylinder: V' is the force less mu until then, V a parabola; then the brake holds it.
     """
     rtol = 1e-8
     end = (np.sqrt(0.06) - 0.2) / 0.01  # of V = 1 - 0.2 t - 0.005 t^2
     stop = end - early  # omega' is (mu + brake)/j = 1
-    t = np.concatenate([np.linspace(0.0, stop, 9), stop + early * np.array([0.2, 0.5, 0.8]), [end + 1.0]])
-    m = vr.roll(ELASTIC, 1.0, -stop, t, rtol=rtol, brake=0.3, force=vr.Schedule([0.0, 10.0], [0.0, -0.1]))
+    t = np.concatenate(
+        [np.linspace(0.0, stop, 9), stop + early * np.array([0.2, 0.5, 0.8]), [end + 1.0]]
+    )
+    m = vr.roll(
+        ELASTIC, 1.0, -stop, t, rtol=rtol, brake=0.3, force=vr.Schedule([0.0, 10.0], [0.0, -0.1])
+    )
     assert [s.regime for s in m.switches] == ["locked", "held"]
     assert close([s.t for s in m.switches], [stop, end], BOUND * rtol)
     bound = BOUND * rtol * stop
@@ -47,15 +59,20 @@ def test_a_brake_locks_just_before_v_is_zero(early):
 
 @pytest.mark.parametrize("pull", [-0.001, 0.001])
 def test_a_locked_cylinder_skids_to_rest(pull):
-    """Under a force that changes: at alpha = 1 the edge of slip was sought across V = 0, where |V| has a kink, and the
-    cylinder crept on with its brake locked."""
-    draw, rtol, mu, count = np.random.default_rng(7), 1e-8, 0.2, 500
+    """Under a force that changes: at alpha = 1 the edge of slip was sought across V = 0, where |V|
+    has a kink, and the cylinder crept on with its brake locked."""
+    draw = np.random.default_rng(7)
+    rtol = 1e-8
+    mu = 0.2
+    count = 500
     V0 = 10.0 ** draw.uniform(-2.0, 1.0, count)
     scene = ELASTIC.replace(kappa=10.0 ** draw.uniform(-1.0, 2.0, count))
     t = np.geomspace(0.01, 100.0, 400)
     force = vr.Schedule([0.0, t[-1]], [0.0, pull * t[-1]])
     e = vr.ensemble(scene, V0, 0.0, t, rtol=rtol, brake=10.0, force=force, fields=("V", "regime"))
-    end = 2.0 * V0 / mu / (1.0 + np.sqrt(1.0 - 2.0 * pull * V0 / mu**2))  # of V = V0 - mu t + pull t^2/2
+    end = (
+        2.0 * V0 / mu / (1.0 + np.sqrt(1.0 - 2.0 * pull * V0 / mu**2))
+    )  # of V = V0 - mu t + pull t^2/2
     skids = t < end[:, None]
     V = np.where(skids, V0[:, None] - mu * t + 0.5 * pull * t**2, 0.0)
     assert (np.abs(e.V - V).max(axis=1) <= BOUND * rtol * V0).all()
@@ -65,24 +82,36 @@ def test_a_locked_cylinder_skids_to_rest(pull):
 def test_a_brake_that_begins_at_0():
     """It takes hold as it rises, though it takes nothing where its piece of the drive begins.
 
-    An elastic cylinder that slides at V > 0 > omega: V' is -mu and omega' (mu + brake)/j until the brake locks, then
-    V goes on to 0.
+    An elastic cylinder that slides at V > 0 > omega: V' is -mu and omega' (mu + brake)/j until the
+    brake locks, then V goes on to 0.
     """
-    rtol, t = 1e-8, np.linspace(0.0, 6.0, 25)
+    rtol = 1e-8
+    t = np.linspace(0.0, 6.0, 25)
     m = vr.roll(ELASTIC, 1.0, -1.0, t, rtol=rtol, brake=vr.Schedule([0.0, 6.0], [0.0, 1.8]))
-    stop = (np.sqrt(0.34) - 0.2) / 0.3  # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
+    stop = (
+        np.sqrt(0.34) - 0.2
+    ) / 0.3  # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
     assert [s.regime for s in m.switches] == ["locked", "held"]
     assert close([s.t for s in m.switches], [stop, 5.0], BOUND * rtol)
     assert close(m.V, np.maximum(1.0 - 0.2 * t, 0.0), BOUND * rtol, scale=1.0)
-    assert close(m.omega, np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0), BOUND * rtol, scale=1.0)
+    assert close(
+        m.omega, np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0), BOUND * rtol, scale=1.0
+    )
 
 
 @pytest.mark.parametrize("most", [0.0859, 0.0333, 0.1])
 def test_a_brake_gives_way_to_a_ramp(most):
-    """What is left of the torque rises from 0: the motion is that of a ramp from 0 without a brake."""
-    scene, t, rtol = vr.Scene(alpha=1.0, kappa=15.0, mu=0.05, gamma=12.0, j=0.66), np.linspace(0.0, 1.0, 21), 1e-8
-    slope, free = -0.3, t >= most / 0.3
-    m = vr.roll(scene, 0.0, 0.0, t, rtol=rtol, brake=most, torque=vr.Schedule([0.0, 1.0], [0.0, slope]))
+    """What is left of the torque rises from 0: the motion is that of a ramp from 0 without a
+    brake.
+    """
+    scene = vr.Scene(alpha=1.0, kappa=15.0, mu=0.05, gamma=12.0, j=0.66)
+    t = np.linspace(0.0, 1.0, 21)
+    rtol = 1e-8
+    slope = -0.3
+    free = t >= most / 0.3
+    m = vr.roll(
+        scene, 0.0, 0.0, t, rtol=rtol, brake=most, torque=vr.Schedule([0.0, 1.0], [0.0, slope])
+    )
     since = np.append(0.0, t[free] - most / 0.3)
     plain = vr.roll(scene, 0.0, 0.0, since, rtol=rtol, torque=vr.Schedule([0.0, 1.0], [0.0, slope]))
     assert m.status == vr.MotionStatus.DONE
@@ -92,13 +121,18 @@ def test_a_brake_gives_way_to_a_ramp(most):
 
 
 def test_a_brake_lets_go_after_what_it_takes_turned():
-    """What it takes of the torque changes its sign on the panel on which it lets go: its size has a kink there.
+    """What it takes of the torque changes its sign on the panel on which it lets go: its size has a
+    kink there.
 
-    An elastic cylinder skids with omega = 0: the brake takes q + mu = 0.4 t - 0.1 of up to 0.15 - 0.05 t.
+    An elastic cylinder skids with omega = 0: the brake takes q + mu = 0.4 t - 0.1 of up to 0.15 -
+    0.05 t.
     """
     t = np.linspace(0.0, 2.0, 9)
     for rtol in (1e-4, 1e-6, 1e-8, 1e-10):
-        drive = {"torque": vr.Schedule([0.0, 2.0], [-0.3, 0.5]), "brake": vr.Schedule([0.0, 2.0], [0.15, 0.05])}
+        drive = {
+            "torque": vr.Schedule([0.0, 2.0], [-0.3, 0.5]),
+            "brake": vr.Schedule([0.0, 2.0], [0.15, 0.05]),
+        }
         m = vr.roll(ELASTIC, 1.0, 0.0, t, rtol=rtol, **drive)
         assert m.switches[0].regime == "full slip"
         assert close(m.switches[0].t, 0.25 / 0.45, BOUND * rtol)
@@ -107,8 +141,11 @@ def test_a_brake_lets_go_after_what_it_takes_turned():
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-11])
 @pytest.mark.parametrize("then", [1.0, -1.0])
 def test_a_prescribed_speed_stands_at_0(rtol, then):
-    """What its integration leaves of it is 0: the other speed comes to rest too; then it sets out either way."""
-    scene, t = vr.Scene(alpha=11.0, kappa=10.0, mu=0.05, gamma=1.0, j=0.5), np.linspace(0.0, 4.0, 17)
+    """What its integration leaves of it is 0: the other speed comes to rest too; then it sets out
+    either way.
+    """
+    scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.05, gamma=1.0, j=0.5)
+    t = np.linspace(0.0, 4.0, 17)
     stands = vr.Schedule([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, then])
     turning = vr.roll(scene, None, -0.1, t, rtol=rtol, V=stands)
     # sliding at V = 0 it spins down by 0.1 a unit of time
@@ -118,11 +155,15 @@ def test_a_prescribed_speed_stands_at_0(rtol, then):
 
 
 @pytest.mark.parametrize("rtol", [1e-3, 1e-8, 1e-12])
-@pytest.mark.parametrize(("values", "turns"), [([1, 0, -1], [1.0]), ([1, 0, 0, -1], [2.0]), ([1, 0, 0, 1], [])])
+@pytest.mark.parametrize(
+    ("values", "turns"), [([1, 0, -1], [1.0]), ([1, 0, 0, -1], [2.0]), ([1, 0, 0, 1], [])]
+)
 def test_a_prescribed_V_turns_where_it_leaves_0_the_other_way(values, turns, rtol):
     """Not where it comes to 0 with a piece of the drive, whatever rounding makes of that."""
     V = vr.Schedule(np.arange(len(values)), values)
-    m = vr.roll(vr.Scene(11.0, 10.0, 0.05, 1.0, 0.5), None, -2.0, V.times[-1], rtol=rtol, V=V, torque=-0.051)
+    m = vr.roll(
+        vr.Scene(11.0, 10.0, 0.05, 1.0, 0.5), None, -2.0, V.times[-1], rtol=rtol, V=V, torque=-0.051
+    )
     assert m.reversals.tolist() == turns
 
 
@@ -130,7 +171,9 @@ def test_a_prescribed_V_turns_where_it_leaves_0_the_other_way(values, turns, rto
 def test_a_brake_that_just_holds_a_slope(slope):
     """Both sides of the equality are rounded, each in its way: equality is rest."""
     roller = vr.presets.RUBBER_CYLINDER
-    held = roller.roll(0.0, 0.0, [0.5, 1.0], slope=slope, brake=roller.load * np.sin(slope) * roller.R)
+    held = roller.roll(
+        0.0, 0.0, [0.5, 1.0], slope=slope, brake=roller.load * np.sin(slope) * roller.R
+    )
     assert held.status == 0
     assert not held.V.any()
     assert (held.regime == 4).all()
@@ -142,7 +185,9 @@ def test_a_force_or_torque_above_the_brake_by_rounding_is_held_and_beyond_it_cre
     brake = 0.15
     for ulps in (-1, 0, 1, 2, 100, 1e6):
         pull = brake * (1.0 + ulps * 2.0**-52)
-        moved = vr.roll(scene, 0.0, 0.0, [1.0], force=share * brake, torque=pull - share * brake, brake=brake)
+        moved = vr.roll(
+            scene, 0.0, 0.0, [1.0], force=share * brake, torque=pull - share * brake, brake=brake
+        )
         assert moved.status == 0
         assert moved.V[0] == 0.0 if ulps < 10 else 0.0 < moved.V[0] < 2.0 * ulps * 2.0**-52
 
@@ -151,5 +196,8 @@ def test_a_free_start_on_a_cover_at_the_least_speeds():
     """The equations are linear there, so that V over V0 depends on V0 no more."""
     layer = vr.Cover(vr.Prony([2.0, 6.0], [1.0, 0.01]), nu=0.5, thickness=0.5, on="base")
     cover = vr.Scene(material=layer, kappa=10.0, mu=0.3, gamma=0.5)
-    left = [vr.roll(cover, V0, 0.0, [1.0], rtol=1e-10).V[0] / V0 for V0 in (1e-50, 1e-149, 1e-151, 1e-200)]
+    left = [
+        vr.roll(cover, V0, 0.0, [1.0], rtol=1e-10).V[0] / V0
+        for V0 in (1e-50, 1e-149, 1e-151, 1e-200)
+    ]
     assert close(np.array(left[1:]), left[0], BOUND * 1e-10)

@@ -19,7 +19,9 @@ def test_other_times_keep_the_drive():
 
 
 def test_a_motion_carries_its_drive(tmp_path):
-    """Whatever kind it is: a number, times and values, a callable, gains; what was not given is not there."""
+    """Whatever kind it is: a number, times and values, a callable, gains; what was not given is not
+    there.
+    """
     torque = vr.Feedback(RAMP, omega=-0.1)
     m = vr.roll(ROLLER, 0.2, 0.0, np.linspace(0.0, 4.0, 9), force=np.cos, torque=torque, slope=-0.5)
     m.to_xarray().to_netcdf(tmp_path / "m.nc", engine="h5netcdf")
@@ -41,7 +43,9 @@ def test_a_motion_carries_its_drive(tmp_path):
 
 def test_an_ensemble_carries_its_drives():
     steps = vr.Schedule([0.0, 1.0, 1.0], [[0.0, 0.2, 0.0], [0.0, 0.1, 0.0]])
-    e = vr.ensemble(ROLLER, 0.0, 0.0, [1.0, 4.0], torque=steps, slope=[0.01, 0.02], fields=("V", *ACTING))
+    e = vr.ensemble(
+        ROLLER, 0.0, 0.0, [1.0, 4.0], torque=steps, slope=[0.01, 0.02], fields=("V", *ACTING)
+    )
     data = e.to_xarray()
     assert data["drive_torque"].dims == ("motion", "drive_torque_time")
     assert data["drive_slope"].values.tolist() == [0.01, 0.02]

@@ -7,10 +7,12 @@ from closeness import close
 from drives import RUBBER
 
 import viscoroll as vr
-from viscoroll.motion.drive import STATES
 from viscoroll.motion.ensemble import FIELDS
+from viscoroll.motion.motion_arguments import STATES
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 7)
@@ -18,7 +20,8 @@ T = np.linspace(0.0, 3e-3, 7)
 
 def starts(count, seed=1):
     V0, omega0 = np.random.default_rng(seed).uniform(-2.0, 2.0, (2, count))
-    V0[:3], omega0[:3] = (0.0, 1.0, 0.0), (0.0, 1.0, -1.0)
+    V0[:3] = (0.0, 1.0, 0.0)
+    omega0[:3] = (0.0, 1.0, -1.0)
     return V0, omega0
 
 
@@ -26,9 +29,12 @@ def scenes(count):
     """Every parameter differs from motion to motion but mu; slip returns in some."""
     rng = np.random.default_rng(4)
     return vr.Scene(
-        alpha=1.0 + 10.0 ** rng.uniform(-1, 2, count), kappa=rng.uniform(2, 30, count), mu=0.02,
-        gamma=rng.uniform(5e3, 2e4, count), j=rng.uniform(0.3, 1.2, count),
-    )  # fmt: skip
+        alpha=1.0 + 10.0 ** rng.uniform(-1, 2, count),
+        kappa=rng.uniform(2, 30, count),
+        mu=0.02,
+        gamma=rng.uniform(5e3, 2e4, count),
+        j=rng.uniform(0.3, 1.2, count),
+    )
 
 
 def equal(a, b):
@@ -43,21 +49,38 @@ MANY = {
     "one scene": (SCENE, starts(40), T, {}),
     "a scene each": (scenes(40).replace(alpha=4.3), starts(40), T, {}),
     "driven": (
-        RUBBER, (np.full(40, 0.1), np.full(40, 0.1)), np.linspace(0.0, 8.0, 9),
-        {"torque": vr.Schedule([0.0, 8.0], np.stack([TORQUE, 0.5 * TORQUE], axis=1)), "force": 0.01},
+        RUBBER,
+        (np.full(40, 0.1), np.full(40, 0.1)),
+        np.linspace(0.0, 8.0, 9),
+        {
+            "torque": vr.Schedule([0.0, 8.0], np.stack([TORQUE, 0.5 * TORQUE], axis=1)),
+            "force": 0.01,
+        },
     ),
-    "tilted": (RUBBER, (np.zeros(40), np.zeros(40)), np.linspace(0.0, 8.0, 9), {"slope": 0.1 * TORQUE}),
+    "tilted": (
+        RUBBER,
+        (np.zeros(40), np.zeros(40)),
+        np.linspace(0.0, 8.0, 9),
+        {"slope": 0.1 * TORQUE},
+    ),
     "unsteady": (RUBBER, *THROWN),
     "unsteady, an alpha each": (RUBBER.replace(alpha=np.linspace(5.0, 9.0, 40)), *THROWN),
     "unsteady, a series each": (RUBBER.replace(material=SOFT), *THROWN),
-}  # fmt: skip
+}
 
 
 def one_of(many, index):
     if not many.shape:
         return many
-    each = {name: np.broadcast_to(getattr(many, name), 40)[index] for name in ("kappa", "mu", "gamma", "j")}
-    law = {"material": SOFT[index]} if many.material is SOFT else {"alpha": np.broadcast_to(many.alpha, 40)[index]}
+    each = {
+        name: np.broadcast_to(getattr(many, name), 40)[index]
+        for name in ("kappa", "mu", "gamma", "j")
+    }
+    law = (
+        {"material": SOFT[index]}
+        if many.material is SOFT
+        else {"alpha": np.broadcast_to(many.alpha, 40)[index]}
+    )
     return vr.Scene(**each, **law)
 
 
@@ -71,9 +94,13 @@ def given_to(index, value):
 def test_ensemble_is_roll_bit_for_bit(name):
     """Of materials each that are known by their rows: ``materials/test_each.py``."""
     many, (V0, omega0), t, options = MANY[name]
-    result = vr.ensemble(many, V0, omega0, t, fields=FIELDS, threads=2, method="integrate", **options)
+    result = vr.ensemble(
+        many, V0, omega0, t, fields=FIELDS, threads=2, method="integrate", **options
+    )
     for i in range(0, V0.size, 1 if not options else 9):
-        motion = vr.roll(one_of(many, i), V0[i], omega0[i], t, **{k: given_to(i, v) for k, v in options.items()})
+        motion = vr.roll(
+            one_of(many, i), V0[i], omega0[i], t, **{k: given_to(i, v) for k, v in options.items()}
+        )
         for field in STATES:
             assert equal(getattr(result, field)[i], getattr(motion, field)), (i, field)
         assert equal(result.onset_time[i], motion.onset_time)
@@ -112,11 +139,17 @@ def test_summary():
     assert summary.attrs["motions"] == 50
     assert "angle_mean" not in summary
     assert summary.V_quantiles.attrs["comment"] == "exact"
-    assert summary.V_histogram.sum("V_bin").values.tolist() == summary.V_counted.values.tolist() == [50] * len(T)
+    assert (
+        summary.V_histogram.sum("V_bin").values.tolist()
+        == summary.V_counted.values.tolist()
+        == [50] * len(T)
+    )
     assert summary.ended.sum() == 50
 
 
 def test_the_sense_of_a_start_from_rest():
-    """Friction moves the axis in the sense of the rotation, so the states that are judged have omega >= 0 at V >= 0."""
+    """Friction moves the axis in the sense of the rotation, so the states that are judged have
+    omega >= 0 at V >= 0.
+    """
     motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, 0.0, [-20.0, 20.0], 1.0)
     assert motions.fastest().omega.tolist() == [20.0, 20.0]

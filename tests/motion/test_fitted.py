@@ -1,4 +1,6 @@
-"""Callables of time as polynomials: how near, in how many values; and the motions that they drive."""
+"""Callables of time as polynomials: how near, in how many values; and the motions that they
+drive.
+"""
 
 import math
 
@@ -13,7 +15,8 @@ from viscoroll.motion import drive_fit
 from viscoroll.motion.piecewise import check_function, piecewise
 
 END = 20.0
-#: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a slope without bounds
+#: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a
+#: slope without bounds
 CALLABLES = {
     "tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 0.02)),
     "steep tanh": lambda t: 0.05 * (1.0 + math.tanh((t - 1.0) / 1e-6)),
@@ -34,7 +37,8 @@ class Counted:
     """A callable that counts its calls."""
 
     def __init__(self, function):
-        self.function, self.calls = function, 0
+        self.function = function
+        self.calls = 0
 
     def __call__(self, t):
         self.calls += 1
@@ -43,7 +47,8 @@ class Counted:
 
 def values(curve, t):
     """A curve of one motion at these times."""
-    (starts,), (ends,) = curve.starts, curve.ends
+    (starts,) = curve.starts
+    (ends,) = curve.ends
     k = np.searchsorted(starts, t, side="right") - 1
     x = 2.0 * (t - starts[k]) / (ends[k] - starts[k]) - 1.0
     return (curve.terms[0, k] * x[:, None] ** np.arange(curve.terms.shape[-1])).sum(axis=1)
@@ -52,7 +57,9 @@ def values(curve, t):
 @pytest.mark.parametrize("rtol", RTOLS)
 @pytest.mark.parametrize("name", CALLABLES)
 def test_a_callable_is_met_in_few_values(name, rtol):
-    """Off by a tenth of rtol of the largest value so far, in thousands of values; most of these took no end of them."""
+    """Off by a tenth of rtol of the largest value so far, in thousands of values; most of these
+    took no end of them.
+    """
     function = Counted(CALLABLES[name])
     curve = piecewise(check_function("torque", function, END, rtol))
     assert function.calls <= tol.CALLABLE_VALUES
@@ -60,21 +67,29 @@ def test_a_callable_is_met_in_few_values(name, rtol):
     assert (np.diff(curve.starts) > 0.0).all()
     t = np.sort(np.random.default_rng(3).uniform(0.0, END, 5000))
     exact = np.array([function(one) for one in t])
-    so_far, largest = np.maximum.accumulate(np.abs(exact)), np.abs(exact).max()
+    so_far = np.maximum.accumulate(np.abs(exact))
+    largest = np.abs(exact).max()
     scale = np.maximum(so_far, tol.CALLABLE_FOOT * largest)
     rounding = tol.CALLABLE_ROUNDING * largest / rtol
-    assert close(values(curve, t), exact, tol.CALLABLE_SHARE * rtol, scale=np.maximum(scale, rounding))
+    assert close(
+        values(curve, t), exact, tol.CALLABLE_SHARE * rtol, scale=np.maximum(scale, rounding)
+    )
     assert curve.error <= tol.CALLABLE_SHARE * max(rtol * largest, tol.CALLABLE_ROUNDING * largest)
 
 
 def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
-    """Noise, and a wave of 10^10 periods: the first after some halvings, the second after as many values as it may."""
+    """Noise, and a wave of 10^10 periods: the first after some halvings, the second after as many
+    values as it may.
+    """
     monkeypatch.setattr(drive_fit, "MOST", 20_000)
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
         with pytest.raises(
             vr.ParameterError,
-            match=r"^torque = a function that piecewise polynomials cannot approximate near t = .*Schedule",
+            match=(
+                r"^torque = a function that piecewise polynomials cannot approximate near t = "
+                r".*Schedule"
+            ),
         ):
             vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
         assert function.calls <= 2 * drive_fit.MOST
@@ -82,8 +97,11 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
 
 @pytest.mark.parametrize("many", [False, True])
 def test_a_narrow_pulse_is_seen_where_it_is_resolved(many):
-    """A pulse of END/8000, between two of the thousand samples that are taken without ``resolve``."""
-    width, at = END / 8000.0, END * 0.5
+    """A pulse of END/8000, between two of the thousand samples that are taken without
+    ``resolve``.
+    """
+    width = END / 8000.0
+    at = END * 0.5
 
     def pulse(t):
         return 20.0 * (at < t < at + width)
@@ -120,7 +138,9 @@ def test_speeds_prescribed_by_callables(name):
 def test_a_callable_that_jumps_is_a_schedule_that_jumps(rtol):
     t = np.linspace(0.0, END, 41)
     stairs = vr.Schedule([1.0, 1.0, 4.0, 4.0], [0.0, 0.1, 0.1, -0.05])
-    m = vr.roll(ROLLER, 0.0, 0.0, t, rtol=rtol, torque=lambda t: 0.1 * (1.0 <= t < 4.0) - 0.05 * (t >= 4.0))
+    m = vr.roll(
+        ROLLER, 0.0, 0.0, t, rtol=rtol, torque=lambda t: 0.1 * (1.0 <= t < 4.0) - 0.05 * (t >= 4.0)
+    )
     other = vr.roll(ROLLER, 0.0, 0.0, t, rtol=rtol, torque=stairs)
     assert np.array_equal(m.torque[t != 0.0], other.torque[t != 0.0])
     assert close(course(m), course(other), tol.CALLABLE_JUMP, scale=np.abs(other.V).max())

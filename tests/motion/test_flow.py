@@ -1,4 +1,6 @@
-"""The flow map against the integrator, to the error that it states; what it leaves to the integrator; its files."""
+"""The flow map against the integrator, to the error that it states; what it leaves to the
+integrator; its files.
+"""
 
 import numpy as np
 import pytest
@@ -10,9 +12,9 @@ from memory import forget
 import viscoroll as vr
 from viscoroll.core.errors import MotionStatus
 from viscoroll.motion import flow, flow_store
-from viscoroll.motion.batch import FLOW_PAYS
-from viscoroll.motion.drive import LOSSES
 from viscoroll.motion.ensemble import FIELDS
+from viscoroll.motion.many_motions import FLOW_PAYS
+from viscoroll.motion.motion_arguments import LOSSES
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.linspace(0.0, 3e-3, 16)
@@ -30,8 +32,11 @@ def starts(count, seed, scene, top=2.0):
     rng = np.random.default_rng(seed)
     V0, omega0 = rng.uniform(-top, top, (2, count))
     inside = slice(0, count // 5)
-    omega0[inside] = V0[inside] * (1.0 + scene.mu / scene.kappa * rng.uniform(-0.6, 0.6, count)[inside])
-    V0[-3], omega0[-2] = 0.0, 0.0
+    omega0[inside] = V0[inside] * (
+        1.0 + scene.mu / scene.kappa * rng.uniform(-0.6, 0.6, count)[inside]
+    )
+    V0[-3] = 0.0
+    omega0[-2] = 0.0
     return V0, omega0
 
 
@@ -46,17 +51,25 @@ THREE = vr.Prony([2.0, 6.0, 1.0], [1.0, 0.1, 0.01])
 RUBBER = vr.Scene(material=THREE, kappa=20.0, mu=0.3, gamma=1.0)
 #: scene, highest speed, and whether a map that serves it to a billionth is sure
 SCENES = {
-    "paper": (SCENE, 2.0, True), "kappa 29": (PAPER.replace(kappa=29.1), 2.0, True),
-    "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0, True), "alpha 2": (PAPER.replace(alpha=2.0), 2.0, True),
-    "j 1": (PAPER.replace(j=1.0), 2.0, True), "j 1.5": (PAPER.replace(j=1.5), 2.0, True), "rubber": (RUBBER, 2.0, True),
-    "pair": (RUBBER.replace(material=vr.Bodies(THREE, THREE, 0.5)), 2.0, True), "slow": (PAPER, 1e-4, True),
-    "fast": (PAPER, 2000.0, True), **{f"any {n}": (any_scene(n), 2.0, False) for n in range(10)},
-}  # fmt: skip
+    "paper": (SCENE, 2.0, True),
+    "kappa 29": (PAPER.replace(kappa=29.1), 2.0, True),
+    "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0, True),
+    "alpha 2": (PAPER.replace(alpha=2.0), 2.0, True),
+    "j 1": (PAPER.replace(j=1.0), 2.0, True),
+    "j 1.5": (PAPER.replace(j=1.5), 2.0, True),
+    "rubber": (RUBBER, 2.0, True),
+    "pair": (RUBBER.replace(material=vr.Bodies(THREE, THREE, 0.5)), 2.0, True),
+    "slow": (PAPER, 1e-4, True),
+    "fast": (PAPER, 2000.0, True),
+    **{f"any {n}": (any_scene(n), 2.0, False) for n in range(10)},
+}
 
 
 @pytest.mark.parametrize("name", SCENES)
 def test_as_the_integrator_to_its_stated_error(name):
-    """Speeds, way, losses, onset, regimes, against rtol 1e-12; what has no entry in the map is integrated."""
+    """Speeds, way, losses, onset, regimes, against rtol 1e-12; what has no entry in the map is
+    integrated.
+    """
     scene, top, sure = SCENES[name]
     V0, omega0 = starts(60, 2, scene, top)
     t = np.concatenate([np.geomspace(1e-7, 1e-1, 7), [1.0, 10.0, 200.0]]) * decay_time(scene)
@@ -66,7 +79,9 @@ def test_as_the_integrator_to_its_stated_error(name):
     assert np.array_equal(mapped.switches, rolled.switches)
     assert np.array_equal(np.isnan(mapped.onset_time), np.isnan(rolled.onset_time))
     if sure:
-        assert close(mapped.onset_time, rolled.onset_time, tol.FLOW_ONSET, scale=6e-3 * decay_time(scene))
+        assert close(
+            mapped.onset_time, rolled.onset_time, tol.FLOW_ONSET, scale=6e-3 * decay_time(scene)
+        )
     by = mapped.flow
     assert np.array_equal(mapped.regime[by], rolled.regime[by])
     assert not sure or by.mean() > 0.9
@@ -81,14 +96,18 @@ def test_as_the_integrator_to_its_stated_error(name):
     # what is left to rest is at most V times the decay time
     path = moved + 1e-5 * decay_time(scene) * speed[:, :1]
     energy = np.broadcast_to(0.5 * (V0**2 + scene.j * omega0**2)[:, None], path.shape)
-    kinds = dict.fromkeys(("V", "omega"), ("speed", speed)) | dict.fromkeys(("x", "angle"), ("path", path))
+    kinds = dict.fromkeys(("V", "omega"), ("speed", speed)) | dict.fromkeys(
+        ("x", "angle"), ("path", path)
+    )
     for field, (kind, size) in (kinds | dict.fromkeys(LOSSES, ("loss", energy))).items():
         found, exact = (getattr(many, field)[by] for many in (mapped, rolled))
         assert close(found, exact, stated[kind], scale=size[by], what=field)
 
 
 def test_starts_deep_inside_the_stick_zone_are_served_within_their_layer():
-    """Over 15 octaves of speed, and at outputs from a hundredth of the boundary layer on; half had no table once."""
+    """Over 15 octaves of speed, and at outputs from a hundredth of the boundary layer on; half had
+    no table once.
+    """
     rng = np.random.default_rng(11)
     V0 = 2.0 ** rng.uniform(-14.0, 1.0, 400) * rng.choice([-1.0, 1.0], 400)
     found = vr.contact(PAPER, abs(V0), delta=0.0, fields=("delta_star",)).delta_star
@@ -105,21 +124,29 @@ NEAR_RATES = (
 
 
 def test_start_near_the_slow_manifold_where_rates_are_near():
-    """V changes much within the boundary layer, and the search for an earlier entry may fail: it must notice."""
+    """V changes much within the boundary layer, and the search for an earlier entry may fail: it
+    must notice.
+    """
     for scene, kappa_V, kappa_omega in (
-        (NEAR_RATES[0], 1.4596, 1.41747), (NEAR_RATES[0], 1.20256, 1.1686), (NEAR_RATES[1], 1.00276, 0.996196),
-    ):  # fmt: skip
+        (NEAR_RATES[0], 1.4596, 1.41747),
+        (NEAR_RATES[0], 1.20256, 1.1686),
+        (NEAR_RATES[1], 1.00276, 0.996196),
+    ):
         spread = 1.0 + np.linspace(-1e-3, 1e-3, 41)
-        V0, omega0 = np.full(41, kappa_V / scene.kappa), kappa_omega / scene.kappa * spread
+        V0 = np.full(41, kappa_V / scene.kappa)
+        omega0 = kappa_omega / scene.kappa * spread
         t = np.geomspace(1e-3, 5.0, 8) * decay_time(scene)
         beside(scene, V0, omega0, t, rtol=1e-4)
 
 
 @pytest.mark.parametrize("rest", [1e-12, 1e-3, 1e4, 1e9])
 def test_rest(rest):
-    """Of any threshold: one above all speeds of the tables leaves every motion to the integrator."""
+    """Of any threshold: one above all speeds of the tables leaves every motion to the
+    integrator.
+    """
     V0, omega0 = starts(100, 7, SCENE)
-    V0[:2], omega0[:2] = 1e-4, -1e-4
+    V0[:2] = 1e-4
+    omega0[:2] = -1e-4
     t = np.linspace(0.0, 2e-2, 9)
     mapped, rolled = (
         vr.ensemble(SCENE, V0, omega0, t, rest=rest, method=method, fields=FIELDS, rtol=rtol)
@@ -135,9 +162,10 @@ def test_rest(rest):
 
 def test_scenes_without_a_map_are_integrated():
     for scene, why in (
-        (SCENE.replace(alpha=1.0), "elastic"), (SCENE.replace(mu=0.01), "steady speed"),
+        (SCENE.replace(alpha=1.0), "elastic"),
+        (SCENE.replace(mu=0.01), "steady speed"),
         (vr.Scene(11.0, 0.4, 0.09, 1.0, 0.01), ""),
-    ):  # fmt: skip
+    ):
         V0, omega0 = starts(20, 8, scene)
         t = np.linspace(0.1, 3.0, 4) / scene.gamma
         mapped = vr.ensemble(scene, V0, omega0, t, method="flow")
@@ -150,12 +178,22 @@ def test_scenes_without_a_map_are_integrated():
 
 
 SPIN = 1.4692137743888765  # by bisection on the sign of V at onset
-#: scene, starts, and whether each is in the map; two slide until V and omega vanish nearly together: their onset lies
-#: below every table
+#: scene, starts, and whether each is in the map; two slide until V and omega vanish nearly
+#: together: their onset lies below every table
 BEYOND = {
-    "onset": (SCENE, [1.0, -1.0, -1.0, 0.0], [1.0, SPIN, SPIN * (1.0 + 1e-7), 0.0], [True, False, False, False]),
+    "onset": (
+        SCENE,
+        [1.0, -1.0, -1.0, 0.0],
+        [1.0, SPIN, SPIN * (1.0 + 1e-7), 0.0],
+        [True, False, False, False],
+    ),
     **{
-        f"kappa {kappa}, V {speed}": (SCENE.replace(kappa=kappa), [speed, -speed], [0.5 * speed, speed], [False] * 2)
+        f"kappa {kappa}, V {speed}": (
+            SCENE.replace(kappa=kappa),
+            [speed, -speed],
+            [0.5 * speed, speed],
+            [False] * 2,
+        )
         for kappa, speed in ((1e250, 1.0), (1e-250, 1.0), (2.91, 1e90), (2.91, 1e-200))
     },
 }
@@ -164,16 +202,22 @@ BEYOND = {
 @pytest.mark.parametrize("name", BEYOND)
 def test_motions_beyond_the_map_are_integrated(name):
     scene, *start, mapped_ones = BEYOND[name]
-    mapped, rolled = (vr.ensemble(scene, *start, [1e-9, 3e-3], method=method) for method in ("flow", "integrate"))
+    mapped, rolled = (
+        vr.ensemble(scene, *start, [1e-9, 3e-3], method=method) for method in ("flow", "integrate")
+    )
     assert mapped.flow.tolist() == mapped_ones
     assert np.array_equal(mapped.V[~mapped.flow], rolled.V[~mapped.flow], equal_nan=True)
     assert np.array_equal(mapped.status, rolled.status)
 
 
 def test_a_layer_that_decays_to_rounding_is_in_the_map():
-    """With j = 1 the slow manifold is delta = 0: behind a large alpha, delta falls below its rounding and passes 0."""
+    """With j = 1 the slow manifold is delta = 0: behind a large alpha, delta falls below its
+    rounding and passes 0.
+    """
     scene = vr.Scene(2.958e10, 1.316, 1.096, 1.0, 1.0)
-    V0, omega0, t = np.array([1.0, 0.5, 0.2]), np.array([0.2, 1.0, 0.3]), np.array([0.3, 1.0, 2.0, 9.0])
+    V0 = np.array([1.0, 0.5, 0.2])
+    omega0 = np.array([0.2, 1.0, 0.3])
+    t = np.array([0.3, 1.0, 2.0, 9.0])
     assert beside(scene, V0, omega0, t).flow.all()
 
 
@@ -215,7 +259,9 @@ def test_fields_that_are_not_asked_for_do_not_enter_the_decision():
 
 
 def test_hardly_any_speed_left_at_onset():
-    """Errors of sliding weigh as many times more as V has fallen: by 5,000 they would exceed what the map states."""
+    """Errors of sliding weigh as many times more as V has fallen: by 5,000 they would exceed what
+    the map states.
+    """
     scene = vr.Scene(79.7, 7.3, 0.165, 1.0, 1.48)
     V0 = np.random.default_rng(5).uniform(0.5, 2.0, 4000)
     t = [12.0]
@@ -231,6 +277,8 @@ def test_hardly_any_speed_left_at_onset():
 
 
 def test_a_map_some_of_whose_motions_die_out():
-    """Its error is measured at times when V has gone through the subnormals to 0: 0/0 there was no error at all."""
+    """Its error is measured at times when V has gone through the subnormals to 0: 0/0 there was no
+    error at all.
+    """
     scene = vr.Scene(alpha=2.0, kappa=1.0, mu=1.0, gamma=1.0, j=1.5)
     assert beside(scene, [1.0], [-257.0], [1.0]).flow.all()

@@ -1,4 +1,6 @@
-"""Motions of every regime, and that once went wrong: as at the tightest tolerance, in few steps (hard_motions.json)."""
+"""Motions of every regime, and that once went wrong: as at the tightest tolerance, in few steps
+(hard_motions.json).
+"""
 
 import json
 from pathlib import Path
@@ -11,7 +13,9 @@ from drives import given
 import viscoroll as vr
 
 pytestmark = [
-    pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),  # scenes of all kinds, beyond the model too
+    pytest.mark.filterwarnings(
+        "ignore::viscoroll.ModelWarning"
+    ),  # scenes of all kinds, beyond the model too
     pytest.mark.filterwarnings("ignore:roll"),
 ]
 #: scene, start, drive, times; tolerances, and how many of each the error may be; steps at most
@@ -24,17 +28,25 @@ def mirrored(name, drive):
     if isinstance(drive, vr.Feedback):
         return vr.Feedback(mirrored(name, drive.value), V=drive.V, omega=drive.omega)
     sign = 1.0 if name == "brake" else -1.0
-    return vr.Schedule(drive.times, sign * drive.values) if isinstance(drive, vr.Schedule) else sign * drive
+    return (
+        vr.Schedule(drive.times, sign * drive.values)
+        if isinstance(drive, vr.Schedule)
+        else sign * drive
+    )
 
 
 @pytest.mark.parametrize("row", MOTIONS, ids=[row["name"] for row in MOTIONS])
 def test_mirrored(row):
     """Start and drive the other way: the same bits, the other way."""
-    scene, start, rtol = vr.Scene(*row["scene"]), row["start"], row["rtols"][0]
+    scene = vr.Scene(*row["scene"])
+    start = row["start"]
+    rtol = row["rtols"][0]
     drive = {name: given(plain) for name, plain in row["drive"].items()}
     other = {name: mirrored(name, each) for name, each in drive.items()}
     m = vr.roll(scene, *start, row["t"], rtol=rtol, **drive)
-    back = vr.roll(scene, *(None if one is None else -one for one in start), row["t"], rtol=rtol, **other)
+    back = vr.roll(
+        scene, *(None if one is None else -one for one in start), row["t"], rtol=rtol, **other
+    )
     for field in ("V", "omega", "x", "angle", *(("force", "torque") if drive else ())):
         assert np.array_equal(getattr(m, field), -getattr(back, field), equal_nan=True), field
     moves = np.abs(m.V) > 0.0
@@ -43,18 +55,27 @@ def test_mirrored(row):
 
 @pytest.mark.parametrize("row", MOTIONS, ids=[row["name"] for row in MOTIONS])
 def test_as_at_the_tightest_tolerance(row):
-    """Regimes, their ends and turns of V; speeds over the largest so far, of free motions over that of the time."""
+    """Regimes, their ends and turns of V; speeds over the largest so far, of free motions over that
+    of the time.
+    """
     case = vr.Scene(*row["scene"]), *row["start"], row["t"]
     drive = {name: given(plain) for name, plain in row["drive"].items()}
     best = vr.roll(*case, rtol=TIGHT, **drive)
     speed = np.maximum(np.abs(best.V), np.abs(best.omega))
     scale = np.maximum.accumulate(speed) if drive else speed
     for rtol in row["rtols"]:
-        m, bound = vr.roll(*case, rtol=rtol, **drive), row["bound"] * (rtol + TIGHT)
+        m = vr.roll(*case, rtol=rtol, **drive)
+        bound = row["bound"] * (rtol + TIGHT)
         assert m.status == best.status == vr.MotionStatus.DONE
         assert m.steps <= row["steps"]
         assert [s.regime for s in m.switches] == [s.regime for s in best.switches]
         events, found = ([*(s.t for s in of.switches), *of.reversals] for of in (best, m))
         assert not events or close(found, events, bound, scale=row["t"][-1])
-        for name, size in (("V", scale), ("omega", scale), ("x", np.maximum.accumulate(np.abs(best.x)))):
-            assert close(getattr(m, name), getattr(best, name), bound, scale=size, what=(name, rtol))
+        for name, size in (
+            ("V", scale),
+            ("omega", scale),
+            ("x", np.maximum.accumulate(np.abs(best.x))),
+        ):
+            assert close(
+                getattr(m, name), getattr(best, name), bound, scale=size, what=(name, rtol)
+            )

@@ -1,4 +1,6 @@
-"""One motion: the paper's numbers, accuracy against rtol, invariants, all regimes and nasty starts."""
+"""One motion: the paper's numbers, accuracy against rtol, invariants, all regimes and nasty
+starts.
+"""
 
 import math
 import re
@@ -12,7 +14,9 @@ from memory import taken_beside
 import viscoroll as vr
 from pipeline.evidence.prove import independent
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 ROUNDED = vr.presets.PAPER_SECTION_5_ROUNDED
 #: full slip returns: theory, Sect. 3
@@ -21,13 +25,16 @@ RETURNING = vr.Scene(alpha=11.0, kappa=2.91, mu=0.01, gamma=1.1e4, j=0.5)
 THRESHOLD = 0.24659784 / 6.0
 
 
-FULL, REST = 0, 2
+FULL = 0
+REST = 2
 
 # --- the paper's Sect. 5 ---
 
 
 def test_numbers_of_the_paper():
-    """All but beta = 0.45 at 1.52e-4: it is passed at 1.51e-4, or then with a T_epsilon that prints as the paper's."""
+    """All but beta = 0.45 at 1.52e-4: it is passed at 1.51e-4, or then with a T_epsilon that prints
+    as the paper's.
+    """
     rows = independent.paper()
     assert len(rows) == 18
     off = [row for row in rows if not abs(row["digits"]) <= tol.PAPER_DIGITS]
@@ -38,7 +45,9 @@ def test_numbers_of_the_paper():
 
 
 def test_outputs_end_where_slip_returns():
-    """Nothing but rounding is left of the motion behind the switch: it must not stick and slip there for ever."""
+    """Nothing but rounding is left of the motion behind the switch: it must not stick and slip
+    there for ever.
+    """
     returned = vr.roll(RETURNING, 1.0, 1.0, [2e-3], rtol=1e-12).switches[0].t
     for shift in (*np.arange(-3.0, 4.0) * 2.0**-52, 1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8):
         motion = vr.roll(RETURNING, 1.0, 1.0, [returned * (1.0 + shift)], rtol=1e-12)
@@ -62,13 +71,19 @@ def test_outputs_end_where_V_passes_zero(alpha, method):
 
 
 def test_threshold_of_the_return_of_slip():
-    """alpha = 11, j = 1/2: slip returns, once, where mu kappa < 0.0411 (the next order in V adds about 1e-3 to it)."""
+    """alpha = 11, j = 1/2: slip returns, once, where mu kappa < 0.0411 (the next order in V adds
+    about 1e-3 to it).
+    """
     for excess, returns in ((1e-2, 0), (2e-3, 0), (0.0, 1), (-1e-4, 1), (-2e-3, 1), (-5e-2, 1)):
-        scene = vr.Scene(alpha=11.0, kappa=2.91, mu=(1.0 + excess) * THRESHOLD / 2.91, gamma=1.1e4, j=0.5)
+        scene = vr.Scene(
+            alpha=11.0, kappa=2.91, mu=(1.0 + excess) * THRESHOLD / 2.91, gamma=1.1e4, j=0.5
+        )
         motion = vr.roll(scene, 2.0, 2.0, 1e-2)
         assert motion.status == vr.MotionStatus.DONE, excess
         assert motion.steps < 2000, excess
-        assert [s.regime for s in motion.switches] == returns * ["full slip", "partial slip"], excess
+        assert [s.regime for s in motion.switches] == returns * ["full slip", "partial slip"], (
+            excess
+        )
 
 
 def test_rest():
@@ -88,10 +103,13 @@ def test_rest():
 def test_rest_while_sliding_and_from_the_start():
     slow = vr.roll(ROUNDED, 1e-4, -1e-4, [1e-3], rest=1e-3)
     assert (slow.rest_time, slow.status, slow.V[0]) == (0.0, vr.MotionStatus.RESTED, 0.0)
-    # both speeds fall through the threshold while sliding: V + j omega = 0; V and omega of nearly one size
+    # both speeds fall through the threshold while sliding: V + j omega = 0; V and omega of nearly
+    # one size
     for *start, rest in (
-        (0.5, -1.0, 0.2), (-0.7113467608790995, -1.3359553878111319, 1.0), (0.7058009751523, 1.36067526863356, 1.0),
-    ):  # fmt: skip
+        (0.5, -1.0, 0.2),
+        (-0.7113467608790995, -1.3359553878111319, 1.0),
+        (0.7058009751523, 1.36067526863356, 1.0),
+    ):
         sliding = vr.roll(ROUNDED, *start, [1.0], rest=rest)
         assert math.isnan(sliding.onset_time)
         there = vr.roll(ROUNDED, *start, [sliding.rest_time], rtol=1e-12)
@@ -104,7 +122,8 @@ def test_rest_while_sliding_and_from_the_start():
 def test_a_motion_that_is_given_up_says_where_it_stood():
     """In the units that it is asked in, with what to try."""
     words = re.compile(
-        r"the step limit was reached first: raise max_steps, shorten the motion or, unless a speed grows without "
+        r"the step limit was reached first: raise max_steps, shorten the motion or, unless a speed "
+        r"grows without "
         r"bound, loosen rtol; the last state was "
         r"t = (\S+)( s)? in partial slip, V = (\S+)( m s-1)?, omega = (\S+)( rad s-1)?(; |$)"
     )
@@ -127,7 +146,10 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
 
 def test_a_high_step_limit_takes_no_memory():
     """A double a step would be 80 MB."""
-    assert taken_beside(lambda: vr.roll(ROUNDED, 1.5, 0.5, 5e-3, rtol=1e-12, max_steps=10_000_000)) < 10_000_000
+    assert (
+        taken_beside(lambda: vr.roll(ROUNDED, 1.5, 0.5, 5e-3, rtol=1e-12, max_steps=10_000_000))
+        < 10_000_000
+    )
 
 
 @pytest.mark.filterwarnings("ignore:roll")
@@ -136,7 +158,8 @@ def test_contact_along_a_motion_that_ended_early():
     motion = vr.roll(ROUNDED, 1.5, 0.5, [1e-6, 2e-6, 1.0], max_steps=5)
     reached = motion.regime >= 0
     assert reached.tolist() == [True, True, False]
-    found, expected = motion.contact(), motion.at([1e-6, 2e-6]).contact()
+    found = motion.contact()
+    expected = motion.at([1e-6, 2e-6]).contact()
     for name, values in found.as_dict().items():
         assert np.array_equal(values[reached], getattr(expected, name)), name
         assert not values[2] if name == "full_slip" else np.isnan(values[2]), name
@@ -157,6 +180,8 @@ def test_last_output_on_a_switch(rtol):
 def test_late_creep_is_what_both_equations_ask(j):
     """V and omega fall together at last: Q (1 + j) = (j - 1) M/2, down to speeds of 1e-119."""
     scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=j)
-    late = vr.ensemble(scene, [1.0], [0.2], [200.0, 400.0], fields=("V", "delta"), method="integrate")
+    late = vr.ensemble(
+        scene, [1.0], [0.2], [200.0, 400.0], fields=("V", "delta"), method="integrate"
+    )
     state = vr.contact(scene, late.V[0], delta=late.delta[0])
     assert close((1.0 + j) * state.Q, 0.5 * (j - 1.0) * state.M, tol.LATE_CREEP)

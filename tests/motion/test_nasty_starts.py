@@ -1,4 +1,6 @@
-"""Starts and scenes on the edges of everything, for both ways of rolling: the flow map and the integrator."""
+"""Starts and scenes on the edges of everything, for both ways of rolling: the flow map and the
+integrator.
+"""
 
 import math
 
@@ -43,12 +45,22 @@ def ulps(x, n):
 
 
 def nasty(scene):
-    """Starts (V0, omega0): axes, V + j omega near 0, the stick boundary and delta = 0, subnormal numbers."""
+    """Starts (V0, omega0): axes, V + j omega near 0, the stick boundary and delta = 0, subnormal
+    numbers.
+    """
     star = vr.contact(scene, [1.0, 1e-3], delta=0.0, fields="delta_star").delta_star
     opposite = -0.5 / scene.j
     return np.array(
         [
-            *[(0.0, 0.0), (0.0, 1.0), (1.0, 0.0), (5e-324, 1.0), (-5e-324, 1.0), (1.0, 5e-324), (1e-300, 0.0)],
+            *[
+                (0.0, 0.0),
+                (0.0, 1.0),
+                (1.0, 0.0),
+                (5e-324, 1.0),
+                (-5e-324, 1.0),
+                (1.0, 5e-324),
+                (1e-300, 0.0),
+            ],
             *[(0.5, ulps(opposite, n)) for n in (-2, -1, 0, 1, 2)],
             *[(V, ulps(V * (1.0 + d), n)) for V, d in zip((1.0, 1e-3), star) for n in (-1, 0, 1)],
             *[(V, ulps(V * (1.0 - d), n)) for V, d in zip((1.0, 1e-3), star) for n in (-1, 0, 1)],
@@ -60,7 +72,9 @@ def nasty(scene):
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", list(SCENES))
 def test_finite_in_bounded_steps(name, method):
-    """Any end time from 1e-12 to 1e12 decay times; the mirrored starts give the mirrored motions, bit for bit."""
+    """Any end time from 1e-12 to 1e12 decay times; the mirrored starts give the mirrored motions,
+    bit for bit.
+    """
     scene = SCENES[name]
     start = nasty(scene)
     t = decay_time(scene) * np.array([1e-12, 1e-6, 1e-2, 1.0, 10.0, 100.0, 1e3, 1e6, 1e12])
@@ -75,7 +89,8 @@ def test_finite_in_bounded_steps(name, method):
     # resistance may feed a cylinder that spins against its way
     rolling = np.minimum.accumulate(here.V * here.omega, axis=1) >= 0.0
     rolling &= (start[:, 0] * start[:, 1] >= 0.0)[:, None]
-    energy, first = here.V**2 + scene.j * here.omega**2, (start**2) @ [1.0, scene.j]
+    energy = here.V**2 + scene.j * here.omega**2
+    first = (start**2) @ [1.0, scene.j]
     assert (energy <= (1.0 + tol.MOTION_DEFAULT) * first[:, None])[rolling].all()
     if scene.alpha > 1.5:
         assert (np.abs(here.V[:, -1]) < tol.PROVEN_SUBNORMAL).all()
@@ -96,8 +111,9 @@ def test_flow_and_integrator_agree(name):
 
 @pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-10])
 def test_speeds_that_vanish_together(rtol):
-    """Within 80 ULP of the omega for which V and omega slide to zero at once, onset lies near V = 1e-16: what relaxes
-    there takes no time that the clock could tell.  Found where matrices of other digits moved the onset."""
+    """Within 80 ULP of the omega for which V and omega slide to zero at once, onset lies near V =
+    1e-16: what relaxes there takes no time that the clock could tell.  Found where matrices of
+    other digits moved the onset."""
     omega = 1.4692137743888392 * (1.0 + np.arange(-80, 81) * np.finfo(float).eps)
     ended = vr.ensemble(SCENE, -1.0, omega, [1e-3, 3e-3], rtol=rtol, method="integrate")
     assert (ended.status == MotionStatus.DONE).all()

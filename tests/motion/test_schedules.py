@@ -1,4 +1,6 @@
-"""Measured schedules: time and memory in proportion to their corners; many motions with corners of their own."""
+"""Measured schedules: time and memory in proportion to their corners; many motions with corners of
+their own.
+"""
 
 import tracemalloc
 
@@ -11,7 +13,7 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.motion import drive_functions
-from viscoroll.motion.drive import Drive
+from viscoroll.motion.motion_arguments import Drive
 
 
 def pieces_of(drive, end):
@@ -24,7 +26,9 @@ def pieces_of(drive, end):
 @pytest.mark.parametrize("count", [2_000, 200_000])
 def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
     times = np.arange(count) * 1e-3
-    drive = Drive(torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times))
+    drive = Drive(
+        torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times)
+    )
     assert pieces_of(Drive(torque=0.1), 1.0).size  # imports take memory too
     tracemalloc.start()
     pieces = pieces_of(drive, times[-1])
@@ -40,7 +44,15 @@ def test_schedules_of_many_motions_take_little_memory_beside_themselves():
     values = np.full(times.shape, 0.01)
 
     def call():
-        return vr.ensemble(ROLLER, np.ones(100), 0.5, 0.9, torque=vr.Schedule(times, values), rtol=1e-2, fields=("V",))
+        return vr.ensemble(
+            ROLLER,
+            np.ones(100),
+            0.5,
+            0.9,
+            torque=vr.Schedule(times, values),
+            rtol=1e-2,
+            fields=("V",),
+        )
 
     call()
     assert taken_beside(call) <= tol.BYTES_OF_SCHEDULES
@@ -50,7 +62,8 @@ def test_schedules_of_many_motions_take_little_memory_beside_themselves():
 def test_motions_with_corners_of_their_own_have_the_bits_of_each_alone(monkeypatch, name):
     """Whatever the number of motions whose pieces are made at a time."""
     random = np.random.default_rng(2)
-    times, values = np.sort(random.uniform(0.0, 9.0, (12, 7)), axis=1), random.uniform(-0.1, 0.3, (12, 7))
+    times = np.sort(random.uniform(0.0, 9.0, (12, 7)), axis=1)
+    values = random.uniform(-0.1, 0.3, (12, 7))
     times[:, 0] = 0.0
     start = (None, 0.2) if name == "V" else (0.3, 0.2)
     for size in (1, 2_000, drive_functions._BLOCK_BYTES):
@@ -64,5 +77,7 @@ def test_motions_with_corners_of_their_own_have_the_bits_of_each_alone(monkeypat
 
 def test_a_jump_of_one_slow_motion_is_refused_beside_fast_ones():
     """A jump is judged by the speeds of its own motion: 1e-13 is one where the speed is 1e-13."""
-    speeds = vr.Schedule([[0.0, 1.0, 2.0], [0.0, 1.0, 1.0]], [[1.0, 2.0, 3.0], [1e-13, 1e-13, 3e-13]])
+    speeds = vr.Schedule(
+        [[0.0, 1.0, 2.0], [0.0, 1.0, 1.0]], [[1.0, 2.0, 3.0], [1e-13, 1e-13, 3e-13]]
+    )
     refused(lambda: vr.ensemble(ROLLER, None, 0.2, 3.0, V=speeds), "V jumps at t = 1: must be")

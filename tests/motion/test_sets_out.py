@@ -1,4 +1,6 @@
-"""From rest, or from next to it: faint drives, what a start that counts for nothing does, where friction is strong."""
+"""From rest, or from next to it: faint drives, what a start that counts for nothing does, where
+friction is strong.
+"""
 
 import numpy as np
 import pytest
@@ -8,7 +10,9 @@ from drives import ROLLER
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 T = np.linspace(0.0, 2.0, 9)
 
@@ -19,7 +23,9 @@ def fastest(m):
 
 @pytest.mark.parametrize("faint", [1e-12, 1e-15, 1e-18, 1e-40, 1e-70])
 def test_a_faint_drive_moves_as_much_less(faint):
-    """At low speed the motion is linear in what drives it: by a push, a ramp, and a ramp that begins later."""
+    """At low speed the motion is linear in what drives it: by a push, a ramp, and a ramp that
+    begins later.
+    """
     for times, values in (([0.0], [1.0]), ([0.0, 2.0], [0.0, 1.0]), ([0.7, 2.0], [0.0, 1.0])):
         drives = (vr.Schedule(times, np.multiply(values, size)) for size in (faint, 1e-9))
         m, plain = (vr.roll(ROLLER, 0.0, 0.0, T, torque=torque) for torque in drives)
@@ -39,28 +45,48 @@ def test_what_follows_a_faint_beginning(faint):
 @pytest.mark.parametrize("V0", [1e-80, 1e-90, 1e-95, 1e-100, 1e-300])
 @pytest.mark.parametrize("creep", [0.0, 1.0, -1.0])
 def test_a_start_of_next_to_nothing(V0, creep):
-    """Under a push, a push to come, a ramp, wheel spin: as from rest.  It ended in steps that were too small."""
-    scene, t = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4), np.array([1e-3, 2e-3, 1e-2])
+    """Under a push, a push to come, a ramp, wheel spin: as from rest.  It ended in steps that were
+    too small.
+    """
+    scene = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.1e4)
+    t = np.array([1e-3, 2e-3, 1e-2])
     pushes = vr.Schedule([1e-3, 1e-3], [0.0, 0.01]), vr.Schedule([0.0, 1e-3], [0.0, 0.01])
-    drives = ({"force": 0.01}, {"force": pushes[0]}, {"force": pushes[1]},
-              {"torque": 1.0}, {"force": 0.01, "brake": 0.1})  # fmt: skip
+    drives = (
+        {"force": 0.01},
+        {"force": pushes[0]},
+        {"force": pushes[1]},
+        {"torque": 1.0},
+        {"force": 0.01, "brake": 0.1},
+    )
     for drive in drives:
-        m, plain = vr.roll(scene, V0, creep * V0, t, **drive), vr.roll(scene, 0.0, 0.0, t, **drive)
+        m = vr.roll(scene, V0, creep * V0, t, **drive)
+        plain = vr.roll(scene, 0.0, 0.0, t, **drive)
         assert m.status == vr.MotionStatus.DONE
         assert close(m.V, plain.V, 30e-8, scale=max(fastest(plain), V0))
 
 
 @pytest.mark.filterwarnings("ignore:roll")
 def test_to_and_fro_where_friction_is_strong():
-    """Jumps of force and torque take V to 0 while d relaxes from nowhere: a tenth ended in steps too small."""
-    scene, draw, n, jumps = vr.Scene(alpha=11.0, kappa=0.1, mu=0.9, gamma=1.0, j=0.8), np.random.default_rng(5), 60, 20
-    times, t = np.repeat(np.arange(jumps + 1.0), 2)[1:-1], np.linspace(0.0, jumps, 61)
+    """Jumps of force and torque take V to 0 while d relaxes from nowhere: a tenth ended in steps
+    too small.
+    """
+    scene = vr.Scene(alpha=11.0, kappa=0.1, mu=0.9, gamma=1.0, j=0.8)
+    draw = np.random.default_rng(5)
+    n = 60
+    jumps = 20
+    times = np.repeat(np.arange(jumps + 1.0), 2)[1:-1]
+    t = np.linspace(0.0, jumps, 61)
     sign = (-1.0) ** np.arange(jumps)
     force, torque = (
-        vr.Schedule(times, np.repeat(draw.uniform(0.1, 1.3, (n, jumps)) * sign * scene.mu, 2, axis=1)) for _ in range(2)
+        vr.Schedule(
+            times, np.repeat(draw.uniform(0.1, 1.3, (n, jumps)) * sign * scene.mu, 2, axis=1)
+        )
+        for _ in range(2)
     )
     found, best = (
-        vr.ensemble(scene, 0.0, 0.0, t, rtol=rtol, force=force, torque=torque, fields=("V", "omega"))
+        vr.ensemble(
+            scene, 0.0, 0.0, t, rtol=rtol, force=force, torque=torque, fields=("V", "omega")
+        )
         for rtol in (1e-6, 1e-10)
     )
     # where the law leaves two ways on it is said so
@@ -73,7 +99,8 @@ def test_to_and_fro_where_friction_is_strong():
     assert close(found.omega[done], best.omega[done], 30e-6, scale=so_far)
 
 
-#: mu/(2 kappa), force and slope of omega/gamma over mu: rolls off either way, or one way and slides the other
+#: mu/(2 kappa), force and slope of omega/gamma over mu: rolls off either way, or one way and slides
+#: the other
 TWO_WAYS = {
     "stick or stick": (3.778771810004847, -0.929673479743902, 0.09729379653225274),
     "stick or slip": (7.311503140787795, 1.0267483480663373, -0.45373546198415005),

@@ -17,12 +17,18 @@ T = np.linspace(0.0, 8.0, 17)
 
 
 def second_method(scene, V0, omega0, t, rtol=1e-11, **drive):
-    """V and omega by Radau's method on the equations of partial slip, from states of the contact and N."""
+    """V and omega by Radau's method on the equations of partial slip, from states of the contact
+    and N.
+    """
 
     def rates(_, speeds):
         V, omega = speeds
         state = vr.contact(scene, V, omega=omega, fields=("Q", "M", "N"))
-        V_rate = scene.gamma * (state.Q - 0.5 * state.M + drive.get("force", 0.0)) / (1.0 + 0.5 * scene.gamma * state.N)
+        V_rate = (
+            scene.gamma
+            * (state.Q - 0.5 * state.M + drive.get("force", 0.0))
+            / (1.0 + 0.5 * scene.gamma * state.N)
+        )
         moment = 0.5 * (state.M + state.N * V_rate)
         return V_rate, scene.gamma * (drive.get("torque", 0.0) - state.Q - moment) / scene.j
 
@@ -60,11 +66,15 @@ def test_works_and_losses_add_up():
     assert m.V[-1] < 0.0 < m.V[0]
     energy = 0.5 * (m.V**2 + GENTLE.j * m.omega**2)
     lost = m.slip_loss + m.rolling_loss + m.brake_loss
-    assert close(energy - energy[0] + lost, m.work_force + m.work_torque, tol.ENERGY, scale=energy.max())
+    assert close(
+        energy - energy[0] + lost, m.work_force + m.work_torque, tol.ENERGY, scale=energy.max()
+    )
 
 
 def test_from_rest_and_to_it():
-    """At V = 0 the mass is 1 + j + gamma N(0), but for creep: from there on, and at the end of a decay."""
+    """At V = 0 the mass is 1 + j + gamma N(0), but for creep: from there on, and at the end of a
+    decay.
+    """
     mass = 1.0 + GENTLE.j + GENTLE.gamma * vr.contact(GENTLE, 0.0, delta=0.0, fields="N").N
     early = vr.roll(GENTLE, 0.0, 0.0, [1e-6], force=0.02, unsteady=True)
     assert close(early.V[0], 1e-6 * GENTLE.gamma * 0.02 / mass, 1e-3)
@@ -77,7 +87,8 @@ def test_from_rest_and_to_it():
 
 
 @pytest.mark.parametrize(
-    ("scene", "V0", "level"), [(RUBBER, 1.0, -0.5), (RUBBER.replace(j=4.0), 1.0, -0.2), (ROLLER, 30.0, 1.0)]
+    ("scene", "V0", "level"),
+    [(RUBBER, 1.0, -0.5), (RUBBER.replace(j=4.0), 1.0, -0.2), (ROLLER, 30.0, 1.0)],
 )
 def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
     with pytest.warns(RuntimeWarning, match="too slow for the unsteady correction"):
@@ -95,16 +106,25 @@ def test_it_ends_where_the_added_mass_is_too_much(scene, V0, level):
 def test_the_last_state_is_told_where_the_last_step_cannot_be_repeated():
     """Cut at its end, the last step of this start from a standstill is given up earlier."""
     prony = vr.Prony([0.3, 0.5, 0.8, 1.3], [1.0, 0.1, 0.01, 0.001])
-    roller = vr.Cylinder(R=0.05, m=9.0, material=vr.Material(E=3e6, nu=0.49, prony=prony, T_ref=3.0), mu=0.6)
+    roller = vr.Cylinder(
+        R=0.05, m=9.0, material=vr.Material(E=3e6, nu=0.49, prony=prony, T_ref=3.0), mu=0.6
+    )
     with pytest.warns(RuntimeWarning, match="too slow for the unsteady correction"):
         m = roller.roll(0.05, 1.0, np.linspace(0.0, 20.0, 201), unsteady=True, rested=True)
     last = np.flatnonzero(m.regime >= 0)[-1]
-    assert f"the last state was t = {m.t[last]:.6g} s in partial slip, V = {m.V[last]:.6g} m" in m.message
+    assert (
+        f"the last state was t = {m.t[last]:.6g} s in partial slip, V = {m.V[last]:.6g} m"
+        in m.message
+    )
 
 
 def test_it_ends_there_at_any_tolerance():
-    """The end of the range of N is told from that of the stick zone, however closely either is met."""
-    scene = vr.Scene(alpha=7.0, kappa=8.819364017569045, mu=0.035796649013264355, gamma=4660.73125, j=0.6964318)
+    """The end of the range of N is told from that of the stick zone, however closely either is
+    met.
+    """
+    scene = vr.Scene(
+        alpha=7.0, kappa=8.819364017569045, mu=0.035796649013264355, gamma=4660.73125, j=0.6964318
+    )
     V0 = -1.625636130638283
     ends = []
     for rtol in (1e-6, 1e-11):
@@ -115,7 +135,9 @@ def test_it_ends_there_at_any_tolerance():
 
 
 def test_a_rest_costs_speed():
-    """V0 and omega0 less what leaving the imprint takes; a rest of no time nothing, a longer one more."""
+    """V0 and omega0 less what leaving the imprint takes; a rest of no time nothing, a longer one
+    more.
+    """
     V0 = 30.0
     start = ROLLER.validity(V0).steady.start.speed
     long, none = (vr.roll(ROLLER, V0, 29.99, T, rested=each, unsteady=True) for each in (True, 0.0))
@@ -131,8 +153,11 @@ def test_a_rest_costs_speed():
 @pytest.mark.parametrize("t_w", [0.5, 3.0])
 def test_a_short_rest_costs_less(t_w):
     """W of docs/validity.md after a time t_w, of one mode, whose way is short of nothing."""
-    scene, V0 = vr.Scene(alpha=11.0, kappa=10.0, mu=0.2, gamma=1.0), 0.5
-    J, L, fresh = 10.0 / 11.0, 2.0 * 10.0 * V0, np.exp(-t_w)
+    scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.2, gamma=1.0)
+    V0 = 0.5
+    J = 10.0 / 11.0
+    L = 2.0 * 10.0 * V0
+    fresh = np.exp(-t_w)
     climbed = 0.25 * J * np.log(1.0 + (0.681 * L) ** 2) - np.log(11.0) / 88.0
     W = (1.0 - fresh) * climbed - 0.5 * J * fresh * L / (L + 2.0)
     found = vr.roll(scene, V0, V0, 1e-12, unsteady=True, rested=t_w).V[0]
@@ -147,13 +172,19 @@ def test_caught_in_the_imprint():
     assert np.isnan(m.V).all()
     V0 = np.array([1.3, 30.0, -1.3])
     e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, unsteady=True, method="auto")
-    assert e.status.tolist() == [vr.MotionStatus.CAUGHT, vr.MotionStatus.DONE, vr.MotionStatus.CAUGHT]
+    assert e.status.tolist() == [
+        vr.MotionStatus.CAUGHT,
+        vr.MotionStatus.DONE,
+        vr.MotionStatus.CAUGHT,
+    ]
     assert np.isnan([e.V[::2, 0], e.onset_time[::2]]).all()
     one = vr.roll(ROLLER, 30.0, 30.0, T[:3], rested=True, unsteady=True)
     assert np.array_equal(e.V[1], one.V)
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the point is the look-up of a motion so slow
+@pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the point is the look-up of a motion so slow
 def test_a_motion_caught_at_rest_is_not_of_the_flow_map():
     V0 = np.array([1.3, 30.0])
     e = vr.ensemble(ROLLER, V0, V0, T[:3], rested=True, method="flow")
@@ -163,7 +194,9 @@ def test_a_motion_caught_at_rest_is_not_of_the_flow_map():
 
 @pytest.mark.parametrize("V0", [0.0, -0.0])
 def test_a_standstill_is_refused_where_it_would_have_no_effect(V0):
-    """From V0 = omega0 = 0 the drive must first break the cylinder away, which is not known; other starts act."""
+    """From V0 = omega0 = 0 the drive must first break the cylinder away, which is not known; other
+    starts act.
+    """
     words = "starts at V0 = omega0 = 0 and must yet break away"
     refused(lambda: vr.roll(ROLLER, V0, 0.0, T, force=0.01, rested=3600.0), words)
     refused(lambda: vr.ensemble(ROLLER, [1.3, V0], [1.3, 0.0], T, force=0.01, rested=True), words)

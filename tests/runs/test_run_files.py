@@ -1,4 +1,6 @@
-"""Run files: each motion is the one that a user would call for, and what a file says is in its digest and its store."""
+"""Run files: each motion is the one that a user would call for, and what a file says is in its
+digest and its store.
+"""
 
 import re
 import tomllib
@@ -14,23 +16,37 @@ from refusals import refused
 from run_files import CERTAIN, FILES, PAPER, run_of
 
 import viscoroll as vr
-from viscoroll.io.runs import export_netcdf, open_run, roll_inputs, run_ensemble, verify
-from viscoroll.io.runs.columns import attributes
-from viscoroll.io.runs.evaluate import block_inputs, roll_block
-from viscoroll.io.runs.identity import identity
-from viscoroll.io.runs.rollers import roller_of
-from viscoroll.io.runs.sensitivity import sobol_indices
-from viscoroll.io.runs.store import columns_of
-from viscoroll.motion.batch import FLOW_PAYS
+from viscoroll.motion.many_motions import FLOW_PAYS
+from viscoroll.runs import export_netcdf, open_run, roll_inputs, run_ensemble, verify
+from viscoroll.runs.run_blocks import attributes, block_inputs, roll_block
+from viscoroll.runs.run_records import identity
+from viscoroll.runs.run_rollers import roller_of
+from viscoroll.runs.run_store import columns_of
+from viscoroll.runs.sensitivity import sobol_indices
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 of_every_file = pytest.mark.parametrize("text", FILES.values(), ids=FILES)
 SI_UNITS = {
-    "V": "m s-1", "omega": "rad s-1", "x": "m", "distance": "m", "angle": "rad", "onset_time": "s", "delta": "1",
-    "translation": "1", "lost": "1", "lost_to_slip": "1", "force": "N m-1", "torque": "N m m-1", "work_force": "J m-1",
-    "slip_loss": "J m-1", "rolling_loss": "J m-1", "lost_to_rolling": "1",
-}  # fmt: skip
+    "V": "m s-1",
+    "omega": "rad s-1",
+    "x": "m",
+    "distance": "m",
+    "angle": "rad",
+    "onset_time": "s",
+    "delta": "1",
+    "translation": "1",
+    "lost": "1",
+    "lost_to_slip": "1",
+    "force": "N m-1",
+    "torque": "N m m-1",
+    "work_force": "J m-1",
+    "slip_loss": "J m-1",
+    "rolling_loss": "J m-1",
+    "lost_to_rolling": "1",
+}
 
 
 @pytest.fixture
@@ -53,7 +69,11 @@ def drawn(part, name, values, i):
         times = drawn(part["times"], f"{name}_time", values, i)
         times = [times[k - 1] if time == "same" else time for k, time in enumerate(times)]
         return vr.Schedule(times, drawn(part["values"], name, values, i))
-    found = {key: drawn(each, name + key, values, i) for key, each in part.items() if key not in ("prony", "creep")}
+    found = {
+        key: drawn(each, name + key, values, i)
+        for key, each in part.items()
+        if key not in ("prony", "creep")
+    }
     for kind in part.keys() & {"prony", "creep"}:
         series = drawn(part[kind], name, values, i).values()
         found["prony"] = vr.Prony(*series) if kind == "prony" else vr.Prony.creep(*series)
@@ -63,10 +83,15 @@ def drawn(part, name, values, i):
 def alone(run, values, i):
     """One motion of a block, as a user calls for it."""
     prefix = {"base": "base_", "drive": "drive_"}
-    file = {key: drawn(part, prefix.get(key, ""), values, i) for key, part in tomllib.loads(run.text).items()}
+    file = {
+        key: drawn(part, prefix.get(key, ""), values, i)
+        for key, part in tomllib.loads(run.text).items()
+    }
     call = [file["start"].get("V0"), file["start"].get("omega0"), run.t]
     options = file.get("drive", {})
-    options |= {name: getattr(run.settings, name) for name in ("rtol", "rest", "unsteady", "rested")}
+    options |= {
+        name: getattr(run.settings, name) for name in ("rtol", "rest", "unsteady", "rested")
+    }
     if "cylinder" in file:
         bodies = {name: vr.Material(**file[name]) for name in ("material", "base") if name in file}
         return vr.Cylinder(**file["cylinder"], **bodies).roll(*call, **options)
@@ -93,7 +118,9 @@ def test_every_motion_is_that_of_a_call(read, text):
         one = alone(run, values, i)
         for name in fields:
             expected = getattr(one, name)
-            assert close(columns[name][i], expected, tol.RUN_SI, scale=largest(expected), what=(name, i))
+            assert close(
+                columns[name][i], expected, tol.RUN_SI, scale=largest(expected), what=(name, i)
+            )
 
 
 @of_every_file
@@ -109,16 +136,22 @@ def test_a_block_is_rolled_as_an_ensemble(read, text):
 
 @of_every_file
 def test_the_identity_is_of_every_number_but_n(read, text):
-    """Of the file, whatever is told beside it; with blocks of one size a run is the same for any number of motions."""
+    """Of the file, whatever is told beside it; with blocks of one size a run is the same for any
+    number of motions.
+    """
     text = text.replace("[run]\n", "[run]\nblock = 4\n" * ("block =" not in text) or "[run]\n")
     own = identity(read(text))
     assert identity(read("# told\n" + text)) == own
     assert identity(read(re.sub(r"\bn = \d+", "n = 1000", text))) == own
     for number in re.finditer(r"(?<![\w.-])-?\d[\w.+-]*", text):
         sign = number[0].startswith("-")
-        changed = text[: number.start()] + "-" * sign + "1" + number[0][sign:] + text[number.end() :]
+        changed = (
+            text[: number.start()] + "-" * sign + "1" + number[0][sign:] + text[number.end() :]
+        )
         try:
-            assert (identity(read(changed)) == own) == (text[: number.start()].endswith("\nn = ")), number
+            assert (identity(read(changed)) == own) == (
+                text[: number.start()].endswith("\nn = ")
+            ), number
         except vr.FileError:
             continue
 
@@ -135,7 +168,9 @@ def test_a_material_of_a_file_is_in_the_digest(read, tmp_path):
     assert len(digests) == 2
 
 
-@pytest.mark.parametrize("file", ["a preset", "numbers", "known rubber", "driven", "a driven roller"])
+@pytest.mark.parametrize(
+    "file", ["a preset", "numbers", "known rubber", "driven", "a driven roller"]
+)
 def test_a_store_holds_the_run(read, tmp_path, file):
     """And what is exported of it: columns, what drove them, their units, their summaries."""
     run = read(FILES[file].replace("[run]", "[run]\nquantiles = [0.5]"))
@@ -145,7 +180,9 @@ def test_a_store_holds_the_run(read, tmp_path, file):
     blocks = [columns_of(run, *roll_block(run, block)) for block in range(run.blocks)]
     columns = {name: np.concatenate([block[name] for block in blocks]) for name in blocks[0]}
     units = SI_UNITS if run.si else dict.fromkeys(SI_UNITS, "1")
-    with xr.open_dataset(tmp_path / "s.nc", group="motions", engine="h5netcdf", decode_times=False) as kept:
+    with xr.open_dataset(
+        tmp_path / "s.nc", group="motions", engine="h5netcdf", decode_times=False
+    ) as kept:
         for name, values in columns.items():
             assert np.array_equal(kept[name].values, values, equal_nan=True), name
             assert kept[name].attrs["long_name"]
@@ -170,8 +207,16 @@ def test_a_store_holds_the_run(read, tmp_path, file):
 
 def test_a_cylinder_from_its_flow_map(read):
     """The map is made for dimensionless speeds, the threshold of rest is one."""
-    text = FILES["numbers"].replace("n = 20", "n = 3000\nrest = 1e-3\nmethod = 'flow'").replace("1e-10", "1e-7")
-    text = re.sub(r"(R|T_epsilon) = \{.*", lambda found: found[1] + (" = 0.1" if found[1] == "R" else " = 10.7"), text)
+    text = (
+        FILES["numbers"]
+        .replace("n = 20", "n = 3000\nrest = 1e-3\nmethod = 'flow'")
+        .replace("1e-10", "1e-7")
+    )
+    text = re.sub(
+        r"(R|T_epsilon) = \{.*",
+        lambda found: found[1] + (" = 0.1" if found[1] == "R" else " = 10.7"),
+        text,
+    )
     run = read(text.replace(', "slip_loss", "rolling_loss"]', "]"))
     values, motions = roll_block(run, 0)
     assert motions.flow.mean() > 0.5
@@ -183,7 +228,9 @@ def test_a_cylinder_from_its_flow_map(read):
 
 
 def test_the_flow_map_where_many_start_in_one_scene(read):
-    """Chosen by the run: a block of slow starts does not get a finer one.  Of motions at rest there is none."""
+    """Chosen by the run: a block of slow starts does not get a finer one.  Of motions at rest there
+    is none.
+    """
     one = FILES["a preset"].replace("[correlation]\nV0.mu = 0.7\n", "")
     one = one[: one.index("[scene]")] + one[one.index("[start]") :].replace("block = 12", "")
     run = read(one.replace("n = 30", f"n = {FLOW_PAYS}"))
@@ -199,7 +246,9 @@ def test_nothing_is_uncertain(read):
     """The same motion n times; scenes are those of presets and series."""
     start = "[start]\nV0 = 1.5\nomega0 = 0.5\n[run]\nn = 3\nt = 1e-3"
     _, motions = roll_block(read(PAPER + start), 0)
-    assert motions.V[:, 0].tolist() == [vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3
+    assert (
+        motions.V[:, 0].tolist() == [vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3
+    )
     run = read('preset = "rubber-roller"\n[scene]\nalpha = 3.0\n' + start)
     assert roller_of(run.path, run.inputs.content) == vr.presets.RUBBER_ROLLER.replace(alpha=3.0)
 
@@ -209,14 +258,22 @@ SPREAD = '{ distribution = "uniform", loc = 0.05, scale = 0.1 }'
 
 @pytest.mark.parametrize("R", ["0.1", SPREAD])
 def test_a_start_in_pure_rolling(read, R):
-    """omega0 = "rolling" is V0/R of each motion, in a dimensionless file V0; a flow map serves it too."""
-    roller = f"[cylinder]\nR = {R}\nm = 35.5\nmu = 0.3\nE = 2.3e5\nnu = 0.49\nT_epsilon = 10.7\nT_sigma = 0.97\n"
+    """omega0 = "rolling" is V0/R of each motion, in a dimensionless file V0; a flow map serves it
+    too.
+    """
+    roller = (
+        f"[cylinder]\nR = {R}\nm = 35.5\nmu = 0.3\nE = 2.3e5\nnu = 0.49\nT_epsilon = "
+        "10.7\nT_sigma = 0.97\n"
+    )
     start = f'[start]\nV0 = {SPREAD}\nomega0 = "rolling"\n[run]\nn = 8\nt = [0.0, 0.5]\n'
     values, motions = roll_block(read(roller + start), 0)
     assert close(motions.omega[:, 0], values["V0"] / values.get("R", 0.1), tol.UNITS)
     run = read(PAPER + start + 'method = "flow"\n')
     values, motions = roll_block(run, 0)
-    assert (motions.omega[:, 0].tolist(), run.fastest) == (values["V0"].tolist(), run.inputs.largest("V0"))
+    assert (motions.omega[:, 0].tolist(), run.fastest) == (
+        values["V0"].tolist(),
+        run.inputs.largest("V0"),
+    )
 
 
 def test_results_state_the_units_of_a_dimensionless_run(read, tmp_path):
@@ -229,16 +286,28 @@ def test_results_state_the_units_of_a_dimensionless_run(read, tmp_path):
 
 def test_a_drive_that_ends_goes_with_a_rest(read):
     text = FILES["driven"]
-    run = read((text[: text.index("slope")] + text[text.index("[run]") :]).replace("n = 12", "n = 4\nrest = 1e-3"))
+    run = read(
+        (text[: text.index("slope")] + text[text.index("[run]") :]).replace(
+            "n = 12", "n = 4\nrest = 1e-3"
+        )
+    )
     assert (roll_block(run, 0)[1].status <= 1).all()
 
 
-@pytest.mark.parametrize(("name", "inputs"), [
-    ("driven", {"drive_torque_2", "drive_slope", "drive_force"}),
-    ("rubber on rubber", {"mu", "V0", "E_1", "E_2", "tau_1", "E", "base_E", "base_E_1", "base_tau_1"}),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "inputs"),
+    [
+        ("driven", {"drive_torque_2", "drive_slope", "drive_force"}),
+        (
+            "rubber on rubber",
+            {"mu", "V0", "E_1", "E_2", "tau_1", "E", "base_E", "base_E_1", "base_tau_1"},
+        ),
+    ],
+)
 def test_inputs_have_indices(read, name, inputs):
-    """Rolling resistance spreads by the strengths of the modes that it is made of, less by friction and the start."""
+    """Rolling resistance spreads by the strengths of the modes that it is made of, less by friction
+    and the start.
+    """
     text = re.sub(r"\[correlation\]\n.*\n", "", FILES[name]).replace('"lost_to_slip"]', '"torque"]')
     found = sobol_indices(read(text), 64, threads=1)
     assert set(found["input"].values) == inputs
@@ -250,14 +319,18 @@ def test_inputs_have_indices(read, name, inputs):
 
 # --- columns of files ---
 
-SAMPLED = FILES["numbers"].replace("m = 35.5", 'm = { file = "sample.csv", column = "mass" }').replace(
-    "E = 2.3e5", 'E = { file = "sample.csv", column = "modulus" }'
-)  # fmt: skip
+SAMPLED = (
+    FILES["numbers"]
+    .replace("m = 35.5", 'm = { file = "sample.csv", column = "mass" }')
+    .replace("E = 2.3e5", 'E = { file = "sample.csv", column = "modulus" }')
+)
 
 
 @pytest.fixture
 def sample(tmp_path):
-    frame = pd.DataFrame({"mass": [30.0, 40.0, 50.0], "modulus": [2e5, 3e5, 4e5], "name": ["a", "b", "c"]})
+    frame = pd.DataFrame(
+        {"mass": [30.0, 40.0, 50.0], "modulus": [2e5, 3e5, 4e5], "name": ["a", "b", "c"]}
+    )
     frame.to_csv(tmp_path / "sample.csv")
     return frame[["mass", "modulus"]]
 
@@ -277,10 +350,14 @@ def test_columns_of_a_file_share_their_row(read, tmp_path, sample, suffix):
 
 
 def test_a_file_by_two_names_is_one_file(read, tmp_path, sample):
-    """Also by way of a link; its columns share their row, and cannot be told apart by Sobol indices."""
+    """Also by way of a link; its columns share their row, and cannot be told apart by Sobol
+    indices.
+    """
     (tmp_path / "link.csv").symlink_to("sample.csv")
     for other in ("./sample.csv", "link.csv", str(tmp_path / "sample.csv")):
-        run = read(SAMPLED.replace('"sample.csv", column = "modulus"', f'"{other}", column = "modulus"'))
+        run = read(
+            SAMPLED.replace('"sample.csv", column = "modulus"', f'"{other}", column = "modulus"')
+        )
         assert run.inputs.dimensions.count("sample.csv") == 1
         values = block_inputs(run, 0)
         assert np.array_equal(values["E"], 1e4 * values["m"] - 1e5)
@@ -306,7 +383,9 @@ def test_each_motion_has_the_temperature_that_was_drawn(read):
     """)
     values, motions = roll_block(run, 0)
     for i, (T, E_1) in enumerate(zip(values["temperature"], values["E_1"], strict=True)):
-        rubber = vr.Material(E=2e6, nu=0.49, T_ref=0.01, prony=vr.Prony([E_1, 2.0], [1.0, 0.1])).at(T, shift)
+        rubber = vr.Material(E=2e6, nu=0.49, T_ref=0.01, prony=vr.Prony([E_1, 2.0], [1.0, 0.1])).at(
+            T, shift
+        )
         alone = vr.Cylinder(R=0.1, m=35.5, mu=0.5, material=rubber).roll(2.0, 0.0, run.t)
         assert close(motions.V[i], alone.V, tol.MOTION_RTOL * run.settings.rtol)
 
@@ -317,7 +396,7 @@ def test_a_cylinder_of_its_own_numbers_on_a_base_that_is_uncertain(read):
         start = { V0 = 2.0, omega0 = 0.0 }
         run = { n = 5, t = [0.5, 1.0], fields = ["V", "omega"], keep = "all" }
         base = { E = { distribution = "uniform", loc = 1e6, scale = 1e6 }, nu = 0.5 }
-    """)
+    """)  # noqa: E501
     values, motions = roll_block(run, 0)
     for i in range(5):
         assert close(motions.V[i], alone(run, values, i).V, tol.MOTION_RTOL * run.settings.rtol)

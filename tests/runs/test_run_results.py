@@ -7,7 +7,7 @@ from refusals import refused
 from run_files import run_of
 
 import viscoroll as vr
-from viscoroll.io.runs import open_run, run_ensemble
+from viscoroll.runs import open_run, run_ensemble
 
 RUN = """
 [cylinder]
@@ -57,7 +57,8 @@ def test_a_store_shows_itself(store, tmp_path):
 
 def test_a_table_of_a_store(store):
     found = open_run(store[1])
-    table, data = found.to_pandas(), found.summaries
+    table = found.to_pandas()
+    data = found.summaries
     assert table.index.names == ["quantity", "t [s]"]
     assert table.loc[("V [m s-1]", 1.0), "mean"] == data.V_mean.values[1]
     assert table.loc[("V [m s-1]", 0.1), 0.5] == data.V_quantiles.values[1, 0]

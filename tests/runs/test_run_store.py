@@ -1,4 +1,6 @@
-"""Results stores: the same files by any engine and after any end; damage is found, and put right."""
+"""Results stores: the same files by any engine and after any end; damage is found, and put
+right.
+"""
 
 import errno
 import itertools
@@ -14,13 +16,15 @@ import pytest
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.app.cli import main
+from viscoroll.cli import main
 from viscoroll.core import files
-from viscoroll.io.runs import export_netcdf, open_run, read_run, run_ensemble, verify
-from viscoroll.io.runs.store import Store, locked
+from viscoroll.runs import export_netcdf, open_run, read_run, run_ensemble, verify
+from viscoroll.runs.run_store import Store, locked
 
 refused_file = partial(refused, error=vr.FileError)
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 RUN = """
 preset = "paper-section-5"
@@ -64,7 +68,11 @@ def whole(tmp_path_factory):
 
 def content(store):
     """Every file of a store."""
-    return {str(path.relative_to(store)): path.read_bytes() for path in store.rglob("*") if path.is_file()}
+    return {
+        str(path.relative_to(store)): path.read_bytes()
+        for path in store.rglob("*")
+        if path.is_file()
+    }
 
 
 def copied(store, target):
@@ -97,9 +105,14 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
     """At its own time, to each kind of file: values and records of a block, summaries, metadata."""
     store = copied(whole, tmp_path / "store.zarr")
     for name in (
-        "motions/V/7.0", "records/000000007", "records/start", "records/end", "V_mean/0", ".zmetadata",
+        "motions/V/7.0",
+        "records/000000007",
+        "records/start",
+        "records/end",
+        "V_mean/0",
+        ".zmetadata",
         "motions/V/.zarray",
-    ):  # fmt: skip
+    ):
         data = bytearray((store / name).read_bytes())
         data[len(data) // 2] ^= 16
         if change == "remove":
@@ -117,8 +130,11 @@ def test_damage_is_found_and_put_right(run_file, tmp_path, whole, change):
 
 @contextmanager
 def disk_for(writes, monkeypatch):
-    """A disk with space for so many writes of files; the block must end with an error that says so."""
-    sync, calls = files._sync, itertools.count()
+    """A disk with space for so many writes of files; the block must end with an error that says
+    so.
+    """
+    sync = files._sync
+    calls = itertools.count()
 
     def limited(path):
         if next(calls) >= writes:
@@ -143,7 +159,8 @@ def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
 
 def test_what_a_killed_worker_leaves_is_removed(run_file, tmp_path, whole, monkeypatch):
     """It dies in a write while the run goes on with another worker."""
-    store, work = tmp_path / "store.zarr", Store.evaluate
+    store = tmp_path / "store.zarr"
+    work = Store.evaluate
 
     def killed_before(self, block):
         (store / "records" / f".1-{block}.tmp-x").touch()
@@ -156,7 +173,8 @@ def test_what_a_killed_worker_leaves_is_removed(run_file, tmp_path, whole, monke
 
 def test_other_folders_are_refused(run_file, tmp_path, whole):
     run_file.write_text(RUN.replace("seed = 3", "seed = 4"))
-    run, thesis = read_run(run_file), tmp_path / "thesis"
+    run = read_run(run_file)
+    thesis = tmp_path / "thesis"
     thesis.mkdir()
     (thesis / "chapter.tex").write_text("dear")
     for call, words in (
@@ -172,7 +190,11 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
 
 def test_a_folder_that_may_not_be_read_is_no_damaged_store(run_file, tmp_path, whole, monkeypatch):
     monkeypatch.setattr(os, "access", lambda *_: False)
-    for call in (lambda: verify(whole), lambda: open_run(whole), lambda: run_ensemble(read_run(run_file), whole)):
+    for call in (
+        lambda: verify(whole),
+        lambda: open_run(whole),
+        lambda: run_ensemble(read_run(run_file), whole),
+    ):
         refused_file(call, "whole.zarr: cannot be read (Permission denied)")
 
 
@@ -181,7 +203,9 @@ def test_a_folder_that_may_not_be_read_is_no_damaged_store(run_file, tmp_path, w
 
 @pytest.fixture
 def smaller(run_file, tmp_path):
-    """A store of 350 of the motions, the last block of which is a half; then the run file asks for all of them."""
+    """A store of 350 of the motions, the last block of which is a half; then the run file asks for
+    all of them.
+    """
     run_file.write_text(RUN.replace("n = 1200", "n = 350"))
     assert run_ensemble(read_run(run_file), tmp_path / "store.zarr", threads=2) == 4
     run_file.write_text(RUN)
@@ -200,7 +224,9 @@ def test_a_run_grows(run_file, smaller, whole):
 
 
 def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkeypatch):
-    """Until then it is the smaller store or one that is not finished, never one of fewer motions than it says."""
+    """Until then it is the smaller store or one that is not finished, never one of fewer motions
+    than it says.
+    """
     for writes in (0, 3, 20, 40, 100):
         with disk_for(writes, monkeypatch):
             run_ensemble(read_run(run_file), smaller, threads=1)
@@ -213,13 +239,21 @@ def test_a_run_that_ended_while_it_grew_goes_on(run_file, smaller, whole, monkey
 @pytest.mark.parametrize(
     ("before", "now", "words"),
     [
-        ("", "n = 300", "contains 350 motions of this run file, and n must not be reduced: set n >= 350"),
-        ('design = "latin"', "n = 1200", "a Latin hypercube, whose strata depend on n: keep n = 350"),
+        (
+            "",
+            "n = 300",
+            "contains 350 motions of this run file, and n must not be reduced: set n >= 350",
+        ),
+        (
+            'design = "latin"',
+            "n = 1200",
+            "a Latin hypercube, whose strata depend on n: keep n = 350",
+        ),
         ('design = "sobol"', "n = 1200", "which is balanced only for a power of two: set n = 2048"),
         ("block = 1000", "n = 1200", "in blocks of 350: add block = 350 to [run]"),
         ("", "n = 5000", "computed by method 'integrate': add method = 'integrate' to [run]"),
     ],
-)  # fmt: skip
+)
 def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, words):
     """And the store stays as it was."""
     text = RUN.replace(MU, "") + f"{before}\n"
@@ -244,9 +278,22 @@ def test_a_sobol_sequence_grows_to_powers_of_two(run_file, tmp_path):
 
 
 def test_a_killed_run_goes_on(run_file, tmp_path, whole):
-    """SIGKILL of everything: what is done stays as it is, and at most one block a worker is made again."""
-    store, kills = tmp_path / "store.zarr", 0
-    command = [sys.executable, "-m", "viscoroll", "ensemble", run_file, "-o", store, "--threads", "2"]
+    """SIGKILL of everything: what is done stays as it is, and at most one block a worker is made
+    again.
+    """
+    store = tmp_path / "store.zarr"
+    kills = 0
+    command = [
+        sys.executable,
+        "-m",
+        "viscoroll",
+        "ensemble",
+        run_file,
+        "-o",
+        store,
+        "--threads",
+        "2",
+    ]
     while kills < 1:
         before = len(list(store.glob("records/0*")))
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, start_new_session=True)
@@ -286,15 +333,31 @@ def _heeding():
 
 
 def test_an_interrupt_answers_at_once(tmp_path, whole):
-    """Ctrl-C in the midst of long blocks: within seconds on a busy machine, what is kept and how to go on."""
+    """Ctrl-C in the midst of long blocks: within seconds on a busy machine, what is kept and how to
+    go on.
+    """
     long = RUN.replace("n = 1200", "n = 400_000").replace("block = 100", "block = 100_000")
     long = long.replace('"all"', '"summaries"')
     (tmp_path / "long.toml").write_text(long)
-    command = [sys.executable, "-m", "viscoroll", "ensemble", "long.toml", "-o", "long.zarr", "--threads", "2"]
+    command = [
+        sys.executable,
+        "-m",
+        "viscoroll",
+        "ensemble",
+        "long.toml",
+        "-o",
+        "long.zarr",
+        "--threads",
+        "2",
+    ]
     process = subprocess.Popen(
-        command, cwd=tmp_path, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True,
+        command,
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
         preexec_fn=_heeding,  # noqa: PLW1509 (nothing else runs in this process)
-    )  # fmt: skip
+    )
     while not (tmp_path / "long.zarr/records/start").exists():
         assert process.poll() is None, process.communicate()
         time.sleep(0.05)
@@ -302,5 +365,8 @@ def test_an_interrupt_answers_at_once(tmp_path, whole):
     process.send_signal(signal.SIGINT)
     _, told = process.communicate(timeout=INTERRUPT_SECONDS)
     assert process.returncode == 130
-    kept = "interrupted: 0 of 4 blocks are complete and are kept in long.zarr; the same call resumes the run"
+    kept = (
+        "interrupted: 0 of 4 blocks are complete and are kept in long.zarr; the same call "
+        "resumes the run"
+    )
     assert told.splitlines()[-1] == f"viscoroll: {kept}"

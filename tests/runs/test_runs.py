@@ -15,14 +15,15 @@ from scipy.stats import qmc
 
 import viscoroll as vr
 from viscoroll import sampling
-from viscoroll.io.runs import estimate, store
-from viscoroll.io.runs.evaluate import roll_block
-from viscoroll.io.runs.inputs import Distribution, Inputs
-from viscoroll.materials.law.cover_rows import cover_rows
-from viscoroll.motion.histogram import Histogram
-from viscoroll.motion.summaries import QUANTITIES, merge_summaries, summarise
+from viscoroll.laws.cover_rows import cover_rows
+from viscoroll.motion.summaries import QUANTITIES, Histogram, merge_summaries, summarise
+from viscoroll.runs import estimate, run_store
+from viscoroll.runs.run_blocks import roll_block
+from viscoroll.runs.uncertain_inputs import Distribution, Inputs
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 RUN = """
 preset = "paper-section-5"
@@ -39,7 +40,7 @@ block = 512
 summaries = [
   "V", "omega", "x", "distance", "translation", "rotation", "lost", "lost_to_slip", "lost_to_rolling", "onset_time",
 ]
-"""
+"""  # noqa: E501
 
 
 @pytest.fixture
@@ -68,7 +69,9 @@ def test_a_latin_hypercube_fills_every_stratum():
     """Every one once, for any number of them and however they are cut into blocks."""
     for n in (1, 2, 3, 7, 64, 1000, 1025):
         edges = [(0, n // 3), (n // 3, n)]
-        every = np.hstack([sampling.points("latin", 1, n, 3, *edge, b) for b, edge in enumerate(edges)])
+        every = np.hstack(
+            [sampling.points("latin", 1, n, 3, *edge, b) for b, edge in enumerate(edges)]
+        )
         for row in every:
             assert np.array_equal(np.sort((row * n).astype(int)), np.arange(n)), n
     assert np.abs(np.corrcoef(every) - np.eye(3)).max() < tol.LATIN_CORRELATION
@@ -78,8 +81,12 @@ def test_sobol_blocks_are_those_of_scipy():
     whole = qmc.Sobol(3, bits=52, rng=np.random.default_rng(7)).random(1024).T
     assert np.array_equal(sampling.points("sobol", 7, 1024, 3, 0, 1024, 0), whole)
     for start, stop in itertools.pairwise([0, 1, 2, 100, 777, 1024]):
-        assert np.array_equal(sampling.points("sobol", 7, 1024, 3, start, stop, 0), whole[:, start:stop])
-    far = sampling.points("sobol", 7, 10**12, 3, 10**12 - 4, 10**12, 1)  # at once, not after 10^12 points
+        assert np.array_equal(
+            sampling.points("sobol", 7, 1024, 3, start, stop, 0), whole[:, start:stop]
+        )
+    far = sampling.points(
+        "sobol", 7, 10**12, 3, 10**12 - 4, 10**12, 1
+    )  # at once, not after 10^12 points
     assert far.shape == (3, 4)
 
 
@@ -97,7 +104,10 @@ def test_a_cut_tail_keeps_its_digits():
 
 def test_the_copula_keeps_marginals_and_gives_the_correlation():
     correlation = np.array([[1.0, 0.6], [0.6, 1.0]])
-    laws = {"mu": Distribution(stats.expon(), 0.0, np.inf), "V0": Distribution(stats.norm(), -np.inf, np.inf)}
+    laws = {
+        "mu": Distribution(stats.expon(), 0.0, np.inf),
+        "V0": Distribution(stats.norm(), -np.inf, np.inf),
+    }
     inputs = Inputs({}, laws, {}, ("mu", "V0"), np.linalg.cholesky(correlation))
     values = inputs.values(sampling.points("sobol", 1, 1 << 14, 2, 0, 1 << 14, 0))
     assert stats.kstest(values["mu"], "expon").pvalue > tol.KOLMOGOROV
@@ -113,7 +123,8 @@ def test_the_copula_keeps_marginals_and_gives_the_correlation():
 def test_moments_and_quantiles(size):
     values = np.random.default_rng(2).normal(0.3, 1.0, size)
     values[::7] = np.nan
-    kept, one = values[np.isfinite(values)], Histogram.of(values)
+    kept = values[np.isfinite(values)]
+    one = Histogram.of(values)
     levels = (0.0, 0.01, 0.3, 0.5, 0.99, 1.0)
     ordered = np.sort(kept)
     at = (np.array(levels) * (kept.size - 1)).astype(int)
@@ -138,15 +149,17 @@ def test_merged_summaries_are_those_of_all(run):
 
 
 def test_an_estimate_does_not_scale_up_what_happens_once(run, monkeypatch):
-    """By a clock that goes by the work alone: 100 s for what a process does once, as to import, then 1 s a trial."""
+    """By a clock that goes by the work alone: 100 s for what a process does once, as to import,
+    then 1 s a trial.
+    """
     clock = [0.0]
 
     def summarised(*given):
         clock[0] += 100.0 if clock[0] == 0.0 else 1.0
         return summarise(*given)
 
-    module = import_module("viscoroll.io.runs.estimate")  # whose name is the function's
-    monkeypatch.setattr(store, "summarise", summarised)
+    module = import_module("viscoroll.runs.run_engine")  # whose name is the function's
+    monkeypatch.setattr(run_store, "summarise", summarised)
     monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
     assert run.blocks == 5
     assert estimate(run, threads=1).seconds == 5.0
@@ -158,7 +171,8 @@ LOADS = ("2e3", '{ distribution = "uniform", loc = 1.1e3, scale = 0.8e3 }')
 
 
 def test_an_estimate_states_the_time_of_the_laws_of_covers(tmp_path, monkeypatch):
-    """One law for one thickness over l0, fourteen for each octave of it, once however many the motions are.
+    """One law for one thickness over l0, fourteen for each octave of it, once however many the
+    motions are.
 
     By a clock that goes by laws alone; one law stands for all.
     """
@@ -168,10 +182,10 @@ def test_an_estimate_states_the_time_of_the_laws_of_covers(tmp_path, monkeypatch
         rows.append(rows[0] if rows else cover_rows(cover))
         return rows[0]
 
-    for module in ("materials.law.cover_rows", "materials.law.per_element", "materials.law.table"):
+    for module in ("laws.cover_rows", "laws.laws_per_element", "laws.law_table"):
         monkeypatch.setattr(import_module(f"viscoroll.{module}"), "cover_rows", computed)
     clock = SimpleNamespace(perf_counter=lambda: float(len(rows)))
-    monkeypatch.setattr(import_module("viscoroll.io.runs.estimate"), "time", clock)
+    monkeypatch.setattr(import_module("viscoroll.runs.run_engine"), "time", clock)
     text = """
 [cylinder]
 R = 0.1
@@ -197,7 +211,9 @@ t = 0.1
     assert "once for the laws of covers" in str(one)
     assert (one.law_seconds, one.seconds) == (1.0, 1.0)
     assert (many.law_seconds, many.seconds) == (14.0, 14.0)
-    text = text.format(load=LOADS[0]).replace("nu = 0.49", 'nu = { distribution = "uniform", loc = 0.4, scale = 0.1 }')
+    text = text.format(load=LOADS[0]).replace(
+        "nu = 0.49", 'nu = { distribution = "uniform", loc = 0.4, scale = 0.1 }'
+    )
     words = (
         "[material] nu: E or nu of a body differs from motion to motion: must be",
         "or make the other body rigid (E = inf)",

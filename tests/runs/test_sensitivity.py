@@ -1,4 +1,6 @@
-"""Sobol indices: closed forms of sliding motions, what has none, the command and its documentation."""
+"""Sobol indices: closed forms of sliding motions, what has none, the command and its
+documentation.
+"""
 
 import csv
 import re
@@ -13,15 +15,18 @@ from run_files import run_of
 from scipy import stats
 
 import viscoroll as vr
-from viscoroll.app.cli import main
+from viscoroll.cli import main
 from viscoroll.core.plots import draw
-from viscoroll.io.runs.sensitivity import sobol_indices
+from viscoroll.runs.sensitivity import sobol_indices
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 N = 1024
 GAMMA = 1e4
-#: alpha = 1: no rolling resistance, and the cylinder slides up to the last time, so V = V0 + gamma mu t exactly
+#: alpha = 1: no rolling resistance, and the cylinder slides up to the last time, so V = V0 + gamma
+#: mu t exactly
 SLIDING = """
 [scene]
 alpha = 1.0
@@ -94,7 +99,9 @@ def inside(indices, name, key, name_of_input, exact, k=None):
 
 
 def product_variance():
-    return np.prod([law.moment(2) for law in FACTORS.values()]) - np.prod([law.mean() ** 2 for law in FACTORS.values()])
+    return np.prod([law.moment(2) for law in FACTORS.values()]) - np.prod(
+        [law.mean() ** 2 for law in FACTORS.values()]
+    )
 
 
 def test_a_linear_motion_shares_its_variance(sliding):
@@ -143,7 +150,9 @@ def test_same_bits_for_any_threads():
 
 
 def test_a_column_of_a_file_is_an_input():
-    """The rows of one column are a distribution as any other: here the very values that V depends on."""
+    """The rows of one column are a distribution as any other: here the very values that V depends
+    on.
+    """
     values = 0.2 + 0.01 * np.random.default_rng(0).random(50)
     Path("mu.csv").write_text("friction\n" + "\n".join(map(repr, values.tolist())))
     text = re.sub(r"mu = \{.*\}", 'mu = { file = "mu.csv", column = "friction" }', SLIDING)
@@ -170,7 +179,9 @@ def test_what_some_motions_lack_is_refused_and_said():
 
 def test_rounding_is_no_variation():
     """The energy lost at t = 0 is 1 - 1 to rounding: indices of that would be noise."""
-    text = ONSET.replace('["V", "onset_time"]', '["lost"]').replace("start.V0 = 1.0", "start.V0 = 1.1")
+    text = ONSET.replace('["V", "onset_time"]', '["lost"]').replace(
+        "start.V0 = 1.0", "start.V0 = 1.1"
+    )
     indices = sobol_indices(run_of(text), 64)
     assert indices.attrs["refused"].startswith("lost at t = 0: it varies by no more")
     assert np.isfinite(indices["lost_S1"][1]).all()
@@ -200,7 +211,9 @@ def test_command(here, capsys):
         assert stored.attrs["run_file"] == ONSET
         assert {"seed", "source", "versions"} <= stored.attrs.keys()
         expected = sobol_indices(run_of(ONSET), 50)
-        assert np.array_equal(stored["V_S1"].sel(input="mu"), expected["V_S1"].sel(input="mu"), equal_nan=True)
+        assert np.array_equal(
+            stored["V_S1"].sel(input="mu"), expected["V_S1"].sel(input="mu"), equal_nan=True
+        )
     assert main(["sensitivity", "run.toml", "-n", "50", "-o", "s.csv"]) == 0
     with open("s.csv", newline="") as file:
         row = next(csv.DictReader(file))

@@ -1,4 +1,6 @@
-"""A cylinder in SI units: every call is the dimensionless one in other units, of one cylinder and of many."""
+"""A cylinder in SI units: every call is the dimensionless one in other units, of one cylinder and
+of many.
+"""
 
 from types import SimpleNamespace
 
@@ -10,18 +12,25 @@ from refusals import refused
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 ROLLER = vr.Cylinder(R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2)
 RUBBER = vr.Material(3e6, 0.49, vr.Prony([0.3, 0.6], [2e-2, 1e-3]), name="rubber", density=1130.0)
-ON_STEEL = vr.Cylinder(R=0.05, m=9.0, material=RUBBER, base=vr.Material.elastic(2e11, 0.3), mu=0.6, load=2000.0)
-TIMES, DOWN = np.linspace(0.0, 2.0, 9), -0.05
+ON_STEEL = vr.Cylinder(
+    R=0.05, m=9.0, material=RUBBER, base=vr.Material.elastic(2e11, 0.3), mu=0.6, load=2000.0
+)
+TIMES = np.linspace(0.0, 2.0, 9)
+DOWN = -0.05
 WORKS = ("work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss")
 
 
 def units_of(roller, load):
     """By hand: R, T_ref, the load on the plane, and what is made of them."""
-    R, T, P = roller.R, roller.T_ref, load
+    R = roller.R
+    T = roller.T_ref
+    P = load
     found = {
         "t": T,
         "x": R,
@@ -33,25 +42,48 @@ def units_of(roller, load):
         "torque": P * R,
         "N": P * T**2,
     }
-    found |= dict.fromkeys(("M", "M_half_space", "M_cylinder"), P * R) | {"zeta": T, "rest_time": T, "onset_time": T}
-    found |= {"dQ_dV": P * T / R, "dQ_domega": P * T, "dQ_ddelta": P, "eigenvalues": P * T / (roller.m * R)}
+    found |= dict.fromkeys(("M", "M_half_space", "M_cylinder"), P * R) | {
+        "zeta": T,
+        "rest_time": T,
+        "onset_time": T,
+    }
+    found |= {
+        "dQ_dV": P * T / R,
+        "dQ_domega": P * T,
+        "dQ_ddelta": P,
+        "eigenvalues": P * T / (roller.m * R),
+    }
     found |= dict.fromkeys(("dM_dV", "dM_half_space_dV", "dM_cylinder_dV"), P * T)
-    return found | dict.fromkeys(WORKS, roller.m * (R / T) ** 2) | dict.fromkeys(("p", "tau"), roller.E_prime)
+    return (
+        found
+        | dict.fromkeys(WORKS, roller.m * (R / T) ** 2)
+        | dict.fromkeys(("p", "tau"), roller.E_prime)
+    )
 
 
 def everything_acts(body, u):
     """Numbers, schedules, callables, feedback, slope, brake."""
     return body.roll(
-        0.02 / u.V, 0.1 / u.omega, TIMES / u.t, slope=DOWN,
-        force=vr.Feedback(lambda t: np.sin(t * u.t) / u.force, V=-3.0 * u.V / u.force, omega=0.2 * u.omega / u.force),
+        0.02 / u.V,
+        0.1 / u.omega,
+        TIMES / u.t,
+        slope=DOWN,
+        force=vr.Feedback(
+            lambda t: np.sin(t * u.t) / u.force,
+            V=-3.0 * u.V / u.force,
+            omega=0.2 * u.omega / u.force,
+        ),
         torque=vr.Schedule(np.array([0.5, 1.0, 1.0]) / u.t, np.array([0.0, 4.0, 1.0]) / u.torque),
         brake=vr.Schedule(np.array([1.5, 1.5]) / u.t, np.array([0.0, 6.0]) / u.torque),
-    )  # fmt: skip
+    )
 
 
 def spun(body, u):
     return body.roll(
-        0.0, None, TIMES / u.t, omega=vr.Schedule(np.array([0.0, 1.0]) / u.t, np.array([0.0, 0.5]) / u.omega)
+        0.0,
+        None,
+        TIMES / u.t,
+        omega=vr.Schedule(np.array([0.0, 1.0]) / u.t, np.array([0.0, 0.5]) / u.omega),
     )
 
 
@@ -60,18 +92,39 @@ def towed(body, u):
     return body.roll(None, 0.0, TIMES / u.t, V=speeds, torque=0.5 / u.torque)
 
 
-SPEEDS, SPINS = np.array([-0.2, 0.05, 0.3]), np.array([-1.99, 0.5, 3.1])
-STATE = ("lam", "zeta", "epsilon", "delta_star", "delta", "beta", "Q", "M", "dQ_dV", "dQ_domega", "dQ_ddelta", "dM_dV")
+SPEEDS = np.array([-0.2, 0.05, 0.3])
+SPINS = np.array([-1.99, 0.5, 3.1])
+STATE = (
+    "lam",
+    "zeta",
+    "epsilon",
+    "delta_star",
+    "delta",
+    "beta",
+    "Q",
+    "M",
+    "dQ_dV",
+    "dQ_domega",
+    "dQ_ddelta",
+    "dM_dV",
+)
 PARTS = ("M_half_space", "M_cylinder", "dM_half_space_dV", "dM_cylinder_dV")
 MOTION = ("V", "omega", "x", "angle", "delta", "regime")
 DRIVEN = (*MOTION, "force", "torque", *WORKS)
 #: the call of a body in units, the fields of its result, and how near they are
 CALLS = {
-    "contact": (lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=(*STATE, "N")), (*STATE, "N")),
-    "two bodies": (
-        lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=(*STATE, *PARTS)), (*STATE, *PARTS),
+    "contact": (
+        lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=(*STATE, "N")),
+        (*STATE, "N"),
     ),
-    "stress": (lambda body, u: body.stress(np.linspace(-1e-3, 1e-3, 9) / u.l0, 0.05 / u.V, delta=1e-3), ("p", "tau")),
+    "two bodies": (
+        lambda body, u: body.contact(SPEEDS / u.V, omega=SPINS / u.omega, fields=(*STATE, *PARTS)),
+        (*STATE, *PARTS),
+    ),
+    "stress": (
+        lambda body, u: body.stress(np.linspace(-1e-3, 1e-3, 9) / u.l0, 0.05 / u.V, delta=1e-3),
+        ("p", "tau"),
+    ),
     "steady": (
         lambda body, u: body.steady(force=-2.0 / u.force, torque=0.15 / u.torque, slope=DOWN),
         ("V", "omega", "delta", "Q", "M", "force", "torque", "grip", "eigenvalues"),
@@ -82,19 +135,25 @@ CALLS = {
         ("Q", "M", *PARTS, "dQ_dV", "dQ_domega"),
     ),
     "free": (
-        lambda body, u: body.roll(0.02 / u.V, 0.1 / u.omega, 100.0 / u.t, rest=1e-5 / u.V), (*MOTION, "rest_time"),
+        lambda body, u: body.roll(0.02 / u.V, 0.1 / u.omega, 100.0 / u.t, rest=1e-5 / u.V),
+        (*MOTION, "rest_time"),
     ),
     "driven": (everything_acts, DRIVEN),
     "spun": (spun, DRIVEN),
     "towed": (towed, DRIVEN),
     "from rest": (
-        lambda body, u: body.roll(1.0 / u.V, 10.0 / u.omega, TIMES / u.t, unsteady=True, rested=60.0 / u.t), MOTION,
+        lambda body, u: body.roll(
+            1.0 / u.V, 10.0 / u.omega, TIMES / u.t, unsteady=True, rested=60.0 / u.t
+        ),
+        MOTION,
     ),
     "ensemble": (
-        lambda body, u: body.ensemble(np.array([0.01, 0.02]) / u.V, 0.1 / u.omega, TIMES / u.t, rest=1e-6 / u.V),
+        lambda body, u: body.ensemble(
+            np.array([0.01, 0.02]) / u.V, 0.1 / u.omega, TIMES / u.t, rest=1e-6 / u.V
+        ),
         ("V", "omega", "x", "onset_time", "rest_time"),
     ),
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("name", CALLS)
@@ -105,7 +164,9 @@ def test_the_dimensionless_call_in_other_units(name):
     unit = units_of(roller, roller.load * (np.cos(DOWN) if tilted else 1.0))
     found = call(roller, SimpleNamespace(**dict.fromkeys(unit, 1.0)))
     bare = call(roller.scene(), SimpleNamespace(**unit))
-    rel = {"driven": tol.SI_TILTED, "steady": tol.STEADY, "ensemble": tol.SI_ENSEMBLE}.get(name, tol.SI_MOTION)
+    rel = {"driven": tol.SI_TILTED, "steady": tol.STEADY, "ensemble": tol.SI_ENSEMBLE}.get(
+        name, tol.SI_MOTION
+    )
     for field in fields:
         exact = np.asarray(getattr(bare, field)) * unit.get(field, 1.0)
         largest = np.abs(exact[np.isfinite(exact)]).max(initial=0.0)
@@ -118,20 +179,40 @@ def test_the_dimensionless_call_in_other_units(name):
 
 def test_functions_are_the_methods():
     """Of scene and cylinder, with one signature; what is neither is refused by name."""
-    for name in ("contact", "stress", "steady", "resistance_extrema", "law", "roll", "ensemble", "validity"):
+    for name in (
+        "contact",
+        "stress",
+        "steady",
+        "resistance_extrema",
+        "law",
+        "roll",
+        "ensemble",
+        "validity",
+    ):
         function = getattr(vr, name)
         assert function is getattr(vr.Scene, name) is getattr(vr.Cylinder, name)
-        arguments = {"stress": 2, "steady": 0, "resistance_extrema": 0, "law": 0, "roll": 3, "ensemble": 3}.get(name, 1)
+        arguments = {
+            "stress": 2,
+            "steady": 0,
+            "resistance_extrema": 0,
+            "law": 0,
+            "roll": 3,
+            "ensemble": 3,
+        }.get(name, 1)
         said = refused(lambda function=function, n=arguments: function("a roller", *[0.1] * n))
         assert said == f"{name} takes a Scene or a Cylinder, not 'a roller'"
 
 
 # --- many cylinders ---
 
-SLOW, FAST = np.array([1e-3, 1e-2, 2e-2]), np.array([1e-3, 1e-3, 5e-3])
+SLOW = np.array([1e-3, 1e-2, 2e-2])
+FAST = np.array([1e-3, 1e-3, 5e-3])
 SOLID = vr.Cylinder(R=0.1, m=35.5, E=2.3e6, nu=0.49, T_epsilon=0.02, T_sigma=0.02, mu=0.3)
 MANY = {
-    "mu and load": (ROLLER, {"mu": np.array([0.2, 0.3, 0.4]), "load": np.array([300.0, 340.0, 380.0])}),
+    "mu and load": (
+        ROLLER,
+        {"mu": np.array([0.2, 0.3, 0.4]), "load": np.array([300.0, 340.0, 380.0])},
+    ),
     "load and R": (
         vr.presets.RUBBER_CYLINDER,
         {"load": np.array([50.0, 200.0, 900.0]), "R": np.array([0.05, 0.1, 0.2])},
@@ -144,9 +225,12 @@ MANY = {
 def test_each_of_many_is_as_alone(name):
     """Gains over m/s and rad/s too."""
     roller, each = MANY[name]
-    many, drags = roller.replace(**each), np.array([0.002, 0.0, 0.03])
+    many = roller.replace(**each)
+    drags = np.array([0.002, 0.0, 0.03])
     fields = ("V", "omega", "x", "torque", "rolling_loss", "onset_time")
-    e = many.ensemble(0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags), fields=fields[:-1])
+    e = many.ensemble(
+        0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags), fields=fields[:-1]
+    )
     state = many.contact(0.5, delta=0.01)
     s = many.steady(slope=1e-3) if name != "times" else None  # of one alpha
     for n in range(3):

@@ -1,4 +1,6 @@
-"""Contacts that ask a material for more than was measured of it: a word, once a material, and a mark in figures."""
+"""Contacts that ask a material for more than was measured of it: a word, once a material, and a
+mark in figures.
+"""
 
 import warnings
 from dataclasses import replace
@@ -12,22 +14,27 @@ from run_files import run_of
 from scipy import stats
 
 import viscoroll as vr
-from viscoroll.contact_law.validity import model_warnings
+from viscoroll.contact_mechanics import model_warnings
 from viscoroll.core.plots import draw
-from viscoroll.io.runs import estimate
+from viscoroll.runs import estimate
 
 DATA = vr.Measured(0.06, 1884.0, 0.01, "dma.csv")
 RUBBER = vr.Material(2e6, 0.5, vr.Prony([2.0, 6.0], [1e-3, 1e-5]), measured=DATA)
 BELT = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5)
-#: the speed at which the transit frequency of that contact is 628 1/s, a third of the last frequency of the data
+#: the speed at which the transit frequency of that contact is 628 1/s, a third of the last
+#: frequency of the data
 LAST = 2.866
 
 
 def test_where_the_data_end():
-    """Of the same contact, by the law itself: at both ends the transit frequency is at the end of its band."""
+    """Of the same contact, by the law itself: at both ends the transit frequency is at the end of
+    its band.
+    """
     for at, end in zip(BELT.body_data.measured_rates, DATA.transit_band, strict=True):
         speed = at * BELT.l0
-        assert close(speed / BELT.contact(speed, delta=0.0, fields="length").length, end, tol.CONTACT)
+        assert close(
+            speed / BELT.contact(speed, delta=0.0, fields="length").length, end, tol.CONTACT
+        )
     found = BELT.validity(np.array([0.99, 1.01]) * LAST).measured
     assert found.holds.tolist() == [True, False]
 
@@ -36,16 +43,24 @@ def test_where_the_data_end():
 @pytest.mark.parametrize("thickness", [None, 0.01])
 @pytest.mark.parametrize("growth", [0.0, 0.12, 0.3])
 def test_data_over_the_band_determine_M(growth, thickness):
-    """Rubbers of 15 modes, whose moduli of three decades are fitted: M at both ends of transit_band is that of the
-    rubber to a tenth, and nearer a factor of 5 inside; where the data end at the transit frequency it is wrong.
+    """Rubbers of 15 modes, whose moduli of three decades are fitted: M at both ends of transit_band
+    is that of the rubber to a tenth, and nearer a factor of 5 inside; where the data end at the
+    transit frequency it is wrong.
     """
     k = np.arange(-6.0, 9.0)
-    rubber = vr.Material(1e6, 0.49, vr.Prony(0.05 * 10.0 ** (growth * k), 10.0 ** (-k - 1.0)), T_ref=1.0)
+    rubber = vr.Material(
+        1e6, 0.49, vr.Prony(0.05 * 10.0 ** (growth * k), 10.0 ** (-k - 1.0)), T_ref=1.0
+    )
     omega = np.geomspace(1.0, 1e3, 31)
     fit = vr.fit_prony(omega, rubber.storage(omega), rubber.loss(omega)).material(nu=0.49)
-    bases = [replace(each, thickness=thickness, measured=vr.Measured(1.0, 1e3, 0.0)) for each in (rubber, fit)]
+    bases = [
+        replace(each, thickness=thickness, measured=vr.Measured(1.0, 1e3, 0.0))
+        for each in (rubber, fit)
+    ]
     true, found = (
-        vr.Cylinder(R=0.1, m=35.0, mu=0.3, load=1e3, material=vr.Material.rigid(), base=each, coupled=False)
+        vr.Cylinder(
+            R=0.1, m=35.0, mu=0.3, load=1e3, material=vr.Material.rigid(), base=each, coupled=False
+        )
         for each in bases
     )
     low, high = true.body_data.measured_speeds
@@ -64,7 +79,9 @@ def test_a_word_once_a_material_and_none_in_workers(monkeypatch, worker):
         warnings.simplefilter("always")
         for _ in range(2):
             BELT.contact(10.0, delta=0.0)
-    assert [(each.category, each.filename) for each in found] == [(vr.ModelWarning, __file__)] * (not worker)
+    assert [(each.category, each.filename) for each in found] == [(vr.ModelWarning, __file__)] * (
+        not worker
+    )
 
 
 def test_a_temperature_in_kelvin_is_said_once_for_a_line():
@@ -87,7 +104,9 @@ def test_a_temperature_in_kelvin_is_said_once_for_a_line():
     ],
 )
 def test_every_call_warns_of_large_contacts(call):
-    """Contact, stress, steady rolling, bound law and motion: of a contact larger than the radius, once a line."""
+    """Contact, stress, steady rolling, bound law and motion: of a contact larger than the radius,
+    once a line.
+    """
     large = vr.Cylinder(R=0.1, m=30.0, material=replace(RUBBER, measured=None, E=2.0), mu=0.5)
     with warnings.catch_warnings(record=True) as found:
         warnings.simplefilter("always")
@@ -103,14 +122,20 @@ def test_a_law_with_and_without_data_has_the_same_numbers():
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_curves_are_dashed_beyond(tmp_path):
-    """Over speed, from a file, and over frequency: what is solid and what is dashed meet, and are all there is."""
-    BELT.contact(np.geomspace(0.01, 100.0, 81), delta=0.0, fields="M").to_xarray().to_netcdf(tmp_path / "M.nc")
+    """Over speed, from a file, and over frequency: what is solid and what is dashed meet, and are
+    all there is.
+    """
+    BELT.contact(np.geomspace(0.01, 100.0, 81), delta=0.0, fields="M").to_xarray().to_netcdf(
+        tmp_path / "M.nc"
+    )
     with xr.open_dataset(tmp_path / "M.nc") as stored:
         over_speed = draw(stored)
     for figure, low, high in ((over_speed, 0.0, LAST), (RUBBER.plot(), DATA.low, DATA.high)):
         solid, dashed = figure.axes[0].get_lines()[:2]
         assert dashed.get_linestyle() == "--"
-        x, seen, beyond = solid.get_xdata(), np.isfinite(solid.get_ydata()), np.isfinite(dashed.get_ydata())
+        x = solid.get_xdata()
+        seen = np.isfinite(solid.get_ydata())
+        beyond = np.isfinite(dashed.get_ydata())
         assert np.array_equal(seen, (x >= low) & (x <= high))
         assert (seen | beyond).all()
         assert np.count_nonzero(seen & beyond) == 1
@@ -150,11 +175,17 @@ temperature = { distribution = "norm", loc = 20.0, scale = 5.0 }
 
 
 def test_the_share_of_motions_that_were_not_measured(tmp_path, monkeypatch):
-    """N(20, 5) degrees: the contact at 1 m/s needs frequencies that the data hold where a_T is below a bound."""
+    """N(20, 5) degrees: the contact at 1 m/s needs frequencies that the data hold where a_T is
+    below a bound.
+    """
     monkeypatch.setattr(model_warnings, "_warned_records", set())
     text = RUN.format(E="2.0e6", spread=1e-9).replace("n = 20", "n = 1000")
     text = text.replace("[start]", WARM + "[start]")
-    rate = vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5).validity(1.0).measured.value
+    rate = (
+        vr.Cylinder(R=0.1, m=30.0, material=vr.Material.rigid(), base=RUBBER, mu=0.5)
+        .validity(1.0)
+        .measured.value
+    )
     high = 3.0 * rate * vr.WLF(C1=8.86, C2=101.6, T0=20.0)(17.0)
     text = text.replace("high = 1884.0", f"high = {high}")
     with warnings.catch_warnings(record=True) as found:

@@ -1,4 +1,6 @@
-"""Tables of the coupled solution, and grids: beside the solver, as files, in laws, motions and steady states."""
+"""Tables of the coupled solution, and grids: beside the solver, as files, in laws, motions and
+steady states.
+"""
 
 import numpy as np
 import pytest
@@ -7,9 +9,9 @@ from closeness import close
 from scipy.integrate import solve_ivp
 
 import viscoroll as vr
-from viscoroll.contact_law.coupled import CoupledPair
-from viscoroll.contact_law.coupled_table import coupled_law, measure_errors
-from viscoroll.materials.law.netcdf import law_as_dataset
+from viscoroll.contact_mechanics.coupled_pair import CoupledPair
+from viscoroll.contact_mechanics.coupled_tables import coupled_law, measure_errors
+from viscoroll.laws.law_netcdf import law_as_dataset
 
 ONE = vr.Prony([10.0], [1.0 / 11.0])
 BELT = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
@@ -26,7 +28,9 @@ def scene(law):
 
 
 def test_table_holds_states_beside_its_nodes(law):
-    found = measure_errors(law.coupled, CoupledPair.of_scene(vr.Scene(material=BELT, kappa=4.0, mu=0.3)), 40, 7)
+    found = measure_errors(
+        law.coupled, CoupledPair.of_scene(vr.Scene(material=BELT, kappa=4.0, mu=0.3)), 40, 7
+    )
     assert found["Q_over_mu"] < tol.TABLE_Q
     assert found["M_half_space"] < tol.TABLE_M
     assert found["epsilon"] < tol.TABLE_EPSILON
@@ -36,7 +40,9 @@ def test_file_keeps_every_bit_and_holds_for_one_friction(law, scene, tmp_path):
     vr.tables.save(law_as_dataset(law, {}), tmp_path / "belt.nc")
     read = vr.load_law(tmp_path / "belt.nc")
     states = {"V": np.geomspace(1e-4, 1e3, 50), "delta": np.linspace(-0.1, 0.1, 50)}
-    first, again = (each.contact(**states, slopes=True) for each in (scene, scene.replace(material=read)))
+    first, again = (
+        each.contact(**states, slopes=True) for each in (scene, scene.replace(material=read))
+    )
     assert all(np.array_equal(first[name], again[name]) for name in first.keys())  # noqa: SIM118 - no dict
     with pytest.raises(vr.ParameterError, match=r"mu = 0\.2: must be 0\.3"):
         vr.Scene(material=read, kappa=4.0, mu=0.2)
@@ -46,7 +52,9 @@ def test_slopes_are_those_of_the_law(scene):
     law = vr.law(scene)
     for u in (1e-5, 1e-3, 0.35, 30.0, 300.0):
         for delta in (-0.0125, 0.0125, 0.03, 0.1):
-            V, omega, step = u / 4.0, u / 4.0 * (1.0 + delta), 1e-6 * u
+            V = u / 4.0
+            omega = u / 4.0 * (1.0 + delta)
+            step = 1e-6 * u
             found = law(V, omega, slopes=True)
             over_V = (law(V + step, omega).Q - law(V - step, omega).Q) / (2.0 * step)
             over_omega = (law(V, omega + step).M - law(V, omega - step).M) / (2.0 * step)
@@ -55,23 +63,33 @@ def test_slopes_are_those_of_the_law(scene):
 
 
 def test_free_creepage_is_that_with_stick(scene):
-    assert abs(8.0 * scene.contact(1e-6, delta=0.0, fields="delta_0").delta_0 - 0.165) < tol.TABLE_FREE
+    assert (
+        abs(8.0 * scene.contact(1e-6, delta=0.0, fields="delta_0").delta_0 - 0.165) < tol.TABLE_FREE
+    )
 
 
 @pytest.mark.parametrize(
-    "start", [{"V0": 1.0, "omega0": 1.0, "torque": -0.35}, {"V0": 1.0, "omega0": 1.0, "force": -0.1},
-              {"V0": 1.0, "omega0": 0.5}], ids=["reversed", "braked", "sliding"],
-)  # fmt: skip
+    "start",
+    [
+        {"V0": 1.0, "omega0": 1.0, "torque": -0.35},
+        {"V0": 1.0, "omega0": 1.0, "force": -0.1},
+        {"V0": 1.0, "omega0": 0.5},
+    ],
+    ids=["reversed", "braked", "sliding"],
+)
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_motions_solve_the_equations_and_keep_energy(scene, start):
     law = vr.law(scene)
-    force, torque = start.get("force", 0.0), start.get("torque", 0.0)
+    force = start.get("force", 0.0)
+    torque = start.get("torque", 0.0)
 
     def rates(t, y):
         loads = law(*y)
         return [loads.Q - loads.M_half_space + force, 2.0 * (torque - loads.Q - loads.M_cylinder)]
 
-    exact = solve_ivp(rates, (0.0, 4.0), [start["V0"], start["omega0"]], method="Radau", rtol=1e-9, atol=1e-12).y[:, -1]
+    exact = solve_ivp(
+        rates, (0.0, 4.0), [start["V0"], start["omega0"]], method="Radau", rtol=1e-9, atol=1e-12
+    ).y[:, -1]
     motion = scene.roll(t=np.linspace(0.0, 4.0, 41), **start)
     close(np.array([motion.V[-1], motion.omega[-1]]), exact, tol.TABLE_MOTION)
     losses = motion.slip_loss + motion.rolling_loss
@@ -93,10 +111,13 @@ def test_steady_rolling_is_where_motions_end_and_rest_stays(scene):
 def test_grids_of_other_programs_roll(tmp_path):
     rows = vr.Scene(material=ONE, kappa=4.0, mu=0.3, gamma=1.0)
     V = vr.tables.spread(1e-4, 10.0, 200, "log")
-    vr.tables.save(vr.tables.build(rows, V, delta=vr.tables.creep_nodes(rows, V, 401)), tmp_path / "grid.nc")
+    vr.tables.save(
+        vr.tables.build(rows, V, delta=vr.tables.creep_nodes(rows, V, 401)), tmp_path / "grid.nc"
+    )
     grid = vr.Scene(material=vr.load_law(tmp_path / "grid.nc"), kappa=4.0, mu=0.3, gamma=1.0)
     drive = {"V0": 1.0, "omega0": 1.0, "t": [0.0, 5.0, 10.0], "torque": -0.35}
-    found, exact = grid.roll(**drive), rows.roll(**drive)
+    found = grid.roll(**drive)
+    exact = rows.roll(**drive)
     close(np.stack([found.V, found.omega]), np.stack([exact.V, exact.omega]), tol.GRID_MOTION)
     with pytest.raises(vr.ParameterError, match="within the table"):
         grid.roll(V0=100.0, omega0=100.0, t=[0.0, 1.0])
@@ -105,10 +126,14 @@ def test_grids_of_other_programs_roll(tmp_path):
 
 
 def test_speeds_beyond_the_nodes_join_the_elastic_limits(law, scene):
-    """The table is linear in u below its nodes, in 1/u beyond; both ends are those of elastic bodies."""
+    """The table is linear in u below its nodes, in 1/u beyond; both ends are those of elastic
+    bodies.
+    """
     rows = law.coupled
     for u, row in ((1e-9, 0), (1e12, -1)):
         _, low, high = rows.edges[row, :3]
-        state = scene.contact(u / 4.0, delta=np.array([low, high]) / 8.0, fields=("Q", "M_half_space"))
+        state = scene.contact(
+            u / 4.0, delta=np.array([low, high]) / 8.0, fields=("Q", "M_half_space")
+        )
         close(state.Q, [-0.3, 0.3], tol.TABLE_MOTION)
         close(4.0 * state.M_half_space, rows.fields[row, [0, -1], 1], tol.TABLE_MOTION)

@@ -1,4 +1,6 @@
-"""The contact on grids for other programs: nodes, stated errors, formats, and files of every version."""
+"""The contact on grids for other programs: nodes, stated errors, formats, and files of every
+version.
+"""
 
 import csv
 import gzip
@@ -17,15 +19,23 @@ from refusals import refused
 from scipy import io
 
 import viscoroll as vr
-from viscoroll.io.tables import schema
-from viscoroll.io.tables.check import NODES_ALLOWED, check_table
-from viscoroll.materials.law.table import law_table
+from viscoroll.laws.law_table import law_table
+from viscoroll.tables import table_files
+from viscoroll.tables.law_dataset import NODES_ALLOWED, check_table
 
-V, DELTA, ALPHA = np.geomspace(1e-2, 2.0, 21), np.linspace(-0.04, 0.04, 33), np.array([1.0, 2.0, 4.0, 8.0, 16.0])
+V = np.geomspace(1e-2, 2.0, 21)
+DELTA = np.linspace(-0.04, 0.04, 33)
+ALPHA = np.array([1.0, 2.0, 4.0, 8.0, 16.0])
 #: A thin rubber cover on a steel core, on concrete: delta_0 is an eighth of delta_star.
 RUBBER = vr.Material(E=2e6, nu=0.5, prony=vr.Prony(E=[2.0, 6.0], tau=[0.1, 1e-3]), thickness=0.012)
 COVERED = vr.Cylinder(
-    R=0.1, m=60.0, material=RUBBER, base=vr.Material.elastic(E=3e10, nu=0.2), mu=0.6, j=0.5, coupled=False
+    R=0.1,
+    m=60.0,
+    material=RUBBER,
+    base=vr.Material.elastic(E=3e10, nu=0.2),
+    mu=0.6,
+    j=0.5,
+    coupled=False,
 )
 PAIR = vr.Bodies(vr.Prony([10.0], [1.0]), vr.Prony([0.3, 0.6], [1e-2, 1e-3]), 0.3)
 WHAT = {
@@ -39,7 +49,11 @@ WHAT = {
 
 def built(name):
     return vr.tables.build(
-        WHAT[name], V, delta=DELTA, alpha=ALPHA if name == "alphas" else None, command="made by a test"
+        WHAT[name],
+        V,
+        delta=DELTA,
+        alpha=ALPHA if name == "alphas" else None,
+        command="made by a test",
     )
 
 
@@ -61,17 +75,21 @@ def alphas():
 def exact(name, points, fields):
     if isinstance(WHAT[name], vr.Cylinder):
         return WHAT[name].contact(points["V"], delta=points["delta"], fields=fields).as_dict()
-    scene = vr.presets.PAPER_SECTION_5.replace(alpha=points["alpha"]) if name == "alphas" else WHAT[name]
+    scene = (
+        vr.presets.PAPER_SECTION_5.replace(alpha=points["alpha"])
+        if name == "alphas"
+        else WHAT[name]
+    )
     scene = vr.Scene(kappa=1.0, mu=1.0, material=PAIR) if name == "law" else scene
     return vr.contact(scene, points["V"], delta=points["delta"], fields=fields).as_dict()
 
 
 def test_nodes_are_the_contact(name, table):
-    points = {axis: table[axis].values for axis in schema.axes_of(table)}
+    points = {axis: table[axis].values for axis in table_files.axes_of(table)}
     grid = dict(zip(points, np.meshgrid(*points.values(), indexing="ij"), strict=True))
     assert ("delta_0" in table) == (name == "cover")
-    for field, values in exact(name, grid, schema.fields_of(table)).items():
-        nodes = values if field in schema.VOLUME else values[:, 0]
+    for field, values in exact(name, grid, table_files.fields_of(table)).items():
+        nodes = values if field in table_files.VOLUME else values[:, 0]
         assert np.array_equal(table[field].values, nodes), field
 
 
@@ -87,38 +105,54 @@ def test_what_it_says(name, table):
 
 
 def test_stated_errors_are_those_of_other_points(name, table):
-    random, count = np.random.default_rng(5), 20_000
-    points = {axis: random.uniform(*table[axis].values[[0, -1]], count) for axis in schema.axes_of(table)}
+    random = np.random.default_rng(5)
+    count = 20_000
+    points = {
+        axis: random.uniform(*table[axis].values[[0, -1]], count)
+        for axis in table_files.axes_of(table)
+    }
     points["V"] = np.exp(random.uniform(*np.log(V[[0, -1]]), count)).clip(V[0], V[-1])
-    truth = exact(name, points, schema.fields_of(table))
+    truth = exact(name, points, table_files.fields_of(table))
     found = vr.tables.interpolate(table, **points)
     linear = table.interp({axis: xr.DataArray(values) for axis, values in points.items()})
-    for field in schema.fields_of(table):
+    for field in table_files.fields_of(table):
         for way, values in (("spline", getattr(found, field)), ("linear", linear[field].values)):
-            stated, error = table[field].attrs[f"{way}_error"], np.abs(values - truth[field]).max()
+            stated = table[field].attrs[f"{way}_error"]
+            error = np.abs(values - truth[field]).max()
             assert tol.GRID_LESS * stated <= error <= tol.GRID_MORE * stated, (field, way)
 
 
 def test_largest_error_is_where_it_is_stated(name, table):
     """Both errors occur at the point that the attributes name, which has six digits."""
-    for field in schema.fields_of(table):
+    for field in table_files.fields_of(table):
         for way in ("spline", "linear"):
             stated, at = (table[field].attrs[key] for key in (f"{way}_error", f"{way}_error_at"))
-            points = {axis: float(value) for axis, value in (part.split(" = ") for part in at.split(", "))}
+            points = {
+                axis: float(value) for axis, value in (part.split(" = ") for part in at.split(", "))
+            }
             assert set(points) == set(table[field].dims)
-            whole = {axis: np.array(points.get(axis, table[axis].values[0])) for axis in schema.axes_of(table)}
+            whole = {
+                axis: np.array(points.get(axis, table[axis].values[0]))
+                for axis in table_files.axes_of(table)
+            }
             linear = way == "linear"
             found = vr.tables.Interpolant(table, linear=linear)(field, **points)[field]
-            assert close(abs(found - exact(name, whole, (field,))[field]), stated, tol.GRID_PLACE), (field, way)
+            assert close(
+                abs(found - exact(name, whole, (field,))[field]), stated, tol.GRID_PLACE
+            ), (field, way)
 
 
 def test_splines_keep_the_bounds_of_the_law(name, table):
-    """|Q| <= mu P and 0 <= beta <= 1 beside the kink at delta_star, where a cubic spline alone overshoots."""
-    axes = schema.axes_of(table)
+    """|Q| <= mu P and 0 <= beta <= 1 beside the kink at delta_star, where a cubic spline alone
+    overshoots.
+    """
+    axes = table_files.axes_of(table)
     fine = {axis: np.linspace(*table[axis].values[[0, -1]], 60) for axis in axes}
     fine["delta"] = np.linspace(-0.04, 0.04, 801)
     found = vr.tables.interpolate(
-        table, ("Q", "beta"), **dict(zip(axes, np.meshgrid(*fine.values(), indexing="ij", sparse=True), strict=True))
+        table,
+        ("Q", "beta"),
+        **dict(zip(axes, np.meshgrid(*fine.values(), indexing="ij", sparse=True), strict=True)),
     )
     most = table.attrs["mu"] * table.attrs.get("load", 1.0)
     assert np.abs(found.Q).max() <= most
@@ -129,20 +163,28 @@ def test_splines_keep_the_bounds_of_the_law(name, table):
 
 
 def test_interpolation(table):
-    axes = schema.axes_of(table)
-    points = dict(zip(axes, np.meshgrid(*(table[axis].values for axis in axes), indexing="ij"), strict=True))
+    axes = table_files.axes_of(table)
+    points = dict(
+        zip(axes, np.meshgrid(*(table[axis].values for axis in axes), indexing="ij"), strict=True)
+    )
     found = vr.tables.interpolate(table, **points)
-    for field in schema.fields_of(table):
+    for field in table_files.fields_of(table):
         expected = table[field].broadcast_like(table.beta).transpose(*axes).values
-        assert close(getattr(found, field), expected, tol.TABLE_SPLINE_NODE, scale=np.abs(expected).max()), field
+        assert close(
+            getattr(found, field), expected, tol.TABLE_SPLINE_NODE, scale=np.abs(expected).max()
+        ), field
 
 
 def test_root_solves_meet_the_rows():
-    """The paper's way to the nodes, of a scene and of a cylinder in SI units, and what the grid says of them."""
+    """The paper's way to the nodes, of a scene and of a cylinder in SI units, and what the grid
+    says of them.
+    """
     for what, speeds in ((vr.presets.PAPER_SECTION_5, V), (vr.presets.PAPER_CYLINDER, 1e-2 * V)):
-        direct, rows = (vr.tables.build(what, speeds, delta=DELTA, method=way) for way in ("direct", "table"))
+        direct, rows = (
+            vr.tables.build(what, speeds, delta=DELTA, method=way) for way in ("direct", "table")
+        )
         assert direct.attrs["method"] == "direct"
-        for name in schema.fields_of(direct):
+        for name in table_files.fields_of(direct):
             assert not np.array_equal(direct[name], rows[name]) or name == "delta_star", name
             assert 0.0 <= direct[name].attrs["difference_from_rows"] <= NODES_ALLOWED, name
             size = np.abs(rows[name].values).max()
@@ -153,25 +195,37 @@ def test_validation_finds_a_wrong_node(alphas):
     assert all(check.passed for check in check_table(alphas, 2000, 1))
     wrong = alphas.copy(deep=True)
     wrong.Q[3, 4, 1] *= 1.0 + 10.0 * NODES_ALLOWED
-    assert [check.name for check in check_table(wrong, 2000, 1) if not check.passed] == ["grid: Q, nodes"]
+    assert [check.name for check in check_table(wrong, 2000, 1) if not check.passed] == [
+        "grid: Q, nodes"
+    ]
     stated = alphas.copy(deep=True)
     stated.beta.attrs["spline_error"] *= 0.1
-    assert [check.name for check in check_table(stated, 2000, 1) if not check.passed] == ["grid: beta, splines"]
+    assert [check.name for check in check_table(stated, 2000, 1) if not check.passed] == [
+        "grid: beta, splines"
+    ]
     stated.beta.attrs["spline_error"] = 1.0  # an error as large as the range of beta
-    assert [check.allowed for check in check_table(stated, 2000, 1) if check.name == "grid: beta, splines"] == [0.5]
+    assert [
+        check.allowed
+        for check in check_table(stated, 2000, 1)
+        if check.name == "grid: beta, splines"
+    ] == [0.5]
 
 
 def test_validation_refuses_a_grid_whose_error_is_the_range_of_a_field():
-    scene, speeds = vr.presets.PAPER_SECTION_5, np.linspace(1e-3, 2e-3, 4)
+    scene = vr.presets.PAPER_SECTION_5
+    speeds = np.linspace(1e-3, 2e-3, 4)
     star = vr.contact(scene, speeds[0], delta=0.0).delta_star
     grid = vr.tables.build(scene, speeds, delta=star * np.array([0.0, 0.99, 0.9999, 0.999999, 1.1]))
     assert grid.beta.attrs["spline_error"] > 0.9
-    assert [check.name for check in check_table(grid, 2000, 1) if not check.passed] == ["grid: beta, splines"]
+    assert [check.name for check in check_table(grid, 2000, 1) if not check.passed] == [
+        "grid: beta, splines"
+    ]
 
 
 def test_creep_nodes_have_less_error_than_equal_steps():
     """Of a material whose onset of full slip falls to a thirtieth at fast speeds."""
-    scene, speeds = vr.Scene(alpha=1000.0, kappa=10.0, mu=0.3), np.geomspace(1e-4, 100.0, 60)
+    scene = vr.Scene(alpha=1000.0, kappa=10.0, mu=0.3)
+    speeds = np.geomspace(1e-4, 100.0, 60)
     nodes = vr.tables.creep_nodes(scene, speeds, 81)
     assert nodes.size == 81
     assert np.array_equal(nodes, -nodes[::-1])
@@ -184,13 +238,17 @@ def test_creep_nodes_have_less_error_than_equal_steps():
 
 
 @pytest.mark.parametrize(
-    ("lowest", "highest", "alpha"), [(1e-3, 2.0, [7.0, 11.0, 16.0]), (1e-3, 0.05, [11.0]), (1.0, 2.0, [1.0])]
+    ("lowest", "highest", "alpha"),
+    [(1e-3, 2.0, [7.0, 11.0, 16.0]), (1e-3, 0.05, [11.0]), (1.0, 2.0, [1.0])],
 )
 def test_splines_slip_where_the_law_slips(lowest, highest, alpha):
-    """At slow speeds and for elastic bodies all onsets of full slip coincide: beside too many nodes there splines
-    reached beta = 1 beyond them."""
-    scene, speeds = vr.presets.PAPER_SECTION_5_ROUNDED, vr.tables.spread(lowest, highest, 41, "log")
-    grid = vr.tables.build(scene, speeds, delta=vr.tables.creep_nodes(scene, speeds, 41, alpha=alpha), alpha=alpha)
+    """At slow speeds and for elastic bodies all onsets of full slip coincide: beside too many nodes
+    there splines reached beta = 1 beyond them."""
+    scene = vr.presets.PAPER_SECTION_5_ROUNDED
+    speeds = vr.tables.spread(lowest, highest, 41, "log")
+    grid = vr.tables.build(
+        scene, speeds, delta=vr.tables.creep_nodes(scene, speeds, 41, alpha=alpha), alpha=alpha
+    )
     assert grid.beta.attrs["spline_error"] < tol.ONSET_BETA
     assert grid.Q.attrs["spline_error"] < tol.ONSET_Q * scene.mu
 
@@ -219,15 +277,20 @@ def test_save_load_identity(table, tmp_path):
 @pytest.mark.parametrize("kind", ["atlas", "literal"])
 def test_files_of_the_first_version(kind, tmp_path):
     path = tmp_path / f"{kind}.nc"
-    path.write_bytes(gzip.decompress((ROOT / f"tests/tables/files/{kind}-0.1.0.nc.gz").read_bytes()))
+    path.write_bytes(
+        gzip.decompress((ROOT / f"tests/tables/files/{kind}-0.1.0.nc.gz").read_bytes())
+    )
     table = vr.tables.load(path)
     if kind == "atlas":
-        scene, points = vr.Scene(5.0, 1.0, 1.0), {"alpha": 5.0, "kappa_V": 0.7, "s": 0.3}
+        scene = vr.Scene(5.0, 1.0, 1.0)
+        points = {"alpha": 5.0, "kappa_V": 0.7, "s": 0.3}
         star = vr.contact(scene, 0.7, delta=0.0).delta_star
-        truth, name = vr.contact(scene, 0.7, delta=0.3 * star).Q, "Q_over_mu"
+        truth = vr.contact(scene, 0.7, delta=0.3 * star).Q
+        name = "Q_over_mu"
     else:
         points = {"alpha": 3.0, "V": 0.3, "delta": 0.011}
-        truth, name = vr.contact(vr.Scene(3.0, 2.91, 0.2), 0.3, delta=0.011).Q, "Q"
+        truth = vr.contact(vr.Scene(3.0, 2.91, 0.2), 0.3, delta=0.011).Q
+        name = "Q"
     found = getattr(vr.tables.interpolate(table, name, **points), name)
     assert abs(found - truth) <= table[name].attrs["interpolation_error"]
 
@@ -243,7 +306,12 @@ def test_a_grid_that_is_refused_leaves_no_file(alphas, tmp_path):
 FILL = 9.969209968386869e36
 #: field, its nodes, what they become, words of the refusal
 WRONG = [
-    ("Q", np.s_[7, 5], lambda Q: FILL, "Q = 9.969209968386869e+36 at V[7], delta[5]: must be given"),
+    (
+        "Q",
+        np.s_[7, 5],
+        lambda Q: FILL,
+        "Q = 9.969209968386869e+36 at V[7], delta[5]: must be given",
+    ),
     ("Q", np.s_[7, 5], lambda Q: -9999.0, "V[7], delta[5]"),
     ("Q", np.s_[0, 0], lambda Q: 1e20, "V[0], delta[0]"),
     ("M", np.s_[20], lambda M: -9999.0, "M = -9999.0 at V[20]: must be >= 0"),
@@ -257,16 +325,22 @@ WRONG = [
 
 
 @pytest.mark.parametrize(("field", "nodes", "change", "words"), WRONG)
-def test_a_node_that_no_contact_has_is_refused_with_its_place(field, nodes, change, words, tmp_path):
+def test_a_node_that_no_contact_has_is_refused_with_its_place(
+    field, nodes, change, words, tmp_path
+):
     table = built("cylinder")
     values = table[field].values
     values[nodes] = change(values[nodes])
     path = tmp_path / "edited.nc"
-    table.to_netcdf(path, engine="h5netcdf", encoding={key: {"_FillValue": None} for key in table.variables})
+    table.to_netcdf(
+        path, engine="h5netcdf", encoding={key: {"_FillValue": None} for key in table.variables}
+    )
     refused(partial(vr.tables.load, path), words, error=vr.FileError)
     other = table[["Q", "M"]]
     other.attrs = {key: table.attrs[key] for key in ("mu", "load", "R")}
-    other.to_netcdf(path, engine="h5netcdf", encoding={key: {"_FillValue": None} for key in other.variables})
+    other.to_netcdf(
+        path, engine="h5netcdf", encoding={key: {"_FillValue": None} for key in other.variables}
+    )
     refused(partial(vr.load_law, path), words, error=vr.FileError)
 
 
@@ -309,21 +383,29 @@ def test_netcdf3_csv_and_matlab_hold_the_same_bits(table, tmp_path):
     with (tmp_path / "t.csv").open(newline="") as text:
         names, *rows = csv.reader(text)
     columns = dict(zip(names, np.array(rows, dtype=float).T, strict=True))
-    for key in (*schema.axes_of(table), *schema.fields_of(table)):
-        wide = table[key].broadcast_like(table.beta).transpose(*schema.axes_of(table))
+    for key in (*table_files.axes_of(table), *table_files.fields_of(table)):
+        wide = table[key].broadcast_like(table.beta).transpose(*table_files.axes_of(table))
         assert np.array_equal(columns[key], wide.values.ravel()), key
     vr.tables.export(table, tmp_path / "t.mat")
     content = io.loadmat(tmp_path / "t.mat", simplify_cells=True)["viscoroll"]
-    assert all(np.array_equal(content[key], variable.values) for key, variable in table.variables.items())
-    assert content["dimensions"]["Q"] == ", ".join(schema.axes_of(table))
+    assert all(
+        np.array_equal(content[key], variable.values) for key, variable in table.variables.items()
+    )
+    assert content["dimensions"]["Q"] == ", ".join(table_files.axes_of(table))
     assert content["linear_error"]["beta"] == table.beta.attrs["linear_error"]
 
 
 def test_texts_of_attributes_have_a_fixed_length(table, tmp_path):
-    """As the C library of netCDF writes them: Octave, Fortran and nccopy -k classic read no others; "" too."""
+    """As the C library of netCDF writes them: Octave, Fortran and nccopy -k classic read no others;
+    "" too.
+    """
     vr.tables.save(table, tmp_path / "t.nc")
     with h5py.File(tmp_path / "t.nc") as file:
-        texts = [each.attrs.get_id(key).get_type() for each in (file, *file.values()) for key in each.attrs]
+        texts = [
+            each.attrs.get_id(key).get_type()
+            for each in (file, *file.values())
+            for key in each.attrs
+        ]
     texts = [kind for kind in texts if isinstance(kind, h5py.h5t.TypeStringID)]
     assert len(texts) > 20
     assert not any(kind.is_variable_str() for kind in texts)

@@ -1,4 +1,6 @@
-"""Laws as files: the bits of their material, wherever a material stands, and damage that is told."""
+"""Laws as files: the bits of their material, wherever a material stands, and damage that is
+told.
+"""
 
 import ctypes
 import json
@@ -17,25 +19,32 @@ from refusals import refused
 
 import viscoroll as vr
 from viscoroll.core import files
-from viscoroll.io.config import read_law_source, read_roller
-from viscoroll.io.tables.check import check_table
-from viscoroll.materials.law.netcdf import law_table_of
-from viscoroll.materials.law.pack import FUNCTIONS
-from viscoroll.materials.law.table import LawTable
-from viscoroll.materials.law_file import checksum
+from viscoroll.laws.law_netcdf import law_table_of
+from viscoroll.laws.law_table import LawTable
+from viscoroll.laws.row_layout import FUNCTIONS
+from viscoroll.materials.checked_netcdf import checksum
+from viscoroll.roller_toml import read_law_source, read_roller
+from viscoroll.tables.law_dataset import check_table
 
 SERIES = vr.Prony([0.4, 1.5, 12.0], [1.0, 1e-3, 1e-6])
 RUBBER = vr.Material(3e6, 0.5, SERIES, T_ref=0.3, name='a "rubber"', density=1100.0)
 STEEL = vr.Material.elastic(2e11, 0.3, name="steel")
 GIVEN = {
-    "alpha": (11.0,), "elastic": (1.0,), "series": (SERIES,),
+    "alpha": (11.0,),
+    "elastic": (1.0,),
+    "series": (SERIES,),
     "creep": (vr.Prony.creep([0.3, 0.6], [1.0, 1e-2]),),
-    "bodies": (vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3),), "like bodies": (vr.Bodies(SERIES, SERIES),),
+    "bodies": (vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3),),
+    "like bodies": (vr.Bodies(SERIES, SERIES),),
     "cover": (vr.Cover(SERIES, nu=0.45, thickness=2.0, part=0.8, other_nu=0.3),),
-    "material": (RUBBER,), "on steel": (RUBBER, STEEL), "on a rigid base": (RUBBER, vr.Material.rigid()),
-    "steel on it": (STEEL, RUBBER), "pair": (vr.presets.RUBBER_CYLINDER.replace(base=STEEL, plane="stress").pair,),
-}  # fmt: skip
-V, DELTA = np.geomspace(1e-9, 1e9, 50), np.linspace(-0.1, 0.1, 7)[:, None]
+    "material": (RUBBER,),
+    "on steel": (RUBBER, STEEL),
+    "on a rigid base": (RUBBER, vr.Material.rigid()),
+    "steel on it": (STEEL, RUBBER),
+    "pair": (vr.presets.RUBBER_CYLINDER.replace(base=STEEL, plane="stress").pair,),
+}
+V = np.geomspace(1e-9, 1e9, 50)
+DELTA = np.linspace(-0.1, 0.1, 7)[:, None]
 
 
 @pytest.fixture(scope="module")
@@ -64,14 +73,20 @@ def same(one, other):
 
 @pytest.mark.parametrize("name", GIVEN)
 def test_a_file_has_the_bits_of_its_material(tmp_path, name):
-    path, table = tmp_path / "law.nc", law_table_of(*GIVEN[name])
+    path = tmp_path / "law.nc"
+    table = law_table_of(*GIVEN[name])
     vr.tables.save(vr.tables.law(*GIVEN[name]), path)
     loaded = vr.load_law(path)
     same(loaded, table)
     assert not loaded.coefficients.flags.writeable
     assert [path.name for path in tmp_path.iterdir()] == ["law.nc"]
-    material = {"alpha": table.material} if isinstance(table.material, float) else {"material": table.material}
-    one, other = vr.Scene(kappa=20.0, mu=0.3, material=loaded), vr.Scene(kappa=20.0, mu=0.3, **material)
+    material = (
+        {"alpha": table.material}
+        if isinstance(table.material, float)
+        else {"material": table.material}
+    )
+    one = vr.Scene(kappa=20.0, mu=0.3, material=loaded)
+    other = vr.Scene(kappa=20.0, mu=0.3, **material)
     assert one == other
     assert hash(one) == hash(other)
     states = (vr.contact(scene, V, delta=DELTA, slopes=True).as_dict() for scene in (one, other))
@@ -82,8 +97,15 @@ def test_a_file_has_the_bits_of_its_material(tmp_path, name):
 @pytest.mark.parametrize("name", ["alpha", "series", "on steel"])
 def test_stated_errors_are_those_of_other_places(name):
     law = vr.tables.law(*GIVEN[name])
-    assert all(law[function].attrs["largest_relative_error"] < tol.LAW_STATED for function in FUNCTIONS)
-    assert [check.name for seed in range(2) for check in check_table(law, 3000, seed) if not check.passed] == []
+    assert all(
+        law[function].attrs["largest_relative_error"] < tol.LAW_STATED for function in FUNCTIONS
+    )
+    assert [
+        check.name
+        for seed in range(2)
+        for check in check_table(law, 3000, seed)
+        if not check.passed
+    ] == []
 
 
 @pytest.mark.parametrize("function", FUNCTIONS)
@@ -98,12 +120,24 @@ def test_wrong_numbers_are_found(function):
 def test_attributes_are_complete(saved):
     law = vr.tables.load(saved)
     assert all(variable.attrs["long_name"] for variable in law.variables.values())
-    for key in ("Conventions", "title", "summary", "comment", "references", "source", "history", "license"):
+    for key in (
+        "Conventions",
+        "title",
+        "summary",
+        "comment",
+        "references",
+        "source",
+        "history",
+        "license",
+    ):
         assert law.attrs[key], key
     with h5py.File(saved) as file:  # netCDF's C library reads text of one kind only
         assert np.issubdtype(file.attrs["law_schema"].dtype, np.integer)
     told = vr.tables.info(saved)
-    assert all(words in told for words in ('name = "a \\"rubber\\""', "largest relative error", "sha256_of_numbers"))
+    assert all(
+        words in told
+        for words in ('name = "a \\"rubber\\""', "largest relative error", "sha256_of_numbers")
+    )
 
 
 # --- wherever a material stands ---
@@ -135,7 +169,9 @@ def test_scene_files_and_material_files(saved, tmp_path):
 
 
 def test_rewritten_by_another_program(copy, saved):
-    """Another frame, the same numbers; texts as arrays of one text are not what netCDF's own programs write."""
+    """Another frame, the same numbers; texts as arrays of one text are not what netCDF's own
+    programs write.
+    """
     with xr.open_dataset(saved, engine="h5netcdf", decode_times=False) as file:
         file.load().to_netcdf(copy, engine="h5netcdf")
     assert files.seal_matches(copy.read_bytes()) is None
@@ -152,14 +188,25 @@ def test_json_has_the_same_bits(saved, tmp_path):
     assert found["law_schema"] == 1
     for name, variable in law.variables.items():
         assert np.array_equal(np.array(found[name]), variable.values), name
-    assert checksum({name: np.array(found[name]) for name in law.variables}) == found["sha256_of_numbers"]
+    assert (
+        checksum({name: np.array(found[name]) for name in law.variables})
+        == found["sha256_of_numbers"]
+    )
 
 
 def test_refused_exports(saved, tmp_path):
     law = vr.tables.load(saved)
     wrong = law.assign(press=law.press * 2.0)
-    refused(partial(vr.tables.export, wrong, tmp_path / "rubber.h"), "its numbers are not those", error=vr.FileError)
-    refused(partial(vr.tables.save, wrong, tmp_path / "rubber.nc"), "its numbers are not those", error=vr.FileError)
+    refused(
+        partial(vr.tables.export, wrong, tmp_path / "rubber.h"),
+        "its numbers are not those",
+        error=vr.FileError,
+    )
+    refused(
+        partial(vr.tables.save, wrong, tmp_path / "rubber.nc"),
+        "its numbers are not those",
+        error=vr.FileError,
+    )
     assert not list(tmp_path.iterdir())
 
 
@@ -179,11 +226,16 @@ def test_the_header_beside_full_slip_at_the_largest_speeds(tmp_path):
     vr.tables.export(vr.tables.law(material), tmp_path / "rubber.h")
     (tmp_path / "edge.c").write_text(C_EDGE)
     subprocess.run(
-        ["cc", "-std=c99", "-O2", "-shared", "-fPIC", "edge.c", "-lm", "-o", "edge.so"], cwd=tmp_path, check=True
+        ["cc", "-std=c99", "-O2", "-shared", "-fPIC", "edge.c", "-lm", "-o", "edge.so"],
+        cwd=tmp_path,
+        check=True,
     )
-    edge, out = ctypes.CDLL(str(tmp_path / "edge.so")).edge, np.empty(3)
+    edge = ctypes.CDLL(str(tmp_path / "edge.so")).edge
+    out = np.empty(3)
     for V in (1e293, 1e296, 1e298):
-        star = float(vr.contact(vr.Scene(material=material, kappa=10.0, mu=0.3), V, delta=0.0).delta_star)
+        star = float(
+            vr.contact(vr.Scene(material=material, kappa=10.0, mu=0.3), V, delta=0.0).delta_star
+        )
         for ulps in (1, 2, 5):
             slip = V * star * (1.0 - ulps * 2.0**-53)
             edge(*map(ctypes.c_double, (10.0, 0.3, V, slip)), ctypes.c_void_p(out.ctypes.data))

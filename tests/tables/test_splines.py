@@ -1,4 +1,6 @@
-"""Splines of a grid in compiled code, and the law that they make: for integrators in Python, numba and C."""
+"""Splines of a grid in compiled code, and the law that they make: for integrators in Python, numba
+and C.
+"""
 
 import ctypes
 import pickle
@@ -11,16 +13,19 @@ import xarray as xr
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.io.tables import schema
+from viscoroll.tables import table_files
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 ROLLER = vr.presets.PAPER_CYLINDER
-V, ALPHA = np.geomspace(1e-4, 4.0, 81), np.array([5.0, 7.0, 11.0, 16.0])
+V = np.geomspace(1e-4, 4.0, 81)
+ALPHA = np.array([5.0, 7.0, 11.0, 16.0])
 
 
 @pytest.fixture(scope="module")
 def grid():
-    return vr.tables.build(SCENE, V, delta=vr.tables.creep_nodes(SCENE, V, 81, alpha=ALPHA), alpha=ALPHA)
+    return vr.tables.build(
+        SCENE, V, delta=vr.tables.creep_nodes(SCENE, V, 81, alpha=ALPHA), alpha=ALPHA
+    )
 
 
 @pytest.fixture(scope="module")
@@ -32,7 +37,9 @@ def path(grid, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def si_grid():
-    """Of a cylinder, as another program may have it: Q and M alone, over mm/s, in kN/m and N mm/m."""
+    """Of a cylinder, as another program may have it: Q and M alone, over mm/s, in kN/m and N
+    mm/m.
+    """
     speeds = 1e-3 * V
     own = vr.tables.build(ROLLER, speeds, delta=vr.tables.creep_nodes(ROLLER, speeds, 81))
     return xr.Dataset(
@@ -50,11 +57,17 @@ def si_grid():
 
 def inside(table, count):
     """Random points in a grid, of V and alpha even in their logarithms."""
-    random, points = np.random.default_rng(3), {}
-    for name in schema.axes_of(table):
+    random = np.random.default_rng(3)
+    points = {}
+    for name in table_files.axes_of(table):
         low, high = table[name].values[[0, -1]]
-        points[name] = random.uniform(low, high, count) if name == "delta" else np.geomspace(low, high, count)
-    return {name: random.permutation(each).clip(*table[name].values[[0, -1]]) for name, each in points.items()}
+        points[name] = (
+            random.uniform(low, high, count) if name == "delta" else np.geomspace(low, high, count)
+        )
+    return {
+        name: random.permutation(each).clip(*table[name].values[[0, -1]])
+        for name, each in points.items()
+    }
 
 
 @numba.njit
@@ -72,11 +85,13 @@ def test_compiled_values_are_those_of_the_interpolant(grid, kind, linear):
         "one alpha": grid.isel(alpha=0, drop=True),
         "few nodes": grid.isel(V=[0, 9], delta=[3, 9, 20]),
     }[kind]
-    look_up, points = vr.tables.Interpolant(table, linear), inside(table, 500)
+    look_up = vr.tables.Interpolant(table, linear)
+    points = inside(table, 500)
     places = [points.get(axis, np.ones(500)) for axis in ("V", "delta", "alpha")]
-    for field in schema.fields_of(table):
+    for field in table_files.fields_of(table):
         own = {str(dim): points[str(dim)] for dim in table[field].dims}
-        out, want = np.empty((500, 4)), look_up(field, **own)[field]
+        out = np.empty((500, 4))
+        want = look_up(field, **own)[field]
         many(*look_up.jitted(field), *places, out)
         size = np.abs(table[field].values).max()
         assert close(out[:, 0], want, tol.COMPILED_SPLINE, scale=size), field
@@ -86,18 +101,25 @@ def test_compiled_values_are_those_of_the_interpolant(grid, kind, linear):
 
 
 def test_compiled_slopes_are_those_of_the_values(grid):
-    points, step = inside(grid, 200), 1e-6
-    middle = {name: each * (1.0 - 4.0 * step) + 2.0 * step * grid[name].values.mean() for name, each in points.items()}
+    points = inside(grid, 200)
+    step = 1e-6
+    middle = {
+        name: each * (1.0 - 4.0 * step) + 2.0 * step * grid[name].values.mean()
+        for name, each in points.items()
+    }
     for field in ("Q", "lam"):
         at, spline = vr.tables.Interpolant(grid).jitted(field)
         for one in np.column_stack([*middle.values()]):
             found = at(spline, *one)
             for n, slope in enumerate(found[1:]):
                 move = np.eye(3)[n] * one[n] * step
-                low, high = at(spline, *(one - move)).value, at(spline, *(one + move)).value
+                low = at(spline, *(one - move)).value
+                high = at(spline, *(one + move)).value
                 if abs(found.value) < SCENE.mu and {abs(low), abs(high)}.isdisjoint({SCENE.mu}):
                     scale = abs(found.value) / abs(one[n])
-                    assert close((high - low) / (2.0 * move[n]), slope, tol.COMPILED_SLOPE, scale=scale)
+                    assert close(
+                        (high - low) / (2.0 * move[n]), slope, tol.COMPILED_SLOPE, scale=scale
+                    )
 
 
 def test_compiled_values_are_clipped_and_nothing_is_extrapolated(grid):
@@ -125,19 +147,27 @@ def called(law, V, omega):
 
 def test_the_law_of_a_grid_is_that_of_rows_within_its_stated_error(grid, path):
     given = vr.load_law(path, alpha=11.0)
-    law, exact = vr.law(given), vr.law(SCENE)
+    law = vr.law(given)
+    exact = vr.law(SCENE)
     points = inside(grid, 2000)
     speeds = points["V"] * np.random.default_rng(1).choice([-1.0, 1.0], 2000)
     omega = speeds * (1.0 + points["delta"])
-    found, truth = law(speeds, omega, slopes=True), exact(speeds, omega)
+    found = law(speeds, omega, slopes=True)
+    truth = exact(speeds, omega)
     assert np.abs(found.Q - truth.Q).max() <= grid.Q.attrs["spline_error"]
     assert np.abs(found.M - truth.M).max() <= grid.M.attrs["spline_error"]
     assert (found.M_half_space == found.M_cylinder).all()
-    (function, data), out = law.ctypes, (ctypes.c_double * 10)()
+    (function, data) = law.ctypes
+    out = (ctypes.c_double * 10)()
     for n in range(50):
         assert function(speeds[n], omega[n], out, data) == 0
         state = tuple(float(each[n]) for each in found)
-        assert tuple(out) == state == called(law.jitted, speeds[n], omega[n]) == law.jitted(speeds[n], omega[n])
+        assert (
+            tuple(out)
+            == state
+            == called(law.jitted, speeds[n], omega[n])
+            == law.jitted(speeds[n], omega[n])
+        )
         assert law(speeds[n], omega[n]) == state[:4]
     again = pickle.loads(pickle.dumps(law))
     assert again(0.3, 0.301) == law(0.3, 0.301)
@@ -145,13 +175,17 @@ def test_the_law_of_a_grid_is_that_of_rows_within_its_stated_error(grid, path):
 
 
 def test_slopes_of_the_law_of_a_grid(path):
-    law, step = vr.law(vr.load_law(path, alpha=11.0)), 1e-7
+    law = vr.law(vr.load_law(path, alpha=11.0))
+    step = 1e-7
     for V, omega in ((0.3, 0.301), (-0.3, -0.301), (2.0, 1.99), (1e-5, 0.99e-5), (0.5, -0.5)):
         found = law(V, omega, slopes=True)
         over_V = [
-            (high - low) / (2.0 * step * V) for low, high in zip(law(V * (1 - step), omega), law(V * (1 + step), omega))
+            (high - low) / (2.0 * step * V)
+            for low, high in zip(law(V * (1 - step), omega), law(V * (1 + step), omega))
         ]
-        over_omega = (law(V, omega * (1 + step)).Q - law(V, omega * (1 - step)).Q) / (2.0 * step * omega)
+        over_omega = (law(V, omega * (1 + step)).Q - law(V, omega * (1 - step)).Q) / (
+            2.0 * step * omega
+        )
         scale = 1.0 / abs(V)
         assert close(found.dQ_dV, over_V[0], tol.COMPILED_SLOPE, scale=scale)
         assert close(found.dM_half_space_dV, over_V[2], tol.COMPILED_SLOPE, scale=scale)
@@ -175,11 +209,15 @@ def test_a_grid_of_another_program(si_grid, tmp_path, form):
     """Other units and order of dimensions, netCDF 3 and 4, no attribute of this package."""
     path = tmp_path / "other.nc"
     si_grid.to_netcdf(path, engine="h5netcdf" if form == "NETCDF4" else "scipy", format=form)
-    law, exact = vr.law(vr.load_law(path)), ROLLER.law()
+    law = vr.law(vr.load_law(path))
+    exact = ROLLER.law()
     for V, creep in ((1e-3, 1e-3), (-3e-3, 5e-3), (1e-4, -0.01), (2e-3, 0.5)):
         omega = V * (1.0 + creep) / ROLLER.R
-        found, truth = law(V, omega, slopes=True), exact(V, omega, slopes=True)
+        found = law(V, omega, slopes=True)
+        truth = exact(V, omega, slopes=True)
         load = ROLLER.load
         assert close(found.Q, truth.Q, tol.COARSE_GRID, scale=load)
         assert close(found.M, truth.M, tol.COARSE_GRID, scale=load * ROLLER.R)
-        assert close(found.dQ_domega, truth.dQ_domega, tol.COARSE_GRID_SLOPE, scale=abs(load * ROLLER.R / V))
+        assert close(
+            found.dQ_domega, truth.dQ_domega, tol.COARSE_GRID_SLOPE, scale=abs(load * ROLLER.R / V)
+        )

@@ -19,21 +19,29 @@ STATES = [
 
 
 def printed(state, alpha, kappa, mu, V, delta):
-    """What the equations as printed leave, each with the size of its terms; lengths that are not 0."""
+    """What the equations as printed leave, each with the size of its terms; lengths that are not
+    0.
+    """
     lam, zeta, epsilon, beta = (state[name] for name in ("lam", "zeta", "epsilon", "beta"))
-    r, k, creep = ratio_r(alpha * zeta), ratio_k(zeta), 2 * delta * kappa / (mu * lam)
+    r = ratio_r(alpha * zeta)
+    k = ratio_k(zeta)
+    creep = 2 * delta * kappa / (mu * lam)
     found = {
         "(7)": (zeta - lam / (2 * kappa * V), zeta),
         "(6)": ((1 - lam**2) * (1 + k * r) + 2 / zeta * (1 / alpha - 1) * lam**2 * r, 1 + k * r),
         "(8)": (epsilon - (lam**-2 - 1) / 2 * k, 1),
         "(9)": (state["delta_star"] - mu * lam * (1 + epsilon) / (2 * kappa), state["delta_star"]),
         "(16)": (
-            state["M"] - lam / kappa * (epsilon / 2 * (1 - lam**2) + (lam**2 - 1 / alpha) / (2 * zeta)), lam / kappa
+            state["M"]
+            - lam / kappa * (epsilon / 2 * (1 - lam**2) + (lam**2 - 1 / alpha) / (2 * zeta)),
+            lam / kappa,
         ),
-    }  # fmt: skip
+    }
     if state["full_slip"]:
         return found | {"(15)": (state["Q"] - mu, mu)}
-    r, k, bracket = ratio_r(alpha * beta * zeta), ratio_k(beta * zeta), 1 + epsilon - beta - creep
+    r = ratio_r(alpha * beta * zeta)
+    k = ratio_k(beta * zeta)
+    bracket = 1 + epsilon - beta - creep
     Q = mu * (1 - beta**2 * lam**2 - 2 * beta * lam**2 * bracket / k)
     return found | {
         "(10)": (bracket * (1 + r * k) + (1 / alpha - 1) / zeta * r * k, 1 + epsilon),
@@ -42,7 +50,9 @@ def printed(state, alpha, kappa, mu, V, delta):
 
 
 def test_enclosures_hold_the_printed_law():
-    """What is found from the reduced form solves the equations as printed: zero is in every residual, to 30 digits."""
+    """What is found from the reduced form solves the equations as printed: zero is in every
+    residual, to 30 digits.
+    """
     for given in STATES:
         with flint.ctx.workprec(400):
             exact = [flint.arb(abs(value)) for value in given]
@@ -53,6 +63,8 @@ def test_enclosures_hold_the_printed_law():
 
 
 def test_creep_of_exactly_delta_star():
-    """alpha = 1: delta_star is a double, and a creep of that is full slip, one ULP below it is not."""
+    """alpha = 1: delta_star is a double, and a creep of that is full slip, one ULP below it is
+    not.
+    """
     for delta, slip in ((0.25, True), (np.nextafter(0.25, 0.0), False)):
         assert contact_enclosure(1.0, 2.0, 1.0, 0.7, float(delta))["full_slip"] is slip

@@ -1,4 +1,6 @@
-"""A user's script with ten mistakes, one a line: mypy tells of each, else of what is ignored for nothing."""
+"""A user's script with ten mistakes, one a line: mypy tells of each, else of what is ignored for
+nothing.
+"""
 
 import numpy as np
 

@@ -37,8 +37,8 @@ axes.set(xlabel="angular frequency, rad/s", ylabel="modulus, Pa")
 axes.legend(frameon=False)
 
 # %%
-# The roller is of solid steel, 20 cm in diameter, and rolls on this rubber.  All quantities are in SI
-# units; mass and load are per metre of length.
+# The roller is of solid steel, 20 cm in diameter, and rolls on this rubber.  All quantities are in
+# SI units; mass and load are per metre of length.
 rubber = fit.material(nu=0.49, name="rubber", density=1100.0)
 steel = vr.Material.elastic(E=2.1e11, nu=0.3, density=7850.0)
 roller = vr.Cylinder(R=0.1, m=247.0, material=steel, base=rubber, mu=0.5)

@@ -52,7 +52,9 @@ left.legend(frameon=False)
 print(f"it slides for {m.onset_time:.3f} s")
 
 # %%
-# The energy balance, in J per metre of length: losses by slip and by rolling resistance, work of gravity.
+# The energy balance, in J per metre of length: losses by slip and by rolling resistance, work of
+# gravity.
 print(
-    f"slip {m.slip_loss[-1]:.0f}, rolling {m.rolling_loss[-1]:.0f}, from the slope {m.work_force[-1]:.0f}"
+    f"slip {m.slip_loss[-1]:.0f}, rolling {m.rolling_loss[-1]:.0f}, from the slope "
+    f"{m.work_force[-1]:.0f}"
 )

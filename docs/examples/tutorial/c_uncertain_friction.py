@@ -2,8 +2,8 @@
 3. Uncertain friction
 =====================
 
-The coefficient of friction between steel and rubber lies between 0.3 and 0.7, the slope between 0.45
-and 0.55 degrees.  Twenty thousand motions show the influence of each.
+The coefficient of friction between steel and rubber lies between 0.3 and 0.7, the slope between
+0.45 and 0.55 degrees.  Twenty thousand motions show the influence of each.
 """
 
 import matplotlib.pyplot as plt
@@ -22,8 +22,8 @@ steel = vr.Material.elastic(E=2.1e11, nu=0.3, density=7850.0)
 roller = vr.Cylinder(R=0.1, m=247.0, material=steel, base=rubber, mu=0.5)
 
 # %%
-# Draw friction and slope.  A Sobol sequence covers both ranges more evenly than random numbers.  The
-# seed makes the draw reproducible.
+# Draw friction and slope.  A Sobol sequence covers both ranges more evenly than random numbers.
+# The seed makes the draw reproducible.
 draw = vr.sampling.sample(
     20_000,
     seed=1,

@@ -45,8 +45,8 @@ print(fit)
 fit.plot()
 
 # %%
-# Rolling resistance with the bearing (measured, fit and its 95 % band), without the bearing, and by the
-# inadequate model.
+# Rolling resistance with the bearing (measured, fit and its 95 % band), without the bearing, and by
+# the inadequate model.
 fine = np.geomspace(0.01, 30.0, 200)
 figure, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 axes.semilogx(V, M, "k.", markersize=4, label="measured, with bearing")
@@ -62,8 +62,8 @@ axes.set(xlabel="speed, m/s", ylabel="moment, N m/m", ylim=(0.0, 1.3))
 axes.legend(frameon=False)
 
 # %%
-# A prediction with its confidence interval: the distance rolled in 30 s from 2 m/s.  It includes the
-# bearing.
+# A prediction with its confidence interval: the distance rolled in 30 s from 2 m/s.  It includes
+# the bearing.
 later = np.linspace(0.0, 30.0, 61)
 distance = fit.predict(vr.Coastdown(later, V0=2.0)).x
 low, high = distance.low[-1], distance.high[-1]

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.materials.law.table import make_table
+from viscoroll.laws.law_table import make_table
 from viscoroll.motion import flow
 
 from ..timing import seconds_of, timed
@@ -34,7 +34,9 @@ def starts(random: np.random.Generator, count: int) -> NDArray:
     return random.uniform(-2.0, 2.0, (2, count))
 
 
-def ensemble(scene: vr.Scene, start: NDArray, t: Any, fields: tuple[str, ...] = ("V", "omega"), **how: Any) -> Any:
+def ensemble(
+    scene: vr.Scene, start: NDArray, t: Any, fields: tuple[str, ...] = ("V", "omega"), **how: Any
+) -> Any:
     """A call on one thread, by the integrator unless told."""
     given = {"method": "integrate", "threads": 1} | how
     return partial(vr.ensemble, scene, *start, t, fields=fields, **given)
@@ -51,22 +53,35 @@ def jitted_states(law, V, omega):
 
 
 def bound_law(sizes: dict[str, Any]) -> list[dict[str, Any]]:
-    """A row for each material and way to call the law of a scene, with that of contact() called alike.
+    """A row for each material and way to call the law of a scene, with that of contact() called
+    alike.
 
     The states are those of one motion: creep from 0 to delta_star, speeds within a factor of 2.
     """
-    random, n, few = np.random.default_rng(sizes["seed"]), sizes["states"], sizes["numbers"]
-    V, share = random.uniform(0.2, 0.4, n), random.uniform(size=n)
+    random = np.random.default_rng(sizes["seed"])
+    n = sizes["states"]
+    few = sizes["numbers"]
+    V = random.uniform(0.2, 0.4, n)
+    share = random.uniform(size=n)
     three = PAPER.replace(material=rubber(3))
     base = PAPER.replace(material=vr.Bodies(rubber(3), vr.Prony.elastic(), 0.8))
     calls = {}
-    for name, scene in {"one alpha": PAPER, "3 modes": three, "3 modes on an elastic base": base}.items():
-        omega, law = V * (1.0 + creep(scene, V, share)), vr.law(scene)  # compiled
+    for name, scene in {
+        "one alpha": PAPER,
+        "3 modes": three,
+        "3 modes on an elastic base": base,
+    }.items():
+        # compiled
+        omega = V * (1.0 + creep(scene, V, share))
+        law = vr.law(scene)
         numbers = list(zip(V[:few].tolist(), omega[:few].tolist()))
-        (function, data), out = law.ctypes, (ctypes.c_double * 8)()
+        (function, data) = law.ctypes
+        out = (ctypes.c_double * 8)()
 
         def contact(v, w, slopes, scene=scene):
-            return vr.contact(scene, v, omega=w, fields=("Q", "M", "M_half_space", "M_cylinder"), slopes=slopes)
+            return vr.contact(
+                scene, v, omega=w, fields=("Q", "M", "M_half_space", "M_cylinder"), slopes=slopes
+            )
 
         def each(call, numbers=numbers):
             return few, lambda: [call(v, w) for v, w in numbers]
@@ -81,26 +96,34 @@ def bound_law(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         calls[name, "C by ctypes", True] = each(called)
     found = timed(calls, sizes["repeats"])
     return [
-        {"material": name, "way": way, "slopes": slopes} | ns
+        {"material": name, "way": way, "slopes": slopes}
+        | ns
         | {"contact": found[name, ("array" if way == "array" else "numbers") + ", contact", slopes]}
-        for (name, way, slopes), ns in found.items() if not way.endswith(", contact")
-    ]  # fmt: skip
+        for (name, way, slopes), ns in found.items()
+        if not way.endswith(", contact")
+    ]
 
 
 def rubber(modes: int, strength: float = 10.0) -> vr.Prony:
-    """Equal strengths that sum up to ``strength``, times a third of a decade apart, as a fit has them."""
+    """Equal strengths that sum up to ``strength``, times a third of a decade apart, as a fit has
+    them.
+    """
     return vr.Prony(np.full(modes, strength / modes), 3.0 ** -np.arange(float(modes)))
 
 
 def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     """A row a material: nanoseconds a state and a motion, and milliseconds of its table."""
-    random, n, m = np.random.default_rng(sizes["seed"]), sizes["states"], sizes["motions"]
+    random = np.random.default_rng(sizes["seed"])
+    n = sizes["states"]
+    m = sizes["motions"]
     V, s = speeds_and_creep(random, n)
-    start, t = starts(random, m), np.linspace(0.0, sizes["end"], sizes["times"])
+    start = starts(random, m)
+    t = np.linspace(0.0, sizes["end"], sizes["times"])
 
     def spread(modes: int) -> vr.Prony:
         """Materials whose strengths and times are off by some 10 and 30 %."""
-        mean, off = rubber(modes), random.standard_normal((2, m, modes))
+        mean = rubber(modes)
+        off = random.standard_normal((2, m, modes))
         return vr.Prony(mean.E * np.exp(0.1 * off[0]), mean.tau * np.exp(0.3 * off[1]))
 
     materials = {f"{modes} mode{'s' * (modes > 1)}": rubber(modes) for modes in (1, 3, 10, 30)}
@@ -108,13 +131,21 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     each = ", a different material for each motion"
     many = {f"{modes} mode{'s' * (modes > 1)}{each}": spread(modes) for modes in (1, 3, 10)}
     many["3 and 3 modes, a different pair for each motion"] = vr.Bodies(spread(3), spread(3), 0.4)
-    scenes = {name: PAPER.replace(material=material) for name, material in (materials | many).items()}
+    scenes = {
+        name: PAPER.replace(material=material) for name, material in (materials | many).items()
+    }
     calls = {}
     for name, scene in ({"alpha = 11": PAPER} | scenes).items():
         if name not in many:
             fields = ("Q", "M") if scene.like_bodies else ("Q", "M", "M_half_space")
-            calls[name, "contact"] = n, partial(vr.contact, scene, V, delta=creep(scene, V, s), fields=fields)
-        calls[name, "motion"] = m, ensemble(scene, start, t, ("V", "omega", "x"), rtol=sizes["rtol"])
+            calls[name, "contact"] = (
+                n,
+                partial(vr.contact, scene, V, delta=creep(scene, V, s), fields=fields),
+            )
+        calls[name, "motion"] = (
+            m,
+            ensemble(scene, start, t, ("V", "omega", "x"), rtol=sizes["rtol"]),
+        )
     rows: dict[str, dict[str, Any]] = {}
     for (name, kind), ns in timed(calls, sizes["repeats"]).items():
         rows.setdefault(name, {"material": name, "table_ms": None})[kind] = ns
@@ -124,7 +155,9 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
 
 
 def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
-    """Many motions of one scene by its flow map: ns a motion by fields and output times; the map's own figures."""
+    """Many motions of one scene by its flow map: ns a motion by fields and output times; the map's
+    own figures.
+    """
     start = starts(np.random.default_rng(sizes["seed"]), sizes["motions"])
     t = np.linspace(0.0, sizes["end"], sizes["times"] + 1)[1:]
 
@@ -132,7 +165,8 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
         flow._map.cache_clear()
         return flow.flow_map(PAPER, 2.0)
 
-    table, calls = load(), {}
+    table = load()
+    calls = {}
     for times in (t[-1:], t):
         for fields in (("V", "omega"), ("V", "omega", "x")):
             named = ", ".join(fields)
@@ -140,18 +174,28 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
             calls[name] = start[0].size, ensemble(PAPER, start, times, fields, method="flow")
     rows = timed(calls, sizes["repeats"])
     once = timed(
-        {"build": (1e9, partial(flow.build_map, *flow.map_key(PAPER, 2.0), 1)), "load": (1e9, load)}, sizes["repeats"]
+        {
+            "build": (1e9, partial(flow.build_map, *flow.map_key(PAPER, 2.0), 1)),
+            "load": (1e9, load),
+        },
+        sizes["repeats"],
     )
     few = start[:, : sizes["exact"]]
     mine = ensemble(PAPER, few, t, method="flow")()
-    by_map, off = mine.flow, speed_error(mine, ensemble(PAPER, few, t, rtol=1e-11)())
+    by_map = mine.flow
+    off = speed_error(mine, ensemble(PAPER, few, t, rtol=1e-11)())
     return {
         "rows": [{"call": name} | row for name, row in rows.items()],
         "error": {
-            "final": float(off[by_map, -1].max()), "all_times": float(off[by_map].max()),
+            "final": float(off[by_map, -1].max()),
+            "all_times": float(off[by_map].max()),
             "with_integrated": float(off.max()),
         },
-        "compared": by_map.size, "not_in_map": int((~by_map).sum()),
-        "stated_error": table.errors[0], "stated_path_error": table.errors[1],
-        "build_s": once["build"]["ns"], "load_s": once["load"]["ns"], "bytes": int(table.table.nbytes),
-    }  # fmt: skip
+        "compared": by_map.size,
+        "not_in_map": int((~by_map).sum()),
+        "stated_error": table.errors[0],
+        "stated_path_error": table.errors[1],
+        "build_s": once["build"]["ns"],
+        "load_s": once["load"]["ns"],
+        "bytes": int(table.table.nbytes),
+    }

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
-from viscoroll.core.plots.style import log_ticks, new_panels, save
+from viscoroll.core.plots import log_ticks, new_panels, save
 
 from ...stage import ROOT, make_folder, told
 from ..document.blocks import finished, paper_rows
@@ -27,7 +27,11 @@ def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]],
     figure, drawn = new_panels(title, len(shown), 2.6, sharey=True)
     for axes, (title, (rows, key)) in zip(drawn, shown.items(), strict=True):
         for name, label in methods.items():
-            points = [(r["us"], r[key]) for r in rows if r["method"] == name and r.get(key) and finished(r)]
+            points = [
+                (r["us"], r[key])
+                for r in rows
+                if r["method"] == name and r.get(key) and finished(r)
+            ]
             if points:
                 axes.loglog(*zip(*points), _STYLES[name], label=label, ms=5, lw=1.2)
         axes.grid(True, which="major", color="0.9")
@@ -43,10 +47,14 @@ def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]],
 
 def draw(found: Results, folder: Path) -> None:
     """IC1-IC3 and random starts with every peer; and motions whose scenes are their own."""
-    work, own = found["bench work-precision"], found["bench own-parameters"]
+    work = found["bench work-precision"]
+    own = found["bench own-parameters"]
     random = [row for row in work["rows"] if row["group"] == "random"]
     few = {"motions IC1-IC3 of the paper: largest error": (paper_rows(work["rows"]), "max")}
-    many = {f"{work['sizes']['motions']} random initial speeds: {text}": (random, key) for key, text in _ERRORS.items()}
+    many = {
+        f"{work['sizes']['motions']} random initial speeds: {text}": (random, key)
+        for key, text in _ERRORS.items()
+    }
     each = {f"a scene for each motion: {text}": (own["rows"], key) for key, text in _ERRORS.items()}
     save(panels(work["methods"], few | many), folder / "work-precision.png")
     save(panels(own["methods"], each), folder / "bench-own-parameters.png")

@@ -1,7 +1,7 @@
 """Error against time per motion, for every method and tolerance of the configuration.
 
-A new method needs a function that prepares it, a row of METHODS, and its tolerances in [bench.*.methods] of the
-configuration; one that the configuration does not name is not run.
+A new method needs a function that prepares it, a row of METHODS, and its tolerances in
+[bench.*.methods] of the configuration; one that the configuration does not name is not run.
 """
 
 from __future__ import annotations
@@ -47,7 +47,8 @@ def _ensemble(problem: Problem, rtol: float, method: str) -> Call:
 
 
 def _paper_method(problem: Problem, rtol: float, name: str) -> Call:
-    program, starts = paper_method.build(Path(_build_folder().name)), np.column_stack([problem.V0, problem.omega0])
+    program = paper_method.build(Path(_build_folder().name))
+    starts = np.column_stack([problem.V0, problem.omega0])
     given = (program, name, problem.parameters(), starts, problem.t, rtol, _MOST)
     return lambda: Outcome(*paper_method.run(*given))
 
@@ -60,14 +61,18 @@ def _build_folder() -> tempfile.TemporaryDirectory:
 def _lsoda(problem: Problem, rtol: float) -> Call:
     drive = np.zeros((problem.V0.size, 2)) if problem.drive is None else problem.drive
     parameters = problem.parameters().tolist()
-    scenes = np.array([lsoda.given(vr.Scene(*each), *by) for each, by in zip(parameters, drive.tolist())])
-    starts, t = np.column_stack([problem.V0, problem.omega0]), np.concatenate([[0.0], problem.t])
+    scenes = np.array(
+        [lsoda.given(vr.Scene(*each), *by) for each, by in zip(parameters, drive.tolist())]
+    )
+    starts = np.column_stack([problem.V0, problem.omega0])
+    t = np.concatenate([[0.0], problem.t])
     lsoda.roll(scenes[:1], starts[:1], t, 1e-2)  # compiles
     return lambda: Outcome(*lsoda.roll(scenes, starts, t, rtol)[:, 1:].transpose(2, 0, 1))
 
 
 class Method(NamedTuple):
-    """One way to roll motions: ``prepare(problem, rtol)`` does what is not timed and returns the call that is.
+    """One way to roll motions: ``prepare(problem, rtol)`` does what is not timed and returns the
+    call that is.
 
     ``missing()`` says why it cannot run here, or None.
     """
@@ -82,8 +87,12 @@ METHODS = {
     "flow": Method("viscoroll, flow map", partial(_ensemble, method="flow")),
     "table": Method("viscoroll, integrated", partial(_ensemble, method="integrate")),
     "lsoda": Method("LSODA on the law, compiled", _lsoda, lsoda.missing),
-    "gsl-adams": Method("the paper's method (GSL Adams)", partial(_paper_method, name="adams"), paper_method.missing),
-    "gsl-bdf": Method("GSL BDF, root solves", partial(_paper_method, name="bdf"), paper_method.missing),
+    "gsl-adams": Method(
+        "the paper's method (GSL Adams)", partial(_paper_method, name="adams"), paper_method.missing
+    ),
+    "gsl-bdf": Method(
+        "GSL BDF, root solves", partial(_paper_method, name="bdf"), paper_method.missing
+    ),
 }
 
 
@@ -103,7 +112,9 @@ def driven(sizes: dict[str, Any]) -> dict[str, Any]:
 
 
 def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, Any]:
-    """Every method on every problem at each of its tolerances: rows, and what could not run in ``skipped``."""
+    """Every method on every problem at each of its tolerances: rows, and what could not run in
+    ``skipped``.
+    """
     best = {name: reference(problem) for name, problem in problems.items()}
     skipped = {name: reason for name in sizes["methods"] if (reason := METHODS[name].missing())}
     for name, reason in skipped.items():
@@ -117,12 +128,18 @@ def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, An
             setup, call = seconds_of(partial(METHODS[name].prepare, problem.take(count), rtol))
             row = {"method": name, "group": group, "rtol": rtol, "motions": count, "setup_s": setup}
             entries.append((row, call, settings.get("repeats", sizes["repeats"])))
-    for turn in tqdm(range(max(repeats for *_, repeats in entries)), desc="rounds", leave=False, disable=None):
+    for turn in tqdm(
+        range(max(repeats for *_, repeats in entries)), desc="rounds", leave=False, disable=None
+    ):
         for row, call, repeats in entries:
             if turn < repeats:
                 took, outcome = steady_seconds(call)
-                row.setdefault("us", []).append(1e6 * (getattr(outcome, "seconds", None) or took) / row["motions"])
-                row.update(errors(outcome, best[row["group"]], problems[row["group"]].drive is not None))
+                row.setdefault("us", []).append(
+                    1e6 * (getattr(outcome, "seconds", None) or took) / row["motions"]
+                )
+                row.update(
+                    errors(outcome, best[row["group"]], problems[row["group"]].drive is not None)
+                )
     return {
         "reference": {
             name: reference_difference(problem, best[name], sizes["reference_motions"])
@@ -130,15 +147,22 @@ def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, An
             if problem.drive is None
         },
         "methods": {name: METHODS[name].label for name in sizes["methods"]},
-        "rows": [row | {"us": float(np.median(row["us"])), "least_us": min(row["us"])} for row, *_ in entries],
-        "skipped": skipped, "tools": tools(),
-    }  # fmt: skip
+        "rows": [
+            row | {"us": float(np.median(row["us"])), "least_us": min(row["us"])}
+            for row, *_ in entries
+        ],
+        "skipped": skipped,
+        "tools": tools(),
+    }
 
 
 def tools() -> dict[str, str]:
     """Versions of what the peers are built with; those that are not there are left out."""
     found = {"numbalsoda": version("numbalsoda")} if find_spec("numbalsoda") else {}
-    for name, command in {"cc": "cc -dumpfullversion", "gsl": "pkg-config --modversion gsl"}.items():
+    for name, command in {
+        "cc": "cc -dumpfullversion",
+        "gsl": "pkg-config --modversion gsl",
+    }.items():
         done = subprocess.run(command, shell=True, check=False, capture_output=True, text=True)
         found |= {} if done.returncode else {name: done.stdout.strip()}
     return found

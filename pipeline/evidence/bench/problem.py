@@ -17,7 +17,8 @@ REFERENCE_RTOL = 1e-12
 
 
 class Problem(NamedTuple):
-    """n motions from (V0, omega0) at common output times; fields of ``scene`` are numbers or arrays (n,).
+    """n motions from (V0, omega0) at common output times; fields of ``scene`` are numbers or arrays
+    (n,).
 
     ``drive`` : force and torque of each, (n, 2).
     """
@@ -34,10 +35,14 @@ class Problem(NamedTuple):
         return np.array([*columns]).T
 
     def take(self, count: int) -> Problem:
-        """The first motions, over and over where there are fewer: a single one would time the call around it."""
+        """The first motions, over and over where there are fewer: a single one would time the call
+        around it.
+        """
         scene = self.scene if self.scene.shape == () else vr.Scene(*self.parameters()[:count].T)
         V0, omega0 = (np.resize(each, count) for each in (self.V0, self.omega0))
-        return Problem(scene, V0, omega0, self.t, None if self.drive is None else self.drive[:count])
+        return Problem(
+            scene, V0, omega0, self.t, None if self.drive is None else self.drive[:count]
+        )
 
     def rolled(self, **how: Any) -> Any:
         """By the package."""
@@ -46,7 +51,9 @@ class Problem(NamedTuple):
 
 
 class Outcome(NamedTuple):
-    """V, omega of shape (n, times), NaN where a method gave up; time of all motions where it measured that itself."""
+    """V, omega of shape (n, times), NaN where a method gave up; time of all motions where it
+    measured that itself.
+    """
 
     V: NDArray
     omega: NDArray
@@ -58,13 +65,17 @@ def _times(sizes: dict[str, Any], end: float) -> NDArray:
 
 
 def paper_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
-    """IC1-IC3 of the paper, rounded parameters, to the end or the speed ``LEAST_SPEED``, if that is first; and random
-    starts in [-2, 2]^2, the paper's first.
+    """IC1-IC3 of the paper, rounded parameters, to the end or the speed ``LEAST_SPEED``, if that is
+    first; and random starts in [-2, 2]^2, the paper's first.
     """
-    scene, end, problems = vr.presets.PAPER_SECTION_5_ROUNDED, sizes["end"], {}
+    scene = vr.presets.PAPER_SECTION_5_ROUNDED
+    end = sizes["end"]
+    problems = {}
     for name, start in vr.presets.PAPER_STARTS.items():
         rest = vr.roll(scene, *start, [end], rtol=REFERENCE_RTOL, rest=LEAST_SPEED).rest_time
-        problems[name] = Problem(scene, *np.array(start)[:, None], _times(sizes, np.fmin(rest, end)))
+        problems[name] = Problem(
+            scene, *np.array(start)[:, None], _times(sizes, np.fmin(rest, end))
+        )
     random = np.random.default_rng(sizes["seed"]).uniform(-2.0, 2.0, (sizes["motions"], 2))
     starts = np.concatenate([list(vr.presets.PAPER_STARTS.values()), random])[: sizes["motions"]]
     return problems | {"random": Problem(scene, *starts.T.copy(), _times(sizes, end))}
@@ -72,20 +83,28 @@ def paper_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
 
 def own_problem(sizes: dict[str, Any]) -> dict[str, Problem]:
     """Every motion its own scene."""
-    random, n = np.random.default_rng(sizes["seed"]), sizes["motions"]
-    alpha, kappa, gamma = np.exp(random.uniform(*np.log([[1.5, 2.0, 5e3], [100.0, 30.0, 2e4]]), (n, 3))).T
+    random = np.random.default_rng(sizes["seed"])
+    n = sizes["motions"]
+    alpha, kappa, gamma = np.exp(
+        random.uniform(*np.log([[1.5, 2.0, 5e3], [100.0, 30.0, 2e4]]), (n, 3))
+    ).T
     scene = vr.Scene(alpha, kappa, random.uniform(0.1, 0.6, n), gamma, random.uniform(0.3, 1.0, n))
     return {"own": Problem(scene, *random.uniform(-2.0, 2.0, (2, n)), _times(sizes, sizes["end"]))}
 
 
 def driven_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
     """Random scenes under a force and a torque that stay, from any start and from rest."""
-    random, n = np.random.default_rng(sizes["seed"]), sizes["motions"]
+    random = np.random.default_rng(sizes["seed"])
+    n = sizes["motions"]
     alpha, kappa, mu = 10.0 ** random.uniform([0.0, 0.4, -1.5], [1.5, 1.7, 0.0], (n, 3)).T
     scene = vr.Scene(1.0 + alpha, kappa, mu, 1.0, random.uniform(0.3, 1.0, n))
-    starts, drive = random.normal(size=(2, n)), 0.5 * mu[:, None] * random.normal(size=(n, 2))
+    starts = random.normal(size=(2, n))
+    drive = 0.5 * mu[:, None] * random.normal(size=(n, 2))
     t = _times(sizes, sizes["end"])
-    return {"any start": Problem(scene, *starts, t, drive), "rest": Problem(scene, *(0.0 * starts), t, drive)}
+    return {
+        "any start": Problem(scene, *starts, t, drive),
+        "rest": Problem(scene, *(0.0 * starts), t, drive),
+    }
 
 
 def reference(problem: Problem) -> Outcome:
@@ -95,10 +114,14 @@ def reference(problem: Problem) -> Outcome:
 
 
 def reference_difference(problem: Problem, best: Outcome, motions: int) -> dict[str, Any]:
-    """The reference against the printed equations by scipy's integrators, other unknowns, on the first motions."""
+    """The reference against the printed equations by scipy's integrators, other unknowns, on the
+    first motions.
+    """
     few = zip(problem.parameters()[:motions].tolist(), problem.V0, problem.omega0)
     direct = [roll_direct(vr.Scene(*parameters), *start, problem.t) for parameters, *start in few]
-    found = Outcome(*(np.array([getattr(each, name) for each in direct]) for name in ("V", "omega")))
+    found = Outcome(
+        *(np.array([getattr(each, name) for each in direct]) for name in ("V", "omega"))
+    )
     method = "root solves of the printed equations, DOP853 and LSODA"
     return {"motions": len(direct), "second_method": method} | errors(found, best)
 
@@ -110,16 +133,20 @@ def speed_error(tried: Any, best: Any) -> NDArray:
 
 
 def errors(tried: Any, best: Outcome, driven: bool = False) -> dict[str, Any]:
-    """Relative error of (V, omega), over the larger of the two, if ``driven`` over the largest so far, as speeds pass
-    through 0: of outputs with a speed of at least ``LEAST_SPEED``, worst over time.
+    """Relative error of (V, omega), over the larger of the two, if ``driven`` over the largest so
+    far, as speeds pass through 0: of outputs with a speed of at least ``LEAST_SPEED``, worst over
+    time.
 
     max, p99: over the motions that were finished; failed: motions that were given up.
     """
     best = Outcome(*(np.resize(each, tried.V.shape) for each in best[:2]))
-    off, size = speed_error(tried, best), np.maximum(np.abs(best.V), np.abs(best.omega))
+    off = speed_error(tried, best)
+    size = np.maximum(np.abs(best.V), np.abs(best.omega))
     if driven:
         off *= size / np.maximum.accumulate(size, axis=1)
     done = np.isfinite(off).all(axis=1)
     worst = np.where(size >= LEAST_SPEED, off, 0.0)[done].max(axis=1)
-    found = {"max": float(worst.max()), "p99": float(np.quantile(worst, 0.99))} if worst.size else {}
+    found = (
+        {"max": float(worst.max()), "p99": float(np.quantile(worst, 0.99))} if worst.size else {}
+    )
     return found | {"failed": int((~done).sum())}

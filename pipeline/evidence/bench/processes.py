@@ -34,19 +34,21 @@ for name in calls:
         "peak_mb": memory("VmHWM") / 1e6, "files": len(sizes), "cache_mb": sum(sizes) / 1e6,
     })
 print(json.dumps(rows))
-"""
+"""  # noqa: E501
 
 
 def first_calls(sizes: dict[str, Any]) -> list[dict[str, Any]]:
-    """Rows of the first calls of a process whose kernel cache is empty, and of one that finds it full."""
+    """Rows of the first calls of a process whose kernel cache is empty, and of one that finds it
+    full.
+    """
     with tempfile.TemporaryDirectory() as folder:
         given = folder, sizes["calls"], sizes["motions"]
         return [row for cache in ("empty", "full") for row in printed(_FIRST, cache, *given)]
 
 
-#: {case: [ns a state, the same of a few states whose tables are in no cache]} of the package that is found, for Q and M
-#: at the paper's material, or at alphas of the case: least of some calls, of the processor's time, since other programs
-#: only add to either
+#: {case: [ns a state, the same of a few states whose tables are in no cache]} of the package that
+#: is found, for Q and M at the paper's material, or at alphas of the case: least of some calls, of
+#: the processor's time, since other programs only add to either
 _STATES = """
 seed, states, few, calls, cases = given
 draw = np.random.default_rng(seed)
@@ -76,29 +78,48 @@ print(json.dumps(found))
 
 
 def last_release(sizes: dict[str, Any]) -> list[dict[str, Any]]:
-    """``contact`` beside that of the last release, checked out into a folder, in processes that take turns.
+    """``contact`` beside that of the last release, checked out into a folder, in processes that
+    take turns.
 
     sizes: those of [bench.last-release] in the configuration.
-    Returns a row a case: ns a state here and before, their ratio, and cold and cold_before of a few states whose tables
-    are in no cache; each the least over the pairs of processes.  One thread each.  Prints a line for each case, in
-    capitals where the ratio is beyond what is allowed.
+    Returns a row a case: ns a state here and before, their ratio, and cold and cold_before of a few
+    states whose tables are in no cache; each the least over the pairs of processes.  One thread
+    each.  Prints a line for each case, in capitals where the ratio is beyond what is allowed.
     """
-    given, pairs = [sizes[name] for name in ("seed", "states", "few", "calls", "cases")], []
+    given = [sizes[name] for name in ("seed", "states", "few", "calls", "cases")]
+    pairs = []
     with tempfile.TemporaryDirectory() as name:
         trees = [ROOT / "src", checked_out(sizes["commit"], Path(name))]
         for turn in range(sizes["pairs"]):
             order = trees[:: 1 - 2 * (turn % 2)]
-            pair = {tree: printed(_STATES, *given, PYTHONPATH=str(tree), VISCOROLL_THREADS="1") for tree in order}
+            pair = {
+                tree: printed(_STATES, *given, PYTHONPATH=str(tree), VISCOROLL_THREADS="1")
+                for tree in order
+            }
             pairs.append([pair[tree] for tree in trees])
-    rows, allowed = [], sizes["allowed"]
+    rows = []
+    allowed = sizes["allowed"]
     for case in sizes["cases"]:
         (here, cold), (before, cold_before) = np.min(
             [[times[case] for times in pair] for pair in pairs], axis=0
         ).tolist()
         ratio = here / before
         rows.append(
-            {"case": case, "ns": here, "ns_before": before, "ratio": ratio, "cold": cold, "cold_before": cold_before}
+            {
+                "case": case,
+                "ns": here,
+                "ns_before": before,
+                "ratio": ratio,
+                "cold": cold,
+                "cold_before": cold_before,
+            }
         )
-        said = f"{here:.3g} ns a state, {before:.3g} in {sizes['release']}: {ratio:.2f} times (cold {cold:.3g})"
-        print(f"contact, {case}: {said}, {'BEYOND' if ratio > allowed else 'within'} {allowed}", flush=True)
+        said = (
+            f"{here:.3g} ns a state, {before:.3g} in {sizes['release']}: {ratio:.2f} times "
+            f"(cold {cold:.3g})"
+        )
+        print(
+            f"contact, {case}: {said}, {'BEYOND' if ratio > allowed else 'within'} {allowed}",
+            flush=True,
+        )
     return rows

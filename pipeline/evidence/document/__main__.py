@@ -4,8 +4,9 @@
 
 A block is what stands between <!-- measured:NAME --> and <!-- end -->; NAME is one of BLOCKS.
 Below its numbers it says of which kernels they are, where not of those of this tree.
-Nothing else is touched, and a second run changes nothing.  With --check nothing is written: exit code 1
-if a block is out of date.  Exit code 2 for results that are missing or incomplete, and for broken marks.
+Nothing else is touched, and a second run changes nothing.  With --check nothing is written: exit
+code 1 if a block is out of date.  Exit code 2 for results that are missing or incomplete, and for
+broken marks.
 """
 
 from __future__ import annotations
@@ -34,7 +35,8 @@ class DocumentError(ViscorollError):
 
 
 def filled(text: str, folders: list[Path], name: str) -> str:
-    """``text`` of the page ``name`` with every block filled, from the first of ``folders`` that has the results.
+    """``text`` of the page ``name`` with every block filled, from the first of ``folders`` that has
+    the results.
 
     Raises
     ------
@@ -44,13 +46,17 @@ def filled(text: str, folders: list[Path], name: str) -> str:
 
     def fill(match: re.Match[str]) -> str:
         if match[2] not in BLOCKS:
-            raise DocumentError(f"{name}: unknown block {match[2]!r}: must be one of {', '.join(BLOCKS)}")
+            raise DocumentError(
+                f"{name}: unknown block {match[2]!r}: must be one of {', '.join(BLOCKS)}"
+            )
         results = Results(*folders)
         try:
             return f"{match[1]}{block(match[2], results)}{provenance(results)}{match[3]}"
         except (KeyError, TypeError) as error:
             stage = BLOCKS[match[2]]["stage"]
-            raise DocumentError(f"results lack {error} for {match[2]!r}: run pipeline.evidence.{stage}") from error
+            raise DocumentError(
+                f"results lack {error} for {match[2]!r}: run pipeline.evidence.{stage}"
+            ) from error
 
     result, count = _BLOCK.subn(fill, text)
     if len(_MARK.findall(text)) != 2 * count:
@@ -59,8 +65,14 @@ def filled(text: str, folders: list[Path], name: str) -> str:
 
 
 def provenance(results: Results) -> str:
-    """A sentence on the kernels of all that was read of ``results``, if any are not those of this tree."""
-    read = {part: digest for name, found in results.items() for part, digest in stamps(found, name).items()}
+    """A sentence on the kernels of all that was read of ``results``, if any are not those of this
+    tree.
+    """
+    read = {
+        part: digest
+        for name, found in results.items()
+        for part, digest in stamps(found, name).items()
+    }
     others: dict[str, list[str]] = {}
     for part, digest in read.items():
         if digest != kernels_digest():
@@ -68,8 +80,14 @@ def provenance(results: Results) -> str:
     if not others:
         return ""
     alone = len(set(read.values())) == 1
-    named = (f"`{digest}`" + ("" if alone else f" ({', '.join(parts)})") for digest, parts in others.items())
-    return f"\nMeasured with an earlier version of the compiled code, source hash {' and '.join(named)}.\n"
+    named = (
+        f"`{digest}`" + ("" if alone else f" ({', '.join(parts)})")
+        for digest, parts in others.items()
+    )
+    return (
+        "\nMeasured with an earlier version of the compiled code, source hash "
+        f"{' and '.join(named)}.\n"
+    )
 
 
 def document(files: list[Path], results: Path, check: bool) -> int:
@@ -85,15 +103,24 @@ def document(files: list[Path], results: Path, check: bool) -> int:
             if not check:
                 write_text(path, new)
     if stale:
-        print(f"{', '.join(stale)}: {'out of date: run pipeline.evidence.document' if check else 'filled'}")
+        print(
+            f"{', '.join(stale)}: "
+            f"{'out of date: run pipeline.evidence.document' if check else 'filled'}"
+        )
     return int(check and bool(stale))
 
 
 def main() -> int:
     parser = said(__doc__)
-    parser.add_argument("--check", action="store_true", help="write nothing; exit code 1 if a block is out of date")
     parser.add_argument(
-        "--results", type=Path, default=RESULTS, metavar="FOLDER", help="results that go before data/results"
+        "--check", action="store_true", help="write nothing; exit code 1 if a block is out of date"
+    )
+    parser.add_argument(
+        "--results",
+        type=Path,
+        default=RESULTS,
+        metavar="FOLDER",
+        help="results that go before data/results",
     )
     parser.add_argument("files", nargs="*", type=Path, metavar="FILE")
     arguments = parser.parse_args()

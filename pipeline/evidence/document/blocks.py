@@ -1,4 +1,6 @@
-"""The marked blocks of README.md and docs: what blocks.toml says of each, of what stages have left."""
+"""The marked blocks of README.md and docs: what blocks.toml says of each, of what stages have
+left.
+"""
 
 from __future__ import annotations
 
@@ -12,8 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from viscoroll.core.scale import DIMENSIONS, si_unit
-from viscoroll.core.symbols import SYMBOLS, describe_quantity
+from viscoroll.core.scale import DIMENSIONS, SYMBOLS, describe_quantity, si_unit
 
 from ..results import Results, rows_of, table
 from . import costs, house, identification
@@ -21,22 +22,32 @@ from .cells import cell, listed, two
 
 Row = Mapping[str, Any]
 #: what is said of each
-BLOCKS: dict[str, dict[str, Any]] = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
+BLOCKS: dict[str, dict[str, Any]] = tomllib.loads(
+    Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
+)
 
 
 def block(name: str, results: Results) -> str:
     """The text of a block."""
     given = BLOCKS[name]
     values = results[given["of"]] if "of" in given else {}
-    found = MAKERS[name](results, *given.get("given", ())) if name in MAKERS else values.get(given.get("rows"), values)
+    found = (
+        MAKERS[name](results, *given.get("given", ()))
+        if name in MAKERS
+        else values.get(given.get("rows"), values)
+    )
     if "claims" in given:
-        found = [row for part, words in given["claims"].items() for row in claims(results, part, words)]
+        found = [
+            row for part, words in given["claims"].items() for row in claims(results, part, words)
+        ]
     if "lines" in given:
         head, *lines = given["lines"]
         text = table(head, ([cell(each, values | found) for each in line] for line in lines))
     elif "columns" in given:
         rows = [*(rows_of(found.get("parts", {"": found})) if isinstance(found, dict) else found)]
-        text = listed({cell(head, values): template for head, template in given["columns"].items()}, rows)
+        text = listed(
+            {cell(head, values): template for head, template in given["columns"].items()}, rows
+        )
         values = values | rows[-1]
     else:
         text = found
@@ -48,13 +59,20 @@ def block(name: str, results: Results) -> str:
 
 def claims(results: Results, part: str, *words: str) -> list[dict[str, Any]]:
     """Rows of a part of the proofs whose claims hold all these words."""
-    return [row for row in results[f"proofs {part}"]["rows"] if all(word in row["claim"] for word in words)]
+    return [
+        row
+        for row in results[f"proofs {part}"]["rows"]
+        if all(word in row["claim"] for word in words)
+    ]
 
 
 def three(results: Results) -> dict[str, Any]:
     """Errors of states."""
     found = [row for name in ("Q, ", "M, ") for row in claims(results, "contact", "relative", name)]
-    return {"contact": max(row["worst"] for row in found), "states": sum(row["points"] for row in found) // 2}
+    return {
+        "contact": max(row["worst"] for row in found),
+        "states": sum(row["points"] for row in found) // 2,
+    }
 
 
 def headline(results: Results) -> dict[str, Any]:
@@ -63,46 +81,75 @@ def headline(results: Results) -> dict[str, Any]:
     def worst(part: str, *words: str) -> float:
         return max(row["worst"] for row in claims(results, part, *words))
 
-    speed, onset = (1e-8 * worst("check_motions", name, "1e-08") for name in ("V and omega", "onset"))
+    speed, onset = (
+        1e-8 * worst("check_motions", name, "1e-08") for name in ("V and omega", "onset")
+    )
     return three(results) | {"closure": worst("slopes", "Int"), "speed": speed, "onset": onset}
 
 
 #: the large run: motions, machines, and motions a block by how they are rolled
-MOTIONS, MACHINES = 10**11, 100
-BLOCKS_OF = {"one scene, from its flow map": 4_000_000, "seven uncertain inputs, integrated": 1_000_000}
+MOTIONS = 10**11
+MACHINES = 100
+BLOCKS_OF = {
+    "one scene, from its flow map": 4_000_000,
+    "seven uncertain inputs, integrated": 1_000_000,
+}
 
 
 def ensembles(results: Results) -> list[Row]:
     """Time, memory and disk of each run, and the bare loop."""
     m = results["ensembles"]
     rows = sorted(m["rows"].items(), key=lambda item: (item[1]["motions"], item[0]))
-    alone = {"name": f"{m['loop']['motions']} motions of a scene, `ensemble()` alone", "peak_mb": "", "stored_mb": ""}
+    alone = {
+        "name": f"{m['loop']['motions']} motions of a scene, `ensemble()` alone",
+        "peak_mb": "",
+        "stored_mb": "",
+    }
     return [*(row | {"name": name} for name, row in rows), m["loop"] | alone]
 
 
 def ensembles_plan(results: Results) -> Iterator[Row]:
     """10^11 motions on 100 machines like the one measured on."""
     m = results["ensembles"]
-    sizes, workers = m["sizes"], MACHINES * m["threads"]
-    measured = (f"{sizes['fixed'][-1]} motions of a scene", f"{sizes['uncertain']} motions, seven uncertain inputs")
+    sizes = m["sizes"]
+    workers = MACHINES * m["threads"]
+    measured = (
+        f"{sizes['fixed'][-1]} motions of a scene",
+        f"{sizes['uncertain']} motions, seven uncertain inputs",
+    )
     kept = m["rows"][f"{sizes['designs']} motions of a scene, all kept"]
-    for (name, size), run in zip(BLOCKS_OF.items(), (m["rows"][key] for key in measured), strict=True):
-        count, seconds = MOTIONS // size, size * run["cpu_s"] / run["motions"]
+    for (name, size), run in zip(
+        BLOCKS_OF.items(), (m["rows"][key] for key in measured), strict=True
+    ):
+        count = MOTIONS // size
+        seconds = size * run["cpu_s"] / run["motions"]
         yield {
-            "name": name, "blocks": count, "block": size, "seconds": seconds, "tasks": workers / seconds,
-            "hours": count * seconds / workers / 3600.0, "records": count * m["record_bytes"] / 1e9,
+            "name": name,
+            "blocks": count,
+            "block": size,
+            "seconds": seconds,
+            "tasks": workers / seconds,
+            "hours": count * seconds / workers / 3600.0,
+            "records": count * m["record_bytes"] / 1e9,
             "merging": count * m["merge_s_a_block"] / 60.0,
             "whole": MOTIONS * kept["stored_mb"] / kept["motions"] / 1e6,
-        }  # fmt: skip
+        }
 
 
 def grids(results: Results) -> str:
-    """Motions from the rows beside those from a grid of 161 by 161 nodes, at the least tolerance."""
-    rows = {row["law by"]: row for row in sorted(results["grids"]["rows"], key=lambda row: -row["rtol"])}
-    grid, exact = rows["grid, 161 by 161"], rows["law file"]
+    """Motions from the rows beside those from a grid of 161 by 161 nodes, at the least
+    tolerance.
+    """
+    rows = {
+        row["law by"]: row for row in sorted(results["grids"]["rows"], key=lambda row: -row["rtol"])
+    }
+    grid = rows["grid, 161 by 161"]
+    exact = rows["law file"]
     return (
-        f"A law file is more accurate than a grid.  With one integrator, the largest error of V and omega, divided by "
-        f"the initial speed, is {two(exact['error, random'])} with the law file and {two(grid['error, random'])} with "
+        "A law file is more accurate than a grid.  With one integrator, the largest error of V "
+        "and omega, divided by "
+        f"the initial speed, is {two(exact['error, random'])} with the law file and "
+        f"{two(grid['error, random'])} with "
         f"splines on a grid of 161 by 161 nodes.\n"
     )
 
@@ -114,7 +161,8 @@ def mutants(results: Results) -> str:
     noticed = "all of them" if killed == len(outcomes) else f"{killed}"
     return (
         "Line coverage cannot be measured in compiled kernels.  Instead "
-        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.toml) were planted in the kernels, one at a time. "
+        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.toml) were planted in the "
+        "kernels, one at a time. "
         f" The test suite detected {noticed} ([results](data/results/mutants.json)).\n"
     )
 
@@ -123,10 +171,14 @@ def mutants(results: Results) -> str:
 
 
 def proofs(results: Results) -> Iterator[Row]:
-    """A row a proof, with the claim that comes closest to its bound; data/results/proofs.json has all of them."""
+    """A row a proof, with the claim that comes closest to its bound; data/results/proofs.json has
+    all of them.
+    """
     for name, part in results["proofs"]["parts"].items():
         found = part["rows"]
-        closest = max(found, key=lambda row: row["worst"] / row["bound"] if row["bound"] else row["worst"])
+        closest = max(
+            found, key=lambda row: row["worst"] / row["bound"] if row["bound"] else row["worst"]
+        )
         points = sum(row["points"] for row in found)
         yield closest | {"title": name.replace("_", " "), "claims": len(found), "points": points}
 
@@ -134,7 +186,11 @@ def proofs(results: Results) -> Iterator[Row]:
 def independent_paper(results: Results) -> Iterator[Row]:
     """Numbers that the paper prints, and the same computed here."""
     for row in results["independent"]["paper"]:
-        yield row | {"greek": re.sub(r"\w+", lambda m: (m[0] in SYMBOLS and greek(m[0])) or m[0], row["quantity"])}
+        yield row | {
+            "greek": re.sub(
+                r"\w+", lambda m: (m[0] in SYMBOLS and greek(m[0])) or m[0], row["quantity"]
+            )
+        }
 
 
 #: of the motions without sliding: those of the table over gamma
@@ -147,7 +203,9 @@ def unsteady_gamma(results: Results) -> Iterator[Row]:
 
 
 def unsteady(results: Results) -> Iterator[Row]:
-    """e by level of the unsteadiness: least, largest and median of the motions; of the law, and with N."""
+    """e by level of the unsteadiness: least, largest and median of the motions; of the law, and
+    with N.
+    """
     found: dict[float, dict[str, list[float]]] = {}
     for row in results["transient"]["rows"]:
         for start in ("steady", "rest"):
@@ -174,8 +232,11 @@ def unsteady_ways(results: Results) -> Iterator[Row]:
 PAPER_GROUPS = ("IC1", "IC2", "IC3")
 #: share of the motions that a peer may give up and still be compared, on those that it finished
 MOST_FAILED = 0.05
-#: what the ratios are about: motions that are integrated, as by the peers, at the default tolerance; and looked up
-INTEGRATED, LOOKED_UP, DEFAULT_RTOL = "table", "flow", 1e-8
+#: what the ratios are about: motions that are integrated, as by the peers, at the default
+#: tolerance; and looked up
+INTEGRATED = "table"
+LOOKED_UP = "flow"
+DEFAULT_RTOL = 1e-8
 
 
 def paper_rows(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
@@ -186,11 +247,15 @@ def paper_rows(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
             together.setdefault((row["method"], row["rtol"]), []).append(row)
     return [
         {
-            "method": method, "rtol": rtol, "us": float(np.mean([row["us"] for row in three])),
+            "method": method,
+            "rtol": rtol,
+            "us": float(np.mean([row["us"] for row in three])),
             "max": max(row.get("max") or np.inf for row in three),
-        } | {name: sum(row[name] for row in three) for name in ("failed", "motions")}
-        for (method, rtol), three in together.items() if len(three) == len(PAPER_GROUPS)
-    ]  # fmt: skip
+        }
+        | {name: sum(row[name] for row in three) for name in ("failed", "motions")}
+        for (method, rtol), three in together.items()
+        if len(three) == len(PAPER_GROUPS)
+    ]
 
 
 def finished(row: Row) -> bool:
@@ -199,30 +264,40 @@ def finished(row: Row) -> bool:
 
 
 def ratios(found: list[dict[str, Any]], own: str) -> list[dict[str, Any]]:
-    """For each row of another method: how many times faster the quickest row of ``own`` with no larger error is."""
+    """For each row of another method: how many times faster the quickest row of ``own`` with no
+    larger error is.
+    """
     result = []
     mine = [row for row in found if row["method"] == own and not row["failed"]]
     for row in found:
         fit = [candidate for candidate in mine if finished(row) and candidate["max"] <= row["max"]]
         if row["method"] != own and fit:
             best = min(fit, key=lambda candidate: candidate["us"])
-            result.append(row | {"ratio": row["us"] / best["us"], "own_us": best["us"], "own_error": best["max"]})
+            result.append(
+                row
+                | {"ratio": row["us"] / best["us"], "own_us": best["us"], "own_error": best["max"]}
+            )
     return result
 
 
 def bench_peers(results: Results) -> Iterator[Row]:
-    """Each peer at the setting with its smallest error, on IC1-IC3, on random starts, and with own parameters, where
-    nothing is looked up.
+    """Each peer at the setting with its smallest error, on IC1-IC3, on random starts, and with own
+    parameters, where nothing is looked up.
 
-    Slow ones were tried on fewer of the random motions than this package, whose error is that over all of them.
+    Slow ones were tried on fewer of the random motions than this package, whose error is that over
+    all of them.
     """
-    work, own = results["bench work-precision"], results["bench own-parameters"]
+    work = results["bench work-precision"]
+    own = results["bench own-parameters"]
     groups = {
-        "IC1-IC3": paper_rows(work["rows"]), "random starts": [r for r in work["rows"] if r["group"] == "random"],
+        "IC1-IC3": paper_rows(work["rows"]),
+        "random starts": [r for r in work["rows"] if r["group"] == "random"],
         "own parameters": own["rows"],
-    }  # fmt: skip
+    }
     for where, found in groups.items():
-        default = [row for row in found if row["method"] != INTEGRATED or row["rtol"] == DEFAULT_RTOL]
+        default = [
+            row for row in found if row["method"] != INTEGRATED or row["rtol"] == DEFAULT_RTOL
+        ]
         looked_up = {(row["method"], row["rtol"]): row for row in ratios(found, LOOKED_UP)}
         best: dict[str, Any] = {}
         for row in sorted(ratios(default, INTEGRATED), key=lambda row: -row["max"]):
@@ -231,10 +306,15 @@ def bench_peers(results: Results) -> Iterator[Row]:
             if row["method"] != LOOKED_UP:
                 quick = looked_up.get((row["method"], row["rtol"]))
                 yield row | {
-                    "label": work["methods"][row["method"]], "where": where,
-                    "given_up": cell(" ({failed} of {motions} motions failed)", row) if row["failed"] else "",
-                    "quick": cell("{own_us:.3g} µs, {own_error:.1e}; {ratio!n} times faster", quick) if quick else "",
-                }  # fmt: skip
+                    "label": work["methods"][row["method"]],
+                    "where": where,
+                    "given_up": cell(" ({failed} of {motions} motions failed)", row)
+                    if row["failed"]
+                    else "",
+                    "quick": cell("{own_us:.3g} µs, {own_error:.1e}; {ratio!n} times faster", quick)
+                    if quick
+                    else "",
+                }
 
 
 def bench_own(results: Results, part: str = "own-parameters") -> Iterator[Row]:
@@ -251,13 +331,20 @@ def bench_driven(results: Results) -> Iterator[Row]:
 def bench_bound_law(results: Results) -> Iterator[Row]:
     """The law of one scene beside contact()."""
     for row in results["bench bound-law"]["rows"]:
-        yield row | {"called": row["way"] + ", slopes" * row["slopes"], "times": row["contact"]["ns"] / row["ns"]}
+        yield row | {
+            "called": row["way"] + ", slopes" * row["slopes"],
+            "times": row["contact"]["ns"] / row["ns"],
+        }
 
 
 def bench_series(results: Results) -> Iterator[Row]:
     """Contact, motions and tables by the number of modes."""
     for row in results["bench series"]["rows"]:
-        yield row | {"state": cell("{ns!t} ns (least {least_ns!t})", row["contact"]) if "contact" in row else ""}
+        yield row | {
+            "state": cell("{ns!t} ns (least {least_ns!t})", row["contact"])
+            if "contact" in row
+            else ""
+        }
 
 
 # --- nothing is measured ---
@@ -265,7 +352,9 @@ def bench_series(results: Results) -> Iterator[Row]:
 
 def greek(name: str) -> str:
     """A sign for a symbol, as its LaTeX has it; empty where that is the name, or no sign alone."""
-    sign = html.unescape(re.sub(r"\\(?:var(?=eps))?(\w+)", r"&\1;", SYMBOLS[name].latex)).replace("^", "")
+    sign = html.unescape(re.sub(r"\\(?:var(?=eps))?(\w+)", r"&\1;", SYMBOLS[name].latex)).replace(
+        "^", ""
+    )
     return sign if re.fullmatch(r"[^\W\d_](\*|/E')?", sign) and sign != name else ""
 
 
@@ -274,19 +363,48 @@ _POWERS = str.maketrans({"-": "⁻", "1": "¹", "2": "²"})
 
 
 def symbols(_: Results) -> Iterator[Row]:
-    """Every symbol of a result: what it is, in which unit a scene and a cylinder give it, its range and equation."""
+    """Every symbol of a result: what it is, in which unit a scene and a cylinder give it, its range
+    and equation.
+    """
     for name, symbol in SYMBOLS.items():
         unit = si_unit(name).translate(_POWERS) if name in DIMENSIONS else ""
-        said = {"meaning": describe_quantity(name), "range": symbol.range, "equation": symbol.equation}
+        said = {
+            "meaning": describe_quantity(name),
+            "range": symbol.range,
+            "equation": symbol.equation,
+        }
         yield said | {"name": name, "greek": greek(name), "unit": unit}
 
 
 MAKERS: dict[str, Callable[..., Any]] = {
     made.__name__: made
     for made in (
-        three, headline, grids, mutants, ensembles, ensembles_plan, proofs, independent_paper,
-        unsteady_gamma, unsteady, unsteady_ways, bench_peers, bench_own, bench_driven, bench_bound_law,
-        bench_series, symbols, costs.folder_costs, costs.capability_costs, house.rooms,
-        house.commands, house.sections, *identification.MAKERS,
+        three,
+        headline,
+        grids,
+        mutants,
+        ensembles,
+        ensembles_plan,
+        proofs,
+        independent_paper,
+        unsteady_gamma,
+        unsteady,
+        unsteady_ways,
+        bench_peers,
+        bench_own,
+        bench_driven,
+        bench_bound_law,
+        bench_series,
+        symbols,
+        costs.folder_costs,
+        costs.capability_costs,
+        house.rooms,
+        house.commands,
+        house.sections,
+        *identification.MAKERS,
     )
-} | {"commands_runs": house.commands, "commands_files": house.commands, "sections_runs": house.sections}  # fmt: skip
+} | {
+    "commands_runs": house.commands,
+    "commands_files": house.commands,
+    "sections_runs": house.sections,
+}

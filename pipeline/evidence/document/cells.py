@@ -20,14 +20,21 @@ def three(value: float) -> str:
     return f"{float(f'{value:.3g}'):g}"
 
 
-#: two digits, in thousandths, in per cent; three digits, likewise; whole; thousands and millions to go on with;
-#: a power of ten; a vertical line that ends no cell
+#: two digits, in thousandths, in per cent; three digits, likewise; whole; thousands and millions to
+#: go on with; a power of ten; a vertical line that ends no cell
 CONVERSIONS = {
-    "n": two, "m": lambda value: two(1e3 * value), "c": lambda value: two(100.0 * value),
-    "t": three, "u": lambda value: three(1e3 * value), "h": lambda value: three(100.0 * value), "i": "{:.0f}".format,
-    "k": lambda value: 1e-3 * value, "M": lambda value: 1e-6 * value,
-    "e": lambda value: f"{value:.0e}".replace("e+0", "e"), "p": lambda text: text.replace("|", "\\|"),
-}  # fmt: skip
+    "n": two,
+    "m": lambda value: two(1e3 * value),
+    "c": lambda value: two(100.0 * value),
+    "t": three,
+    "u": lambda value: three(1e3 * value),
+    "h": lambda value: three(100.0 * value),
+    "i": "{:.0f}".format,
+    "k": lambda value: 1e-3 * value,
+    "M": lambda value: 1e-6 * value,
+    "e": lambda value: f"{value:.0e}".replace("e+0", "e"),
+    "p": lambda text: text.replace("|", "\\|"),
+}
 
 
 class Cells(string.Formatter):

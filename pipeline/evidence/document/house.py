@@ -1,4 +1,6 @@
-"""Blocks made from the code: layers and their imports, commands, keys of files; nothing is measured."""
+"""Blocks made from the code: layers and their imports, commands, keys of files; nothing is
+measured.
+"""
 
 from __future__ import annotations
 
@@ -16,10 +18,10 @@ import msgspec
 from msgspec import inspect as schema
 
 import viscoroll as vr
-from viscoroll.app.cli.program import parser
-from viscoroll.io.config import CylinderSection, SceneSection
-from viscoroll.io.runs.runfile import DriveSection, HeatSection, RunSection, StartSection
+from viscoroll.cli.program import parser
 from viscoroll.materials.material_toml import MaterialSection
+from viscoroll.roller_toml import CylinderSection, SceneSection
+from viscoroll.runs.runfile import DriveSection, HeatSection, RunSection, StartSection
 
 from ...stage import ROOT
 from ..results import Results, table
@@ -27,29 +29,45 @@ from ..results import Results, table
 _PACKAGE = ROOT / "src/viscoroll"
 #: sections of a TOML file: what reads them, and whose parameters they hold
 _SECTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
-    "[scene]": (SceneSection, (vr.Scene,)), "[cylinder]": (CylinderSection, (vr.Cylinder,)),
-    "[material], [base]": (MaterialSection, (vr.Material,)), "[start]": (StartSection, (vr.roll,)),
-    "[drive]": (DriveSection, (vr.roll,)), "[heat]": (HeatSection, ()), "[run]": (RunSection, ()),
-}  # fmt: skip
+    "[scene]": (SceneSection, (vr.Scene,)),
+    "[cylinder]": (CylinderSection, (vr.Cylinder,)),
+    "[material], [base]": (MaterialSection, (vr.Material,)),
+    "[start]": (StartSection, (vr.roll,)),
+    "[drive]": (DriveSection, (vr.roll,)),
+    "[heat]": (HeatSection, ()),
+    "[run]": (RunSection, ()),
+}
 #: a role of reStructuredText, or a literal, which Markdown writes between single backticks
 _ROLE = re.compile(r"(?::\w+:`|``)\.?([^`]+)``?")
-_KINDS = {schema.FloatType: "number", schema.IntType: "whole number", schema.BoolType: "true or false",
-          schema.StrType: "text"}  # fmt: skip
+_KINDS = {
+    schema.FloatType: "number",
+    schema.IntType: "whole number",
+    schema.BoolType: "true or false",
+    schema.StrType: "text",
+}
 
 
 def rooms(results: Results) -> str:
-    """The picture: a box a room, by the layers of the import contract, with the rooms that its files import."""
-    contract = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"]["importlinter"]
+    """The picture: a box a room, by the layers of the import contract, with the rooms that its
+    files import.
+    """
+    contract = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["tool"][
+        "importlinter"
+    ]
     layers = [name.removeprefix("viscoroll.") for name in contract["contracts"][0]["layers"]]
     lines = []
     for name in layers:
         place = _PACKAGE / name
         files = sorted(place.rglob("*.py")) if place.is_dir() else [place.with_suffix(".py")]
-        about = ast.get_docstring(ast.parse((place / "__init__.py" if place.is_dir() else files[0]).read_text("utf-8")))
+        about = ast.get_docstring(
+            ast.parse((place / "__init__.py" if place.is_dir() else files[0]).read_text("utf-8"))
+        )
         stands_on = {room for file in files for room in _imported(file)} - {name}
         size = f"{len(files)} files" if place.is_dir() else ""
         below = ", ".join(room for room in layers if room in stands_on)
-        lines += [f"{name + ('/' if place.is_dir() else ''):<14}{size:>10}   {about.splitlines()[0]}"]
+        lines += [
+            f"{name + ('/' if place.is_dir() else ''):<14}{size:>10}   {about.splitlines()[0]}"
+        ]
         lines += [f"{'':27}-> {below}"] if below else []
     return "```text\n" + "\n".join(lines) + "\n```\n"
 
@@ -71,9 +89,12 @@ def commands(results: Results, *names: str) -> str:
 
 def _commands(program: Any) -> Iterator[tuple[str, str]]:
     """Yield (name, text) of every command below a parser."""
-    below = [action for action in program._actions if isinstance(action, argparse._SubParsersAction)]
+    below = [
+        action for action in program._actions if isinstance(action, argparse._SubParsersAction)
+    ]
     if not below:
-        program.formatter_class, program.color = partial(program.formatter_class, width=118), False
+        program.formatter_class = partial(program.formatter_class, width=118)
+        program.color = False
         _, _, said = program.format_help().partition("\n\n")
         yield program.prog, f"## {program.prog}\n\n```text\n{said}```\n"
     for action in below:
@@ -91,8 +112,9 @@ def sections(results: Results, *wanted: str) -> str:
             meanings |= _parameters(each)
         rows = [
             (f"`{field.name}`", _kind(field.type), _default(field), meanings.get(field.name, ""))
-            for field in schema.type_info(section).fields if not isinstance(field.type, schema.NoneType)
-        ]  # fmt: skip
+            for field in schema.type_info(section).fields
+            if not isinstance(field.type, schema.NoneType)
+        ]
         lines += [f"## {names}\n", table(("key", "type", "default", "meaning"), rows)]
     return "\n".join(lines)
 
@@ -103,14 +125,17 @@ def _parameters(thing: Any) -> dict[str, str]:
     found = re.findall(r"(?m)^(\w+(?:, \w+)*) : (.*(?:\n    .*)*)", text)
     return {
         name: _ROLE.sub(r"`\1`", " ".join(words.split("\n\n")[0].split())).replace("|", "\\|")
-        for names, words in found for name in names.split(", ")
-    }  # fmt: skip
+        for names, words in found
+        for name in names.split(", ")
+    }
 
 
 def _kind(kind: Any) -> str:
     """A type in words."""
     if isinstance(kind, schema.UnionType):
-        return " or ".join(_kind(each) for each in kind.types if not isinstance(each, schema.NoneType))
+        return " or ".join(
+            _kind(each) for each in kind.types if not isinstance(each, schema.NoneType)
+        )
     if isinstance(kind, schema.LiteralType):
         return ", ".join(f'"{each}"' for each in kind.values)
     if isinstance(kind, schema.ListType | schema.VarTupleType):

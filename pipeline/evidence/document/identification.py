@@ -7,7 +7,8 @@ from typing import Any
 
 from ..results import Results
 
-_NEVER, _OPEN = "no influence", "unbounded"
+_NEVER = "no influence"
+_OPEN = "unbounded"
 
 
 def _known(row: dict[str, Any], name: str) -> str:
@@ -33,7 +34,9 @@ def _together(row: dict[str, Any]) -> str:
         named = " ".join(name if power == 1.0 else f"{name}^{power:.2g}" for name, power in powers)
         near = " (near these values)" if one["near"] else ""
         texts.append(f"{named}{near}, {50.0 * (one['high'] - one['low']):.2g} %")
-    others = [name for name in row["unknowns"] if name not in (*row["undetermined"], *row["does_not_act"])]
+    others = [
+        name for name in row["unknowns"] if name not in (*row["undetermined"], *row["does_not_act"])
+    ]
     return "; ".join([*texts, *others]) or "nothing"
 
 
@@ -52,7 +55,9 @@ def identify_bearing(results: Results) -> Iterator[dict[str, str]]:
 def identify_said(results: Results) -> str:
     """Six reports."""
     rows = results["identification said"]["rows"]
-    return "\n".join(f"{row['problem'].capitalize()}:\n\n```text\n{row['report']}\n```\n" for row in rows)
+    return "\n".join(
+        f"{row['problem'].capitalize()}:\n\n```text\n{row['report']}\n```\n" for row in rows
+    )
 
 
 def identify_times(results: Results) -> Iterator[dict[str, Any]]:
@@ -64,7 +69,11 @@ def identify_times(results: Results) -> Iterator[dict[str, Any]]:
 def identify_coverage(results: Results) -> Iterator[dict[str, Any]]:
     """How often intervals hold the truth."""
     for row in results["identification coverage"]["rows"]:
-        yield row | {"shares": ", ".join(f"{name} {100.0 * share:.3g} %" for name, share in row["held"].items())}
+        yield row | {
+            "shares": ", ".join(
+                f"{name} {100.0 * share:.3g} %" for name, share in row["held"].items()
+            )
+        }
 
 
 MAKERS = identify_learn, identify_bearing, identify_said, identify_times, identify_coverage

@@ -2,9 +2,9 @@
 
     python -m pipeline.evidence.measure [--config FILE] [--quick] [-o FILE]
 
-Of everything a user waits for.  Sizes and seeds are in [measure] of the configuration, those of --quick in
-[measure.quick].  Times are of this machine, at this moment: run it with nothing else running.
-pipeline/evidence/document/ puts the numbers into the text.
+Of everything a user waits for.  Sizes and seeds are in [measure] of the configuration, those
+of --quick in [measure.quick].  Times are of this machine, at this moment: run it with nothing else
+running.  pipeline/evidence/document/ puts the numbers into the text.
 """
 
 from __future__ import annotations
@@ -31,25 +31,39 @@ def measure(sizes: dict[str, Any]) -> dict[str, Any]:
 
 
 def call_times(sizes: dict[str, Any]) -> dict[str, float]:
-    """Median times on one core: of a state or motion in arrays, and of single calls; motions end at t = 3e-3."""
-    random, n, m = np.random.default_rng(sizes["seed"]), sizes["timed_states"], sizes["timed_motions"]
-    scene, end = vr.presets.PAPER_SECTION_5, np.array([3e-3])
+    """Median times on one core: of a state or motion in arrays, and of single calls; motions end at
+    t = 3e-3.
+    """
+    random = np.random.default_rng(sizes["seed"])
+    n = sizes["timed_states"]
+    m = sizes["timed_motions"]
+    scene = vr.presets.PAPER_SECTION_5
+    end = np.array([3e-3])
     each = scene.replace(alpha=np.exp(random.uniform(0.0, np.log(100.0), n)))
-    (V, s), start, many = speeds_and_creep(random, n), starts(random, m), starts(random, 50 * m)
+    (V, s) = speeds_and_creep(random, n)
+    start = starts(random, m)
+    many = starts(random, 50 * m)
 
     def contact(own: vr.Scene, count: int, **how: Any) -> Any:
         delta = creep(own, V[:count], 1.2 * s[:count])
         return count, partial(vr.contact, own, V[:count], delta=delta, fields=("Q", "M"), **how)
 
     calls = {
-        "contact_one_alpha_ns": contact(scene, n), "contact_an_alpha_each_ns": contact(each, n),
+        "contact_one_alpha_ns": contact(scene, n),
+        "contact_an_alpha_each_ns": contact(each, n),
         "contact_direct_ns": contact(scene, max(n // 20, 1), method="direct"),
         "contact_single_us": (1e3, partial(vr.contact, scene, 0.5, delta=-0.01)),
-        "flow_us": (1e3 * many[0].size, ensemble(scene, many, end, ("V", "omega", "x"), method="flow")),
-    }  # fmt: skip
+        "flow_us": (
+            1e3 * many[0].size,
+            ensemble(scene, many, end, ("V", "omega", "x"), method="flow"),
+        ),
+    }
     for rtol in (1e-6, 1e-8):
         calls[f"roll_{rtol:.0e}_us"] = 1e3, partial(vr.roll, scene, 1.5, 0.5, end, rtol=rtol)
-        calls[f"ensemble_{rtol:.0e}_us"] = 1e3 * m, ensemble(scene, start, end, ("V", "omega", "x"), rtol=rtol)
+        calls[f"ensemble_{rtol:.0e}_us"] = (
+            1e3 * m,
+            ensemble(scene, start, end, ("V", "omega", "x"), rtol=rtol),
+        )
     return {name: row["ns"] for name, row in timed(calls, sizes["repeats"]).items()}
 
 
@@ -57,11 +71,14 @@ def process_times(sizes: dict[str, Any]) -> dict[str, float]:
     """Whole processes: import over a bare python, and the program rolling IC1; kernels cached."""
     motion = "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3"
     commands = {
-        "bare_python_s": ("-c", "pass"), "import_s": ("-c", "import viscoroll"),
+        "bare_python_s": ("-c", "pass"),
+        "import_s": ("-c", "import viscoroll"),
         "cli_roll_s": ("-m", "viscoroll", "roll", *motion),
-    }  # fmt: skip
+    }
     run = partial(subprocess.run, check=True, stdout=subprocess.DEVNULL)
-    calls = {name: (1e9, partial(run, [sys.executable, *command])) for name, command in commands.items()}
+    calls = {
+        name: (1e9, partial(run, [sys.executable, *command])) for name, command in commands.items()
+    }
     found = {name: row["ns"] for name, row in timed(calls, sizes["processes"]).items()}
     return found | {"import_s": found["import_s"] - found["bare_python_s"]}
 

@@ -2,10 +2,10 @@
 
     python -m pipeline.evidence.measure.ensembles [--config FILE] [--quick] [-o FILE]
 
-Every run is a process of its own, timed with its files and its summaries, but without the start of Python.
-Beside the time on the clock stands that of the processors, which other work on the machine does not
-change as much.  Sizes are in [ensembles] of the configuration, those of --quick in [ensembles.quick].
-pipeline/evidence/document/ puts the numbers into docs/ensembles.md.
+Every run is a process of its own, timed with its files and its summaries, but without the start of
+Python.  Beside the time on the clock stands that of the processors, which other work on the machine
+does not change as much.  Sizes are in [ensembles] of the configuration, those of --quick in
+[ensembles.quick].  pipeline/evidence/document/ puts the numbers into docs/ensembles.md.
 """
 
 from __future__ import annotations
@@ -22,8 +22,8 @@ import numpy as np
 
 import viscoroll as vr
 from viscoroll.core.blocks import run_blocks, thread_count
-from viscoroll.io.runs import read_run, run_ensemble, verify
-from viscoroll.io.runs.store import Store
+from viscoroll.runs import read_run, run_ensemble, verify
+from viscoroll.runs.run_store import Store
 
 from ..results import run
 from ..timing import forked, peak_mb, processor_time
@@ -62,12 +62,19 @@ def measure(sizes: dict[str, Any]) -> dict[str, Any]:
 
 
 def measured(sizes: dict[str, Any]) -> dict[str, Any]:
-    block, designs = sizes["block"], sizes["designs"]
+    block = sizes["block"]
+    designs = sizes["designs"]
     rolled(FIXED, 4 * block, "warm", block)  # compiles, and builds the flow map
-    rows = {f"{n} motions of a scene": rolled(FIXED, n, f"fixed-{n}", block) for n in sizes["fixed"]}
+    rows = {
+        f"{n} motions of a scene": rolled(FIXED, n, f"fixed-{n}", block) for n in sizes["fixed"]
+    }
     for design in ("latin", "sobol"):
-        rows[f"{designs} motions of a scene, {design}"] = rolled(FIXED, designs, design, block, design=design)
-    rows[f"{designs} motions of a scene, all kept"] = rolled(FIXED, designs, "kept", block, keep="all")
+        rows[f"{designs} motions of a scene, {design}"] = rolled(
+            FIXED, designs, design, block, design=design
+        )
+    rows[f"{designs} motions of a scene, all kept"] = rolled(
+        FIXED, designs, "kept", block, keep="all"
+    )
     uncertain = sizes["uncertain"]
     rows[f"{uncertain} motions, seven uncertain inputs"] = rolled(
         UNCERTAIN, uncertain, "uncertain", max(uncertain // 16, 1)
@@ -82,9 +89,15 @@ def measured(sizes: dict[str, Any]) -> dict[str, Any]:
 
 
 def rolled(
-    text: str, n: int, name: str, block: int, *, design: str = "random", keep: str = "summaries",
+    text: str,
+    n: int,
+    name: str,
+    block: int,
+    *,
+    design: str = "random",
+    keep: str = "summaries",
     cluster: str | None = None,
-) -> dict[str, Any]:  # fmt: skip
+) -> dict[str, Any]:
     """Seconds, peak memory and bytes on disk of a run."""
     path = Path(f"{name}.toml")
     path.write_text(text + RUN.format(n=n, design=design, keep=keep, block=block), encoding="utf-8")
@@ -103,23 +116,33 @@ def spent(work: Callable[[], Any]) -> Iterator[dict[str, float]]:
 
 
 def loop(n: int, block: int) -> dict[str, float]:
-    """Time of the bare loop over ``vr.ensemble``, on all threads: starts drawn before, nothing summarised."""
-    scene, t = vr.presets.PAPER_SECTION_5, np.array([3e-3])
+    """Time of the bare loop over ``vr.ensemble``, on all threads: starts drawn before, nothing
+    summarised.
+    """
+    scene = vr.presets.PAPER_SECTION_5
+    t = np.array([3e-3])
     V0, omega0 = np.random.default_rng(1).uniform(-2.0, 2.0, (2, block))
 
     def work(start: int, stop: int) -> None:
         vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-6, threads=1)
 
     work(0, 1)
-    begun, begun_cpu = time.perf_counter(), time.process_time()
+    begun = time.perf_counter()
+    begun_cpu = time.process_time()
     run_blocks(work, -(-n // block), 1)
-    return {"seconds": time.perf_counter() - begun, "cpu_s": time.process_time() - begun_cpu, "motions": n}
+    return {
+        "seconds": time.perf_counter() - begun,
+        "cpu_s": time.process_time() - begun_cpu,
+        "motions": n,
+    }
 
 
 def cluster(blocks: list[int], rounds: int, block: int) -> dict[str, float]:
-    """Time a block by threads and by dask: of the blocks between the two numbers; and of dask's start.
+    """Time a block by threads and by dask: of the blocks between the two numbers; and of dask's
+    start.
 
-    Rounds alternate and the least of each counts, so that other work on the machine hits both alike.
+    Rounds alternate and the least of each counts, so that other work on the machine hits both
+    alike.
     """
     if not rounds:
         return {}
@@ -129,11 +152,18 @@ def cluster(blocks: list[int], rounds: int, block: int) -> dict[str, float]:
     for attempt in range(rounds):
         for count in blocks:
             for where, asked in (("threads", None), ("dask", "local")):
-                taken = rolled(FIXED, count * block, f"{where}-{count}-{attempt}", block, cluster=asked)
+                taken = rolled(
+                    FIXED, count * block, f"{where}-{count}-{attempt}", block, cluster=asked
+                )
                 for clock in ("seconds", "cpu_s"):
-                    least[where, count, clock] = min(taken[clock], least.get((where, count, clock), np.inf))
+                    least[where, count, clock] = min(
+                        taken[clock], least.get((where, count, clock), np.inf)
+                    )
     for clock in ("seconds", "cpu_s"):
-        a_block = {w: (least[w, many, clock] - least[w, few, clock]) / (many - few) for w in ("threads", "dask")}
+        a_block = {
+            w: (least[w, many, clock] - least[w, few, clock]) / (many - few)
+            for w in ("threads", "dask")
+        }
         results |= {f"{where}_{clock}_a_block": value for where, value in a_block.items()}
         results[f"overhead_{clock}"] = a_block["dask"] / a_block["threads"] - 1.0
     results["dask_start_s"] = least["dask", few, "seconds"] - least["threads", few, "seconds"]
@@ -146,7 +176,10 @@ def merged(name: str) -> dict[str, float]:
     size = max(path.stat().st_size for path in store.root.glob("records/0*"))
     begun = time.process_time()
     store.finish()
-    return {"record_bytes": size, "merge_s_a_block": (time.process_time() - begun) / store.run.blocks}
+    return {
+        "record_bytes": size,
+        "merge_s_a_block": (time.process_time() - begun) / store.run.blocks,
+    }
 
 
 def verified(store: Path) -> float:

@@ -1,8 +1,10 @@
-"""Motions from grids, rows and root solves, as pipeline.benchmark left them -> data/results/grids.json (kept in git).
+"""Motions from grids, rows and root solves, as pipeline.benchmark left them ->
+data/results/grids.json (kept in git).
 
     python -m pipeline.evidence.measure.grids [-o FILE]
 
-Reads out/benchmark.csv (make benchmark).  pipeline/evidence/document/ puts a sentence of it into README.md.
+Reads out/benchmark.csv (make benchmark).  pipeline/evidence/document/ puts a sentence of it into
+README.md.
 """
 
 from __future__ import annotations
@@ -22,8 +24,14 @@ def work() -> dict[str, Any]:
     try:
         rows = read_rows(TIMES)
     except OSError as error:
-        raise FileError(TIMES, f"cannot be read ({error.strerror or error}); run pipeline.benchmark first") from error
-    return {"rows": [{name: None if value != value else value for name, value in row.items()} for row in rows]}
+        raise FileError(
+            TIMES, f"cannot be read ({error.strerror or error}); run pipeline.benchmark first"
+        ) from error
+    return {
+        "rows": [
+            {name: None if value != value else value for name, value in row.items()} for row in rows
+        ]
+    }
 
 
 if __name__ == "__main__":

@@ -1,9 +1,11 @@
-"""Memory that large calls need beside their input and their result -> data/results/large.json (kept in git).
+"""Memory that large calls need beside their input and their result -> data/results/large.json (kept
+in git).
 
     python -m pipeline.evidence.measure.large [--config FILE] [--quick] [-o FILE]
 
-Each call runs in a process of its own, whose peak is read from the system.  Numbers of elements are in [large] of
-the configuration; 10^8 motions want 8 GB.  pipeline/evidence/document/ puts the table into docs/times.md.
+Each call runs in a process of its own, whose peak is read from the system.  Numbers of elements are
+in [large] of the configuration; 10^8 motions want 8 GB.  pipeline/evidence/document/ puts the table
+into docs/times.md.
 """
 
 from __future__ import annotations
@@ -14,7 +16,8 @@ from typing import Any
 from ..results import run
 from ..timing import printed
 
-#: calls on vectors x and y of n elements, or on a grid of n of them; ``alphas`` is a scene with an alpha for each
+#: calls on vectors x and y of n elements, or on a grid of n of them; ``alphas`` is a scene with an
+#: alpha for each
 CALLS = {
     "one by one": "vr.contact(alphas, x, delta=y, fields='Q')",
     "slice": "vr.contact(scene, x, omega=y, fields=('Q', 'M'))",
@@ -45,17 +48,24 @@ def run(n):
     return {"seconds": seconds, "result_bytes": own(result, x, y), "extra_bytes": memory("VmHWM") - before - held}
 run(10_000)  # compiles, and builds the map
 print(json.dumps(run(*given)))
-"""
+"""  # noqa: E501
 
 
 def measured(name: str, count: int) -> dict[str, Any]:
     """Seconds, bytes of the result, and bytes at the peak beside it and the input."""
-    return {"call": CALLS[name], "elements": count} | printed(_CHILD.replace("CALL", CALLS[name]), count)
+    return {"call": CALLS[name], "elements": count} | printed(
+        _CHILD.replace("CALL", CALLS[name]), count
+    )
 
 
 def measure(sizes: dict[str, Any]) -> dict[str, Any]:
     """All calls."""
-    return {"rows": [measured(name, sizes["integrated" if name == "integrated" else "elements"]) for name in CALLS]}
+    return {
+        "rows": [
+            measured(name, sizes["integrated" if name == "integrated" else "elements"])
+            for name in CALLS
+        ]
+    }
 
 
 if __name__ == "__main__":

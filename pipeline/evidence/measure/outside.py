@@ -1,9 +1,11 @@
-"""The law outside Python: the page that computes, C and Node -> data/results/outside.json (kept in git).
+"""The law outside Python: the page that computes, C and Node -> data/results/outside.json (kept in
+git).
 
     python -m pipeline.evidence.measure.outside [--config FILE] [--quick] [-o FILE]
 
-Wants chromium, node and cc (make site-tools interop-tools); sizes are in [outside] of the configuration.  Every
-number is of one core.  pipeline/evidence/document/ puts it into docs/live.md and docs/loading/README.md.
+Wants chromium, node and cc (make site-tools interop-tools); sizes are in [outside] of the
+configuration.  Every number is of one core.  pipeline/evidence/document/ puts it into docs/live.md
+and docs/loading/README.md.
 """
 
 from __future__ import annotations
@@ -24,7 +26,7 @@ import numpy as np
 import viscoroll as vr
 from viscoroll import tables
 from viscoroll.core.errors import MissingDependencyError
-from viscoroll.io.config import read_law_source
+from viscoroll.roller_toml import read_law_source
 
 from ...stage import ROOT
 from ..results import run
@@ -52,7 +54,7 @@ for (const state of STATES) {
 }
 document.getElementById("found").textContent = JSON.stringify(found);
 </script>
-"""
+"""  # noqa: E501
 NODE = """
 const law = require("./read_law.js"), fs = require("fs"), contact = law(JSON.parse(fs.readFileSync("rubber.json")));
 const states = JSON.parse(fs.readFileSync("states.json"));
@@ -63,7 +65,7 @@ for (let n = 0; n < 20; n++) {
   best = Math.min(best, Number(process.hrtime.bigint() - begun) / states.length);
 }
 console.log(best);
-"""
+"""  # noqa: E501
 C = """
 #define _POSIX_C_SOURCE 199309L
 #include <stdio.h>
@@ -91,7 +93,7 @@ int main(void) {
   }
   return sum == 0.1;
 }
-"""
+"""  # noqa: E501
 
 
 def measure(sizes: dict[str, Any]) -> dict[str, Any]:
@@ -114,35 +116,56 @@ def program(*names: str) -> str:
 
 def printed(folder: Path, *command: str) -> str:
     environment = os.environ | {"HOME": str(folder)}
-    return subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True, env=environment).stdout
+    return subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, check=True, env=environment
+    ).stdout
 
 
 def page(folder: Path, sizes: dict[str, Any]) -> dict[str, Any]:
     """Milliseconds of a redraw, and the largest errors of the numbers that are shown."""
-    random, count = np.random.default_rng(sizes["seed"]), sizes["redraws"]
+    random = np.random.default_rng(sizes["seed"])
+    count = sizes["redraws"]
     columns = {
         "creep": random.uniform(-0.3, 0.3, count),
         "mu": random.uniform(-2, 0, count),
         "u": random.uniform(-3, 9, count),
     }
-    states = [dict(zip(columns, map(float, row), strict=True)) for row in zip(*columns.values(), strict=True)]
+    states = [
+        dict(zip(columns, map(float, row), strict=True))
+        for row in zip(*columns.values(), strict=True)
+    ]
     for path in ("loading/read_law.js", "_static/live.js", "_static/viscoroll.css"):
         shutil.copy(ROOT / "docs" / path, folder)
     rubber = (folder / "rubber.json").read_text(encoding="utf-8")
     (folder / "rubber.js").write_text(f"const RUBBER = {rubber};\n", encoding="utf-8")
     (folder / "page.html").write_text(PAGE.replace("STATES", json.dumps(states)), encoding="utf-8")
-    options = ("--headless", "--no-sandbox", "--disable-gpu", "--disable-dev-shm-usage", "--dump-dom")
+    options = (
+        "--headless",
+        "--no-sandbox",
+        "--disable-gpu",
+        "--disable-dev-shm-usage",
+        "--dump-dom",
+    )
     shown = printed(folder, program(*BROWSERS), *options, (folder / "page.html").as_uri())
-    found = json.loads(html.unescape(re.search(r'<pre id="found">(.*?)</pre>', shown, re.DOTALL)[1]))  # type: ignore[index]
+    found = json.loads(
+        html.unescape(re.search(r'<pre id="found">(.*?)</pre>', shown, re.DOTALL)[1])
+    )  # type: ignore[index]
     at = {name: np.array([one[name] for one in found]) for name in found[0]}
     exact = vr.contact(
-        vr.Scene(kappa=1.0, mu=at["mu"], material=read_law_source(RUBBER).pair.law), at["u"], delta=at["creep"]
+        vr.Scene(kappa=1.0, mu=at["mu"], material=read_law_source(RUBBER).pair.law),
+        at["u"],
+        delta=at["creep"],
     )
     ms = at["ms"]
     return {
-        "median_ms": float(np.median(ms)), "slowest_ms": float(ms.max()), "bytes": len(rubber),
-        "error": max(largest(at[name], getattr(exact, name), 1.0 if name == "beta" else 0.0) for name in FIELDS),
-    }  # fmt: skip
+        "median_ms": float(np.median(ms)),
+        "slowest_ms": float(ms.max()),
+        "bytes": len(rubber),
+        "error": max(
+            largest(at[name], getattr(exact, name), 1.0 if name == "beta" else 0.0)
+            for name in FIELDS
+        ),
+    }
 
 
 def largest(found: Any, exact: Any, scale: Any = 0.0) -> float:
@@ -152,10 +175,14 @@ def largest(found: Any, exact: Any, scale: Any = 0.0) -> float:
 
 def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
     """Nanoseconds a state."""
-    random, count = np.random.default_rng(sizes["seed"]), sizes["states"]
-    kappa, mu = 10.0 ** random.uniform(0, 2, count), 10.0 ** random.uniform(-3, 0, count)
+    random = np.random.default_rng(sizes["seed"])
+    count = sizes["states"]
+    kappa = 10.0 ** random.uniform(0, 2, count)
+    mu = 10.0 ** random.uniform(-3, 0, count)
     V = 10.0 ** random.uniform(-4, 9, count) / kappa
-    star = vr.contact(vr.Scene(kappa=kappa, mu=mu, material=read_law_source(RUBBER).pair.law), V, delta=0.0).delta_star
+    star = vr.contact(
+        vr.Scene(kappa=kappa, mu=mu, material=read_law_source(RUBBER).pair.law), V, delta=0.0
+    ).delta_star
     states = np.column_stack([kappa, mu, V, star * V * random.uniform(-1, 1, count)]).tolist()
     (folder / "states.json").write_text(json.dumps(states))
     (folder / "node.js").write_text(NODE)
@@ -163,7 +190,11 @@ def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
     (folder / "time.c").write_text(C.replace("STATES", rows))
     printed(folder, program("cc"), "-std=c99", "-O2", "time.c", "-lm", "-o", "time")
     values, slopes = map(float, printed(folder, "./time").split())
-    return {"c_ns": values, "c_slopes_ns": slopes, "node_ns": float(printed(folder, program("node"), "node.js"))}
+    return {
+        "c_ns": values,
+        "c_slopes_ns": slopes,
+        "node_ns": float(printed(folder, program("node"), "node.js")),
+    }
 
 
 if __name__ == "__main__":

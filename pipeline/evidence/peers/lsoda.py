@@ -1,7 +1,8 @@
-"""LSODA, compiled, on Eq. (22) in (V, omega), free or driven, with the contact law and its own saturation: no events.
+"""LSODA, compiled, on Eq. (22) in (V, omega), free or driven, with the contact law and its own
+saturation: no events.
 
-What a user would do with the law and a good general integrator.  By numbalsoda (C++), called from compiled code; there
-is no such peer where that is not installed.
+What a user would do with the law and a good general integrator.  By numbalsoda (C++), called from
+compiled code; there is no such peer where that is not installed.
 """
 
 from __future__ import annotations
@@ -15,12 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from viscoroll.kernels.compile.intrinsics import floats_at, integers_at
-from viscoroll.kernels.rows.contact import signed_creep, signed_traction, stick_argument
-from viscoroll.kernels.rows.contact_states import State
-from viscoroll.kernels.rows.evaluate import length_and_moment, locate_row, moment_factor
-from viscoroll.kernels.rows.record import Law
-from viscoroll.materials.law.table import law_table
+from viscoroll.kernels.law.contact_kernel import signed_creep, signed_traction, stick_argument
+from viscoroll.kernels.law.law_functions import length_and_moment, locate_row, moment_factor
+from viscoroll.kernels.law.law_record import Law, State
+from viscoroll.kernels.numerics.intrinsics import floats_at, integers_at
+from viscoroll.laws.law_table import law_table
 
 #: share of rtol that the absolute tolerance is
 ATOL_SHARE = 1e-3
@@ -35,18 +35,27 @@ def missing() -> str | None:
 
 @cache
 def _compiled():
-    # the module of ``lsoda`` alone: beside it lies another method, which numba compiles on import, for 5 s
-    spec = spec_from_file_location("driver", Path(find_spec("numbalsoda").origin).with_name("driver.py"))
+    # the module of ``lsoda`` alone: beside it lies another method, which numba compiles on import,
+    # for 5 s
+    spec = spec_from_file_location(
+        "driver", Path(find_spec("numbalsoda").origin).with_name("driver.py")
+    )
     driver = module_from_spec(spec)
     spec.loader.exec_module(driver)
     lsoda = driver.lsoda
 
     @numba.cfunc(driver.lsoda_sig)
     def rates(_, u, du, p):
-        """At the force par[4] and the torque par[5]; addresses and sizes of rows and marks behind."""
-        y, found, par = numba.carray(u, 2), numba.carray(du, 2), numba.carray(p, 10)
-        rows, marks = floats_at(int(par[6]), int(par[7])), integers_at(int(par[8]), int(par[9]))
-        law, state = Law(rows, marks, rows[:0], 0, 0, 0, None), State(par[0], par[1], y[0], y[1], True)
+        """At the force par[4] and the torque par[5]; addresses and sizes of rows and marks
+        behind.
+        """
+        y = numba.carray(u, 2)
+        found = numba.carray(du, 2)
+        par = numba.carray(p, 10)
+        rows = floats_at(int(par[6]), int(par[7]))
+        marks = integers_at(int(par[8]), int(par[9]))
+        law = Law(rows, marks, rows[:0], 0, 0, 0, None)
+        state = State(par[0], par[1], y[0], y[1], True)
         u = state.kappa * abs(y[0])
         at = locate_row(u, law)
         of = length_and_moment(at, u, law)
@@ -60,10 +69,15 @@ def _compiled():
     @numba.njit(nogil=True)
     def loop(address, given, starts, t, rtol, atol, found):
         for i in range(len(starts)):
-            solution, good = lsoda(address, starts[i].copy(), t, given[i].copy(), rtol, atol, _MOST_STEPS)
+            solution, good = lsoda(
+                address, starts[i].copy(), t, given[i].copy(), rtol, atol, _MOST_STEPS
+            )
             if good:
-                for m in range(t.size):  # numba takes seconds to compile the message of slices that do not fit
-                    found[i, m, 0], found[i, m, 1] = solution[m, 0], solution[m, 1]
+                for m in range(
+                    t.size
+                ):  # numba takes seconds to compile the message of slices that do not fit
+                    found[i, m, 0] = solution[m, 0]
+                    found[i, m, 1] = solution[m, 1]
 
     return lambda *rest: loop(rates.address, *rest)
 

@@ -33,8 +33,19 @@ def build(folder: Path) -> Path:
         If it does not compile.
     """
     program = folder / "paper_method"
-    flags = subprocess.run(["pkg-config", "--cflags", "--libs", "gsl"], check=True, capture_output=True, text=True)
-    command = ["cc", "-O2", "-march=native", str(SOURCE), *flags.stdout.split(), "-lm", "-o", str(program)]
+    flags = subprocess.run(
+        ["pkg-config", "--cflags", "--libs", "gsl"], check=True, capture_output=True, text=True
+    )
+    command = [
+        "cc",
+        "-O2",
+        "-march=native",
+        str(SOURCE),
+        *flags.stdout.split(),
+        "-lm",
+        "-o",
+        str(program),
+    ]
     subprocess.run(command, check=True)
     return program
 
@@ -58,8 +69,14 @@ def run(
     """
     head = f"{method} {rtol!r} {1e-3 * rtol!r} {most_evaluations} {len(starts)} {t.size}"
     rows = np.column_stack([parameters, starts])
-    lines = [head, " ".join(map(repr, t.tolist())), *(" ".join(map(repr, row)) for row in rows.tolist())]
-    result = subprocess.run([program], input="\n".join(lines), capture_output=True, text=True, check=True)
+    lines = [
+        head,
+        " ".join(map(repr, t.tolist())),
+        *(" ".join(map(repr, row)) for row in rows.tolist()),
+    ]
+    result = subprocess.run(
+        [program], input="\n".join(lines), capture_output=True, text=True, check=True
+    )
     table = result.stdout.splitlines()
     motions = [table[i : i + t.size + 1] for i in range(0, len(table), t.size + 1)]
     heads = np.array([motion[0].split() for motion in motions], dtype=float)

@@ -1,11 +1,13 @@
-"""Hold what is stated against truth that shares nothing with it -> data/results/proofs.json (kept in git).
+"""Hold what is stated against truth that shares nothing with it -> data/results/proofs.json (kept
+in git).
 
     python -m pipeline.evidence.prove [--config FILE] [--quick] [--only PART] [-o FILE]
 
-One table of proofs (claim.py): what is drawn, and which claims are made of its errors.  Each part holds its sizes, the
-machine, and rows: the claim, its domain, the bound, the worst that was found, and where.  Sizes and seeds are in
-[prove] of the configuration, those of --quick in [prove.quick].  Exit code 1 where a bound is exceeded.
-pipeline/evidence/document/ puts the table into docs/accuracy_proofs.md.
+One table of proofs (claim.py): what is drawn, and which claims are made of its errors.  Each part
+holds its sizes, the machine, and rows: the claim, its domain, the bound, the worst that was found,
+and where.  Sizes and seeds are in [prove] of the configuration, those of --quick in [prove.quick].
+Exit code 1 where a bound is exceeded.  pipeline/evidence/document/ puts the table into
+docs/accuracy_proofs.md.
 """
 
 from __future__ import annotations
@@ -24,7 +26,12 @@ def part(name: str, sizes: dict[str, Any]) -> list[dict[str, Any]]:
     name: of the part.
     sizes: section [prove] of the sizes: the seed, and how many states or motions each proof draws.
     """
-    return [row for proof in TABLE if proof.part == name for row in proof.rows(sizes["seed"], sizes[proof.size])]
+    return [
+        row
+        for proof in TABLE
+        if proof.part == name
+        for row in proof.rows(sizes["seed"], sizes[proof.size])
+    ]
 
 
 #: name -> function of the sizes that returns rows

@@ -1,7 +1,8 @@
 """Covers of finite thickness against boundary elements, of data/reference/check_elements.json.
 
-The law of a cover takes Q from its own contact, as :class:`viscoroll.Cover` says; the elements solve the stick zone
-without that, and without coupling.  The bound of the difference is the error that ``validity`` states.
+The law of a cover takes Q from its own contact, as :class:`viscoroll.Cover` says; the elements
+solve the stick zone without that, and without coupling.  The bound of the difference is the error
+that ``validity`` states.
 """
 
 from __future__ import annotations
@@ -11,22 +12,28 @@ from typing import Any
 import numpy as np
 
 import viscoroll as vr
-from viscoroll.contact_law.validity.cover import stated_error
+from viscoroll.contact_mechanics.validity import stated_error
 
 from ..truth.reference import read_elements
 from .claim import Found, Proof, at
 
-_KAPPA, _MU = 10.0, 0.5
+_KAPPA = 10.0
+_MU = 0.5
 
 
 def placed(truth: dict[str, Any]) -> tuple[vr.Scene, Any, str]:
-    """Return the scene of a state of the file, its contact without creep, and where it is, in words.
+    """Return the scene of a state of the file, its contact without creep, and where it is, in
+    words.
 
     truth: series, cover, V, half lengths, and what the elements find.
     """
     cover = vr.Cover(vr.Prony(**truth["series"]), **truth["cover"])
     scene = vr.Scene(material=cover, kappa=_KAPPA, mu=_MU)
-    return scene, vr.contact(scene, truth["V"], delta=0.0), at(V=truth["V"], eta=truth["eta"]) + f", {cover!r}"
+    return (
+        scene,
+        vr.contact(scene, truth["V"], delta=0.0),
+        at(V=truth["V"], eta=truth["eta"]) + f", {cover!r}",
+    )
 
 
 def states(_: np.random.Generator, count: int) -> Found:
@@ -35,7 +42,9 @@ def states(_: np.random.Generator, count: int) -> Found:
     count: how many states of the file, the first ones.
     """
     for truth in read_elements("covers")[:count]:
-        (scene, state, where), V, z = placed(truth), truth["V"], truth["z"]
+        (scene, state, where) = placed(truth)
+        V = truth["V"]
+        z = truth["z"]
         delta = state.delta_0 + _MU * V * truth["d"]
         Q = vr.contact(scene, V, delta=delta, fields="Q").Q
         yield (
@@ -52,7 +61,8 @@ def states(_: np.random.Generator, count: int) -> Found:
 
 
 def free_creep(_: np.random.Generator, count: int) -> Found:
-    """Yield errors of delta_0 where nu = 1/2: then all strain by the pressure comes of the finite thickness.
+    """Yield errors of delta_0 where nu = 1/2: then all strain by the pressure comes of the finite
+    thickness.
 
     count: how many states of the file, the first ones.
     """
@@ -64,20 +74,29 @@ def free_creep(_: np.random.Generator, count: int) -> Found:
 _BOUND = 2e-6
 PROOFS = [
     Proof(
-        "covers", "cover_states",
-        "one and three modes, against rigid and elastic bodies, ν 0 to 0.5, h/l0 0.2 to 20, κV 0.05 to 4",
+        "covers",
+        "cover_states",
+        "one and three modes, against rigid and elastic bodies, ν 0 to 0.5, h/l0 0.2 to 20, κV "
+        "0.05 to 4",
         {
             "lam": ("λ of a cover against boundary elements, relative", _BOUND),
             "epsilon": ("ε of a cover against boundary elements", _BOUND),
             "M": ("M of a cover against boundary elements, relative", _BOUND),
             "delta_star": ("δ* of a cover against boundary elements, relative", _BOUND),
-            "Q": ("Q of a cover against the solution without coupling, divided by the error that validity states", 1.0),
+            "Q": (
+                "Q of a cover against the solution without coupling, divided by the error that "
+                "validity states",
+                1.0,
+            ),
         },
         states,
     ),
     Proof(
-        "covers", "cover_states", "one and three modes, ν = 0.5, h/l0 0.2 to 20, κV 0.05 to 4",
+        "covers",
+        "cover_states",
+        "one and three modes, ν = 0.5, h/l0 0.2 to 20, κV 0.05 to 4",
         {"": ("δ0 of a cover against boundary elements, relative", _BOUND)},
-        free_creep, "free creep",
+        free_creep,
+        "free creep",
     ),
-]  # fmt: skip
+]

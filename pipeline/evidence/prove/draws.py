@@ -1,4 +1,6 @@
-"""Random states, scenes and motions, over the whole domain and along its edges, which proofs are about."""
+"""Random states, scenes and motions, over the whole domain and along its edges, which proofs are
+about.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,10 @@ from ..truth.reference import Case
 
 #: alphas at the end of the domain and next to it
 EDGE_ALPHAS = (1.0, float(np.nextafter(1.0, 2.0)), 1.0 + 1e-15, 1.0 + 1e-8, 1.0001, 1e6)
-STATES = "alpha in [1, 1e6], kappa V in [1e-300, 1e300], kappa, mu in [1e-6, 1e6], s from 1e-300 to 1 and beyond"
+STATES = (
+    "alpha in [1, 1e6], kappa V in [1e-300, 1e300], kappa, mu in [1e-6, 1e6], s from 1e-300 "
+    "to 1 and beyond"
+)
 #: shares of the duration of a free motion that outputs fall on
 OUTPUT_SHARES = np.array([1e-3, 1e-2, 0.1, 0.25, 0.5, 0.75, 1.0])
 
@@ -28,47 +33,73 @@ def powers(random: np.random.Generator, *ends: tuple[float, float]) -> list[floa
 
 def generators(z: Any, alpha: float) -> tuple[Any, Any]:
     """g and h of one relaxation time, to place states by a half length z over V T."""
-    r, k = i1e(alpha * z) / i0e(alpha * z), k0e(z) / k1e(z)
+    r = i1e(alpha * z) / i0e(alpha * z)
+    k = k0e(z) / k1e(z)
     h = (alpha - 1.0) / alpha * r / (1.0 + r * k)
     return h * k, h
 
 
 def chosen_alpha(random: np.random.Generator) -> float:
     """At an edge, one time in four; else log-uniform in [1, 1e6]."""
-    return float(random.choice(EDGE_ALPHAS)) if random.random() < 0.25 else powers(random, (0.0, 6.0))[0]
+    return (
+        float(random.choice(EDGE_ALPHAS))
+        if random.random() < 0.25
+        else powers(random, (0.0, 6.0))[0]
+    )
 
 
 def chosen_creep(random: np.random.Generator, delta_star: Any) -> float:
-    """s = delta/delta_star log-uniform toward 0 and toward 1, at 0, at 1e-300 and 1e-16, and within an ULP of 1."""
+    """s = delta/delta_star log-uniform toward 0 and toward 1, at 0, at 1e-300 and 1e-16, and within
+    an ULP of 1.
+    """
     star = float(delta_star)
     edges = (
-        np.nextafter(star, 0.0), star, np.nextafter(star, np.inf), 1.5 * star, float(delta_star * (1 - arb(10) ** -16)),
-        1e-300 * star, 1e-16 * star, 0.0,
-    )  # fmt: skip
+        np.nextafter(star, 0.0),
+        star,
+        np.nextafter(star, np.inf),
+        1.5 * star,
+        float(delta_star * (1 - arb(10) ** -16)),
+        1e-300 * star,
+        1e-16 * star,
+        0.0,
+    )
     small, gap = powers(random, (-20.0, 0.0), (-15.0, 0.0))
-    kinds = float(random.choice(edges)), small * star, (1.0 - gap) * star, float(random.random()) * star
+    kinds = (
+        float(random.choice(edges)),
+        small * star,
+        (1.0 - gap) * star,
+        float(random.random()) * star,
+    )
     return kinds[random.integers(len(kinds))]
 
 
-def chosen_state(random: np.random.Generator, alpha: float) -> tuple[float, float, float, float, float]:
-    """(alpha, kappa, mu, V, delta): kappa, mu in [1e-6, 1e6], kappa V in [1e-300, 1e300], half of it in [1e-8, 1e8]."""
+def chosen_state(
+    random: np.random.Generator, alpha: float
+) -> tuple[float, float, float, float, float]:
+    """(alpha, kappa, mu, V, delta): kappa, mu in [1e-6, 1e6], kappa V in [1e-300, 1e300], half of
+    it in [1e-8, 1e8].
+    """
     most = 300.0 if random.random() < 0.5 else 8.0
     kappa, mu, kappa_V = powers(random, (-6.0, 6.0), (-6.0, 6.0), (-most, most))
-    delta = chosen_creep(random, contact_enclosure(alpha, kappa, mu, kappa_V / kappa, 0.0)["delta_star"])
+    delta = chosen_creep(
+        random, contact_enclosure(alpha, kappa, mu, kappa_V / kappa, 0.0)["delta_star"]
+    )
     sign_V, sign_delta = random.choice([-1.0, 1.0], 2).tolist()
     return alpha, kappa, mu, sign_V * kappa_V / kappa, sign_delta * delta
 
 
 def free(random: np.random.Generator) -> Case:
-    """alpha in [1, 1e4], kappa in [0.5, 200], mu in [0.01, 3], gamma in [1e-3, 1e8], j in [0.1, 2], starts of every
-    sign in [-2, 2]^2, half of them at an edge: V0 = 0, omega0 = 0, pure rolling, V0 + j omega0 = 0; onset and rest
-    within and beyond the end.
+    """alpha in [1, 1e4], kappa in [0.5, 200], mu in [0.01, 3], gamma in [1e-3, 1e8], j in [0.1, 2],
+    starts of every sign in [-2, 2]^2, half of them at an edge: V0 = 0, omega0 = 0, pure rolling,
+    V0 + j omega0 = 0; onset and rest within and beyond the end.
 
-    At alpha = 1 the last edge would stop both speeds at once and for good, so that no error is relative to anything
-    (tests/motion/test_nasty_starts.py has it); there it is missed by 1e-3.
+    At alpha = 1 the last edge would stop both speeds at once and for good, so that no error is
+    relative to anything (tests/motion/test_nasty_starts.py has it); there it is missed by 1e-3.
     """
     alpha = 1.0 if random.random() < 0.05 else powers(random, (0.0, 4.0))[0]
-    kappa, mu, gamma = powers(random, (np.log10(0.5), np.log10(200.0)), (-2.0, np.log10(3.0)), (-3.0, 8.0))
+    kappa, mu, gamma = powers(
+        random, (np.log10(0.5), np.log10(200.0)), (-2.0, np.log10(3.0)), (-3.0, 8.0)
+    )
     j = float(random.choice([0.5, 1.0]) if random.random() < 0.3 else random.uniform(0.1, 2.0))
     V0, omega0 = random.uniform(-2.0, 2.0, 2).tolist()
     edges = [(0.0, omega0), (V0, 0.0), (V0, V0), (V0, -V0 / j if alpha > 1.0 else -0.999 * V0 / j)]
@@ -81,17 +112,30 @@ def free(random: np.random.Generator) -> Case:
 
 
 def slight(random: np.random.Generator) -> Case:
-    """Friction so slight that rolling resistance spends nearly all of it, on cylinders of little inertia."""
-    alpha, kappa, mu, gamma, j = powers(random, (-1.0, 3.0), (0.0, 3.0), (-6.0, -5.0), (-2.0, 2.0), (-3.0, 0.0))
+    """Friction so slight that rolling resistance spends nearly all of it, on cylinders of little
+    inertia.
+    """
+    alpha, kappa, mu, gamma, j = powers(
+        random, (-1.0, 3.0), (0.0, 3.0), (-6.0, -5.0), (-2.0, 2.0), (-3.0, 0.0)
+    )
     V0, omega0 = (random.normal(size=2) * powers(random, (-5.0, 0.0), (-5.0, 0.0))).tolist()
     slide = abs(omega0 - V0) / (gamma * mu * (1.0 + 1.0 / j))
-    end = slide * random.uniform(0.3, 1.1) + 10.0 ** random.uniform(-1.0, 1.5) * (1.0 + j) * (1.0 + 1.0 / alpha) / gamma
-    return Case(vr.Scene(1.0 + alpha, kappa, mu, gamma, j), V0, omega0, float(end) * OUTPUT_SHARES, {})
+    end = (
+        slide * random.uniform(0.3, 1.1)
+        + 10.0 ** random.uniform(-1.0, 1.5) * (1.0 + j) * (1.0 + 1.0 / alpha) / gamma
+    )
+    return Case(
+        vr.Scene(1.0 + alpha, kappa, mu, gamma, j), V0, omega0, float(end) * OUTPUT_SHARES, {}
+    )
 
 
 def driven(random: np.random.Generator, wild: bool = False) -> Case:
-    """A scene, most of them of no cylinder if ``wild``, a start from rest or not, and a drive of up to three pieces."""
-    alpha, kappa, mu = powers(random, *([(-2, 8), (-1, 3), (-6, 0.3)] if wild else [(-1, 2), (0.3, 2), (-1.7, 0)]))
+    """A scene, most of them of no cylinder if ``wild``, a start from rest or not, and a drive of up
+    to three pieces.
+    """
+    alpha, kappa, mu = powers(
+        random, *([(-2, 8), (-1, 3), (-6, 0.3)] if wild else [(-1, 2), (0.3, 2), (-1.7, 0)])
+    )
     j = powers(random, (-3.0, 3.0))[0] if wild else random.uniform(0.2, 1.2)
     V0, omega0 = random.normal(size=2) * 10.0 ** random.uniform(-2.0, 0.5) * (random.random() < 0.7)
     end, size = powers(random, (0.0, 2.0), (-2.0, 0.0))
@@ -101,15 +145,21 @@ def driven(random: np.random.Generator, wild: bool = False) -> Case:
     if random.random() < 0.5:  # pieces that stay
         values = np.repeat(values[:, ::2], 2, axis=1)
     drive = {
-        name: vr.Schedule(times, each * (random.random() < 0.7)) for name, each in zip(("force", "torque"), values)
+        name: vr.Schedule(times, each * (random.random() < 0.7))
+        for name, each in zip(("force", "torque"), values)
     }
-    return Case(vr.Scene(1.0 + alpha, kappa, mu, 1.0, j), V0, omega0, np.linspace(0.0, end, 30), drive)
+    return Case(
+        vr.Scene(1.0 + alpha, kappa, mu, 1.0, j), V0, omega0, np.linspace(0.0, end, 30), drive
+    )
 
 
 def braked(random: np.random.Generator) -> Case:
-    """Such a motion with a brake, a quarter of them at alpha = 1; in half of them one of the speeds is 0 at first."""
+    """Such a motion with a brake, a quarter of them at alpha = 1; in half of them one of the speeds
+    is 0 at first.
+    """
     scene, V0, omega0, t, drive = driven(random)
-    scene, times = scene.replace(alpha=1.0) if random.random() < 0.25 else scene, drive["torque"].times
+    scene = scene.replace(alpha=1.0) if random.random() < 0.25 else scene
+    times = drive["torque"].times
     brake = np.abs(random.normal(size=times.size)) * scene.mu * 10.0 ** random.uniform(-1.0, 0.5)
     brake *= np.repeat(random.random(times.size // 2) < 0.7, 2)
     V0, omega0 = ((V0, omega0), (V0, omega0), (V0, 0.0), (0.0, omega0))[random.integers(4)]
@@ -117,17 +167,21 @@ def braked(random: np.random.Generator) -> Case:
 
 
 def prescribed(random: np.random.Generator) -> Case:
-    """V or omega prescribed, as large as the other speed at first times 1e-9 to 1e3, and long enough for that to pass.
+    """V or omega prescribed, as large as the other speed at first times 1e-9 to 1e3, and long
+    enough for that to pass.
 
     Returns
     -------
     Case
-        alpha - 1 in [0.01, 1e4], kappa in [1e-3, 1e3], mu in [1e-5, 2], at most kappa, so that omega does not
-        change its sign in partial slip; gamma and j in [0.01, 100].  The speed stays,
-        ramps up and down, falls by up to 8 decades and stays, or stands at 0 for a while; the other one is driven by a
-        force or a torque of up to 4 mu that stays, ramps and jumps.
+        alpha - 1 in [0.01, 1e4], kappa in [1e-3, 1e3], mu in [1e-5, 2], at most kappa, so that
+        omega does not change its sign in partial slip; gamma and j in [0.01, 100].  The speed
+        stays,
+        ramps up and down, falls by up to 8 decades and stays, or stands at 0 for a while; the other
+        one is driven by a force or a torque of up to 4 mu that stays, ramps and jumps.
     """
-    alpha, kappa, mu, gamma, j = powers(random, (-2.0, 4.0), (-3.0, 3.0), (-5.0, 0.3), (-2.0, 2.0), (-2.0, 2.0))
+    alpha, kappa, mu, gamma, j = powers(
+        random, (-2.0, 4.0), (-3.0, 3.0), (-5.0, 0.3), (-2.0, 2.0), (-2.0, 2.0)
+    )
     mu = min(mu, kappa)
     by_V = random.random() < 0.5
     other, ratio, size, longer = powers(random, (-4.0, 1.0), (-9.0, 3.0), (-2.0, 0.6), (-0.3, 1.3))
@@ -137,15 +191,19 @@ def prescribed(random: np.random.Generator) -> Case:
     cuts = np.repeat(np.sort(random.uniform(0.0, end, random.integers(0, 4))), 2)
     times = np.concatenate([[0.0], cuts, [end]])
     acting = vr.Schedule(times, random.normal(size=times.size) * mu * size)
-    scene, t = vr.Scene(1.0 + alpha, kappa, mu, gamma, j), np.linspace(0.0, end, 25)
+    scene = vr.Scene(1.0 + alpha, kappa, mu, gamma, j)
+    t = np.linspace(0.0, end, 25)
     if by_V:
         return Case(scene, None, other, t, {"V": speed, "torque": acting})
     return Case(scene, other, None, t, {"omega": speed, "force": acting})
 
 
 def _prescribed_speed(random: np.random.Generator, end: float, size: float) -> vr.Schedule:
-    """A speed of about this size that stays, ramps, falls by up to 8 decades, or stands at 0 for a while."""
-    sign, times = float(random.choice([-1.0, 1.0])), np.sort(random.uniform(0.0, end, 4))
+    """A speed of about this size that stays, ramps, falls by up to 8 decades, or stands at 0 for a
+    while.
+    """
+    sign = float(random.choice([-1.0, 1.0]))
+    times = np.sort(random.uniform(0.0, end, 4))
     kind = random.integers(4)
     if kind == 0:
         return vr.Schedule([0.0], [sign * size])
@@ -159,7 +217,12 @@ def _prescribed_speed(random: np.random.Generator, end: float, size: float) -> v
 def fed_back(random: np.random.Generator) -> Case:
     """Such a motion with gains, of which none makes the speeds grow."""
     case = driven(random)
-    force_V, force_omega, torque_omega = -(10.0 ** random.uniform(-1.0, 1.0, 3)) * (random.random(3) < 0.6)
+    force_V, force_omega, torque_omega = -(10.0 ** random.uniform(-1.0, 1.0, 3)) * (
+        random.random(3) < 0.6
+    )
     force, torque = (case.drive[name] for name in ("force", "torque"))
-    fed = {"force": vr.Feedback(force, force_V, force_omega), "torque": vr.Feedback(torque, 0.0, torque_omega)}
+    fed = {
+        "force": vr.Feedback(force, force_V, force_omega),
+        "torque": vr.Feedback(torque, 0.0, torque_omega),
+    }
     return case._replace(drive=fed)

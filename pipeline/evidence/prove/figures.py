@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from viscoroll.core.plots.style import LINES, THIN, new_figure, save
+from viscoroll.core.plots import LINES, THIN, new_figure, save
 
 from ...stage import ROOT, make_folder, told
 from ..results import RESULTS, Results, parser
@@ -19,14 +19,17 @@ from .unsteady import LEVELS
 
 #: begin of a claim -> title of its panel; what is below the least is drawn there
 PANELS = {
-    f"V, omega, condition below {FACTOR:g}": rf"$V$, $\omega$, condition below {FACTOR:g}", "x": "$x$",
+    f"V, omega, condition below {FACTOR:g}": rf"$V$, $\omega$, condition below {FACTOR:g}",
+    "x": "$x$",
     "time of onset": "time of onset",
-}  # fmt: skip
+}
 _LEAST = 1e-17
 
 
 def motion_errors(results: Results) -> Any:
-    """Tolerance against achieved error: worst and mean over the motions, with the bound and rtol itself."""
+    """Tolerance against achieved error: worst and mean over the motions, with the bound and rtol
+    itself.
+    """
     rows = results["proofs motion"]["rows"]
     title = "Relative error of random motions against the tolerance rtol"
     figure, panels = new_figure(title, 1, len(PANELS), 3.6, sharey=True)
@@ -35,13 +38,17 @@ def motion_errors(results: Results) -> Any:
         rtol = np.array([float(row["claim"].split("rtol ")[1].split(",")[0]) for row in own])
         for name, line, marker in (("worst", LINES[0], "o"), ("mean", LINES[1], "s")):
             shown = np.maximum(rtol * [row[name] for row in own], _LEAST)
-            axes.loglog(rtol, shown, **line, marker=marker, markersize=4, label=f"{name} of the motions")
+            axes.loglog(
+                rtol, shown, **line, marker=marker, markersize=4, label=f"{name} of the motions"
+            )
         axes.loglog(rtol, FACTOR * rtol, **LINES[2], label=f"{FACTOR:g} rtol")
         axes.loglog(rtol, rtol, **THIN, label="rtol")
         axes.set(title=title, xlabel="rtol")
         axes.invert_xaxis()
     panels[0].set_ylabel("relative error")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False)
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=4, frameon=False
+    )
     return figure
 
 
@@ -55,15 +62,26 @@ def transient(results: Results) -> Any:
         for row in results["transient"]["rows"]:
             for which, style in ((1, "-"), (2, ":")):
                 line = colours[row["modes"]] | {"linestyle": style, "linewidth": 1.0}
-                places = [(e[0], max(abs(e[which]), 1e-5)) for e in row[start]["e"] if e[which] is not None]
+                places = [
+                    (e[0], max(abs(e[which]), 1e-5))
+                    for e in row[start]["e"]
+                    if e[which] is not None
+                ]
                 axes.loglog(*zip(*places, strict=True) if places else ((), ()), **line)
         axes.loglog(LEVELS, LEVELS, **THIN, label="error = unsteadiness")
         axes.set(title=name, xlabel="unsteadiness", ylim=(1e-5, 3.0))
     for modes, line in colours.items():
-        panels[0].plot([], [], **(line | {"linestyle": "-"}), label=f"{modes} relaxation time{'s' * (modes > 1)}")
+        panels[0].plot(
+            [],
+            [],
+            **(line | {"linestyle": "-"}),
+            label=f"{modes} relaxation time{'s' * (modes > 1)}",
+        )
     panels[0].plot([], [], color="black", linestyle=":", label="with the correction N")
     panels[0].set_ylabel("relative error of V")
-    figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False)
+    figure.legend(
+        *panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3, frameon=False
+    )
     return figure
 
 

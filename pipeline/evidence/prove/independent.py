@@ -1,11 +1,13 @@
-"""Hold the package against implementations that nobody here wrote -> data/results/independent.json (kept in git).
+"""Hold the package against implementations that nobody here wrote -> data/results/independent.json
+(kept in git).
 
     python -m pipeline.evidence.prove.independent [-o FILE]
 
-The files of data/reference, whose README says where each comes from: six cases of Wang & Knothe, 114 states
-and three profiles of a half-space code, an implicit integration of the motion, and the numbers that the paper prints.
-Deviations are this package's value less the other's.  tests/evidence/test_independent.py says how large they may be;
-pipeline/evidence/document/ puts the tables into docs/accuracy_independent.md.
+The files of data/reference, whose README says where each comes from: six cases of Wang & Knothe,
+114 states and three profiles of a half-space code, an implicit integration of the motion, and the
+numbers that the paper prints.  Deviations are this package's value less the other's.
+tests/evidence/test_independent.py says how large they may be; pipeline/evidence/document/ puts the
+tables into docs/accuracy_independent.md.
 """
 
 from __future__ import annotations
@@ -25,8 +27,10 @@ from ..results import run
 
 REFERENCE = ROOT / "data/reference"
 #: friction and kappa of profiles.csv
-PROFILES_MU, PROFILES_KAPPA = 0.2, 29.1
-#: share of the half-length on which p is compared: at its ends p falls like a square root within one cell
+PROFILES_MU = 0.2
+PROFILES_KAPPA = 29.1
+#: share of the half-length on which p is compared: at its ends p falls like a square root within
+#: one cell
 INNER = 0.97
 SYMBOLS = {"lam": "λ", "epsilon": "ε", "beta": "β"}
 
@@ -47,16 +51,22 @@ def wang_knothe() -> dict[str, NDArray]:
 
 
 def wang_knothe_case(case: dict[str, float]) -> dict[str, float]:
-    """Two like cylinders of radius R are one on a half-space with that R in y = x^2/(2 R); Q/mu is given."""
+    """Two like cylinders of radius R are one on a half-space with that R in y = x^2/(2 R); Q/mu is
+    given.
+    """
     E_prime = math.pi * 2.0 * case["G_longtime_MPa"] * (1.0 + case["nu"]) / (1.0 - case["nu"] ** 2)
     kappa = math.sqrt(E_prime * case["R_mm"] / (32.0 * case["P_N_per_mm"]))
     V = case["V_mm_per_s"] * case["T_epsilon_s"] / case["R_mm"]
     scene = vr.Scene(case["alpha"], kappa, case["mu"])
     limit = vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
     creep = brentq(
-        lambda delta: vr.contact(scene, V, delta=delta, fields="Q").Q - case["mu"] * case["Q_over_mu"], 0.0, limit,
+        lambda delta: (
+            vr.contact(scene, V, delta=delta, fields="Q").Q - case["mu"] * case["Q_over_mu"]
+        ),
+        0.0,
+        limit,
         xtol=1e-15,
-    )  # fmt: skip
+    )
     state = vr.contact(scene, V, delta=creep)
     x = 0.5 * state.lam * (state.epsilon + np.linspace(-1.0, 1.0, 4001))
     peak = E_prime * vr.stress(scene, x, V, delta=creep).p.max()
@@ -65,7 +75,9 @@ def wang_knothe_case(case: dict[str, float]) -> dict[str, float]:
         "creep, relative": creep / case["creep"] - 1.0,
         "p_max, relative": peak / case["p_max_MPa"] - 1.0,
         "width, cells": (width - case["width_mm"]) / case["cell_mm"],
-        "width of the stick zone, cells": (state.beta * width - case["stick_fraction"] * case["width_mm"])
+        "width of the stick zone, cells": (
+            state.beta * width - case["stick_fraction"] * case["width_mm"]
+        )
         / case["cell_mm"],
     }
 
@@ -74,14 +86,21 @@ def wang_knothe_case(case: dict[str, float]) -> dict[str, float]:
 
 
 def half_space() -> dict[str, NDArray]:
-    """Deviations by quantity and unit, an entry a state; full slip: 1 where it is decided otherwise."""
+    """Deviations by quantity and unit, an entry a state; full slip: 1 where it is decided
+    otherwise.
+    """
     data = columns(read_rows(REFERENCE / "half_space_code.csv"))
-    state = vr.contact(vr.Scene(data["alpha"], data["kappa"], data["mu"]), data["V"], delta=data["delta"])
+    state = vr.contact(
+        vr.Scene(data["alpha"], data["kappa"], data["mu"]), data["V"], delta=data["delta"]
+    )
     elastic = data["alpha"] == 1.0
     slow = ~elastic & (data["kappa"] * data["V"] < 2.5)
     absolute = {
         "Q/μ, absolute": (state.Q - data["Q"]) / data["mu"],
-        **{f"{symbol}, absolute": getattr(state, name) - data[name] for name, symbol in SYMBOLS.items()},
+        **{
+            f"{symbol}, absolute": getattr(state, name) - data[name]
+            for name, symbol in SYMBOLS.items()
+        },
     }
     return {
         **absolute,
@@ -94,7 +113,9 @@ def half_space() -> dict[str, NDArray]:
 
 def profiles() -> dict[str, NDArray]:
     """p over its peak, on the inner part of the contact; tau over mu times the peak."""
-    data, p_off, tau_off = columns(read_rows(REFERENCE / "profiles.csv")), [], []
+    data = columns(read_rows(REFERENCE / "profiles.csv"))
+    p_off = []
+    tau_off = []
     for alpha in np.unique(data["alpha"]):
         x, p, tau, s, kappa_V, E_prime = (
             data[name][data["alpha"] == alpha]
@@ -119,7 +140,11 @@ def profiles() -> dict[str, NDArray]:
 def section_5() -> dict[str, NDArray]:
     """V and omega over |V|, onset relative: IC1-IC3 with both sets of parameters, at rtol 1e-11."""
     rows = read_rows(REFERENCE / "section5.csv")
-    off: dict[str, list[NDArray]] = {"V, relative": [], "ω, divided by V": [], "onset time, relative": []}
+    off: dict[str, list[NDArray]] = {
+        "V, relative": [],
+        "ω, divided by V": [],
+        "onset time, relative": [],
+    }
     for ic, params in sorted({(row["ic"], row["params"]) for row in rows}):
         data = columns([row for row in rows if (row["ic"], row["params"]) == (ic, params)])
         scene = vr.Scene(**{name: data[name][0] for name in ("alpha", "kappa", "mu", "gamma", "j")})
@@ -134,7 +159,9 @@ def section_5() -> dict[str, NDArray]:
 
 
 def paper() -> list[dict[str, Any]]:
-    """Each number that the paper prints, the same computed here, and the difference in its last printed digits."""
+    """Each number that the paper prints, the same computed here, and the difference in its last
+    printed digits.
+    """
     start = vr.presets.PAPER_STARTS["IC1"]
     onset = vr.roll(vr.presets.PAPER_SECTION_5, *start, 1e-3).onset_time
 
@@ -144,20 +171,37 @@ def paper() -> list[dict[str, Any]]:
     def own(row: dict[str, Any]) -> float:
         if row["quantity"] == "onset":
             return onset
-        return at(row["t"], row["quantity"]) if row["t"] != "" else getattr(vr.presets.PAPER_SECTION_5, row["quantity"])
+        return (
+            at(row["t"], row["quantity"])
+            if row["t"] != ""
+            else getattr(vr.presets.PAPER_SECTION_5, row["quantity"])
+        )
 
     rows = read_rows(REFERENCE / "paper.csv")
-    # beta rises from 0 to 0.98 within 1.5e-5: where its printed value is passed says more than the value at that time,
-    # and so does what of T_epsilon puts it there
-    n, early = next((n, row) for n, row in enumerate(rows) if (row["t"], row["quantity"]) == (1.52e-4, "beta"))
-    t, beta, printed = early["t"], early["value"], vr.presets.PAPER_CYLINDER.T_epsilon
+    # beta rises from 0 to 0.98 within 1.5e-5: where its printed value is passed says more than the
+    # value at that time, and so does what of T_epsilon puts it there
+    n, early = next(
+        (n, row) for n, row in enumerate(rows) if (row["t"], row["quantity"]) == (1.52e-4, "beta")
+    )
+    t = early["t"]
+    beta = early["value"]
+    printed = vr.presets.PAPER_CYLINDER.T_epsilon
     passed = brentq(lambda t: at(t, "beta") - beta, onset * (1.0 + 1e-9), t, xtol=1e-12)
     slower = brentq(
-        lambda T: at(t, "beta", vr.presets.PAPER_CYLINDER.replace(T_epsilon=T).scene()) - beta, 0.996 * printed, printed
+        lambda T: at(t, "beta", vr.presets.PAPER_CYLINDER.replace(T_epsilon=T).scene()) - beta,
+        0.996 * printed,
+        printed,
     )
     result = [row | {"here": own(row)} for row in rows]
     result[n + 1 : n + 1] = [
-        {"section": early["section"], "t": "", "quantity": what, "value": value, "last_digit": digit, "here": here}
+        {
+            "section": early["section"],
+            "t": "",
+            "quantity": what,
+            "value": value,
+            "last_digit": digit,
+            "here": here,
+        }
         for what, value, digit, here in (
             (f"time of beta = {beta}", t, 1e-6, passed),
             (f"T_epsilon, s, that gives beta = {beta} at its time", printed, 0.1, slower),
@@ -165,7 +209,8 @@ def paper() -> list[dict[str, Any]]:
     ]
     # the paper prints three digits at most
     return [
-        row | {"here": f"{row['here']:.4g}", "digits": (row["here"] - row["value"]) / row["last_digit"]}
+        row
+        | {"here": f"{row['here']:.4g}", "digits": (row["here"] - row["value"]) / row["last_digit"]}
         for row in result
     ]
 
@@ -182,12 +227,15 @@ def rows() -> list[dict[str, Any]]:
     """Source, quantity, number of values, worst and mean of the deviations' moduli."""
     return [
         {
-            "source": source, "quantity": quantity, "values": off.size,
-            "worst": float(np.max(np.abs(off))), "mean": float(np.mean(np.abs(off))),
+            "source": source,
+            "quantity": quantity,
+            "values": off.size,
+            "worst": float(np.max(np.abs(off))),
+            "mean": float(np.mean(np.abs(off))),
         }
         for source, deviations in SOURCES.items()
         for quantity, off in deviations().items()
-    ]  # fmt: skip
+    ]
 
 
 def compare() -> dict[str, Any]:

@@ -10,23 +10,26 @@ import flint
 import numpy as np
 from flint import arb
 
-from viscoroll.kernels.bessel import layout as layout
-from viscoroll.kernels.bessel import ratios as kernels
+from viscoroll.kernels.law import bessel_ratios
+from viscoroll.kernels.law import bessel_ratios as kernels
 
 from ..truth import enclosures
 from .claim import Found, Proof
 
 #: a polynomial or series to a unit, a product and a logarithm
 RATIO_ULP = 4.0
-#: of the larger of the two terms of a Riccati equation; 1 - r carries up to 3 units just below x = 2
+#: of the larger of the two terms of a Riccati equation; 1 - r carries up to 3 units just below x =
+#: 2
 SLOPE_ULP = 8.0
 _BITS = 120
 
 
 def points(random: np.random.Generator, count: int) -> np.ndarray:
-    """Every bin edge and its neighbours; and at random: half over the tables, half over all binary exponents."""
+    """Every bin edge and its neighbours; and at random: half over the tables, half over all binary
+    exponents.
+    """
     octaves = 2.0 ** np.arange(-31, 8)[:, None]
-    edges = (octaves * (1.0 + np.arange(layout.BINS) / layout.BINS)).ravel()
+    edges = (octaves * (1.0 + np.arange(bessel_ratios.BINS) / bessel_ratios.BINS)).ravel()
     ends = np.array([5e-324, 1e-320, 2.2250738585072014e-308, 1e-8, 1.7976931348623157e308])
     common = 10.0 ** random.uniform(-4, 3, count // 2)
     bits = random.integers(1, np.float64(np.finfo(float).max).view(np.int64), count - count // 2)
@@ -35,21 +38,32 @@ def points(random: np.random.Generator, count: int) -> np.ndarray:
 
 
 def ulps(value: float, exact: Any, *terms: Any) -> float:
-    """|value - exact| in units in the last place of the exact value, or of the largest of some terms."""
+    """|value - exact| in units in the last place of the exact value, or of the largest of some
+    terms.
+    """
     unit = np.spacing(max(abs(float(each)) for each in (exact, *terms)))
     return float((abs(arb(value) - exact) / arb(float(unit))).upper())
 
 
 def compared(x: float) -> Iterator[tuple[str, float]]:
     """Errors at x: of r, k, i2 in ULP; of r' and k' in ULP of the larger Riccati term."""
-    X, (r, rc), (k, kc) = arb(x), kernels.ratio_r(x), kernels.ratio_k(x)
-    exact_r, exact_k = enclosures.ratio_r(X), enclosures.ratio_k(X)
+    X = arb(x)
+    (r, rc) = kernels.ratio_r(x)
+    (k, kc) = kernels.ratio_k(x)
+    exact_r = enclosures.ratio_r(X)
+    exact_k = enclosures.ratio_k(X)
     yield "r", ulps(r, exact_r)
     yield "k", ulps(k, exact_k)
     yield "i2", ulps(kernels.ratio_i2(x, r), enclosures.ratio_i2(X))
     if x >= np.finfo(float).tiny:  # below, k itself has lost its digits, and k/x with it
-        yield "slope of r", ulps(kernels.slope_r(x, r, rc), 1 - exact_r / X - exact_r**2, exact_r / X)
-        yield "slope of k", ulps(kernels.slope_k(x, k, kc), exact_k**2 + exact_k / X - 1, exact_k / X)
+        yield (
+            "slope of r",
+            ulps(kernels.slope_r(x, r, rc), 1 - exact_r / X - exact_r**2, exact_r / X),
+        )
+        yield (
+            "slope of k",
+            ulps(kernels.slope_k(x, k, kc), exact_k**2 + exact_k / X - 1, exact_k / X),
+        )
 
 
 def found(random: np.random.Generator, count: int) -> Found:
@@ -62,8 +76,11 @@ def found(random: np.random.Generator, count: int) -> Found:
 _SLOPE = "{}, ULP of the larger term of its Riccati equation"
 PROOFS = [
     Proof(
-        "ratios", "ratio_points", "all positive doubles, of slopes all normal ones",
+        "ratios",
+        "ratio_points",
+        "all positive doubles, of slopes all normal ones",
         {name: (f"{name}, ULP", RATIO_ULP) for name in ("r", "k", "i2")}
-        | {name: (_SLOPE.format(name), SLOPE_ULP) for name in ("slope of r", "slope of k")}, found,
+        | {name: (_SLOPE.format(name), SLOPE_ULP) for name in ("slope of r", "slope of k")},
+        found,
     ),
-]  # fmt: skip
+]

@@ -1,7 +1,8 @@
 """Materials of many relaxation times and pairs against the matching conditions in balls.
 
-The conditions stand in ``pipeline.evidence.truth.enclosures`` as they were derived, without the system that the kernels
-solve; that they are the contact's, boundary elements say (:mod:`states`), which know none of them.
+The conditions stand in ``pipeline.evidence.truth.enclosures`` as they were derived, without the
+system that the kernels solve; that they are the contact's, boundary elements say (:mod:`states`),
+which know none of them.
 """
 
 from __future__ import annotations
@@ -15,10 +16,10 @@ import numpy as np
 from flint import arb
 
 import viscoroll as vr
-from viscoroll.contact_law.contact_fields import OF_BODIES
-from viscoroll.kernels.rows.modes import modes_loop
-from viscoroll.kernels.rows.series import FUNCTIONS, new_workspace
-from viscoroll.materials.law.evaluate import modes_record
+from viscoroll.contact_mechanics.contact_table import OF_BODIES
+from viscoroll.kernels.law.material_series import FUNCTIONS, new_workspace
+from viscoroll.kernels.law.modes import modes_loop
+from viscoroll.laws.law_rows import modes_record
 
 from ..truth.enclosures import INPUTS, enclosed, slopes, zone_of
 from ..truth.material import Material, material_of
@@ -26,25 +27,32 @@ from .claim import Found, Proof, at
 from .draws import powers
 from .states import EPSILON, LAM
 
-BITS, DECADES = 400, 14.0
+BITS = 400
+DECADES = 14.0
 #: fields whose errors are divided by the condition of beta
 ILL_CONDITIONED = ("beta", "dQ_dV", "dQ_ddelta", "dQ_domega")
 #: states of one alpha that are evaluated by the axis of alpha
 STATES_OF_ALPHA = 2000
 #: e-folds beyond the shortest and the longest time
-BELOW, ABOVE = 30.0, 28.0
+BELOW = 30.0
+ABOVE = 28.0
 
 
 def random_series(random: np.random.Generator, modes: int) -> vr.Prony:
-    """Times even in their logarithm over some of the decades, strengths over two of ten; slow time near 1."""
-    span, size = random.uniform(0.1, DECADES), random.uniform(-2.0, 6.0)
+    """Times even in their logarithm over some of the decades, strengths over two of ten; slow time
+    near 1.
+    """
+    span = random.uniform(0.1, DECADES)
+    size = random.uniform(-2.0, 6.0)
     E = 10.0 ** random.uniform(size - 2.0, size, modes)
     return vr.Prony(E, 10.0 ** random.uniform(-span, 0.0, modes)).in_own_time()[0]
 
 
 def of_z(p: vr.Prony, z: float) -> list[float]:
     """g, h and m, by the modes."""
-    series, found, place = modes_record(p.modes), np.empty((2 * FUNCTIONS + 1, 1)), np.array([z])
+    series = modes_record(p.modes)
+    found = np.empty((2 * FUNCTIONS + 1, 1))
+    place = np.array([z])
     place.flags.writeable = False
     modes_loop(series, np.empty(0), new_workspace(p.E.size), place, found)
     shift, rise, half_space, cylinder = found[:FUNCTIONS, 0].tolist()
@@ -57,13 +65,19 @@ def functions(random: np.random.Generator, count: int, modes: int) -> Found:
         p = random_series(random, modes)
         with flint.ctx.workprec(BITS):
             material = material_of(p)
-            for z in np.exp(random.uniform(np.log(p.tau[-1]) - BELOW, np.log(p.T[0]) + ABOVE, 10)).tolist():
+            for z in np.exp(
+                random.uniform(np.log(p.tau[-1]) - BELOW, np.log(p.T[0]) + ABOVE, 10)
+            ).tolist():
                 pairs = zip(of_z(p, z), zone_of(material, arb(z)))
-                yield f"{at(z=z)}, {p!r}", {"": [abs(float(value / exact - 1)) for value, exact in pairs]}
+                yield (
+                    f"{at(z=z)}, {p!r}",
+                    {"": [abs(float(value / exact - 1)) for value, exact in pairs]},
+                )
 
 
 def state_errors(given: Any, V: float, delta: float) -> dict[str, float]:
-    """Relative errors of a state by its rows at kappa = mu = 1: beta and the slopes of Q over the condition of beta.
+    """Relative errors of a state by its rows at kappa = mu = 1: beta and the slopes of Q over the
+    condition of beta.
 
     dQ_dV over mu/V where it is below, dM_dV and the parts of M in the bodies over M/V or M.
     """
@@ -92,19 +106,24 @@ def state_errors(given: Any, V: float, delta: float) -> dict[str, float]:
 
 
 def any_state(random: np.random.Generator, material: Material) -> tuple[float, float]:
-    """V and delta: zeta from 14 decades below the fastest time to 14 above the slowest or near them, 1 - beta any."""
+    """V and delta: zeta from 14 decades below the fastest time to 14 above the slowest or near
+    them, 1 - beta any.
+    """
     near, far = (math.log10(float(1 / rate)) for rate in (material.a[-1], material.b[0]))
     beyond = 14.0 if random.random() < 0.3 else 2.0
     small, gap = powers(random, (-14.0, 0.0), (-7.0, 0.0))
     zeta = arb(powers(random, (near - beyond, far + beyond))[0])
     eta = zeta * (1 - arb((small, random.random(), 1.0 - gap)[random.integers(3)]))
-    whole, stick = zone_of(material, zeta), zone_of(material, eta)
+    whole = zone_of(material, zeta)
+    stick = zone_of(material, eta)
     V = 1 / (2 * (zeta * (zeta + 2 * whole.h)).sqrt())
     return float(V), float((zeta + whole.g - eta - stick.g) * V)
 
 
 def any_material(random: np.random.Generator, n: int) -> Any:
-    """An alpha, a series, a pair by turns; now and then an alpha whose rows are least exact, and 30 modes."""
+    """An alpha, a series, a pair by turns; now and then an alpha whose rows are least exact, and 30
+    modes.
+    """
     if n % 10 == 4:
         return float(random.uniform(20.0, 35.0))
     if n % 20 == 19:
@@ -112,8 +131,11 @@ def any_material(random: np.random.Generator, n: int) -> Any:
     made = (
         lambda: 1.0 + powers(random, (-8.0, 6.0))[0],
         lambda: random_series(random, int(random.integers(1, 11))),
-        lambda: vr.Bodies(*(random_series(random, int(m)) for m in random.integers(1, 6, 2)), random.uniform(0.1, 0.9)),
-    )  # fmt: skip
+        lambda: vr.Bodies(
+            *(random_series(random, int(m)) for m in random.integers(1, 6, 2)),
+            random.uniform(0.1, 0.9),
+        ),
+    )
     return made[n % 3]()
 
 
@@ -128,19 +150,23 @@ def states(random: np.random.Generator, count: int) -> Found:
 
 
 def axis_states(random: np.random.Generator, count: int) -> Found:
-    """Yield differences of states by the axis of alpha, as where there are several, from those by the rows of alpha.
+    """Yield differences of states by the axis of alpha, as where there are several, from those by
+    the rows of alpha.
 
     count: how many alphas; each second one is between 20 and 35, where rows are least exact.
     """
     for n in range(count):
         alpha = float(random.uniform(20.0, 35.0)) if n % 2 else 1.0 + powers(random, (-8.0, 6.0))[0]
-        scene, V = vr.Scene(alpha, 1.0, 1.0), 10.0 ** random.uniform(-6.0, 9.0, STATES_OF_ALPHA)
+        scene = vr.Scene(alpha, 1.0, 1.0)
+        V = 10.0 ** random.uniform(-6.0, 9.0, STATES_OF_ALPHA)
         V[::2] = 10.0 ** random.uniform(-2.0, 2.0, V[::2].size)
         s = random.choice([10.0 ** random.uniform(-6.0, 0.0, V.size), random.random(V.size)])
         delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
         fields = (*AXIS_CLAIMS, "M")
         by_rows = vr.contact(scene, V, delta=delta, fields=fields).as_dict()
-        by_axis = vr.contact(scene.replace(alpha=np.full(V.size, alpha)), V, delta=delta, fields=fields).as_dict()
+        by_axis = vr.contact(
+            scene.replace(alpha=np.full(V.size, alpha)), V, delta=delta, fields=fields
+        ).as_dict()
         scales = {name: abs(value) for name, value in by_rows.items()}
         scales |= {
             "dQ_dV": np.maximum(scales["dQ_dV"], 1.0 / V),
@@ -157,8 +183,8 @@ def _states(sentence: str, bound: float, *names: str) -> dict[str, tuple[str, fl
     return {name: (f"{name}, {sentence}, by rows", bound) for name in names}
 
 
-#: field -> divisor of its error, and bound: rounding of the sum over 16 terms in alpha; Q has ten times as much where
-#: it is the difference of two numbers, and so have slopes at the ends of rows
+#: field -> divisor of its error, and bound: rounding of the sum over 16 terms in alpha; Q has ten
+#: times as much where it is the difference of two numbers, and so have slopes at the ends of rows
 AXIS_CLAIMS = {
     "lam": ("relative", 5e-15),
     "epsilon": ("relative, or absolute below 1", 2e-14),
@@ -176,33 +202,49 @@ AXIS_CLAIMS = {
 PROOFS = [
     *(
         Proof(
-            "series", "series_states",
-            f"times over up to {DECADES:g} decades, z from the least e^-{BELOW:g} to the longest e^{ABOVE:g}",
+            "series",
+            "series_states",
+            f"times over up to {DECADES:g} decades, z from the least e^-{BELOW:g} to the longest "
+            f"e^{ABOVE:g}",
             {"": (f"g, h, m of {modes} mode{'s' * (modes > 1)}", 1e-13)},
-            partial(functions, modes=modes), f"{modes} modes",
-        ) for modes in (1, 3, 10, 30)
+            partial(functions, modes=modes),
+            f"{modes} modes",
+        )
+        for modes in (1, 3, 10, 30)
     ),
     Proof(
-        "states", "state_materials", "alpha - 1 from 1e-8 to 1e6, 1 to 10 and 30 "
-        "modes, pairs of 1 to 5 modes a body; kappa V from 1e-14 over the slowest time to 1e14 over the fastest, creep "
+        "states",
+        "state_materials",
+        "alpha - 1 from 1e-8 to 1e6, 1 to 10 and 30 "
+        "modes, pairs of 1 to 5 modes a body; kappa V from 1e-14 over the slowest time to 1e14 "
+        "over the fastest, creep "
         "from 1e-14 delta_star to its end",
         _states("relative", 5e-15, "delta_star", "Q", "M")
         # strengths of 1e4 beside 1: what a slow mode takes of M is then a difference
         | _states("divided by M", 1e-12, *OF_BODIES)
-        # for alpha from 20 to 35, 24 powers of one octave leave 1.4e-14 of epsilon and 6.5e-15 of lam; of the slope
-        # of M, near the ends of that octave, 1e-13
-        | _states("relative", LAM, "lam") | _states("relative", EPSILON, "epsilon")
+        # for alpha from 20 to 35, 24 powers of one octave leave 1.4e-14 of epsilon and 6.5e-15 of
+        # lam; of the slope of M, near the ends of that octave, 1e-13
+        | _states("relative", LAM, "lam")
+        | _states("relative", EPSILON, "epsilon")
         | _states("divided by its condition", 1.5e-14, "beta")
         | _states("relative, divided by the condition of beta", 1e-14, "dQ_ddelta", "dQ_domega")
         | _states("divided by mu/V and by the condition of beta", 1e-14, "dQ_dV")
-        | _states("divided by M/V", 1.5e-13, "dM_dV"), states,
+        | _states("divided by M/V", 1.5e-13, "dM_dV"),
+        states,
     ),
     Proof(
-        "states", "axis_alphas", "alpha - 1 from 1e-8 to 1e6, kappa V from 1e-6 to 1e9, creep from 1e-6 "
+        "states",
+        "axis_alphas",
+        "alpha - 1 from 1e-8 to 1e6, kappa V from 1e-6 to 1e9, creep from 1e-6 "
         "delta_star to its end",
         {
-            name: (f"{name} by the axis of alpha, as of an alpha each, from that by the rows of alpha, {words}", bound)
+            name: (
+                f"{name} by the axis of alpha, as of an alpha each, from that by the rows of "
+                f"alpha, {words}",
+                bound,
+            )
             for name, (words, bound) in AXIS_CLAIMS.items()
-        }, axis_states,
+        },
+        axis_states,
     ),
-]  # fmt: skip
+]

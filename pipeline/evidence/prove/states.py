@@ -21,14 +21,18 @@ from .draws import STATES, chosen_alpha, chosen_state, generators, powers
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: relative error where the condition number leaves it, else that many roundings of the inputs
-WELL, ROUNDINGS, UNIT = 1e-13, 4.0, 2.0**-53
+WELL = 1e-13
+ROUNDINGS = 4.0
+UNIT = 2.0**-53
 #: the two bounds meet here
 WELL_CONDITIONED = WELL / (ROUNDINGS * UNIT)
 CLOSURE = 1e-11
 #: the last subnormals have no relative accuracy: their spacing, some times over
 _LEAST = 8 * 5e-324
-#: relative errors that rows are allowed: of 24 powers of one octave of kappa V at alpha from 20 to 35
-LAM, EPSILON = 1.5e-14, 3e-14
+#: relative errors that rows are allowed: of 24 powers of one octave of kappa V at alpha from 20 to
+#: 35
+LAM = 1.5e-14
+EPSILON = 3e-14
 #: states of a call
 _TOGETHER = 150
 
@@ -58,10 +62,14 @@ def contact(random: np.random.Generator, count: int, each: bool) -> Found:
     """full_slip, then each field over its bound."""
     for first in range(0, count, _TOGETHER):
         one = None if each else chosen_alpha(random)
-        states = [chosen_state(random, one or chosen_alpha(random)) for _ in range(min(_TOGETHER, count - first))]
+        states = [
+            chosen_state(random, one or chosen_alpha(random))
+            for _ in range(min(_TOGETHER, count - first))
+        ]
         values = found_of(states, each)
         for i, state in enumerate(states):
-            exact, where = contact_enclosure(*state), at(**dict(zip(INPUTS, state)))
+            exact = contact_enclosure(*state)
+            where = at(**dict(zip(INPUTS, state)))
             if values["full_slip"][i] != exact["full_slip"]:
                 star = exact["delta_star"]
                 off = abs(arb(abs(state[4])) - star) / arb(float(np.spacing(float(star))))
@@ -70,22 +78,28 @@ def contact(random: np.random.Generator, count: int, each: bool) -> Found:
             yield where, {"full_slip": 0.0}
             factors = condition_numbers(given(state))
             for name in FIELDS:
-                error, factor = relative_error(values[name][i], exact[name]), factors[name]
+                error = relative_error(values[name][i], exact[name])
+                factor = factors[name]
                 well = factor <= WELL_CONDITIONED
                 yield where, {(name, well): error if well else error / (factor * UNIT)}
 
 
-def enclosed_stress(exact: dict[str, Any], alpha: Any, kappa: Any, mu: Any, V: Any, x: Any) -> tuple[Any, Any]:
+def enclosed_stress(
+    exact: dict[str, Any], alpha: Any, kappa: Any, mu: Any, V: Any, x: Any
+) -> tuple[Any, Any]:
     """p/E' and tau/E' at x."""
     zeta = exact["zeta"]
-    eta, Y, scale = exact["beta"] * zeta, x / (kappa * V) - zeta * exact["epsilon"], V / (4 * arb.pi())
+    eta = exact["beta"] * zeta
+    Y = x / (kappa * V) - zeta * exact["epsilon"]
+    scale = V / (4 * arb.pi())
     whole = shape_enclosure(Y, zeta, alpha)
     stuck = shape_enclosure(Y - (zeta - eta), eta, alpha) if eta > 0 else arb(0)
     return scale * whole, mu * scale * (whole - stuck)
 
 
 def of_stress(random: np.random.Generator, count: int) -> Found:
-    """At x in l0 within 1e-16 to 1 of either edge and of the stick point, on both sides, and between.
+    """At x in l0 within 1e-16 to 1 of either edge and of the stick point, on both sides, and
+    between.
 
     Edges, where stresses rise as a square root, lie where lam and epsilon have them.
     """
@@ -97,10 +111,16 @@ def of_stress(random: np.random.Generator, count: int) -> Found:
         scene = vr.Scene(alpha, kappa, mu)
         delta = s * vr.contact(scene, V, delta=0.0, fields="delta_star").delta_star
         state = vr.contact(scene, V, delta=delta)
-        half, middle = 0.5 * state.lam, 0.5 * state.lam * state.epsilon
-        rear, front, stick = middle - half, middle + half, middle + half - state.lam * state.beta
-        near, between = half * 10.0 ** random.uniform(-16, 0, 3), random.uniform(rear, front, 3)
-        x = np.concatenate([rear + near, front - near, [stick], stick + near[:2], stick - near[:2], between])
+        half = 0.5 * state.lam
+        middle = 0.5 * state.lam * state.epsilon
+        rear = middle - half
+        front = middle + half
+        stick = middle + half - state.lam * state.beta
+        near = half * 10.0 ** random.uniform(-16, 0, 3)
+        between = random.uniform(rear, front, 3)
+        x = np.concatenate(
+            [rear + near, front - near, [stick], stick + near[:2], stick - near[:2], between]
+        )
         found = vr.stress(scene, x, V, delta=delta)
         peak = vr.stress(scene, middle + half * np.linspace(-1, 1, 401), V, delta=delta).p.max()
         exact = contact_enclosure(alpha, kappa, mu, V, delta, 200)
@@ -122,34 +142,52 @@ def of_closures(random: np.random.Generator, count: int) -> Found:
     for i in range(count):
         one = vr.Scene(scene.alpha[i], scene.kappa[i], scene.mu[i])
         found = closures(one, float(V[i]), float(delta[i]))
-        yield f"{one!r}, V = {V[i]!r}, delta = {delta[i]!r}", {name: abs(error) for name, error in found.items()}
+        yield (
+            f"{one!r}, V = {V[i]!r}, delta = {delta[i]!r}",
+            {name: abs(error) for name, error in found.items()},
+        )
 
 
 def by_elements(_: np.random.Generator, count: int) -> Found:
-    """Yield errors of states of bodies against load, offset, moments, creep and friction of boundary elements.
+    """Yield errors of states of bodies against load, offset, moments, creep and friction of
+    boundary elements.
 
     count: how many states of the file, the first ones.
     """
     for state in read_elements("bodies")[:count]:
         one, other = (vr.Prony(**body) for body in state["bodies"])
-        bodies, V, z = vr.Bodies(one, other, share=state["share"]), state["V"], state["z"]
-        c = vr.contact(vr.Scene(alpha=None, kappa=1.0, mu=0.5, material=bodies), V, delta=state["delta"])
+        bodies = vr.Bodies(one, other, share=state["share"])
+        V = state["V"]
+        z = state["z"]
+        c = vr.contact(
+            vr.Scene(alpha=None, kappa=1.0, mu=0.5, material=bodies), V, delta=state["delta"]
+        )
         theirs = {
-            "load": state["H"], "epsilon": state["g"] / z, "M": V * state["m"],
-            "M_half_space": V * float(bodies.half_space_weights @ state["shares"]), "delta": 0.5 * V * state["d"],
+            "load": state["H"],
+            "epsilon": state["g"] / z,
+            "M": V * state["m"],
+            "M_half_space": V * float(bodies.half_space_weights @ state["shares"]),
+            "delta": 0.5 * V * state["d"],
             "Q": 0.5 * state["Q"],
-        }  # fmt: skip
+        }
         # the load of the elements is that of their own half length
         ours = c.as_dict() | {"load": (z / float(c.zeta) / (2.0 * V)) ** 2, "delta": state["delta"]}
         scales = ours | {"M_half_space": ours["M"]}
-        errors = {name: abs(value - float(ours[name])) / float(scales[name]) for name, value in theirs.items()}
-        yield at(V=V, delta=state["delta"]) + f", {bodies!r:.200}", errors | {"hurt": not state["least"] > 0.0}
+        errors = {
+            name: abs(value - float(ours[name])) / float(scales[name])
+            for name, value in theirs.items()
+        }
+        yield (
+            at(V=V, delta=state["delta"]) + f", {bodies!r:.200}",
+            errors | {"hurt": not state["least"] > 0.0},
+        )
 
 
 def _contact(way: str, size: str, each: bool) -> Proof:
     ill = f"divided by condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f} ({way})"
     claims = {
-        (name, True): (f"{name}, relative, condition below {WELL_CONDITIONED:.0f} ({way})", WELL) for name in FIELDS
+        (name, True): (f"{name}, relative, condition below {WELL_CONDITIONED:.0f} ({way})", WELL)
+        for name in FIELDS
     }
     claims |= {(name, False): (f"{name}, {ill}", ROUNDINGS) for name in FIELDS}
     slip = {"full_slip": (f"full_slip: distance from delta_star where misjudged, ULP ({way})", 2.0)}
@@ -161,26 +199,43 @@ PROOFS = [
     _contact("different alphas", "states", True),
     _contact("one alpha", "slice_states", False),
     Proof(
-        "slopes", "stress_states",
-        "alpha zeta in [1e-8, 1e8], alpha in [1, 1e4], s over its range, x at edges, stick point and between",
+        "slopes",
+        "stress_states",
+        "alpha zeta in [1e-8, 1e8], alpha in [1, 1e4], s over its range, x at edges, stick point "
+        "and between",
         {
-            name: (f"{name} beyond a shift of x by the allowed errors of lam and epsilon, divided by its peak", CLOSURE)
+            name: (
+                f"{name} beyond a shift of x by the allowed errors of lam and epsilon, divided by "
+                "its peak",
+                CLOSURE,
+            )
             for name in ("p", "tau")
         },
         of_stress,
     ),
     Proof(
-        "slopes", "closures", "alpha in [1, 1e4], kappa V in [1e-3, 1e3]", {
+        "slopes",
+        "closures",
+        "alpha in [1, 1e4], kappa V in [1e-3, 1e3]",
+        {
             "load": ("Int p dx = P, divided by the load", CLOSURE),
             "Q": ("Int tau dx = Q, divided by the load", CLOSURE),
             "M": ("Int x p dx = M, divided by the load", CLOSURE),
-        }, of_closures,
+        },
+        of_closures,
     ),
     Proof(
-        "boundary", "boundary_states",
-        "1 to 4 modes over up to 2 decades, kappa V in [0.03, 10], creep in [0.05, 0.95] of delta_star",
-        {name: (f"{name} {_BY_ELEMENTS}", 1e-4) for name in ("load", "epsilon", "M", "M_half_space", "delta", "Q")} | {
+        "boundary",
+        "boundary_states",
+        "1 to 4 modes over up to 2 decades, kappa V in [0.03, 10], creep in [0.05, 0.95] of "
+        "delta_star",
+        {
+            name: (f"{name} {_BY_ELEMENTS}", 1e-4)
+            for name in ("load", "epsilon", "M", "M_half_space", "delta", "Q")
+        }
+        | {
             "hurt": ("share of states in which p, p - q, q or the slip is negative somewhere", 0.0),
-        }, by_elements,
+        },
+        by_elements,
     ),
-]  # fmt: skip
+]

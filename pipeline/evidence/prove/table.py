@@ -5,4 +5,11 @@ from __future__ import annotations
 from . import cover, motion, ratios, series, shape, states
 from .claim import Proof
 
-TABLE: list[Proof] = [*ratios.PROOFS, *states.PROOFS, *shape.PROOFS, *series.PROOFS, *motion.PROOFS, *cover.PROOFS]
+TABLE: list[Proof] = [
+    *ratios.PROOFS,
+    *states.PROOFS,
+    *shape.PROOFS,
+    *series.PROOFS,
+    *motion.PROOFS,
+    *cover.PROOFS,
+]

@@ -1,9 +1,10 @@
-"""Motions of one, two and four relaxation times by a transient solver, beside the law of steady rolling.
+"""Motions of one, two and four relaxation times by a transient solver, beside the law of steady
+rolling.
 
-Each is let go from steady contact, and from a contact at rest; without slip.  e is V over that of the law at the same
-time, less 1, where the law has reached the speed at which the unsteadiness was 0.003 to 1; also over that of
-``roll(unsteady=True, rested=...)``, to where that ends.  From rest the law begins at the speed that leaving the
-imprint leaves.
+Each is let go from steady contact, and from a contact at rest; without slip.  e is V over that of
+the law at the same time, less 1, where the law has reached the speed at which the unsteadiness was
+0.003 to 1; also over that of ``roll(unsteady=True, rested=...)``, to where that ends.  From rest
+the law begins at the speed that leaving the imprint leaves.
 
 The motions are those of data/reference/unsteady.json, by unsteady.py beside it.
 
@@ -30,7 +31,8 @@ from ..results import run
 Array = NDArray[np.float64]
 
 LEVELS = (0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0)
-#: of V at the start, what a start from rest has to leave: below, the formula for it is short by a tenth and more
+#: of V at the start, what a start from rest has to leave: below, the formula for it is short by a
+#: tenth and more
 _CLEAR = 0.9
 #: of what is rolled with N: creep is then as small as in the solver, which has none
 _KAPPA = 1e4
@@ -40,7 +42,8 @@ class Laws:
     """Free rolling over speeds downward: by quadrature of M, and, with N, as it is rolled."""
 
     def __init__(self, scene: vr.Scene, u0: float, rested: bool = False) -> None:
-        g, V0 = scene.gamma / (1.0 + scene.j), u0 / _KAPPA
+        g = scene.gamma / (1.0 + scene.j)
+        V0 = u0 / _KAPPA
         first = u0 - float(scene.validity(u0).steady.start.speed) if rested else u0
         self.u = np.geomspace(first, 1e-4 * u0, 8001)
         c = vr.contact(scene, self.u, delta=0.0, fields=("M", "N"))
@@ -56,27 +59,39 @@ class Laws:
         self.t_added = np.interp(-self.u, -_KAPPA * added.V[reached], self.t[reached], right=np.nan)
 
     def errors(self, t: Array, u: Array) -> list[tuple[float, float, float | None, float]]:
-        """Level of the unsteadiness, e of a motion by the law, with N where it comes so far, and when, by the law."""
-        found, solved = [], PchipInterpolator(t, u)
+        """Level of the unsteadiness, e of a motion by the law, with N where it comes so far, and
+        when, by the law.
+        """
+        found = []
+        solved = PchipInterpolator(t, u)
         for level in LEVELS:
             if self.nu[0] < level < self.nu[-1]:
                 at = int(np.searchsorted(self.nu, level))
-                law, added = (float(solved(when[at]) / self.u[at] - 1.0) for when in (self.t, self.t_added))
+                law, added = (
+                    float(solved(when[at]) / self.u[at] - 1.0) for when in (self.t, self.t_added)
+                )
                 found.append((level, law, None if np.isnan(added) else added, float(self.t[at])))
         return found
 
 
 def compared(motion: dict[str, Any]) -> dict[str, Any]:
-    """Return what is kept of a motion: its numbers, and from either start the largest error, the shift and e by level.
+    """Return what is kept of a motion: its numbers, and from either start the largest error, the
+    shift and e by level.
 
     motion: E, tau, u, g and, from either start, times and speeds, as in the file.
     """
-    scene, u0 = scene_of((motion["E"], motion["tau"]), motion["g"]), motion["u"]
-    steady, whole = scene.validity(u0).steady, Laws(scene, u0)
+    scene = scene_of((motion["E"], motion["tau"]), motion["g"])
+    u0 = motion["u"]
+    steady = scene.validity(u0).steady
+    whole = Laws(scene, u0)
     row = {
-        "modes": len(motion["E"]), "u": u0, "g": motion["g"], "unsteadiness": float(steady.value),
-        "way": float(steady.whole), "start": float(steady.start.distance),
-    }  # fmt: skip
+        "modes": len(motion["E"]),
+        "u": u0,
+        "g": motion["g"],
+        "unsteadiness": float(steady.value),
+        "way": float(steady.whole),
+        "start": float(steady.start.distance),
+    }
     for start in ("steady", "rest"):
         t, u = (np.array(motion[start][name]) for name in ("t", "u"))
         law = np.interp(t, whole.t, whole.u, right=0.0)

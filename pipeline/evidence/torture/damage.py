@@ -1,4 +1,6 @@
-"""What is done to files: processes that are killed, small disks, changed bytes; and what a table then loads as."""
+"""What is done to files: processes that are killed, small disks, changed bytes; and what a table
+then loads as.
+"""
 
 from __future__ import annotations
 
@@ -25,11 +27,14 @@ from viscoroll.core.errors import FileError
 
 from ..timing import forked, peak_mb, processor_time
 
-#: marks of the parts of an HDF5 file that lead to others: B-trees, heaps, symbol tables, object headers
+#: marks of the parts of an HDF5 file that lead to others: B-trees, heaps, symbol tables, object
+#: headers
 MARKS = re.compile(rb"TREE|HEAP|SNOD|GCOL|OHDR|OCHK|FRHP|BTHD|FHDB|FADB|FAHD|EAHD")
 #: loads in one process, with so many bytes over what it has at the start
-BATCH, MEMORY = 100, 1 << 30
-# processes are forked and killed here: no thread beside this one, and no lock that a killed one may hold for ever
+BATCH = 100
+MEMORY = 1 << 30
+# processes are forked and killed here: no thread beside this one, and no lock that a killed one may
+# hold for ever
 tqdm.monitor_interval = 0
 tqdm.set_lock(RLock())
 _FORK = get_context("fork")
@@ -41,14 +46,21 @@ def fingerprint(table: Any) -> str:
     return hashlib.sha256(repr(table.to_dict()).encode()).hexdigest()
 
 
-def row(done: str, outcomes: Iterable[str], slowest: float | None = None, peak: float | None = None) -> dict[str, Any]:
+def row(
+    done: str, outcomes: Iterable[str], slowest: float | None = None, peak: float | None = None
+) -> dict[str, Any]:
     """How often each outcome was met; whatever is neither "refused" nor "unharmed" is wrong."""
     count = Counter(outcomes)
     good = {name: count.pop(name, 0) for name in ("refused", "unharmed")}
     return {
-        "done": done, "tried": sum(good.values()) + count.total(), **good, "wrong": count.total(),
-        "how": [text[:200] for text, _ in count.most_common(5)], "slowest_s": slowest, "peak_mb": peak,
-    }  # fmt: skip
+        "done": done,
+        "tried": sum(good.values()) + count.total(),
+        **good,
+        "wrong": count.total(),
+        "how": [text[:200] for text, _ in count.most_common(5)],
+        "slowest_s": slowest,
+        "peak_mb": peak,
+    }
 
 
 def unsealed(content: bytes) -> bytes:
@@ -112,9 +124,14 @@ def ended(work: Callable[[], Any]) -> int:
 
 
 def killed(
-    work: Callable[[], Any], seconds: float, rng: np.random.Generator, begun: Callable[[], bool] = lambda: True
+    work: Callable[[], Any],
+    seconds: float,
+    rng: np.random.Generator,
+    begun: Callable[[], bool] = lambda: True,
 ) -> bool:
-    """Whether ``work`` was killed, within ``seconds`` after it had ``begun``; False where it had ended before."""
+    """Whether ``work`` was killed, within ``seconds`` after it had ``begun``; False where it had
+    ended before.
+    """
     process = _FORK.Process(target=work)
     process.start()
     while process.is_alive() and not begun():
@@ -133,7 +150,9 @@ def trials(done: str, count: int, trial: Callable[[], str]) -> dict[str, Any]:
 def damaged(
     done: str, count: int, path: Path, content: bytes, change: Change, rng: np.random.Generator
 ) -> dict[str, Any]:
-    """Change a table over and over, load it in processes with bounded memory, and see what comes out."""
+    """Change a table over and over, load it in processes with bounded memory, and see what comes
+    out.
+    """
     path.write_bytes(content)
     expected = fingerprint(tables.load(path))
     found: list[tuple[str, float, float]] = []
@@ -147,7 +166,9 @@ def damaged(
     return row(done, outcomes, max(seconds), max(megabytes))
 
 
-def loads(path: Path, content: bytes, change: Change, seeds: list[int], expected: str) -> Iterator[tuple]:
+def loads(
+    path: Path, content: bytes, change: Change, seeds: list[int], expected: str
+) -> Iterator[tuple]:
     """(outcome, seconds of the processor, peak MB) of each seed."""
     present = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
     resource.setrlimit(resource.RLIMIT_AS, (present + MEMORY, present + MEMORY))

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from viscoroll import ViscorollError
-from viscoroll.io.runs import read_run, run_ensemble, verify
+from viscoroll.runs import read_run, run_ensemble, verify
 
 from .damage import Change, ended, enlarge, flip, killed, small_disk, trials, truncate
 
@@ -44,16 +44,21 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         return [
             trials("SIGKILL of an ensemble", sizes["ensembles"], store.kill),
             trials("ensemble on a full disk", sizes["full_ensembles"], store.fill_disk),
-            trials("one bit of a file of a store flipped", sizes["stores"], partial(store.damage, flip)),
+            trials(
+                "one bit of a file of a store flipped", sizes["stores"], partial(store.damage, flip)
+            ),
             trials("a file of a store truncated", sizes["stores"], partial(store.damage, truncate)),
         ]
 
 
 class Store:
-    """A run, the files that it should leave, and ways to disturb it, each of which says what came of it."""
+    """A run, the files that it should leave, and ways to disturb it, each of which says what came
+    of it.
+    """
 
     def __init__(self, folder: Path, rng: np.random.Generator) -> None:
-        self.rng, self.path = rng, folder / "store.zarr"
+        self.rng = rng
+        self.path = folder / "store.zarr"
         (folder / "run.toml").write_text(RUN, encoding="utf-8")
         self.run = partial(run_ensemble, read_run(folder / "run.toml"), self.path, threads=2)
         self.run()  # compiles: children take over what is loaded here
@@ -68,7 +73,11 @@ class Store:
 
     def content(self) -> dict[str, bytes]:
         """Every file."""
-        return {str(path.relative_to(self.path)): path.read_bytes() for path in self.path.rglob("*") if path.is_file()}
+        return {
+            str(path.relative_to(self.path)): path.read_bytes()
+            for path in self.path.rglob("*")
+            if path.is_file()
+        }
 
     def outcome(self) -> str:
         """Go on in a process of its own, and compare."""
@@ -90,18 +99,24 @@ class Store:
         """On a tmpfs of any size."""
         self.clear()
         self.path.mkdir()
-        with small_disk(self.path, int(self.rng.uniform(0.05, 0.9) * sum(map(len, self.expected.values())))):
+        with small_disk(
+            self.path, int(self.rng.uniform(0.05, 0.9) * sum(map(len, self.expected.values())))
+        ):
             if (code := ended(self.run)) != 2:
                 return f"exit code {code}"
             enlarge(self.path)
             return self.outcome()
 
     def damage(self, change: Change) -> str:
-        """Of any file that is not empty, as the lock is: it must be found, and the same call must put it right."""
+        """Of any file that is not empty, as the lock is: it must be found, and the same call must
+        put it right.
+        """
         if self.content() != self.expected:
             self.clear()
             self.run()
-        path = self.path / self.rng.choice(sorted(name for name, data in self.expected.items() if data))
+        path = self.path / self.rng.choice(
+            sorted(name for name, data in self.expected.items() if data)
+        )
         path.write_bytes(change(path.read_bytes(), self.rng))
         try:
             if verify(self.path).ok:

@@ -38,7 +38,8 @@ delta = 5
 alpha = [8.0, 11.0, 13.0, 16.0]
 allowed = 1e-12
 """
-#: seconds within which it is killed once a temporary file is there: what a write and its two fsyncs take
+#: seconds within which it is killed once a temporary file is there: what a write and its two fsyncs
+#: take
 WRITE = 0.02
 
 
@@ -51,7 +52,9 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
         content = (folder / "table.nc").read_bytes()
         found = [
             *kills(sizes["kills"], folder, rng),
-            writers("two processes save the same table at once", sizes["writers"], folder / "both.nc"),
+            writers(
+                "two processes save the same table at once", sizes["writers"], folder / "both.nc"
+            ),
         ]
         ways = {
             "one bit flipped": (sizes["flips"], content, flip),
@@ -60,7 +63,11 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             "truncated, no seal": (sizes["unsealed"], unsealed(content), truncate),
         }
         if LAW.exists():
-            ways["one bit of data/tables/rubber.nc flipped"] = sizes["large"], LAW.read_bytes(), flip
+            ways["one bit of data/tables/rubber.nc flipped"] = (
+                sizes["large"],
+                LAW.read_bytes(),
+                flip,
+            )
         for done, (count, whole, change) in ways.items():
             found.append(damaged(done, count, folder / "damaged.nc", whole, change, rng))
     return found
@@ -68,16 +75,22 @@ def rows(sizes: dict[str, Any]) -> list[dict[str, Any]]:
 
 def grid(command: str | None = None) -> Any:
     """A table whose file is headers for the most part."""
-    return tables.build(RUBBER_CYLINDER, V=[0.1, 0.3, 2.0], delta=[-0.01, 0.0, 0.03], command=command)
+    return tables.build(
+        RUBBER_CYLINDER, V=[0.1, 0.3, 2.0], delta=[-0.01, 0.0, 0.03], command=command
+    )
 
 
 def kills(count: int, folder: Path, rng: np.random.Generator) -> list[dict[str, Any]]:
-    """SIGKILL what `make tables` does, at any moment and in its writes; the tables must be as they were, or new."""
-    config, built = folder / "run.toml", folder / "tables"
+    """SIGKILL what `make tables` does, at any moment and in its writes; the tables must be as they
+    were, or new.
+    """
+    config = folder / "run.toml"
+    built = folder / "tables"
     config.write_text(CONFIG, encoding="utf-8")
     build = partial(offline.build_all, config, built)
     build()  # compiles
-    expected, begun = hashes(built), time.perf_counter()
+    expected = hashes(built)
+    begun = time.perf_counter()
     ended(build)
     seconds = time.perf_counter() - begun
 
@@ -87,17 +100,26 @@ def kills(count: int, folder: Path, rng: np.random.Generator) -> list[dict[str, 
         while not done:  # it may end before
             for left in built.glob(".*"):
                 left.unlink()
-            done = killed(build, WRITE if in_write else seconds, rng, lambda: any(built.glob(written)))
+            done = killed(
+                build, WRITE if in_write else seconds, rng, lambda: any(built.glob(written))
+            )
         return "unharmed" if hashes(built) == expected else "damaged"
 
-    ways = {"SIGKILL of `make tables`": False, "SIGKILL of `make tables` while it writes a table": True}
+    ways = {
+        "SIGKILL of `make tables`": False,
+        "SIGKILL of `make tables` while it writes a table": True,
+    }
     return [trials(done, count, partial(kill, in_write)) for done, in_write in ways.items()]
 
 
 def hashes(folder: Path) -> dict[str, str] | None:
-    """Of sealed tables: names and values alone, as ``history`` tells when it was made; None where one is not whole."""
+    """Of sealed tables: names and values alone, as ``history`` tells when it was made; None where
+    one is not whole.
+    """
     try:
-        return {path.name: fingerprint(whole(path).drop_attrs()) for path in folder.glob("[!.]*.nc")}
+        return {
+            path.name: fingerprint(whole(path).drop_attrs()) for path in folder.glob("[!.]*.nc")
+        }
     except ViscorollError:
         return None
 
@@ -111,7 +133,8 @@ def whole(path: Path) -> Any:
 
 def writers(done: str, count: int, path: Path) -> dict[str, Any]:
     """Two processes save one table over and over; every load between is one of theirs, whole."""
-    made, expected = [grid(f"writer {n}") for n in range(2)], set()
+    made = [grid(f"writer {n}") for n in range(2)]
+    expected = set()
     for table in made:
         tables.save(table, path)
         expected.add(fingerprint(tables.load(path)))

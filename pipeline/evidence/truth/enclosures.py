@@ -5,9 +5,10 @@ the Bessel functions and the error bounds of Arb (python-flint).  A root is a ba
 the enclosed function, which rises strictly, lies certainly below and certainly above.  Digits
 that cancel show as a wide ball, and the whole is done again with more.
 
-Of several relaxation times (:mod:`material`, rates without a radius) by the matching conditions as they stand,
-Goryacheva's way; the kernels solve another system.  Inside the contact the pressure is that of Hertz and one
-exponential a relaxation mode, of amplitude X_i; each creep mode's memory must be continuous at the front edge:
+Of several relaxation times (:mod:`material`, rates without a radius) by the matching conditions as
+they stand, Goryacheva's way; the kernels solve another system.  Inside the contact the pressure is
+that of Hertz and one exponential a relaxation mode, of amplitude X_i; each creep mode's memory must
+be continuous at the front edge:
 
     sum_i X_i a_i (1 + r_i k_j)/(a_i - b_j) = 1/b_j     r_i = I1/I0(a_i z)     k_j = K0/K1(b_j z)
 
@@ -34,7 +35,9 @@ _MOST_STEPS = 100
 _STEP_BITS = 180
 
 
-def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: float, bits: int = 100) -> dict[str, Any]:
+def contact_enclosure(
+    alpha: float, kappa: float, mu: float, V: float, delta: float, bits: int = 100
+) -> dict[str, Any]:
     """State of the contact, Eqs. (6), (8)-(10), (15)-(18), each value an ``arb`` that contains it.
 
     Parameters
@@ -52,11 +55,13 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
 
     Notes
     -----
-    Inputs are taken as the doubles they are.  Every ball contains the exact value, and its radius is at
-    most 2^-``bits`` of it (``tests/truth/test_enclosures.py``).
+    Inputs are taken as the doubles they are.  Every ball contains the exact value, and its radius
+    is at most 2^-``bits`` of it (``tests/truth/test_enclosures.py``).
     """
     given = (alpha, kappa, mu, abs(V), abs(delta))
-    state = enclosed({name: arb(float(value)) for name, value in zip(INPUTS, given, strict=True)}, bits)
+    state = enclosed(
+        {name: arb(float(value)) for name, value in zip(INPUTS, given, strict=True)}, bits
+    )
     with flint.ctx.workprec(_MOST_BITS):  # a change of sign shall not round
         if V < 0.0:
             state["M"] = -state["M"]
@@ -66,7 +71,8 @@ def contact_enclosure(alpha: float, kappa: float, mu: float, V: float, delta: fl
 
 
 def enclosed(given: dict[str, Any], bits: int) -> dict[str, Any]:
-    """``contact_enclosure`` of exact balls with V > 0 and delta >= 0; alpha: a ball, a series or a pair of bodies.
+    """``contact_enclosure`` of exact balls with V > 0 and delta >= 0; alpha: a ball, a series or a
+    pair of bodies.
 
     And the parts of M.
     """
@@ -75,17 +81,20 @@ def enclosed(given: dict[str, Any], bits: int) -> dict[str, Any]:
     while working <= _MOST_BITS:
         with flint.ctx.workprec(working), suppress(ZeroDivisionError):
             state = _state(**given)
-        if state is not None and all(state[name].rel_accuracy_bits() >= bits for name in state if name != "full_slip"):
+        if state is not None and all(
+            state[name].rel_accuracy_bits() >= bits for name in state if name != "full_slip"
+        ):
             return state
         working += working // 2
     raise ConvergenceError(f"contact_enclosure: {_MOST_BITS} bits do not suffice")
 
 
 def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]:
-    """Sum over the inputs of |d ln f/d ln input| for every f: the relative error of f for one in each input.
+    """Sum over the inputs of |d ln f/d ln input| for every f: the relative error of f for one in
+    each input.
 
-    By differences with a relative step of 2^-180, far above the balls and far below anything that bends; alpha moves
-    up, away from 1, and delta down, away from delta_star.
+    By differences with a relative step of 2^-180, far above the balls and far below anything that
+    bends; alpha moves up, away from 1, and delta down, away from delta_star.
     """
     bits += _STEP_BITS
     base = enclosed(given, bits)
@@ -94,7 +103,9 @@ def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]
     with flint.ctx.workprec(2 * bits):
         step = arb(2) ** -_STEP_BITS
         for name in INPUTS:
-            moved = enclosed(given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}, bits)
+            moved = enclosed(
+                given | {name: given[name] * (1 - step if name == "delta" else 1 + step)}, bits
+            )
             for field, value in base.items():
                 if value != 0:
                     total[field] += float(abs((moved[field] / value - 1) / step).mid())
@@ -102,7 +113,8 @@ def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]
 
 
 def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
-    """dQ_dV and dM_dV at fixed delta, dQ_ddelta at fixed V, by central differences that know no formula.
+    """dQ_dV and dM_dV at fixed delta, dQ_ddelta at fixed V, by central differences that know no
+    formula.
 
     V > 0 and 0 < delta < delta_star.  Their own error is of the order of the step squared, 2^-360.
     """
@@ -111,7 +123,9 @@ def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
     with flint.ctx.workprec(4 * bits):
         step = arb(2) ** -_STEP_BITS
         for by in ("V", "delta"):
-            up, down = (enclosed(given | {by: given[by] * (1 + sign * step)}, bits) for sign in (1, -1))
+            up, down = (
+                enclosed(given | {by: given[by] * (1 + sign * step)}, bits) for sign in (1, -1)
+            )
             for name in ("Q", "M") if by == "V" else ("Q",):
                 found[f"d{name}_d{by}"] = (up[name] - down[name]) / (2 * step * given[by])
     return found
@@ -120,15 +134,16 @@ def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
 def shape_enclosure(Y: Any, z: Any, alpha: Any) -> Any:
     """S(Y; z) of the stresses, Eqs. (11)-(14), 0 where |Y| >= z; at the working precision.
 
-    p/E' = V/(4 pi) S(X - g(zeta); zeta), X = x/(l0 kappa V), and the shear is mu times the difference of
-    two such; the integral is Arb's, with its proven bound.
+    p/E' = V/(4 pi) S(X - g(zeta); zeta), X = x/(l0 kappa V), and the shear is mu times the
+    difference of two such; the integral is Arb's, with its proven bound.
     """
     if abs(Y) >= z:
         return arb(0)
     ellipse = ((z - Y) * (z + Y)).sqrt()
     if alpha == 1:
         return ellipse
-    r, k = ratio_r(alpha * z), ratio_k(z)
+    r = ratio_r(alpha * z)
+    k = ratio_k(z)
     angle = (Y / z).acos()
 
     def memory(u: Any, _: bool) -> Any:
@@ -150,10 +165,12 @@ def ratio_i2(x: Any) -> Any:
 
 
 def ratio_k(z: Any) -> Any:
-    """K0/K1 at z > 0, by the asymptotic expansion where that has the digits, else by the power series.
+    """K0/K1 at z > 0, by the asymptotic expansion where that has the digits, else by the power
+    series.
 
-    Arb takes seconds for few digits where it is near to choose either: 8 z bits more, of which 3 z cancel, leave no
-    choice.  The series is taken at the middle of the ball; 0 < k' < k/z < k/z at the lower end carries the radius over.
+    Arb takes seconds for few digits where it is near to choose either: 8 z bits more, of which 3 z
+    cancel, leave no choice.  The series is taken at the middle of the ball; 0 < k' < k/z < k/z at
+    the lower end carries the radius over.
     """
     if 5 * z > 3 * flint.ctx.prec:  # exp(-2 z) is far below the last digit
         return z.bessel_k(0, scaled=True) / z.bessel_k(1, scaled=True)
@@ -164,7 +181,9 @@ def ratio_k(z: Any) -> Any:
 
 
 class Zone(NamedTuple):
-    """g, h and m at z; ``parts`` of m, of the half-space and the cylinder; the amplitudes X and I2/I0 of the modes."""
+    """g, h and m at z; ``parts`` of m, of the half-space and the cylinder; the amplitudes X and
+    I2/I0 of the modes.
+    """
 
     g: Any
     h: Any
@@ -177,7 +196,8 @@ class Zone(NamedTuple):
 def zone_of(of: Material, z: Any) -> Zone:
     """The functions of a contact, or a stick zone, of half length z > 0 over V T_ref.
 
-    h = sum X_i r_i, and of creep mode j in g and in m, as its memory does it to the pressure, with H = z^2 + 2 z h
+    h = sum X_i r_i, and of creep mode j in g and in m, as its memory does it to the pressure, with
+    H = z^2 + 2 z h
 
     J_j sum_i X_i a_i/(a_i - b_j) r_i k_j     J_j sum_i X_i a_i/(a_i - b_j) (r_i k_j + (z^2/H) u_i)
     u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)     i2_i = I2/I0(a_i z)
@@ -187,10 +207,13 @@ def zone_of(of: Material, z: Any) -> Zone:
     ZeroDivisionError
         Where the precision does not tell the matrix from a singular one.
     """
-    a, modes = of.a, range(len(of.a))
+    a = of.a
+    modes = range(len(of.a))
     if not a:
         return Zone(*3 * [0 * z], (0 * z, 0 * z), [], [])
-    r, k, i2 = [ratio_r(at * z) for at in a], [ratio_k(at * z) for at in of.b], [ratio_i2(at * z) for at in a]
+    r = [ratio_r(at * z) for at in a]
+    k = [ratio_k(at * z) for at in of.b]
+    i2 = [ratio_i2(at * z) for at in a]
     per = [[at / (at - b) for at in a] for b in of.b]
     matrix = flint.arb_mat([[per[n][i] * (1 + r[i] * k[n]) for i in modes] for n in modes])
     X = matrix.solve(flint.arb_mat([[1 / b] for b in of.b])).entries()
@@ -207,17 +230,23 @@ def zone_of(of: Material, z: Any) -> Zone:
 
 def _state(alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any] | None:
     """The law at the working precision; None where that does not decide a sign."""
-    of, w = material_of(alpha), 2 * kappa * V
+    of = material_of(alpha)
+    w = 2 * kappa * V
     zeta = _root(of, _H, 1 / w**2, 1 / w)
     if zeta is None:
         return None
-    whole, lam = (
-        zone_of(of, zeta),
-        w * zeta if of.a else arb(1),
-    )  # so that a creep of exactly delta_star is seen as such
+    # so that a creep of exactly delta_star is seen as such
+    whole = zone_of(of, zeta)
+    lam = w * zeta if of.a else arb(1)
     epsilon = whole.g / zeta
     delta_star = mu * lam * (1 + epsilon) / (2 * kappa)
-    parts = dict(zip(("M", "M_half_space", "M_cylinder"), (V * each for each in (whole.m, *whole.parts)), strict=True))
+    parts = dict(
+        zip(
+            ("M", "M_half_space", "M_cylinder"),
+            (V * each for each in (whole.m, *whole.parts)),
+            strict=True,
+        )
+    )
     state = {"lam": lam, "zeta": zeta, "epsilon": epsilon, "delta_star": delta_star} | parts
     over = 2 * kappa * delta - mu * lam * (1 + epsilon)
     if over >= 0:
@@ -242,10 +271,11 @@ def _H(of: Material, z: Any) -> Any:
 
 
 def _root(of: Material, function: Callable[[Material, Any], Any], y: Any, guess: Any) -> Any:
-    """A ball that holds the z > 0 at which F or H, which rise strictly, is y; None without the digits for it.
+    """A ball that holds the z > 0 at which F or H, which rise strictly, is y; None without the
+    digits for it.
 
-    Newton's iteration in logarithms, on midpoints, slopes by differences; then ever wider balls until the ends lie on
-    either side.  Without modes what is asked is the guess itself.
+    Newton's iteration in logarithms, on midpoints, slopes by differences; then ever wider balls
+    until the ends lie on either side.  Without modes what is asked is the guess itself.
     """
     z = guess.mid()
     if not y > 0:
@@ -267,7 +297,8 @@ def _root(of: Material, function: Callable[[Material, Any], Any], y: Any, guess:
     radius = z * arb(2) ** -flint.ctx.prec
     while 512 * radius < z:
         radius *= 256
-        low, high = (z - radius).lower(), (z + radius).upper()
+        low = (z - radius).lower()
+        high = (z + radius).upper()
         if function(of, low) < y and function(of, high) > y:
             return low.union(high)
     return None

@@ -1,4 +1,4 @@
-"""Stage 0: fit the Bessel ratios -> src/viscoroll/kernels/bessel/ratios.npy (kept in git).
+"""Stage 0: fit the Bessel ratios -> src/viscoroll/kernels/law/ratios.npy (kept in git).
 
     python -m pipeline.evidence.truth.ratios [-o FILE]
 
@@ -18,12 +18,12 @@ from flint import arb
 from tqdm import tqdm
 
 from viscoroll.core.files import replace_file
-from viscoroll.kernels.bessel import layout as layout
+from viscoroll.kernels.law import bessel_ratios
 
 from .enclosures import ratio_i2, ratio_k, ratio_r
 
-TARGET = Path(__file__).parents[3] / "src/viscoroll/kernels/bessel/ratios.npy"
-NODES = layout.COEFFICIENTS + 1
+TARGET = Path(__file__).parents[3] / "src/viscoroll/kernels/law/ratios.npy"
+NODES = bessel_ratios.COEFFICIENTS + 1
 
 #: 60 digits: the highest orders are 1e-26 of the values
 BITS = 200
@@ -39,10 +39,13 @@ EVALUATE = {
 def chebyshev_fit(values: list[arb], half_width: arb) -> list[arb]:
     """Monomial coefficients in t of the truncated Chebyshev series on |t| <= half_width."""
     angles = [(2 * i + 1) * arb.pi() / (2 * len(values)) for i in range(len(values))]
-    whole, t = flint.arb_poly([0]), flint.arb_poly([0, 1 / half_width])
+    whole = flint.arb_poly([0])
+    t = flint.arb_poly([0, 1 / half_width])
     polynomials = [flint.arb_poly([1]), t]
-    for n in range(layout.COEFFICIENTS):
-        coefficient = sum(v * (n * a).cos() for v, a in zip(values, angles, strict=True)) / len(values)
+    for n in range(bessel_ratios.COEFFICIENTS):
+        coefficient = sum(v * (n * a).cos() for v, a in zip(values, angles, strict=True)) / len(
+            values
+        )
         whole += polynomials[n] * (coefficient * (1 + (n > 0)))
         polynomials.append(2 * t * polynomials[-1] - polynomials[-2])
     return whole.coeffs()
@@ -52,19 +55,27 @@ def table() -> list[float]:
     """Coefficients of every bin of every segment, in table order."""
     found: list[float] = []
     with flint.ctx.workprec(BITS):
-        half_width = arb(1) / (2 * layout.BINS)
+        half_width = arb(1) / (2 * bessel_ratios.BINS)
         points = [half_width * ((2 * i + 1) * arb.pi() / (2 * NODES)).cos() for i in range(NODES)]
-        octaves = [(each.function, n) for each in layout.SEGMENTS for n in range(each.low, each.high)]
+        octaves = [
+            (each.function, n)
+            for each in bessel_ratios.SEGMENTS
+            for n in range(each.low, each.high)
+        ]
         for function, octave in tqdm(octaves, "octaves", leave=False):
-            for index in range(layout.BINS):
+            for index in range(bessel_ratios.BINS):
                 centre = 1 + (2 * index + 1) * half_width
-                values = [EVALUATE[function](((centre + t) * arb(2) ** octave).mid()) for t in points]
+                values = [
+                    EVALUATE[function](((centre + t) * arb(2) ** octave).mid()) for t in points
+                ]
                 found += map(float, chebyshev_fit(values, half_width))
     return found
 
 
 def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
     parser.add_argument("-o", "--output", type=Path, default=TARGET)
     output = parser.parse_args().output
     with replace_file(output) as temporary:

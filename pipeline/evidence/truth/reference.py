@@ -1,4 +1,6 @@
-"""Reference motions of data/reference as scenes, starts and drives; check_motions.py there made them."""
+"""Reference motions of data/reference as scenes, starts and drives; check_motions.py there made
+them.
+"""
 
 from __future__ import annotations
 
@@ -13,9 +15,12 @@ import viscoroll as vr
 from ... import stage
 
 FOLDER = stage.ROOT / "data/reference"
-VALUES, FREE, DRIVEN = (FOLDER / name for name in ("check_values.csv", "check_motions.csv", "check_driven.json"))
+VALUES, FREE, DRIVEN = (
+    FOLDER / name for name in ("check_values.csv", "check_motions.csv", "check_driven.json")
+)
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
-SPEEDS, OUTPUTS = ("V", "omega"), ("V", "omega", "x", "angle")
+SPEEDS = ("V", "omega")
+OUTPUTS = ("V", "omega", "x", "angle")
 PATHS = ("x", "angle", "work_force", "work_torque", "brake_loss", "slip_loss")
 
 
@@ -29,25 +34,37 @@ class Case(NamedTuple):
     drive: dict[str, Any]
 
     def __str__(self) -> str:
-        return f"{self.scene!r:.200}, V0 = {self.V0!r}, omega0 = {self.omega0!r}, end = {float(self.t[-1])!r}"
+        return (
+            f"{self.scene!r:.200}, V0 = {self.V0!r}, omega0 = {self.omega0!r}, end = "
+            f"{float(self.t[-1])!r}"
+        )
 
 
 def free_motion(rows: list[dict[str, Any]]) -> tuple[Case, Any]:
     """The motion that rows of check_motions.csv describe, and its values."""
-    first, t = rows[0], np.array([row["t"] for row in rows])
+    first = rows[0]
+    t = np.array([row["t"] for row in rows])
     values = {name: np.array([row[name] for row in rows]) for name in OUTPUTS}
     scene = vr.Scene(*(first[name] for name in PARAMETERS))
-    return Case(scene, first["V0"], first["omega0"], t, {}), SimpleNamespace(**values, onset_time=first["onset_time"])
+    return Case(scene, first["V0"], first["omega0"], t, {}), SimpleNamespace(
+        **values, onset_time=first["onset_time"]
+    )
 
 
 def driven_motion(row: dict[str, Any]) -> Case:
     """The motion that a row of check_driven.json describes."""
     given = {"alpha": None} | row["scene"]
-    bodies = {name: vr.Prony(**given.pop(name)) for name in ("prony", "cylinder", "half_space") if name in given}
+    bodies = {
+        name: vr.Prony(**given.pop(name))
+        for name in ("prony", "cylinder", "half_space")
+        if name in given
+    }
     if bodies:
         given["material"] = bodies.get("prony") or vr.Bodies(*bodies.values(), given.pop("share"))
     drive = {
-        name: value if not isinstance(value, dict) else (vr.Schedule if "times" in value else vr.Feedback)(**value)
+        name: value
+        if not isinstance(value, dict)
+        else (vr.Schedule if "times" in value else vr.Feedback)(**value)
         for name, value in row["drive"].items()
     }
     return Case(vr.Scene(**given), row["V0"], row["omega0"], np.array(row["t"]), drive)

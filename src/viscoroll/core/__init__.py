@@ -1,1 +1,7 @@
-"""Foundations of all layers: errors, checks, units, results and their labels, files, figures."""
+"""Foundations of all layers: errors, checks, units, results and their labels, files, figures.
+
+Arguments enter through :mod:`.checks` and :mod:`.quantities`, which give float64 in the unit of the
+argument or raise an exception of :mod:`.errors`.  :mod:`.scale` has the unit and the symbol of
+every quantity.  Results leave through :mod:`.results`, :mod:`.labels` and :mod:`.plots`, files
+through :mod:`.files`; :mod:`.blocks` divides arrays among threads.
+"""

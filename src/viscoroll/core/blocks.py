@@ -1,8 +1,9 @@
 """Work on arrays in fixed blocks: the elements of a block, threads, progress bar.
 
-The kernels release the GIL, so that plain threads use all cores without a parallel region of numba: no second
-compilation, no threading layer that could clash with that of a host program, safe in forked processes and from several
-threads.  Blocks follow from the size of the work alone, so that results do not depend on the number of threads.
+The kernels release the GIL, so that plain threads use all cores without a parallel region of numba:
+no second compilation, no threading layer that could clash with that of a host program, safe in
+forked processes and from several threads.  Blocks follow from the size of the work alone, so that
+results do not depend on the number of threads.
 """
 
 from __future__ import annotations
@@ -18,38 +19,48 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from .array_types import Floats
-from .checks import check_integer
+from .checks import Floats, check_integer
 from .errors import ParameterError
 
-#: Blocks submitted for each worker and not yet awaited.  A future takes a kilobyte, so that not all are submitted.
+#: Blocks submitted for each worker and not yet awaited.  A future takes a kilobyte, so that not all
+#: are submitted.
 _BLOCKS_IN_QUEUE = 8
 
 
 def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], Floats]:
-    """Return a function that reads blocks of a broadcast array, so that the whole of it is never in memory.
+    """Return a function that reads blocks of a broadcast array, so that the whole of it is never in
+    memory.
 
     array: numbers that broadcast to ``shape``.
     shape: shape to which all arrays of the work broadcast.
-    Returns a function (start, stop) -> the elements ``start`` to ``stop`` - 1 of the broadcast and flattened array, in
-    C order, a vector (stop - start,), for 0 <= start < stop <= its size.  If ``array`` has a single element the vector
-    is always (1,), that element.  Vectors are views if ``array`` is contiguous and of that shape, else copies.  All are
-    contiguous and read-only, because numba compiles a kernel again for each kind of array.
+    Returns a function (start, stop) -> the elements ``start`` to ``stop`` - 1 of the broadcast and
+    flattened array, in C order, a vector (stop - start,), for 0 <= start < stop <= its size.  If
+    ``array`` has a single element the vector is always (1,), that element.  Vectors are views if
+    ``array`` is contiguous and of that shape, else copies.  All are contiguous and read-only,
+    because numba compiles a kernel again for each kind of array.
     Raises ValueError where ``array`` has more than one element and does not broadcast to ``shape``.
     """
     if array.size == 1 or (array.shape == shape and array.flags.c_contiguous):
         vector = broadcast_vector(array, array.shape)
-        return (lambda start, stop: vector) if array.size == 1 else (lambda start, stop: vector[start:stop])
+        return (
+            (lambda start, stop: vector)
+            if array.size == 1
+            else (lambda start, stop: vector[start:stop])
+        )
     whole = np.broadcast_to(array, shape)
 
     def read_block(start: int, stop: int) -> Floats:
-        """Return a read-only copy of elements of the flattened array, a contiguous vector (stop - start,).
+        """Return a read-only copy of elements of the flattened array, a contiguous vector (stop -
+        start,).
 
-        start, stop: index of the first element, and of the one after the last, 0 <= start < stop <= its size.
+        start, stop: index of the first element, and of the one after the last, 0 <= start < stop <=
+        its size.
         """
         iterator: Any = np.nditer  # the stubs of numpy lack the flag "contig"
         flags = ["external_loop", "buffered", "ranged"]
-        chunks = iterator(whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start)
+        chunks = iterator(
+            whole, flags, [["readonly", "contig"]], order="C", buffersize=stop - start
+        )
         chunks.iterrange = start, stop
         # The iterator overwrites each chunk by the next one.
         vector = np.concatenate([chunk.copy() for chunk in chunks])
@@ -64,8 +75,8 @@ def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 
     array: numbers that broadcast to ``shape``.
     shape: shape of the result before it is flattened.
-    Returns a vector with as many elements as ``shape`` has, in C order, a view where possible, else a copy; if
-    ``array`` has a single element it is (1,), for any shape.
+    Returns a vector with as many elements as ``shape`` has, in C order, a view where possible, else
+    a copy; if ``array`` has a single element it is (1,), for any shape.
     Raises ValueError where ``array`` has more than one element and does not broadcast.
     """
     whole = array if array.size == 1 else np.ascontiguousarray(np.broadcast_to(array, shape))
@@ -75,10 +86,11 @@ def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:
 
 
 def thread_count(threads: int | None = None) -> int:
-    """Return the number of threads: ``threads``, else ``$VISCOROLL_THREADS``, else that of the available cores.
+    """Return the number of threads: ``threads``, else ``$VISCOROLL_THREADS``, else that of the
+    available cores.
 
-    threads: a whole number >= 1; None: the environment variable, if it is set and not empty, else all cores that this
-        process may use.
+    threads: a whole number >= 1; None: the environment variable, if it is set and not empty, else
+        all cores that this process may use.
     Returns an int >= 1.
 
     Raises
@@ -86,7 +98,11 @@ def thread_count(threads: int | None = None) -> int:
     ParameterError
         If the one that is used, ``threads`` or the variable, is not a whole number >= 1.
     """
-    return check_integer("threads", threads, 1) if threads is not None else _environment_threads() or available_cores()
+    return (
+        check_integer("threads", threads, 1)
+        if threads is not None
+        else _environment_threads() or available_cores()
+    )
 
 
 def _environment_threads() -> int | None:
@@ -104,7 +120,9 @@ def _environment_threads() -> int | None:
 
 
 def available_cores() -> int:
-    """Return the number of cores that this process may use, or of the machine where the system does not tell; >= 1."""
+    """Return the number of cores that this process may use, or of the machine where the system does
+    not tell; >= 1.
+    """
     if hasattr(os, "process_cpu_count"):  # Python 3.13
         return os.process_cpu_count() or 1
     if hasattr(os, "sched_getaffinity"):
@@ -116,7 +134,8 @@ _cancellation = threading.local()
 
 
 def cancel_with(event: threading.Event) -> None:
-    """Let :func:`run_blocks` of this thread raise CancelledError before its next block once ``event`` is set.
+    """Let :func:`run_blocks` of this thread raise CancelledError before its next block once
+    ``event`` is set.
 
     It has no effect on calls with several workers or a progress bar.
     """
@@ -131,28 +150,35 @@ def run_blocks(
     threads: int | None = None,
     progress: str | None = None,
 ) -> None:
-    """Call a function for consecutive blocks of ``range(count)``, on several threads, and return when all are done.
+    """Call a function for consecutive blocks of ``range(count)``, on several threads, and return
+    when all are done.
 
     Parameters
     ----------
-    work : function (start, stop) -> None, which computes the elements ``start`` to ``stop`` - 1 of a block and writes
-        them where they belong.  Several threads call it at the same time.  Its exceptions are raised here, of several
-        that of the first block; then some of the blocks after it have not been computed.
+    work : function (start, stop) -> None, which computes the elements ``start`` to ``stop`` - 1 of
+        a block and writes them where they belong.  Several threads call it at the same time.  Its
+        exceptions are raised here, of several that of the first block; then some of the blocks
+        after it have not been computed.
     count : number of elements, >= 0; ``work`` is not called for 0.
     block : number of elements of a block, >= 1, not checked; the last block may have fewer.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.  No more are used than
-        there are blocks; one worker without a progress bar is the calling thread itself.
-    progress : title of a progress bar on standard error, which appears after one second; None: no bar.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, else that of the available cores.  No
+        more are used than there are blocks; one worker without a progress bar is the calling thread
+        itself.
+    progress : title of a progress bar on standard error, which appears after one second; None: no
+    bar.
 
     Raises
     ------
     CancelledError
-        If the event of :func:`cancel_with` is set and the blocks run one after another on this thread.
+        If the event of :func:`cancel_with` is set and the blocks run one after another on this
+        thread.
     ParameterError
         If ``threads`` is not a whole number >= 1; without it, and for two elements and more, if
         ``$VISCOROLL_THREADS`` is not.
     """
-    edges: Iterable[tuple[int, int]] = ((start, min(start + block, count)) for start in range(0, count, block))
+    edges: Iterable[tuple[int, int]] = (
+        (start, min(start + block, count)) for start in range(0, count, block)
+    )
     workers = blocks = -(-count // block)
     if blocks > 1 or threads is not None:
         workers = min(thread_count(threads), blocks)
@@ -173,16 +199,20 @@ def run_blocks(
         _submit_all(pool, work, edges, _BLOCKS_IN_QUEUE * workers)
 
 
-def _submit_all(pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int) -> None:
+def _submit_all(
+    pool: Executor, work: Callable[[int, int], None], edges: Iterable[tuple[int, int]], most: int
+) -> None:
     """Run all blocks on a pool, await them in order, and return when all are done.
 
-    When a failed block is awaited, no further blocks are submitted, those that have not begun are cancelled, and its
-    exception is raised, of several that failed that of the first in the order of blocks; running ones are not awaited.
+    When a failed block is awaited, no further blocks are submitted, those that have not begun are
+    cancelled, and its exception is raised, of several that failed that of the first in the order of
+    blocks; running ones are not awaited.
 
     pool: :class:`concurrent.futures.Executor`, of threads.
     work: function (start, stop) -> None.
     edges: (start, stop) of each block, an iterable that is consumed as blocks are submitted.
-    most: largest number of blocks that are submitted and not yet awaited, >= 1; it bounds the memory of the futures.
+    most: largest number of blocks that are submitted and not yet awaited, >= 1; it bounds the
+    memory of the futures.
     """
     waiting: deque[Future[None]] = deque()
     try:

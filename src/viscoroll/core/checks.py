@@ -1,21 +1,57 @@
-"""Checks of numbers that callers give: they become float64 in the unit of the argument, or raise ParameterError.
+"""Checks of arguments, and the types of arrays that they give.
 
-Numbers must be finite and in range, and the shapes of arrays must broadcast.  A number that has a unit is converted
-(:mod:`.quantities`).
+Types of arrays, and of the numbers that callers may give, for type checkers.
+
+Checks of numbers that callers give: they become float64 in the unit of the argument, or raise
+ParameterError.
+
+Numbers must be finite and in range, and the shapes of arrays must broadcast.  A number that has a
+unit is converted (:mod:`.quantities`).
 """
 
 from __future__ import annotations
 
 import math
-from typing import Any
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any, Protocol, TypeAlias
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .array_types import Booleans, Floats
 from .errors import ParameterError, describe_value
 from .quantities import has_no_unit, is_real, to_unit
 from .scale import Units
+
+# --- Types of arrays, and of the numbers that callers may give, for type checkers ---
+
+#: Array of doubles, as results hold them.
+Floats: TypeAlias = NDArray[np.float64]
+#: Array of 64-bit integers, such as indices.
+Integers: TypeAlias = NDArray[np.int64]
+#: Array of truth values.
+Booleans: TypeAlias = NDArray[np.bool_]
+
+if TYPE_CHECKING:
+    Reals: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
+
+    class SupportsArray(Protocol):
+        """Arrays and scalars of numpy, arrays of xarray and pandas."""
+
+        def __array__(self) -> Reals: ...
+
+    #: One number, or an array of numpy, xarray or pandas, or nested lists; no text.
+    Numbers: TypeAlias = (
+        float
+        | SupportsArray
+        | Sequence[float]
+        | Sequence[SupportsArray]
+        | Sequence[Sequence[float]]
+    )
+else:
+    Numbers = Any
+
+
+# --- Checks of numbers that callers give ---
 
 #: Bytes of a double.  Wider floats may overflow in the conversion.
 _DOUBLE = 8
@@ -28,110 +64,148 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     ----------
     name : name of the argument, for errors.
     value : a number, an array or a list, perhaps with a unit.
-    **bounds : as of :func:`check_array_extent`, in ``unit``: ``unit`` of the argument, to which a value with a unit is
-        converted (default "1"); ``low`` and ``high``, smallest and largest allowed value; ``above``, number that all
-        values must exceed.  Without the last three all finite values are allowed.
+    **bounds : as of :func:`check_array_extent`, in ``unit``: ``unit`` of the argument, to which a
+        value with a unit is converted (default "1"); ``low`` and ``high``, smallest and largest
+        allowed value; ``above``, number that all values must exceed.  Without the last three all
+        finite values are allowed.
 
     Returns
     -------
     array
-        float64, of the shape of ``value``, () of a number, in ``unit``; all elements are finite.  It may be empty, and
-        it may be ``value`` itself.
+        float64, of the shape of ``value``, () of a number, in ``unit``; all elements are finite.
+        It may be empty, and it may be ``value`` itself.
 
     Raises
     ------
     ParameterError
-        If it is not numeric (None, texts, truth values, complex numbers, masked arrays), not finite, beyond a bound, or
-        its unit is of another dimension or what :func:`.quantities.to_unit` refuses.
+        If it is not numeric (None, texts, truth values, complex numbers, masked arrays), not
+        finite, beyond a bound, or its unit is of another dimension or what
+        :func:`.quantities.to_unit` refuses.
     """
     return check_array_extent(name, value, **bounds)[0]
 
 
 def check_array_extent(
-    name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf,
-    above: float = -math.inf, high: float = math.inf,
-) -> tuple[Floats, tuple[float, float]]:  # fmt: skip
+    name: str,
+    value: ArrayLike,
+    *,
+    unit: Units = "1",
+    low: float = -math.inf,
+    above: float = -math.inf,
+    high: float = math.inf,
+) -> tuple[Floats, tuple[float, float]]:
     """Check an argument as :func:`check_array`, and return its smallest and largest element too.
 
     Parameters
     ----------
     name : name of the argument, for errors.
     value : a number, an array or a list, perhaps with a unit.
-    unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a
-        dimensionless number, or an object that has units by name, as a :class:`.scale.Scale`.
+    unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1",
+        "1" of a dimensionless number, or an object that has units by name, as a
+        :class:`.scale.Scale`.
     low : smallest allowed value, in ``unit``; -infinite by default, as ``above``.
     above : number that all values must exceed.
     high : largest allowed value, in ``unit``; infinite by default.
 
     Returns
     -------
-    array : float64, of the shape of ``value``, () of a number, finite, in ``unit``; it may be ``value`` itself.
+    array : float64, of the shape of ``value``, () of a number, finite, in ``unit``; it may be
+    ``value`` itself.
     extent : (smallest, largest element), in ``unit``; (0.0, 0.0) if the array is empty.
 
     Raises
     ------
     ParameterError
-        As :func:`check_array`.  For numbers that are not finite or beyond a bound the message states the first wrong
-        element, and of several elements its index and the number of further wrong ones.
+        As :func:`check_array`.  For numbers that are not finite or beyond a bound the message
+        states the first wrong element, and of several elements its index and the number of further
+        wrong ones.
     """
     if type(value) is float and above < value < high and low <= value:
         return np.asarray(value), (value, value)
     array = _as_doubles(name, value, unit, (low, above, high))
     smallest, largest = extent(array) if array.size else (0.0, 0.0)
     # A NaN makes all comparisons false.  An array without errors needs no mask of its size.
-    if array.size and not (above < smallest and low <= smallest and largest < math.inf and largest <= high):
+    if array.size and not (
+        above < smallest and low <= smallest and largest < math.inf and largest <= high
+    ):
         wrong = ~(np.isfinite(array) & (array > above) & (array >= low) & (array <= high))
-        raise ParameterError(name, _first_wrong(array, wrong), _range_words(low, above, high) or "a finite number")
+        raise ParameterError(
+            name, _first_wrong(array, wrong), _range_words(low, above, high) or "a finite number"
+        )
     return array, (smallest, largest)
 
 
 def _range_words(low: float, above: float, high: float) -> str:
-    """Return a range in words, "" for all finite numbers; arguments as of :func:`check_array_extent`."""
+    """Return a range in words, "" for all finite numbers; arguments as of
+    :func:`check_array_extent`.
+    """
     if high < math.inf:
         return f"in [{low:g}, {high:g}]" if low > -math.inf else f"in ({above:g}, {high:g}]"
-    return f"finite and >= {low:g}" if low > -math.inf else f"finite and > {above:g}" if above > -math.inf else ""
+    return (
+        f"finite and >= {low:g}"
+        if low > -math.inf
+        else f"finite and > {above:g}"
+        if above > -math.inf
+        else ""
+    )
 
 
 def _as_doubles(name: str, value: Any, unit: Units, bounds: tuple[float, float, float]) -> Floats:
-    """Return numbers as float64 in the unit of the argument; they may be out of range, infinite or NaN still.
+    """Return numbers as float64 in the unit of the argument; they may be out of range, infinite or
+    NaN still.
 
     name: name of the argument.
     value: what a caller gave.
-    unit: unit of the argument, a text or an object that has units by name; not used for a value without a unit.
+    unit: unit of the argument, a text or an object that has units by name; not used for a value
+    without a unit.
     bounds: low, above and high of the range, for the words of the error alone.
-    Returns a float64 array of the shape of ``value``, which is ``value`` itself if that is such an array; floats wider
-    than doubles may become infinite.
-    Raises ParameterError for a value that is not numeric (None, texts, truth values, complex numbers, ragged lists,
-    integers that no double holds), a masked array, and what :func:`.quantities.to_unit` refuses, as a unit of another
-    dimension.
+    Returns a float64 array of the shape of ``value``, which is ``value`` itself if that is such an
+    array; floats wider than doubles may become infinite.
+    Raises ParameterError for a value that is not numeric (None, texts, truth values, complex
+    numbers, ragged lists, integers that no double holds), a masked array, and what
+    :func:`.quantities.to_unit` refuses, as a unit of another dimension.
     """
     plain = value
     if not has_no_unit(value):
         plain = to_unit(name, value, unit if isinstance(unit, str) else unit.unit(name))
         if isinstance(plain, np.ma.MaskedArray):
-            raise ParameterError(name, "a masked array", "plain", f"{name} is a masked array: give {name}.compressed()")
+            raise ParameterError(
+                name,
+                "a masked array",
+                "plain",
+                f"{name} is a masked array: give {name}.compressed()",
+            )
     try:
         array = np.asarray(plain)
         if array.dtype.kind == "O" and all(map(is_real, array.flat)):
             array = array.astype(np.float64)
-    except (TypeError, ValueError, OverflowError):  # a ragged list, or an integer that no double holds
+    except (
+        TypeError,
+        ValueError,
+        OverflowError,
+    ):  # a ragged list, or an integer that no double holds
         array = np.asarray(None)
     if array.dtype.kind not in "iuf":
         words = _range_words(*bounds)
-        raise ParameterError(name, describe_value(value), f"a number, {words}" if words else "a finite number")
+        raise ParameterError(
+            name, describe_value(value), f"a number, {words}" if words else "a finite number"
+        )
     if array.dtype.itemsize <= _DOUBLE:
         return array.astype(np.float64, copy=False)
-    with np.errstate(over="ignore"):  # long doubles beyond the doubles become infinite, which is refused
+    with np.errstate(
+        over="ignore"
+    ):  # long doubles beyond the doubles become infinite, which is refused
         return array.astype(np.float64)
 
 
 def _first_wrong(array: Floats, wrong: Booleans) -> str:
-    """Return the first wrong element of an array, its index, and the number of further ones, in words for an error.
+    """Return the first wrong element of an array, its index, and the number of further ones, in
+    words for an error.
 
     array: numbers, of any shape, at least one.
     wrong: mask of the same shape, true for at least one element.
-    Returns a text as "nan at row 3, and 2 more", of several axes as "nan at (0, 3)", all indices from 0; if the array
-    has a single element, that number alone.
+    Returns a text as "nan at row 3, and 2 more", of several axes as "nan at (0, 3)", all indices
+    from 0; if the array has a single element, that number alone.
     """
     if array.size == 1:
         return str(array.item())
@@ -152,17 +226,23 @@ def extent(array: Floats) -> tuple[float, float]:
 
 
 def check_number(
-    name: str, value: ArrayLike, *, unit: Units = "1", low: float = -math.inf, above: float = -math.inf,
+    name: str,
+    value: ArrayLike,
+    *,
+    unit: Units = "1",
+    low: float = -math.inf,
+    above: float = -math.inf,
     high: float = math.inf,
-) -> float:  # fmt: skip
-    """Check an argument that is a single number, and return it as a float in the unit of the argument.
+) -> float:
+    """Check an argument that is a single number, and return it as a float in the unit of the
+    argument.
 
     Parameters
     ----------
     name : name of the argument, for errors.
     value : a number, perhaps with a unit.
-    unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1", "1" of a
-        dimensionless number, or an object that has units by name.
+    unit : unit of the argument, to which a value with a unit is converted: an SI unit as "m s-1",
+        "1" of a dimensionless number, or an object that has units by name.
     low, high : smallest and largest allowed value, in ``unit``; infinite by default.
     above : number that the value must exceed, in ``unit``; -infinite by default.
 
@@ -174,8 +254,8 @@ def check_number(
     Raises
     ------
     ParameterError
-        If it is not one finite number (an array with axes is refused, even of one element), if it is outside these
-        limits, or if its unit has another dimension.
+        If it is not one finite number (an array with axes is refused, even of one element), if it
+        is outside these limits, or if its unit has another dimension.
     """
     if type(value) is float and above < value < high and low <= value:
         return value
@@ -208,11 +288,13 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
 
 
 def divide_by_unit(name: str, values: NDArray, unit: Any) -> Any:
-    """Return a quantity divided by its unit, with an error that names both where numpy's division would not.
+    """Return a quantity divided by its unit, with an error that names both where numpy's division
+    would not.
 
     name: name of the quantity, for errors.
     values: the quantity in SI units, an array.
-    unit: SI value of one dimensionless unit, a number, or (n,) of n cylinders; not checked, 0 divides as in numpy.
+    unit: SI value of one dimensionless unit, a number, or (n,) of n cylinders; not checked, 0
+    divides as in numpy.
     Returns the quotient, of the common shape by numpy's rule; a number of numpy if that is ().
     Raises ParameterError if the shapes do not broadcast; the message lists both.
     """
@@ -238,9 +320,10 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     Parameters
     ----------
     name : name of the argument, for errors.
-    value : what a caller gave; an int or an integer of numpy is accepted, a truth value, a float or a duration
-        is not.
-    low, high : smallest and largest allowed value, whole numbers; ``high`` is infinite by default, no limit.
+    value : what a caller gave; an int or an integer of numpy is accepted, a truth value, a float or
+        a duration is not.
+    low, high : smallest and largest allowed value, whole numbers; ``high`` is infinite by default,
+    no limit.
 
     Returns
     -------
@@ -254,20 +337,30 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
     """
     if type(value) is int and low <= value <= high:
         return value
-    if isinstance(value, bool | np.timedelta64) or not (isinstance(value, int | np.integer) and low <= value <= high):
-        allowed = f"a whole number >= {low}" if high == math.inf else f"a whole number in [{low}, {high}]"
+    if isinstance(value, bool | np.timedelta64) or not (
+        isinstance(value, int | np.integer) and low <= value <= high
+    ):
+        allowed = (
+            f"a whole number >= {low}" if high == math.inf else f"a whole number in [{low}, {high}]"
+        )
         raise ParameterError(name, describe_value(value), allowed)
     return int(value)
 
 
 def check_text(name: str, value: Any) -> None:
-    """Raise ParameterError if the argument ``name`` has a ``value`` that is no text, or one that files cannot hold."""
-    if not (isinstance(value, str) and value == value.replace("\0", "").encode(errors="ignore").decode()):
+    """Raise ParameterError if the argument ``name`` has a ``value`` that is no text, or one that
+    files cannot hold.
+    """
+    if not (
+        isinstance(value, str) and value == value.replace("\0", "").encode(errors="ignore").decode()
+    ):
         raise ParameterError(name, describe_value(value), "a text without NUL and surrogates")
 
 
 def check_choice(name: str, value: Any, *allowed: str) -> None:
-    """Raise ParameterError if the argument ``name`` has a ``value`` that is none of the ``allowed`` texts."""
+    """Raise ParameterError if the argument ``name`` has a ``value`` that is none of the ``allowed``
+    texts.
+    """
     if not (isinstance(value, str) and value in allowed):
         *others, last = map(repr, allowed)
         raise ParameterError(name, describe_value(value), f"{', '.join(others)} or {last}")

@@ -1,15 +1,20 @@
-"""The exceptions of this package, and the meaning of a kernel's status code.
+"""Exceptions and warnings of the package.
 
-- :class:`ParameterError`: a value out of its range, NaN or infinite where it must not be, an unknown name, inputs that
-  do not fit together.  It is also a ``ValueError``.
+The exceptions of this package, and the meaning of a kernel's status code.
+
+- :class:`ParameterError`: a value out of its range, NaN or infinite where it must not be, an
+  unknown name, inputs that do not fit together.  It is also a ``ValueError``.
 - :class:`OutOfTableError`: a point outside the grid of a table.
-- :class:`FileError`: a file that is missing, damaged or of another kind, that has an unknown key or a value of the
-  wrong type, or that cannot be written.
+- :class:`FileError`: a file that is missing, damaged or of another kind, that has an unknown key or
+  a value of the wrong type, or that cannot be written.
 - :class:`MissingDependencyError`: an optional package, or a program, is not installed.
 - :class:`ConvergenceError`: an iteration reached its limit.
 
 Kernels do not raise exceptions, they return a status.  Each motion has a status with a sentence
 (:class:`MotionStatus`); a contact that cannot be solved becomes a ConvergenceError.
+
+Imports of packages that only some functions need, and that an extra of the installation
+brings.
 """
 
 from __future__ import annotations
@@ -19,7 +24,10 @@ import sys
 from collections.abc import Collection, Iterable
 from datetime import date, timedelta
 from enum import IntEnum
+from importlib import import_module
 from typing import Any
+
+# --- The exceptions of this package, and the meaning of a kernel's status code ---
 
 
 class ViscorollError(Exception):
@@ -36,12 +44,15 @@ class ViscorollError(Exception):
     """
 
     def __reduce__(self) -> tuple[Any, ...]:
-        """Pickle the attributes, because the arguments of the subclasses are not those of Exception."""
+        """Pickle the attributes, because the arguments of the subclasses are not those of
+        Exception.
+        """
         return copyreg.__newobj__, (type(self), *self.args), self.__dict__  # type: ignore[attr-defined]
 
 
 class ParameterError(ViscorollError, ValueError):
-    """A parameter has a value that is not allowed.  The message is one line: the name, the value, what is allowed.
+    """A parameter has a value that is not allowed.  The message is one line: the name, the value,
+    what is allowed.
 
     Parameters
     ----------
@@ -60,15 +71,21 @@ class ParameterError(ViscorollError, ValueError):
     alpha 0.5
     """
 
-    #: Whether the sentence states dimensionless numbers, to which a call with a cylinder adds its scales.
+    #: Whether the sentence states dimensionless numbers, to which a call with a cylinder adds its
+    #: scales.
     is_dimensionless = False
 
     def __init__(self, name: str, value: Any, allowed: str, sentence: str | None = None) -> None:
-        self.name, self.value, self.allowed = name, value, allowed
-        super().__init__(" ".join((sentence or f"{name} = {value!s}: must be {allowed}").split("\n")))
+        self.name = name
+        self.value = value
+        self.allowed = allowed
+        super().__init__(
+            " ".join((sentence or f"{name} = {value!s}: must be {allowed}").split("\n"))
+        )
 
 
-#: Types that callers give in place of numbers, and their names in messages; the first that fits is taken.
+#: Types that callers give in place of numbers, and their names in messages; the first that fits is
+#: taken.
 _TYPE_NAMES: tuple[tuple[Any, str], ...] = (
     (str, "a text"),
     (bytes, "bytes"),
@@ -82,11 +99,13 @@ _TYPE_NAMES: tuple[tuple[Any, str], ...] = (
 
 
 def describe_value(value: Any) -> str:
-    """Return a value for a message: its text in one line of at most 60 characters, and its type in parentheses.
+    """Return a value for a message: its text in one line of at most 60 characters, and its type in
+    parentheses.
 
     value: what a caller gave, of any type.
-    Returns a text as "'abc' (a text)", "[1, 2] (a list)", "<function ...> (a function)", or of an array "... (of type
-    int64, shape (3,))"; of None, an int or a float the text alone; of other objects "... (of type NAME)".
+    Returns a text as "'abc' (a text)", "[1, 2] (a list)", "<function ...> (a function)", or of an
+    array "... (of type int64, shape (3,))"; of None, an int or a float the text alone; of other
+    objects "... (of type NAME)".
     """
     text = f"{' '.join(repr(value).split()):.60}"
     if value is None or (isinstance(value, int | float) and not isinstance(value, bool)):
@@ -94,11 +113,12 @@ def describe_value(value: Any) -> str:
     kind = next((words for types, words in _TYPE_NAMES if isinstance(value, types)), "")
     if not kind and hasattr(value, "dtype"):
         kind = f"of type {value.dtype}" + (f", shape {value.shape}" if value.shape else "")
-    return f"{text} ({kind or ('a function' if callable(value) else f'of type {type(value).__name__}')})"
+    return f"{text} ({kind or ('a function' if callable(value) else f'of type {type(value).__name__}')})"  # noqa: E501
 
 
 def digits_beside(value: Any, *others: Any) -> str:
-    """Return a number for a message in six digits, or in all that it has where another one has the same six.
+    """Return a number for a message in six digits, or in all that it has where another one has the
+    same six.
 
     A refused number would else be printed as one that is allowed.
 
@@ -124,7 +144,9 @@ def described_error(name: str, found: str, allowed: str) -> ParameterError:
 
 
 def mark_dimensionless(error: ParameterError) -> ParameterError:
-    """Mark an error whose sentence states dimensionless numbers, which a cylinder was given in SI units; return it."""
+    """Mark an error whose sentence states dimensionless numbers, which a cylinder was given in SI
+    units; return it.
+    """
     error.is_dimensionless = True
     return error
 
@@ -140,19 +162,27 @@ def shape_error(name: str, shape: tuple[int, ...], allowed: str) -> ParameterErr
 
 
 def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
-    """Return the ParameterError, not raised, of a call that must give exactly one of two parameters.
+    """Return the ParameterError, not raised, of a call that must give exactly one of two
+    parameters.
 
     first, second: names of the parameters.
     both: whether both were given; else neither was.
     """
-    sentence = f"{first} and {second} are both given: give one of the two" if both else f"give {first} or {second}"
-    return ParameterError(f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence)
+    sentence = (
+        f"{first} and {second} are both given: give one of the two"
+        if both
+        else f"give {first} or {second}"
+    )
+    return ParameterError(
+        f"{first}, {second}", "both" if both else "neither", "exactly one of the two", sentence
+    )
 
 
 def check_one_given(**values: Any) -> str:
     """Check that exactly one of two parameters is given, and return its name.
 
-    values: exactly two parameters by name, None where one is not given; other numbers of them are not checked.
+    values: exactly two parameters by name, None where one is not given; other numbers of them are
+    not checked.
     Returns the name of the one that is given.
     Raises ParameterError if none or both are given.
     """
@@ -164,7 +194,8 @@ def check_one_given(**values: Any) -> str:
 
 
 def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
-    """Return the ParameterError, not raised, of a parameter whose value is not a known name; it lists all of these.
+    """Return the ParameterError, not raised, of a parameter whose value is not a known name; it
+    lists all of these.
 
     name: name of the parameter.
     value: what was found, of any type.
@@ -172,18 +203,22 @@ def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -
     kind: noun for these names, with its article, as "a field".
     """
     names = ", ".join(known)
-    return ParameterError(name, value, f"one of {names}", f"{name}: {value!r} is not {kind}; choose from {names}")
+    return ParameterError(
+        name, value, f"one of {names}", f"{name}: {value!r} is not {kind}; choose from {names}"
+    )
 
 
 def check_names(name: str, values: Any, known: Collection[str], kind: str) -> tuple[str, ...]:
-    """Check one name, or several, and return them as a tuple, in the order given; names given twice stay.
+    """Check one name, or several, and return them as a tuple, in the order given; names given twice
+    stay.
 
     name: name of the parameter, for the error.
     values: what a caller gave: a name or an iterable of names.
     known: the names that are allowed.
     kind: noun for these names, with its article, as "a field", for the error.
     Returns a tuple of texts, () of an empty iterable.
-    Raises ParameterError for the first value that is not known, and for ``values`` that are neither text nor iterable.
+    Raises ParameterError for the first value that is not known, and for ``values`` that are neither
+    text nor iterable.
     """
     try:
         names = (values,) if isinstance(values, str) else tuple(values)
@@ -207,7 +242,9 @@ class OutOfTableError(ParameterError):
     Examples
     --------
     >>> import viscoroll as vr
-    >>> grid = vr.tables.build(vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1])
+    >>> grid = vr.tables.build(
+    ...     vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1]
+    ... )
     >>> try:
     ...     vr.tables.interpolate(grid, ["M"], V=0.5)
     ... except vr.ParameterError as error:
@@ -216,7 +253,8 @@ class OutOfTableError(ParameterError):
     """
 
     def __init__(self, name: str, value: float, low: float, high: float) -> None:
-        self.low, self.high = low, high
+        self.low = low
+        self.high = high
         ends = f"[{digits_beside(low, value)}, {digits_beside(high, value)}]"
         super().__init__(name, digits_beside(value, low, high), f"within the table's range {ends}")
 
@@ -240,12 +278,15 @@ class FileError(ViscorollError):
     """
 
     def __init__(self, path: Any, problem: str) -> None:
-        self.path, self.problem = path, problem
+        self.path = path
+        self.problem = problem
         super().__init__(f"{path}: {problem}")
 
 
 class Interrupted(KeyboardInterrupt):
-    """The user stopped a run of blocks.  Finished blocks are kept; the message names the command that resumes."""
+    """The user stopped a run of blocks.  Finished blocks are kept; the message names the command
+    that resumes.
+    """
 
 
 class MissingDependencyError(ViscorollError):
@@ -264,8 +305,11 @@ class MissingDependencyError(ViscorollError):
     """
 
     def __init__(self, package: str, extra: str | None) -> None:
-        self.package, self.extra = package, extra
-        super().__init__(f"{package} is not installed" + (f": pip install 'viscoroll[{extra}]'" if extra else ""))
+        self.package = package
+        self.extra = extra
+        super().__init__(
+            f"{package} is not installed" + (f": pip install 'viscoroll[{extra}]'" if extra else "")
+        )
 
 
 class ConvergenceError(ViscorollError):
@@ -282,9 +326,10 @@ class ConvergenceError(ViscorollError):
 class ModelWarning(UserWarning):
     """An assumption of the model is grossly violated, or data do not cover the input.
 
-    It is raised for a motion or a contact outside the validity of the model, for a contact whose transit frequency lies
-    outside the band in which the material was measured, and for a file of measurements without units.  Every call is
-    checked; Python shows a text once per line of the program.  Texts on a material or a file appear once for each.
+    It is raised for a motion or a contact outside the validity of the model, for a contact whose
+    transit frequency lies outside the band in which the material was measured, and for a file of
+    measurements without units.  Every call is checked; Python shows a text once per line of the
+    program.  Texts on a material or a file appear once for each.
 
     Examples
     --------
@@ -301,10 +346,11 @@ class ModelWarning(UserWarning):
 class MotionStatus(IntEnum):
     """How a motion ended.
 
-    A motion is complete if it is DONE (it reached the last output time) or RESTED (its speeds fell below the rest
-    threshold).  Others stop before that: STEP_LIMIT and STEP_TOO_SMALL of the integrator; UNDECIDED at V = omega = 0,
-    where the motion is not unique; UNSTEADY, too slow for the unsteady correction; CAUGHT, too slow to leave the
-    indentation of a standstill.  The property ``message`` states each in a sentence.
+    A motion is complete if it is DONE (it reached the last output time) or RESTED (its speeds fell
+    below the rest threshold).  Others stop before that: STEP_LIMIT and STEP_TOO_SMALL of the
+    integrator; UNDECIDED at V = omega = 0, where the motion is not unique; UNSTEADY, too slow for
+    the unsteady correction; CAUGHT, too slow to leave the indentation of a standstill.  The
+    property ``message`` states each in a sentence.
 
     Examples
     --------
@@ -331,28 +377,62 @@ class MotionStatus(IntEnum):
 _MESSAGES = (
     "reached the last output time",
     "|V| and R |omega| fell below the rest threshold",
-    "the step limit was reached first: raise max_steps, shorten the motion or, unless a speed grows without bound,"
+    "the step limit was reached first: raise max_steps, shorten the motion or, unless a speed "
+    "grows without bound,"
     " loosen rtol",
-    "the step size fell to rounding level: the motion changes faster than doubles resolve time there, since a gain,"
+    "the step size fell to rounding level: the motion changes faster than doubles resolve time "
+    "there, since a gain,"
     " drag, speed or friction is extreme, or rtol too tight",
-    "V and omega were both 0, where the motion is not unique: with mu > 2 kappa the cylinder can start in two"
+    "V and omega were both 0, where the motion is not unique: with mu > 2 kappa the cylinder can "
+    "start in two"
     " directions",
     "too slow for the unsteady correction: the added mass gamma N reached 1 + j, or -(1 + j)/2",
-    "too slow to leave the indentation of the standstill, which would take seven tenths of the kinetic energy",
+    "too slow to leave the indentation of the standstill, which would take seven tenths of the "
+    "kinetic energy",
 )
 
 
 def caller_level() -> int:
-    """Return the number of frames from the caller up to the first one outside this package, both counted, >= 2.
+    """Return the number of frames from the caller up to the first one outside this package, both
+    counted, >= 2.
 
-    It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.  Frames of the
-    module dataclasses, whose ``replace`` calls back, are passed over too.  If all frames are those of this package,
-    the outermost one counts.
+    It is the ``stacklevel`` by which a warning of the caller names the line of the user's program.
+    Frames of the module dataclasses, whose ``replace`` calls back, are passed over too.  If all
+    frames are those of this package, the outermost one counts.
     """
-    level, frame = 2, sys._getframe(2)
+    level = 2
+    frame = sys._getframe(2)
     while frame.f_back is not None:
         name = frame.f_globals.get("__name__", "")
         if name != "dataclasses" and f"{name}."[:10] != "viscoroll.":
             break
-        level, frame = level + 1, frame.f_back
+        level = level + 1
+        frame = frame.f_back
     return level
+
+
+# --- Imports of packages that only some functions need ---
+
+
+def import_extra(package: str, extra: str) -> Any:
+    """Import a module of an optional package, and return it.
+
+    package: name of the module and of the distribution that has it, as "fmpy".
+    extra: extra of viscoroll that installs it, as in ``pip install 'viscoroll[EXTRA]'``, for the
+    error.
+    Returns the module.
+
+    Raises
+    ------
+    MissingDependencyError
+        If the package is not installed.
+    ModuleNotFoundError
+        If it is installed, but one of its own dependencies is not.  Other errors of its import pass
+        too.
+    """
+    try:
+        return import_module(package)
+    except ModuleNotFoundError as error:
+        if error.name != package:
+            raise  # the package is installed, and one of its own dependencies is not
+        raise MissingDependencyError(package, extra) from None

@@ -1,8 +1,8 @@
 """Files that are written whole or not at all: temporary file, fsync, rename, fsync of the folder.
 
-Files that this package reads again end with a seal, the SHA-256 of all bytes before it.  The seal lies beyond the end
-that HDF5 and zip files state, so that other programs do not see it, and this package detects damage before a library
-parses the file.
+Files that this package reads again end with a seal, the SHA-256 of all bytes before it.  The seal
+lies beyond the end that HDF5 and zip files state, so that other programs do not see it, and this
+package detects damage before a library parses the file.
 """
 
 from __future__ import annotations
@@ -30,23 +30,29 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 
 def as_path(path: Any) -> Path:
-    """Return a path that a caller gave; raise FileError for what is none, as None, a number, bytes or an open file."""
+    """Return a path that a caller gave; raise FileError for what is none, as None, a number, bytes
+    or an open file.
+    """
     if not isinstance(path, str | PathLike) or "\0" in str(path):
-        raise FileError(f"{path!r:.60}", "is not a path: must be a text without null characters, or a Path")
+        raise FileError(
+            f"{path!r:.60}", "is not a path: must be a text without null characters, or a Path"
+        )
     return Path(path)
 
 
 @contextmanager
 def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
-    """Raise an OSError of the body of the ``with`` as FileError, which gives the system's reason; a context manager.
+    """Raise an OSError of the body of the ``with`` as FileError, which gives the system's reason; a
+    context manager.
 
-    The message is "PATH: PROBLEM (REASON)REMEDY", and the OSError is its cause.  Other exceptions pass unchanged.  A
-    path with a null character, of which Python raises ValueError, is refused before the body.
+    The message is "PATH: PROBLEM (REASON)REMEDY", and the OSError is its cause.  Other exceptions
+    pass unchanged.  A path with a null character, of which Python raises ValueError, is refused
+    before the body.
 
     path: path of the file or folder, for the message.
     problem: what fails, in words, as "cannot be read".
-    remedy: further words with their own punctuation, as ": it must be a table", appended directly after the reason in
-        brackets; "" without.
+    remedy: further words with their own punctuation, as ": it must be a table", appended directly
+        after the reason in brackets; "" without.
     Yields None.
     Raises FileError too for what is no path (:func:`as_path`).
     """
@@ -59,12 +65,14 @@ def as_file_error(path: Any, problem: str, remedy: str = "") -> Iterator[None]:
 
 @contextmanager
 def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
-    """Give a temporary path beside ``path``, and rename that file to ``path`` when the body of the ``with`` ends.
+    """Give a temporary path beside ``path``, and rename that file to ``path`` when the body of the
+    ``with`` ends.
 
-    The body must write a file at the temporary path.  The file and its folder are synced to disk.  After an exception
-    of the body ``path`` is as it was, and the temporary file is deleted.  A process that is killed may leave a
-    temporary file, named .PID-XXXXXXXX.tmp-NAME, which may be deleted.  The target of a symbolic link is replaced, and
-    the link stays.  The temporary name has the suffix of ``path``, from which writers infer a format.
+    The body must write a file at the temporary path.  The file and its folder are synced to disk.
+    After an exception of the body ``path`` is as it was, and the temporary file is deleted.  A
+    process that is killed may leave a temporary file, named .PID-XXXXXXXX.tmp-NAME, which may be
+    deleted.  The target of a symbolic link is replaced, and the link stays.  The temporary name has
+    the suffix of ``path``, from which writers infer a format.
 
     path: path of the file to write or to replace.
     Yields the temporary path, at which no file is yet.
@@ -72,9 +80,10 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
     Raises
     ------
     FileError
-        If it is no path; if it cannot be written there: no such folder, a full disk, a read-only folder or file, a
-        directory, a device, a loop of links; or if the body wrote no file.  An OSError of the body becomes a FileError
-        too.  Where the last sync alone fails, that of the folder, ``path`` is replaced already.
+        If it is no path; if it cannot be written there: no such folder, a full disk, a read-only
+        folder or file, a directory, a device, a loop of links; or if the body wrote no file.  An
+        OSError of the body becomes a FileError too.  Where the last sync alone fails, that of the
+        folder, ``path`` is replaced already.
     """
     target = Path(os.path.realpath(as_path(path)))
     temporary = target.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{target.name}")
@@ -98,7 +107,8 @@ def replace_file(path: str | PathLike[str]) -> Iterator[Path]:
 
 
 def _sync(path: Path) -> None:
-    """Write the file or folder at ``path`` from the buffers of the system to the disk; not a folder of Windows.
+    """Write the file or folder at ``path`` from the buffers of the system to the disk; not a folder
+    of Windows.
 
     Raises OSError if the system cannot.
     """
@@ -118,7 +128,9 @@ def seal(content: bytes) -> bytes:
 
 
 def seal_matches(content: bytes) -> bool | None:
-    """Whether the seal at the end of ``content`` is that of the bytes before it; None if there is no seal."""
+    """Whether the seal at the end of ``content`` is that of the bytes before it; None if there is
+    no seal.
+    """
     end = content[-_SEAL_SIZE:]
     return end == _seal_of(memoryview(content)[:-_SEAL_SIZE]) if end.startswith(_SEAL) else None
 
@@ -129,7 +141,8 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
     Parameters
     ----------
     path : path of the file.
-    max_bytes : largest size of a regular file in bytes, with its seal; a larger one is refused before it is read.
+    max_bytes : largest size of a regular file in bytes, with its seal; a larger one is refused
+        before it is read.
     kind : noun for the file that is expected, without its article "a", for errors.
     remedy : advice for a damaged file, the last words of its error.
 
@@ -141,8 +154,9 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
     Raises
     ------
     FileError
-        What is no path; a file that cannot be read, is too large, or differs from its seal; netCDF-3, unless a "law
-        or grid" is expected, of which another program may have written the grid so.
+        What is no path; a file that cannot be read, is too large, or differs from its seal;
+        netCDF-3, unless a "law or grid" is expected, of which another program may have written the
+        grid so.
     """
     file = as_path(path)
     with as_file_error(path, "cannot be read", f": it must be a {kind}"):
@@ -153,7 +167,9 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
         problem = "is netCDF-3, which viscoroll writes for other programs and does not read"
         raise FileError(path, f"{problem}: it must be a {kind}, with the suffix .nc")
     if seal_matches(content) is False:
-        raise FileError(path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}")
+        raise FileError(
+            path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}"
+        )
     return content
 
 
@@ -174,18 +190,27 @@ def write_text(path: str | PathLike[str], text: str) -> None:
 
 
 def fix_texts(dataset: xr.Dataset) -> xr.Dataset:
-    """Return a ``dataset`` whose attributes have texts of fixed length, as netCDF's C library writes them.
+    """Return a ``dataset`` whose attributes have texts of fixed length, as netCDF's C library
+    writes them.
 
     Octave, Fortran and ``nccopy -k classic`` read no others; readers of Python get them as ``str``.
     """
     fixed = dataset.copy()
     for attributes in (fixed.attrs, *(variable.attrs for variable in fixed.variables.values())):
-        attributes |= {key: np.array(text.encode()) for key, text in attributes.items() if isinstance(text, str)}
+        attributes |= {
+            key: np.array(text.encode())
+            for key, text in attributes.items()
+            if isinstance(text, str)
+        }
     return fixed
 
 
 def write_dataset(
-    dataset: xr.Dataset, path: str | PathLike[str], encoding: dict[str, Any] | None = None, *, sealed: bool = False
+    dataset: xr.Dataset,
+    path: str | PathLike[str],
+    encoding: dict[str, Any] | None = None,
+    *,
+    sealed: bool = False,
 ) -> None:
     """Write a dataset as netCDF-4/HDF5, whole or not at all, by :func:`replace_file`.
 
@@ -195,9 +220,9 @@ def write_dataset(
     ----------
     dataset : dataset to write; it is composed in memory.
     path : path of the file, which is replaced if it exists.
-    encoding : encoding of variables by name, as xarray takes it, in place of the default for all variables.  None or
-        {}: the default, no fill values (CF forbids them for coordinates), arrays of numbers that are not empty
-        compressed by zlib and with Fletcher-32 checksums.
+    encoding : encoding of variables by name, as xarray takes it, in place of the default for all
+        variables.  None or {}: the default, no fill values (CF forbids them for coordinates),
+        arrays of numbers that are not empty compressed by zlib and with Fletcher-32 checksums.
     sealed : whether the file ends with a seal, the SHA-256 of all bytes before it.
 
     Raises
@@ -209,9 +234,15 @@ def write_dataset(
     """
     filters = {"zlib": True, "complevel": 4, "shuffle": True, "fletcher32": True}
     default = {
-        str(name): {"_FillValue": None} | (filters if v.ndim and v.size and v.dtype.kind not in "OU" else {})
+        str(name): {"_FillValue": None}
+        | (filters if v.ndim and v.size and v.dtype.kind not in "OU" else {})
         for name, v in dataset.variables.items()
     }
-    # The file is composed in memory, because HDF5 2.0 crashes the process on a full disk (tests/test_files.py).
-    content = bytes(fix_texts(dataset).to_netcdf(engine="h5netcdf", format="NETCDF4", encoding=encoding or default))
+    # The file is composed in memory, because HDF5 2.0 crashes the process on a full disk
+    # (tests/test_files.py).
+    content = bytes(
+        fix_texts(dataset).to_netcdf(
+            engine="h5netcdf", format="NETCDF4", encoding=encoding or default
+        )
+    )
     write_bytes(path, seal(content) if sealed else content)

@@ -1,7 +1,12 @@
-"""Inputs with units: quantities of pint, ``units`` attributes of xarray, durations of Python, pandas and numpy.
+"""Inputs with units, and factors of conversion.
 
-:func:`to_unit` converts a value with a unit to the unit of the argument, or raises ParameterError.  Values without a
-unit, and the labels of xarray and pandas, stay as they are.
+Factors of conversion between units, by pint, which is imported at the first conversion.
+
+Inputs with units: quantities of pint, ``units`` attributes of xarray, durations of Python,
+pandas and numpy.
+
+:func:`to_unit` converts a value with a unit to the unit of the argument, or raises ParameterError.
+Values without a unit, and the labels of xarray and pandas, stay as they are.
 """
 
 from __future__ import annotations
@@ -9,46 +14,146 @@ from __future__ import annotations
 import re
 from datetime import timedelta
 from decimal import Decimal
+from functools import lru_cache
 from numbers import Real
 from typing import Any, TypeGuard
 
 import numpy as np
 
 from .errors import ParameterError, describe_value, described_error
-from .units import conversion_factor, pint_spelling
+
+# --- Factors of conversion between units, by pint ---
+
+#: Character of a unit that pint does not read -> spelling that it reads.
+_SPELLINGS = {
+    "²": "2",
+    "³": "3",
+    "⁻": "-",
+    "¹": "1",
+    "·": " ",
+    "⋅": " ",
+    "°C": "degC",
+    "°F": "degF",
+    "°": "deg",
+    "µ": "u",
+    "μ": "u",
+}
+#: Symbol of a unit and its power, with or without an operator between: "m-1", "mm^2", "s**-2".
+_POWER = re.compile(r"([A-Za-z_%]+)\s*(?:\^|\*\*)?\s*\(?([+-]?\d+)\)?")
+
+
+@lru_cache(maxsize=1)
+def registry() -> Any:
+    """Return the pint registry of this package, in which 1 Hz is 2 pi rad/s and 1 rpm is 2 pi/60
+    rad/s.
+    """
+    import pint
+
+    units: Any = pint.UnitRegistry(autoconvert_offset_to_baseunit=True, on_redefinition="ignore")
+    units.define("hertz = 2 * pi * radian / second = Hz")
+    return units
+
+
+@lru_cache(maxsize=256)
+def conversion_factor(unit: str, target: str) -> tuple[float, float]:
+    """Return factor and offset of a conversion: number in ``target`` = factor * number in
+    ``unit`` + offset.
+
+    Parameters
+    ----------
+    unit, target : units as files and people write them: "km/h", "N/mm²", "m s-1", "1/min", "°C"; ""
+        and "1" of a ratio; 1 Hz is 2 pi rad/s.
+
+    Returns
+    -------
+    factor, offset : floats, the offset in ``target``; it is 0 unless the units are temperatures
+    with different zeros.
+
+    Raises
+    ------
+    ParameterError
+        A unit that pint does not know, or of another dimension than ``target``.
+    """
+    import pint
+
+    quantity = registry().Quantity
+    try:
+        at_0, at_1 = (
+            quantity(number, pint_spelling(unit)).to(pint_spelling(target)).magnitude
+            for number in (0.0, 1.0)
+        )
+    except pint.DimensionalityError:
+        raise ParameterError("unit", unit, f"a unit of the dimension of {target}") from None
+    except Exception as error:  # pint raises errors of its own parser and of Python's
+        raise ParameterError(
+            "unit", unit, f"a unit that pint knows, of the dimension of {target}"
+        ) from error
+    # Without an offset the factor is the converted 1 itself, so that exact factors stay exact: 1e6,
+    # not 1/1e-6.
+    return (at_1 - at_0, at_0) if at_0 else (at_1, 0.0)
+
+
+def is_unit(text: str) -> bool:
+    """Whether pint reads a text as a unit, of any dimension.  It reads "C" as coulomb, not as
+    degree Celsius.
+    """
+    try:
+        registry().parse_units(pint_spelling(text))
+    except Exception:  # pint raises errors of its own parser and of Python's
+        return False
+    return True
+
+
+def pint_spelling(unit: str) -> str:
+    """Return a ``unit`` in the spelling of pint: superscripts and signs as ASCII, powers with
+    ``**``; "1" of "".
+    """
+    text = unit.strip()
+    for character, spelling in _SPELLINGS.items():
+        text = text.replace(character, spelling)
+    return _POWER.sub(r"\1**\2", text) or "1"
+
+
+# --- Inputs with units ---
 
 #: Types without a unit.
 _UNITLESS_TYPES = frozenset((float, int, bool, str, complex, type(None), dict, np.float64))
-#: Kinds of arrays without a unit, as numpy names them: truth values, integers, floats, complex, texts, dates.
+#: Kinds of arrays without a unit, as numpy names them: truth values, integers, floats, complex,
+#: texts, dates.
 _UNITLESS_KINDS = frozenset("biufcUSM")
 #: Types of the elements of lists without a unit.
 _NUMBER_TYPES = frozenset((float, int))
 #: Texts for the unit of a dimensionless number.
 _DIMENSIONLESS = ("", "1", "-", "dimensionless")
-#: Hertz in a unit.  A cycle is 2 pi rad for an angular velocity; for other arguments its meaning is unclear.
+#: Hertz in a unit.  A cycle is 2 pi rad for an angular velocity; for other arguments its meaning is
+#: unclear.
 _HERTZ = re.compile(r"(?:^|[^a-z])[a-z]{0,2}hz(?:$|[^a-z])|hertz", re.IGNORECASE)
 #: A fraction in a unit, which is not an angle: a slope of 5 % is one of atan(0.05).
 _FRACTION = re.compile(r"%|percent|permille|ppm", re.IGNORECASE)
 #: A unit in brackets at the end of the title of a column.
 _TITLE_UNIT = re.compile(r"\[([^\[\]]+)\]\s*$")
-#: Labels of a series that are searched for the units of columns: more would take time, and a row of a table has fewer.
+#: Labels of a series that are searched for the units of columns: more would take time, and a row of
+#: a table has fewer.
 _MOST_COLUMNS = 100
 #: The only unit of arguments whose zero differs from that of other units of its dimension.
 _TEMPERATURE = "degC"
 
 
 def has_no_unit(value: Any) -> bool:
-    """Whether the type of a value shows that it has no unit: a number, an array or a list of numbers.
+    """Whether the type of a value shows that it has no unit: a number, an array or a list of
+    numbers.
 
     value: what a caller gave, of any type.
-    Returns True also of None, texts, truth values, dicts, and arrays of texts or dates; False of anything else, which
-    may have a unit: nested lists, arrays of objects or durations, numbers of numpy but float64, and instances of
-    classes derived from those of Python and numpy.
+    Returns True also of None, texts, truth values, dicts, and arrays of texts or dates; False of
+    anything else, which may have a unit: nested lists, arrays of objects or durations, numbers of
+    numpy but float64, and instances of classes derived from those of Python and numpy.
     """
     kind = type(value)
     if kind is np.ndarray:
         return value.dtype.kind in _UNITLESS_KINDS
-    return kind in _UNITLESS_TYPES or (kind in (list, tuple) and _NUMBER_TYPES.issuperset(map(type, value)))
+    return kind in _UNITLESS_TYPES or (
+        kind in (list, tuple) and _NUMBER_TYPES.issuperset(map(type, value))
+    )
 
 
 def to_unit(name: str, value: Any, target: str) -> Any:
@@ -57,20 +162,22 @@ def to_unit(name: str, value: Any, target: str) -> Any:
     Parameters
     ----------
     name : name of the argument.
-    value : what a caller gave: a number, an array, a list, a quantity, a duration, an array of xarray, a series.
+    value : what a caller gave: a number, an array, a list, a quantity, a duration, an array of
+        xarray, a series.
     target : SI unit of the argument as "m s-1"; "1" of a dimensionless number.
 
     Returns
     -------
-    value : ``value`` itself if it has no unit, of whatever type it is, but a new list of a list or tuple with elements
-        other than float and int, and a new array of an array of objects; else numbers in ``target``, in a container of
-        the same kind (a list of a tuple), with the labels of xarray and pandas.
+    value : ``value`` itself if it has no unit, of whatever type it is, but a new list of a list or
+        tuple with elements other than float and int, and a new array of an array of objects; else
+        numbers in ``target``, in a container of the same kind (a list of a tuple), with the labels
+        of xarray and pandas.
 
     Raises
     ------
     ParameterError
-        A unit of another dimension, an unknown one, or one of unclear meaning (:func:`convert`); with a unit numbers
-        that are not numeric; what :func:`split_unit` refuses.
+        A unit of another dimension, an unknown one, or one of unclear meaning (:func:`convert`);
+        with a unit numbers that are not numeric; what :func:`split_unit` refuses.
     """
     if has_no_unit(value):
         return value
@@ -86,22 +193,23 @@ def to_unit(name: str, value: Any, target: str) -> Any:
 def split_unit(name: str, value: Any) -> tuple[Any, str | None]:
     """Split a value into its numbers and its unit.
 
-    Labels of xarray and pandas stay.  All elements of a list, or of an array of objects, are converted to the unit of
-    the first.
+    Labels of xarray and pandas stay.  All elements of a list, or of an array of objects, are
+    converted to the unit of the first.
 
     name: name of the argument, for errors.
-    value: what a caller gave: a number, an array, a list, a quantity of pint, astropy or unyt, a duration, an array of
-        xarray, a series or an index of pandas.
-    Returns (numbers in the same kind of container, but a list in place of a tuple; their unit as a text, of pint in
-    full, as "meter / second").  Without a unit that is (``value``, None), of whatever type the value is; of lists with
-    elements other than float and int, and of arrays of objects it is a new one.  Durations are numbers in "s".
+    value: what a caller gave: a number, an array, a list, a quantity of pint, astropy or unyt, a
+        duration, an array of xarray, a series or an index of pandas.
+    Returns (numbers in the same kind of container, but a list in place of a tuple; their unit as a
+    text, of pint in full, as "meter / second").  Without a unit that is (``value``, None), of
+    whatever type the value is; of lists with elements other than float and int, and of arrays of
+    objects it is a new one.  Durations are numbers in "s".
 
     Raises
     ------
     ParameterError
-        A table of pandas, or a row of one; a list with truth values, or of numbers with and without units; a duration
-        in months, years or without a unit; units of different dimensions in one list, or between the elements and the
-        stated unit of an array of xarray or a series.
+        A table of pandas, or a row of one; a list with truth values, or of numbers with and without
+        units; a duration in months, years or without a unit; units of different dimensions in one
+        list, or between the elements and the stated unit of an array of xarray or a series.
     """
     if has_no_unit(value):
         return value, None
@@ -133,21 +241,25 @@ def convert(name: str, value: Any, unit: str, target: str) -> Any:
 
     name: name of the argument, for errors.
     value: number, array, or list of these, perhaps with labels, which stay.
-    unit: their unit, as "km/h"; "", "1", "-" and "dimensionless" of a ratio; "-" is not allowed for an angle, the
-        others are radians there.
+    unit: their unit, as "km/h"; "", "1", "-" and "dimensionless" of a ratio; "-" is not allowed for
+        an angle, the others are radians there.
     target: wanted unit, as "m s-1"; "1" of a dimensionless number, "rad" of an angle.
-    Returns ``value`` itself if the texts of the units are equal or both mean a ratio.  Else numbers in ``target``: a
-    float, a float64 array of the same shape with its labels, or a list of these.
-    Raises ParameterError for a unit that is unknown, of another dimension or of unclear meaning (Hz for other
-    arguments than an angular velocity, percent of an angle, differences of temperature), and for numbers that are not
-    numeric.
+    Returns ``value`` itself if the texts of the units are equal or both mean a ratio.  Else numbers
+    in ``target``: a float, a float64 array of the same shape with its labels, or a list of these.
+    Raises ParameterError for a unit that is unknown, of another dimension or of unclear meaning (Hz
+    for other arguments than an angular velocity, percent of an angle, differences of temperature),
+    and for numbers that are not numeric.
     """
     if unit == target or (target == "1" and unit.strip() in _DIMENSIONLESS):
         return value
     if unit.strip() in _DIMENSIONLESS and target != "rad":
         raise unit_error(name, "units of 1, without dimension", target)
     cycles = target != "rad s-1" and _HERTZ.search(unit)
-    if cycles or (target == "rad" and _FRACTION.search(unit)) or (target == _TEMPERATURE and "delta" in unit):
+    if (
+        cycles
+        or (target == "rad" and _FRACTION.search(unit))
+        or (target == _TEMPERATURE and "delta" in unit)
+    ):
         raise unit_error(name, unit, target)
     try:
         factor, offset = conversion_factor(unit, target)
@@ -167,8 +279,8 @@ def _as_floats(name: str, value: Any) -> Any:
     name: name of the argument, for the error.
     value: a number (int, float, Decimal, Fraction), or an array, perhaps with labels.
     Returns a float of a number, else a new float64 array, of the same type as ``value``.
-    Raises ParameterError if they are not numeric (texts, truth values, complex numbers), or an integer is beyond the
-    doubles.
+    Raises ParameterError if they are not numeric (texts, truth values, complex numbers), or an
+    integer is beyond the doubles.
     """
     kind = getattr(getattr(value, "dtype", None), "kind", "")
     try:
@@ -194,7 +306,11 @@ def unit_error(name: str, unit: str, target: str, known: bool = True) -> Paramet
     target: unit of the argument, "1" of a dimensionless number.
     known: whether pint knows the unit; if not, the message says so.
     """
-    allowed = "a number without dimension" if target == "1" else f"in {target}, or in another unit of that dimension"
+    allowed = (
+        "a number without dimension"
+        if target == "1"
+        else f"in {target}, or in another unit of that dimension"
+    )
     found = f"in {unit:.40}" + ("" if known else ", a unit that is not known")
     return ParameterError(name, found, allowed, f"{name} is {found}: must be {allowed}")
 
@@ -205,42 +321,58 @@ def _is_quantity(value: Any) -> bool:
 
 
 def _split_elements(name: str, values: Any) -> tuple[list[Any], str | None]:
-    """Split the unit from the elements of a list; elements in other units than the first are converted.
+    """Split the unit from the elements of a list; elements in other units than the first are
+    converted.
 
     name: name of the argument, for errors.
     values: the list or tuple, whose elements may be lists, quantities, numbers or anything else.
-    Returns (new list of numbers, all in the unit of the first element; that unit, None if no element has one, and of an
-    empty list).
-    Raises ParameterError for truth values, for numbers with and without a unit, and for units of different dimensions.
+    Returns (new list of numbers, all in the unit of the first element; that unit, None if no
+    element has one, and of an empty list).
+    Raises ParameterError for truth values, for numbers with and without a unit, and for units of
+    different dimensions.
     """
     parts = [split_unit(name, value) for value in values]
     units = list(dict.fromkeys(unit for _, unit in parts))
     if any(isinstance(number, bool | np.bool_) for number, _ in parts):
         raise ParameterError(name, f"{values!r:.60}", "numbers, no truth values")
     if len(units) > 1 and None in units:
-        raise described_error(name, "has numbers with a unit and numbers without", "all with a unit, or all without")
+        raise described_error(
+            name, "has numbers with a unit and numbers without", "all with a unit, or all without"
+        )
     unit = units[0] if units else None
-    return [number if own == unit else convert(name, number, str(own), str(unit)) for number, own in parts], unit
+    return [
+        number if own == unit else convert(name, number, str(own), str(unit))
+        for number, own in parts
+    ], unit
 
 
 def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     """Split the unit from an array of xarray, a series or an index of pandas.
 
-    The unit is stated by the attribute ``units``, else by the title of a column, as "V [m s-1]"; elements with a unit
-    of their own are converted to the stated one.  Without such a statement the unit is that of the elements.
+    The unit is stated by the attribute ``units``, else by the title of a column, as "V [m s-1]";
+    elements with a unit of their own are converted to the stated one.  Without such a statement the
+    unit is that of the elements.
 
     name: name of the argument, for errors.
     value: the array, series or index; not changed.
-    Returns (numbers; unit).  Without a unit that is (``value`` itself, None); else the numbers are a new array or
-    series with its labels, without attributes and name, of an index or a variable of xarray a plain array.
-    Raises ParameterError where the unit of the elements is of another dimension than the stated one, for a series that
-    is a row of a table, whose index has titles with units, and as :func:`split_unit` for the elements.
+    Returns (numbers; unit).  Without a unit that is (``value`` itself, None); else the numbers are
+    a new array or series with its labels, without attributes and name, of an index or a variable of
+    xarray a plain array.
+    Raises ParameterError where the unit of the elements is of another dimension than the stated
+    one, for a series that is a row of a table, whose index has titles with units, and as
+    :func:`split_unit` for the elements.
     """
     is_xarray = hasattr(value, "dims")
     index = None if is_xarray else getattr(value, "index", None)
     if index is not None and any(map(_title_unit, index[:_MOST_COLUMNS])):
-        raise described_error(name, "is a row of a table, with units in its index", "a column of it, or a number")
-    data = value.data if is_xarray else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
+        raise described_error(
+            name, "is a row of a table, with units in its index", "a column of it, or a number"
+        )
+    data = (
+        value.data
+        if is_xarray
+        else getattr(getattr(value, "array", None), "quantity", value.to_numpy())
+    )
     numbers, own = split_unit(name, data)
     stated = getattr(value, "attrs", {}).get("units", _title_unit(getattr(value, "name", None)))
     if stated is None and numbers is data:
@@ -251,7 +383,8 @@ def _split_labelled(name: str, value: Any) -> tuple[Any, str | None]:
     if not hasattr(value, "coords"):
         return type(value)(numbers, index=index) if index is not None else numbers, unit
     labelled = value.copy(deep=False, data=numbers)
-    labelled.attrs, labelled.name = {}, None
+    labelled.attrs = {}
+    labelled.name = None
     return labelled, unit
 
 
@@ -259,7 +392,8 @@ def _title_unit(title: Any) -> str | None:
     """Return the unit in brackets at the end of a title of a column, "km/h" of "V [km/h]".
 
     title: name of an array or a series; what is no text, as None, gives None.
-    Returns None too if there are no brackets, or if they contain a unit of 1 or a text that pint does not know.
+    Returns None too if there are no brackets, or if they contain a unit of 1 or a text that pint
+    does not know.
     """
     found = _TITLE_UNIT.search(title) if isinstance(title, str) else None
     if found is None or found[1].strip() in _DIMENSIONLESS:
@@ -276,15 +410,22 @@ def _to_seconds(name: str, value: Any) -> Any:
 
     name: name of the argument, for the error.
     value: what a caller gave, of any type.
-    Returns a float or an array of the shape of ``value``, without its labels, NaN for NaT; None if the value is no
-    duration, and for lists and masked arrays of durations.
-    Raises ParameterError for a duration in months or years, whose length is not fixed, or without a unit.
+    Returns a float or an array of the shape of ``value``, without its labels, NaN for NaT; None if
+    the value is no duration, and for lists and masked arrays of durations.
+    Raises ParameterError for a duration in months or years, whose length is not fixed, or without a
+    unit.
     """
     if isinstance(value, timedelta):
-        value = value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)
-    if getattr(getattr(value, "dtype", None), "kind", "") != "m" or isinstance(value, np.ma.MaskedArray):
+        value = (
+            value.to_timedelta64() if hasattr(value, "to_timedelta64") else np.timedelta64(value)
+        )
+    if getattr(getattr(value, "dtype", None), "kind", "") != "m" or isinstance(
+        value, np.ma.MaskedArray
+    ):
         return None
     durations = np.asarray(value)
     if np.datetime_data(durations.dtype)[0] in ("generic", "Y", "M"):
-        raise ParameterError(name, f"{value!r:.60}", "a duration in weeks, days, hours, seconds or parts of them")
+        raise ParameterError(
+            name, f"{value!r:.60}", "a duration in weeks, days, hours, seconds or parts of them"
+        )
     return durations / np.timedelta64(1, "s")

@@ -1,4 +1,6 @@
-"""Base classes of results: summaries as text and HTML, datasets of xarray, tables of pandas, figures."""
+"""Base classes of results: summaries as text and HTML, datasets of xarray, tables of pandas,
+figures.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .labels import Labels, dataset_axes, state_axes
-from .symbols import attributes
+from .scale import attributes
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -40,7 +42,9 @@ class Result:
     """Base class of results.  A subclass implements :meth:`_summary` and :meth:`to_xarray`."""
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return (title; rows, a list of :class:`SummaryRow`) of the summary; subclasses implement it."""
+        """Return (title; rows, a list of :class:`SummaryRow`) of the summary; subclasses implement
+        it.
+        """
         raise NotImplementedError
 
     def to_xarray(self) -> xr.Dataset:
@@ -48,16 +52,19 @@ class Result:
         raise NotImplementedError
 
     def to_pandas(self) -> pd.DataFrame:
-        """Return the dataset of :meth:`to_xarray` as a pandas.DataFrame, a row for each time or state.
+        """Return the dataset of :meth:`to_xarray` as a pandas.DataFrame, a row for each time or
+        state.
 
-        A column of a quantity with a unit is named as "V [m s-1]", because pandas writes no attributes into files.
+        A column of a quantity with a unit is named as "V [m s-1]", because pandas writes no
+        attributes into files.
 
         Returns
         -------
         pandas.DataFrame
-            The index has the axes of the variable that has most axes, the first one of several with as many; a result
-            of a single state has one row, with index 0 named "state".  Variables over fewer of these axes are repeated
-            along the others; variables over other axes, as the corners of a drive, are left out.
+            The index has the axes of the variable that has most axes, the first one of several with
+            as many; a result of a single state has one row, with index 0 named "state".  Variables
+            over fewer of these axes are repeated along the others; variables over other axes, as
+            the corners of a drive, are left out.
 
         Raises
         ------
@@ -67,7 +74,9 @@ class Result:
         Examples
         --------
         >>> import viscoroll as vr
-        >>> table = vr.contact(vr.presets.RUBBER_CYLINDER, [0.5, 1.0], delta=0.0, fields="M").to_pandas()
+        >>> table = vr.contact(
+        ...     vr.presets.RUBBER_CYLINDER, [0.5, 1.0], delta=0.0, fields="M"
+        ... ).to_pandas()
         >>> table.index.name, list(table.columns)
         ('V [m s-1]', ['delta', 'M [N m m-1]'])
         """
@@ -100,11 +109,13 @@ class Result:
         Examples
         --------
         >>> import viscoroll as vr
-        >>> figure = vr.contact(vr.presets.RUBBER_CYLINDER, [0.5, 1.0, 2.0], delta=0.0, fields="M").plot("M.png")
+        >>> figure = vr.contact(
+        ...     vr.presets.RUBBER_CYLINDER, [0.5, 1.0, 2.0], delta=0.0, fields="M"
+        ... ).plot("M.png")
         >>> len(figure.axes)
         1
         """
-        from .plots.style import save
+        from .plots import save
 
         figure = self._figure()
         if path is not None:
@@ -118,7 +129,8 @@ class Result:
         return draw(self.to_xarray())
 
     def keys(self) -> Iterable[str]:
-        """Return the names of the fields, which are attributes and are read by ``result[name]`` too.
+        """Return the names of the fields, which are attributes and are read by ``result[name]``
+        too.
 
         Returns
         -------
@@ -128,7 +140,8 @@ class Result:
         Raises
         ------
         TypeError
-            Of an :class:`.identification.Identification` and of the results of a run: they have attributes alone.
+            Of an :class:`.identification.Identification` and of the results of a run: they have
+            attributes alone.
 
         Examples
         --------
@@ -152,25 +165,31 @@ class Result:
 
 
 def as_text(title: str, rows: list[SummaryRow]) -> str:
-    """Return a summary for a terminal: the title, then a line for each row, its name, value and unit.
+    """Return a summary for a terminal: the title, then a line for each row, its name, value and
+    unit.
 
     title: first line.
     rows: :class:`SummaryRow` each, perhaps none; values begin in one column.
     Returns the lines, joined by line feeds, without blanks at their ends.
     """
     width = max((len(row.name) for row in rows), default=0)
-    return "\n".join([title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)])
+    return "\n".join(
+        [title, *(f"  {row.name:<{width}}  {row.value} {row.unit}".rstrip() for row in rows)]
+    )
 
 
 def as_html(title: str, rows: list[SummaryRow]) -> str:
-    """Return a summary as HTML for a notebook: the title, and a table of the name, value and unit of each row.
+    """Return a summary as HTML for a notebook: the title, and a table of the name, value and unit
+    of each row.
 
     title: text above the table.
     rows: :class:`SummaryRow` each, of which the first 40 are shown.
     Returns one element div, in which the characters of the texts that HTML reserves are escaped.
     """
     cells = "".join(
-        "<tr>" + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row) + "</tr>"
+        "<tr>"
+        + "".join(f'<td style="text-align:left">{html.escape(text)}</td>' for text in row)
+        + "</tr>"
         for row in rows[:_MAX_ROWS]
     )
     return f"<div><strong>{html.escape(title)}</strong><table>{cells}</table></div>"
@@ -183,7 +202,9 @@ def unit_of(attributes: Mapping[Any, Any]) -> str:
 
 
 def column_name(name: str, unit: str) -> str:
-    """Return the title of a column: the ``name`` of a quantity, and its ``unit`` unless that is ""."""
+    """Return the title of a column: the ``name`` of a quantity, and its ``unit`` unless that is
+    "".
+    """
     return f"{name} [{unit}]" if unit else name
 
 
@@ -191,9 +212,10 @@ def format_value(value: Any) -> str:
     """Return a number or a short array as text; of a long array its shape and range.
 
     value: a number, a text, or an array of numbers of any shape.
-    Returns a text: of a float 12 significant digits; of an array of one to four elements, or without axes, its elements
-    with at most six digits after the point; of a larger array its shape and the smallest and largest finite element, as
-    "(100,), 0 to 2.5, 3 not finite" or "(100,), none finite"; of an empty one its shape; of anything else its ``str``.
+    Returns a text: of a float 12 significant digits; of an array of one to four elements, or
+    without axes, its elements with at most six digits after the point; of a larger array its shape
+    and the smallest and largest finite element, as "(100,), 0 to 2.5, 3 not finite" or "(100,),
+    none finite"; of an empty one its shape; of anything else its ``str``.
     """
     if not isinstance(value, np.ndarray):
         return f"{value:.12g}" if isinstance(value, float) else str(value)
@@ -221,20 +243,24 @@ class Values(Result):
 
     Attributes
     ----------
-    success, status, message : True, 0 and a sentence, as motions and equilibria have them: a call that cannot compute
-        its results raises an exception.
+    success, status, message : True, 0 and a sentence, as motions and equilibria have them: a call
+        that cannot compute its results raises an exception.
 
     Examples
     --------
     >>> import viscoroll as vr
-    >>> state = vr.contact(vr.presets.RUBBER_CYLINDER, [0.5, 1.0], delta=0.01, fields=("Q", "M"))
+    >>> state = vr.contact(
+    ...     vr.presets.RUBBER_CYLINDER, [0.5, 1.0], delta=0.01, fields=("Q", "M")
+    ... )
     >>> state.Q.shape, list(state.keys())
     ((2,), ['Q', 'M'])
     >>> list(state.to_pandas().columns)
     ['delta', 'Q [N m-1]', 'M [N m m-1]']
     """
 
-    success, status, message = True, 0, "all fields were computed"
+    success = True
+    status = 0
+    message = "all fields were computed"
 
     def __init__(
         self,
@@ -250,26 +276,35 @@ class Values(Result):
         """Keep the fields of a result, with the arguments that tables and figures need as axes.
 
         values: name -> number or array of the field.
-        given: name -> argument by which the call varied, a number or an array that broadcasts with the fields, which
-            becomes a coordinate.  None: there is none.
-        units: name -> unit as "m s-1", where it is not that of the field's name.  None: no field has such a unit.
+        given: name -> argument by which the call varied, a number or an array that broadcasts with
+            the fields, which becomes a coordinate.  None: there is none.
+        units: name -> unit as "m s-1", where it is not that of the field's name.  None: no field
+            has such a unit.
         title: first line of the summary, title of dataset and figure.
         si: whether values are in SI units, else dimensionless.
-        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape, also after axes
-            of the roller; None: fields stay plain arrays.
+        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape,
+            also after axes of the roller; None: fields stay plain arrays.
         about: further attributes of the dataset by name; None: there are none.
         """
         self._about = about or {}
-        self._values = values if labels is None else {name: labels.apply(name, each) for name, each in values.items()}
-        self._given, self._units, self._labels = given or {}, units or {}, labels
-        self._title, self._si = title + ", in SI units" * si, si
+        self._values = (
+            values
+            if labels is None
+            else {name: labels.apply(name, each) for name, each in values.items()}
+        )
+        self._given = given or {}
+        self._units = units or {}
+        self._labels = labels
+        self._title = title + ", in SI units" * si
+        self._si = si
 
     def __getattr__(self, name: str) -> Any:
-        """Return the field of a name, which Python asks for where the object has no attribute of that name.
+        """Return the field of a name, which Python asks for where the object has no attribute of
+        that name.
 
         name: name of a field.
-        Raises AttributeError for another name; its message lists the fields that were computed, unless the name begins
-        with "_".
+        Raises AttributeError for another name; its message lists the fields that were computed,
+        unless the name begins with "_".
         """
         if name.startswith("_"):
             raise AttributeError(name)
@@ -277,7 +312,9 @@ class Values(Result):
             return self._values[name]
         except KeyError:
             names = ", ".join(self._values)
-            raise AttributeError(f"{name!r} was not computed; this result contains {names}") from None
+            raise AttributeError(
+                f"{name!r} was not computed; this result contains {names}"
+            ) from None
 
     def __dir__(self) -> Iterable[str]:
         return [*self._values, "as_dict", "plot", "to_pandas", "to_xarray"]
@@ -299,7 +336,8 @@ class Values(Result):
         return dict(self._values)
 
     def keys(self) -> Iterable[str]:
-        """Return the names of the results, which are attributes and are read by ``result[name]`` too.
+        """Return the names of the results, which are attributes and are read by ``result[name]``
+        too.
 
         Returns
         -------
@@ -315,11 +353,16 @@ class Values(Result):
         return self._values.keys()
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Return (the title, with the common shape of the results unless it is (); a row for each result)."""
+        """Return (the title, with the common shape of the results unless it is (); a row for each
+        result).
+        """
         shape = np.broadcast_shapes(*map(np.shape, self._values.values()))
         title = self._title + (f", {shape}" if shape else "")
         units = {name: unit_of(self._attributes(name)) for name in self._values}
-        return title, [SummaryRow(name, format_value(value), units[name]) for name, value in self._values.items()]
+        return title, [
+            SummaryRow(name, format_value(value), units[name])
+            for name, value in self._values.items()
+        ]
 
     def to_xarray(self) -> xr.Dataset:
         """Return all results and arguments as a dataset with long names and units.
@@ -327,13 +370,15 @@ class Values(Result):
         Returns
         -------
         xarray.Dataset
-            An axis along which one argument alone varies has the name and the values of that argument; another axis is
-            named ``state``, or of several axes ``state_0``, ``state_1`` and so on.  Arguments with labels of xarray or
-            pandas determine axes and coordinates; one with the name NAME of a field, or of an argument with other
-            values, is called given_NAME.  Results and arguments are broadcast to the common shape, numbers are
-            variables without axes, truth values become 0 or 1 (int8).  Attributes of a variable are long_name and
-            units, of some symbol and equation; those of the dataset are its title and those that the call added, as
-            measured_V, the lowest and the highest speed at which the material was measured.
+            An axis along which one argument alone varies has the name and the values of that
+            argument; another axis is named ``state``, or of several axes ``state_0``, ``state_1``
+            and so on.  Arguments with labels of xarray or pandas determine axes and coordinates;
+            one with the name NAME of a field, or of an argument with other values, is called
+            given_NAME.  Results and arguments are broadcast to the common shape, numbers are
+            variables without axes, truth values become 0 or 1 (int8).  Attributes of a variable are
+            long_name and units, of some symbol and equation; those of the dataset are its title and
+            those that the call added, as measured_V, the lowest and the highest speed at which the
+            material was measured.
 
         Examples
         --------
@@ -352,7 +397,9 @@ class Values(Result):
             dims, coords = dataset_axes(self._labels, shape, arrays.keys() - alike)
         else:
             dims, axes = _name_axes(given, shape)
-            coords = {name: ((name,), values, self._attributes(name)) for name, values in axes.items()}
+            coords = {
+                name: ((name,), values, self._attributes(name)) for name, values in axes.items()
+            }
         data = {}
         for name, array in arrays.items():
             if name not in coords:
@@ -362,28 +409,33 @@ class Values(Result):
         return xr.Dataset(data, coords, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:
-        """Return the attributes of the result or argument ``name``, as of :func:`.symbols.attributes`; a unit that the
-        call gave for it takes the place of its own.
+        """Return the attributes of the result or argument ``name``, as of
+        :func:`.scale.attributes`; a unit that the call gave for it takes the place of its own.
         """
         found: dict[str, Any] = dict(attributes(name, self._si))
         return found | {"units": self._units[name]} if name in self._units else found
 
 
-def _name_axes(given: dict[str, NDArray], shape: tuple[int, ...]) -> tuple[tuple[str, ...], dict[str, Any]]:
+def _name_axes(
+    given: dict[str, NDArray], shape: tuple[int, ...]
+) -> tuple[tuple[str, ...], dict[str, Any]]:
     """Name the axes of a result by the arguments that vary along them.
 
-    An axis has the name of an argument if that argument has more than one value along it, has none along other axes,
-    and no other argument varies along it.  Else the axis is named "state" if it is the only one, and "state_0",
-    "state_1" and so on by its index if there are several.
+    An axis has the name of an argument if that argument has more than one value along it, has none
+    along other axes, and no other argument varies along it.  Else the axis is named "state" if it
+    is the only one, and "state_0", "state_1" and so on by its index if there are several.
 
     given: name -> argument, an array that broadcasts to ``shape``.
     shape: shape of arguments and results, broadcast.
-    Returns (tuple of the names of all axes; dict from the name of each such argument to its values, (size of the
-    axis,)); ((), {}) for the shape ().
+    Returns (tuple of the names of all axes; dict from the name of each such argument to its values,
+    (size of the axis,)); ((), {}) for the shape ().
     """
-    dims, values = [], {}
+    dims = []
+    values = {}
     for axis, size in enumerate(shape, -len(shape)):
-        varying = [name for name, array in given.items() if -axis <= array.ndim and array.shape[axis] > 1]
+        varying = [
+            name for name, array in given.items() if -axis <= array.ndim and array.shape[axis] > 1
+        ]
         if len(varying) == 1 and given[varying[0]].size == size:
             dims.append(varying[0])
             values[varying[0]] = given[varying[0]].ravel()

@@ -1,20 +1,33 @@
-"""Units of each quantity: the one table of dimensions, and the units in which a roller counts (:class:`Scale`).
+"""Units and symbols of all quantities.
 
-Quantities of a scene are dimensionless: each is divided by a unit that is made of the radius R, the time T_epsilon, the
-load P, the mass m, the contact length at rest l0 and the modulus E'.  Quantities of a cylinder are in SI units, and a
-material may have a unit of time of its own (T_ref).
+Units of each quantity: the one table of dimensions, and the units in which a roller counts
+(:class:`Scale`).
+
+Quantities of a scene are dimensionless: each is divided by a unit that is made of the radius R, the
+time T_epsilon, the load P, the mass m, the contact length at rest l0 and the modulus E'.
+Quantities of a cylinder are in SI units, and a material may have a unit of time of its own (T_ref).
+
+Symbols of all quantities: name in code, LaTeX symbol, meaning, range, equation of the paper,
+read from symbols.csv.
+
+Files, figures and ``docs/symbols.md`` take their words from here, and the units from :mod:`.scale`.
 """
 
 from __future__ import annotations
 
+import csv
 import re
+from importlib.resources import files
 from typing import Any, NamedTuple, Protocol, TypeAlias
+
+# --- Units of each quantity ---
 
 
 class Dimension(NamedTuple):
     """A dimension, and the quantities that have it.
 
-    formula : product of R, T, P, m, l0, E_prime and rad, as "P T/R"; of temperatures and energies another name.
+    formula : product of R, T, P, m, l0, E_prime and rad, as "P T/R"; of temperatures and energies
+    another name.
     si_unit : as "N s m-2".
     divisor : words that follow the name of a quantity of a scene: the unit by which it is divided.
     names : quantities, separated by spaces.
@@ -28,7 +41,9 @@ class Dimension(NamedTuple):
 
 _TABLE = (
     Dimension(
-        "T", "s", ", divided by T_epsilon",
+        "T",
+        "s",
+        ", divided by T_epsilon",
         "t t0 onset_time rest_time rested zeta resolve T_epsilon T_sigma T_ref",
     ),
     Dimension("R", "m", ", divided by R", "R thickness x"),
@@ -41,27 +56,45 @@ _TABLE = (
     Dimension("rad/T", "rad s-1", ", multiplied by T_epsilon", "omega omega0"),
     Dimension("E_prime", "Pa", ", divided by E'", "E E0 G G0 G_inf bulk p tau"),
     Dimension("P", "N m-1", ", divided by the load P", "load force Q dQ_ddelta"),
-    Dimension("P R", "N m m-1", ", divided by P R", "torque brake M M_half_space M_cylinder dM_ddelta"),
-    Dimension("P T", "N s m-1", ", divided by P T_epsilon", "dM_dV dM_half_space_dV dM_cylinder_dV dQ_domega"),
+    Dimension(
+        "P R", "N m m-1", ", divided by P R", "torque brake M M_half_space M_cylinder dM_ddelta"
+    ),
+    Dimension(
+        "P T",
+        "N s m-1",
+        ", divided by P T_epsilon",
+        "dM_dV dM_half_space_dV dM_cylinder_dV dQ_domega",
+    ),
     Dimension("P T/R", "N s m-2", ", divided by P T_epsilon/R", "dQ_dV"),
     Dimension("P T2", "N s2 m-1", ", divided by P T_epsilon^2", "N"),
     Dimension(
-        "P R T", "N m s m-1", ", divided by P R T_epsilon",
+        "P R T",
+        "N m s m-1",
+        ", divided by P R T_epsilon",
         "drag dM_domega dM_half_space_domega dM_cylinder_domega",
     ),
-    Dimension("P R/T", "W m-1", ", divided by P R/T_epsilon", "loss loss_slip loss_half_space loss_cylinder"),
+    Dimension(
+        "P R/T",
+        "W m-1",
+        ", divided by P R/T_epsilon",
+        "loss loss_slip loss_half_space loss_cylinder",
+    ),
     Dimension("P T/m R", "s-1", ", divided by gamma/T_epsilon", "rate_fast rate_slow"),
     Dimension(
-        "m R2/T2", "J m-1", ", divided by m (R/T_epsilon)^2",
+        "m R2/T2",
+        "J m-1",
+        ", divided by m (R/T_epsilon)^2",
         "work_force work_torque brake_loss slip_loss rolling_loss heat given_off",
     ),
-    Dimension("theta", "degC", "", "temperature T0 ambient base_temperature base_ambient start allowed"),
+    Dimension(
+        "theta", "degC", "", "temperature T0 ambient base_temperature base_ambient start allowed"
+    ),
     Dimension("delta theta", "K", "", "C2"),
     Dimension("heat", "W m-1 K-1", "", "conductance base_conductance conductivity"),
     Dimension("stored heat", "J m-1 K-1", "", "capacity"),
     Dimension("heat of a surface", "W m-2 K-1", "", "film"),
     Dimension("molar energy", "J mol-1", "", "energy"),
-)  # fmt: skip
+)
 #: Quantity -> its dimension.  A quantity that is not here is a ratio.
 DIMENSIONS = {name: dimension for dimension in _TABLE for name in dimension.names.split()}
 
@@ -69,9 +102,11 @@ DIMENSIONS = {name: dimension for dimension in _TABLE for name in dimension.name
 def dimension_powers(dimension: str) -> dict[str, int]:
     """Return the powers of the factors of a dimension or a unit.
 
-    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1"; an integer after a symbol is its power, with or
-        without "^" between, and all symbols after the first "/" are divisors.  The symbol "l0" ends with a digit.
-    Returns a dict from symbol to power, an int other than 0: symbols whose powers cancel are left out; {} of "".
+    dimension: product of symbols, as "P T/R", "N m/m" or "N m m-1"; an integer after a symbol is
+        its power, with or without "^" between, and all symbols after the first "/" are divisors.
+        The symbol "l0" ends with a digit.
+    Returns a dict from symbol to power, an int other than 0: symbols whose powers cancel are left
+    out; {} of "".
     """
     found: dict[str, int] = {}
     for n, part in enumerate(dimension.split("/")):
@@ -87,31 +122,41 @@ TIME_POWERS = {name: powers["T"] for name, powers in _POWERS.items() if "T" in p
 
 
 class Scale(dict[str, Any]):
-    """Unit of each quantity by its name: ``scale["V"]`` is the m/s of one unit of speed, 1 for a scene.
+    """Unit of each quantity by its name: ``scale["V"]`` is the m/s of one unit of speed, 1 for a
+    scene.
 
     Parameters
     ----------
-    R, T, P, m, l0, E_prime : radius (m), time (s), load (N/m), mass (kg/m), contact length at rest (m) and modulus
-        (Pa); numbers, or arrays of many cylinders.
+    R, T, P, m, l0, E_prime : radius (m), time (s), load (N/m), mass (kg/m), contact length at rest
+        (m) and modulus (Pa); numbers, or arrays of many cylinders.
     si : whether these are SI units.
     """
 
     si: bool
 
     def __init__(
-        self, R: Any = 1.0, T: Any = 1.0, P: Any = 1.0, m: Any = 1.0, l0: Any = 1.0, E_prime: Any = 1.0,
-        *, si: bool = True,
-    ) -> None:  # fmt: skip
+        self,
+        R: Any = 1.0,
+        T: Any = 1.0,
+        P: Any = 1.0,
+        m: Any = 1.0,
+        l0: Any = 1.0,
+        E_prime: Any = 1.0,
+        *,
+        si: bool = True,
+    ) -> None:
         """Keep the units of which all others are products, by name, and that of angles, 1 rad.
 
-        R, T, P, m, l0, E_prime : radius, time, load, mass, contact length at rest and modulus, as the class states.
+        R, T, P, m, l0, E_prime : radius, time, load, mass, contact length at rest and modulus, as
+        the class states.
         si : whether these are SI units, else 1 each.
         """
         super().__init__(R=R, T=T, P=P, m=m, l0=l0, E_prime=E_prime, rad=1.0)
         self.si = si
 
     # The units may be arrays, whose comparison gives no truth value.
-    __eq__, __hash__ = object.__eq__, object.__hash__  # type: ignore[assignment]
+    __eq__ = object.__eq__
+    __hash__ = object.__hash__  # type: ignore[assignment]
 
     def __missing__(self, name: str) -> Any:
         """Compute the unit of a quantity at its first use, and keep it.
@@ -119,11 +164,12 @@ class Scale(dict[str, Any]):
         Python calls it for ``scale[name]`` where the dict has no entry.
 
         name: name of the quantity, as "V".
-        Returns the factor by which a dimensionless value is multiplied to be in SI units, a float, or an array (n,) of
-        many cylinders; 1.0 for a ratio, a temperature, a molar energy, a name that the table of dimensions does not
-        have, and for a scene.
+        Returns the factor by which a dimensionless value is multiplied to be in SI units, a float,
+        or an array (n,) of many cylinders; 1.0 for a ratio, a temperature, a molar energy, a name
+        that the table of dimensions does not have, and for a scene.
         """
-        numerator, denominator = 1.0, 1.0
+        numerator = 1.0
+        denominator = 1.0
         for factor, power in _POWERS.get(name, {}).items():
             if power > 0:
                 numerator = numerator * self[factor] ** power
@@ -133,12 +179,16 @@ class Scale(dict[str, Any]):
         return unit
 
     def unit(self, name: str) -> str:
-        """Name of the unit of a quantity, as "m s-1"; "1" for a ratio, and for all quantities of a scene but angles."""
+        """Name of the unit of a quantity, as "m s-1"; "1" for a ratio, and for all quantities of a
+        scene but angles.
+        """
         return si_unit(name) if self.si or name in ("angle", "slope") else "1"
 
 
 class HasUnits(Protocol):
-    """An object with a unit for each quantity by name: a :class:`Scale`, a record of measurements."""
+    """An object with a unit for each quantity by name: a :class:`Scale`, a record of
+    measurements.
+    """
 
     def unit(self, name: str) -> str:
         """Name of the unit of a quantity."""
@@ -156,3 +206,108 @@ SI = Scale()
 def si_unit(name: str) -> str:
     """SI unit of a quantity, as "m s-1"; "1" for a ratio."""
     return DIMENSIONS[name].si_unit if name in DIMENSIONS else "1"
+
+
+# --- Symbols of all quantities ---
+
+PAPER = (
+    "A. A. Zobova and I. G. Goryacheva, Dynamics of a viscoelastic cylinder on a viscoelastic "
+    "half-space, "
+    "Acta Mechanica (2020), doi:10.1007/s00707-020-02643-5"
+)
+
+#: Attribute of a dataset over V: the lowest and the highest speed at which the material was
+#: measured.
+MEASURED = "measured_V"
+
+
+class Symbol(NamedTuple):
+    """A quantity.
+
+    latex : symbol.
+    long_name : meaning.
+    range : allowed values.
+    equation : its place in the paper, "" without one.
+    """
+
+    latex: str
+    long_name: str
+    range: str
+    equation: str
+
+
+#: Name in code -> symbol; the rows of symbols.csv.
+with (files(__package__) / "symbols.csv").open(encoding="utf-8") as _file:
+    SYMBOLS = {name: Symbol(*cells) for name, *cells in [*csv.reader(_file)][1:]}
+
+
+#: Name in code -> meaning, of quantities without a symbol.
+_MEANINGS = {
+    "full_slip": "1 in full slip, else 0",
+    "stable": "1 if small disturbances decay, else 0",
+    "rest_time": "time at which the rest threshold was crossed",
+    "loss": "power lost in rolling and slip",
+    "loss_slip": "power lost: slip",
+    "loss_half_space": "power lost: half-space",
+    "loss_cylinder": "power lost: cylinder",
+    "length": "contact length",
+    "thickness": "thickness of the layer",
+    "temperature": "temperature of the material",
+    "base_temperature": "temperature of the base",
+    "ambient": "temperature of the surroundings",
+    "heat": "heat that the losses gave the body since t = 0",
+    "given_off": "heat that the body gave off since t = 0",
+    "conductance": "heat given off per kelvin and length of the cylinder",
+    "capacity": "heat stored per kelvin and length of the cylinder",
+    "measured": "1 where the material was measured at the rates of the contact, else 0",
+    "V0": "initial velocity of the axis",
+    "omega0": "initial angular velocity",
+    "count": "number of equilibria",
+    "coefficient": "all losses divided by load and distance",
+    "efficiency": "output power divided by input power",
+}
+
+
+def attributes(name: str, si: bool = False) -> dict[str, str]:
+    """Return the attributes of a quantity in a dataset.
+
+    name: name of the quantity in code, as "delta_star".
+    si: whether it is in SI units, else dimensionless.
+    Returns a dict with long_name ("" of an unknown name) and units ("1" of a dimensionless quantity
+    and of an unknown name).  It also has symbol (LaTeX) and equation ("" for none) if the table of
+    symbols has the name, unless the quantity is in SI units and has a dimension, as symbols stand
+    for dimensionless quantities.
+    """
+    found = {"long_name": describe_quantity(name, si), "units": si_unit(name) if si else "1"}
+    if name in SYMBOLS and not (si and name in DIMENSIONS):
+        found |= {"symbol": SYMBOLS[name].latex, "equation": SYMBOLS[name].equation}
+    return found
+
+
+def describe_quantity(name: str, si: bool = False) -> str:
+    """Return the meaning of a quantity in words, as for long_name of a dataset; "" where it is not
+    known.
+
+    name: name of the quantity in code, or of a slope as "dQ_dV".
+    si: whether it is in SI units; a quantity whose unit is per m, as a force in N/m, ends with ",
+        per length of the cylinder" then.  Else the words end with the unit by which the quantity is
+        divided, as ", divided by R", of an angular velocity with ", multiplied by T_epsilon", of an
+        angle with ", radians".  A ratio, and a temperature, has no such ending in either case.
+    """
+    if name in SYMBOLS:
+        text = SYMBOLS[name].long_name
+        if si and name == "delta":
+            text = text.replace("omega", "omega R")
+    elif name.startswith("d") and "_d" in name:
+        dependent, _, variable = name[1:].partition("_d")
+        text = f"partial derivative of {dependent} with respect to {variable}"
+    else:
+        text = _MEANINGS.get(name, "")
+    if not text or name not in DIMENSIONS:
+        return text
+    dimension = DIMENSIONS[name]
+    return text + (
+        ", per length of the cylinder" * dimension.si_unit.endswith(" m-1")
+        if si
+        else dimension.divisor
+    )

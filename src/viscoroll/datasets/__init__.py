@@ -19,14 +19,16 @@ def path(name: str) -> Path:
     Parameters
     ----------
     name : name of the file, one of these.
-        ``"dma.csv"``: storage and loss modulus of a rubber over frequency, 0.01 to 100 Hz, with 0.5 % noise.
-        ``"dma_export.csv"``: storage modulus and tan delta as an instrument writes them, with semicolons and decimal
-        commas, 0.1 to 100 Hz.
+        ``"dma.csv"``: storage and loss modulus of a rubber over frequency, 0.01 to 100 Hz, with 0.5
+        % noise.
+        ``"dma_export.csv"``: storage modulus and tan delta as an instrument writes them, with
+        semicolons and decimal commas, 0.1 to 100 Hz.
         ``"run.toml"``: a run file of 16 motions with uncertain speed and friction.
         ``"rubber.toml"``: a rubber roller on steel, with both materials.
-        ``"ensemble.toml"``, ``"sensitivity.toml"``, ``"rubber-sensitivity.toml"``: run files of 20 000 motions.
-        ``"measured.toml"``, with ``"drum.csv"`` and ``"launch.csv"``: rolling resistance and a motion of a rubber
-        roller, made with noise from known parameters, to identify these.
+        ``"ensemble.toml"``, ``"sensitivity.toml"``, ``"rubber-sensitivity.toml"``: run files of 20
+        000 motions.  ``"measured.toml"``, with ``"drum.csv"`` and ``"launch.csv"``: rolling
+        resistance and a motion of a rubber roller, made with noise from known parameters, to
+        identify these.
 
     Returns
     -------
@@ -64,8 +66,8 @@ def copy_files(folder: str | PathLike[str]) -> list[Path]:
     Raises
     ------
     FileError
-        A file of the same name with other content, which then stays, as no file is written; a folder that cannot be
-        made or written to.  Where a write fails, the copies before it stay.
+        A file of the same name with other content, which then stays, as no file is written; a
+        folder that cannot be made or written to.  Where a write fails, the copies before it stay.
 
     Examples
     --------

@@ -1,1 +1,3 @@
-"""Heat of rolling: the temperatures at which a roller runs, its warming, and the limits that heat sets."""
+"""Heat of rolling: the temperatures at which a roller runs, its warming, and the limits that heat
+sets.
+"""

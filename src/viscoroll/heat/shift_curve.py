@@ -1,8 +1,10 @@
-"""The shift of a material over temperature, for arrays: :class:`ShiftCurve`, the factor of speed and its inverse.
+"""The shift of a material over temperature, for arrays: :class:`ShiftCurve`, the factor of speed
+and its inverse.
 
-Time-temperature superposition makes the law at a temperature that of the reference at the speed V a_T.  A vertical
-shift b_T multiplies all moduli, so that kappa, with the contact length at rest, has the factor sqrt(b_T): of
-half-spaces the law at a temperature is that of the reference at kappa V a_T sqrt(b_T), divided by kappa.
+Time-temperature superposition makes the law at a temperature that of the reference at the speed V
+a_T.  A vertical shift b_T multiplies all moduli, so that kappa, with the contact length at rest,
+has the factor sqrt(b_T): of half-spaces the law at a temperature is that of the reference at kappa
+V a_T sqrt(b_T), divided by kappa.
 """
 
 from __future__ import annotations
@@ -15,13 +17,13 @@ from typing import Any
 
 import numpy as np
 
-from ..core.array_types import Floats
+from ..core.checks import Floats
 from ..core.errors import ModelWarning, ParameterError, ViscorollError, described_error
 from ..materials.material import Material
-from ..materials.shift import WLF, Arrhenius, relative_shift, vertical_factor
+from ..materials.measured_data import WLF, Arrhenius, relative_shift, vertical_factor
 
-#: temperatures, degrees Celsius, between which a function without a ``range`` is sampled: from the coldest at which
-#: rubbers are measured to far beyond the hottest at which one lasts
+#: temperatures, degrees Celsius, between which a function without a ``range`` is sampled: from the
+#: coldest at which rubbers are measured to far beyond the hottest at which one lasts
 _SAMPLED_RANGE = -150.0, 1000.0
 #: samples of such a function; a step is then 0.23 K, over which ln a_T is straight to 1e-3
 _SAMPLES = 5001
@@ -33,14 +35,18 @@ _BEYOND = 1e4
 
 @dataclass(frozen=True, eq=False)
 class ShiftCurve:
-    """log2 of the factor of kappa V at a temperature, a_T sqrt(b_T) relative to the reference, and its inverse.
+    """log2 of the factor of kappa V at a temperature, a_T sqrt(b_T) relative to the reference, and
+    its inverse.
 
     material : the material at its reference.
-    low, high : temperatures between which the shift is defined, degrees Celsius; -inf and inf of none.
-    log2_of : function of temperatures, degrees Celsius, any shape; outside of ``low`` to ``high`` extrapolated.
+    low, high : temperatures between which the shift is defined, degrees Celsius; -inf and inf of
+    none.
+    log2_of : function of temperatures, degrees Celsius, any shape; outside of ``low`` to ``high``
+    extrapolated.
     temperature_of : its inverse, +inf where the factor has no such value.
-    sampled_root_b : function of temperatures that returns sqrt(b_T) relative to the reference; None: both functions
-        are those of the shift itself, and b_T = 1, else they interpolate samples.
+    sampled_root_b : function of temperatures that returns sqrt(b_T) relative to the reference;
+        None: both functions are those of the shift itself, and b_T = 1, else they interpolate
+        samples.
     """
 
     material: Material
@@ -51,28 +57,39 @@ class ShiftCurve:
     sampled_root_b: Callable[[Floats], Floats] | None = None
 
     def root_b(self, theta: Floats) -> Any:
-        """Return sqrt(b_T) relative to the reference at temperatures of any shape; 1.0 without samples."""
+        """Return sqrt(b_T) relative to the reference at temperatures of any shape; 1.0 without
+        samples.
+        """
         return 1.0 if self.sampled_root_b is None else self.sampled_root_b(theta)
 
     def factors(self, theta: Floats) -> tuple[Floats, Floats]:
-        """Return a_T and sqrt(b_T) relative to the reference at temperatures (n,), to the bits of ``Material.at``.
+        """Return a_T and sqrt(b_T) relative to the reference at temperatures (n,), to the bits of
+        ``Material.at``.
 
         NaN where the shift is not defined.
         """
         found = np.full((2, theta.size), np.nan)
-        shift, vertical, reference = self.material.shift, self.material.vertical_shift, self.material.temperature
+        shift = self.material.shift
+        vertical = self.material.vertical_shift
+        reference = self.material.temperature
         assert shift is not None
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ModelWarning)  # of temperatures that look like kelvin
             unit = 1.0 if reference is None else shift(reference)
             for n, at in enumerate(theta.tolist()):
                 if self.low <= at <= self.high:
-                    found[:, n] = shift(at) / unit, math.sqrt(vertical_factor(vertical, at, reference))
+                    found[:, n] = (
+                        shift(at) / unit,
+                        math.sqrt(vertical_factor(vertical, at, reference)),
+                    )
         return found[0], found[1]
 
     def exactly(self, theta: Floats) -> tuple[Floats, Any]:
-        """Return ``log2_of`` and ``root_b`` by the shift itself at temperatures (n,), which are extrapolated."""
-        log2, root_b = self.log2_of(theta), self.root_b(theta)
+        """Return ``log2_of`` and ``root_b`` by the shift itself at temperatures (n,), which are
+        extrapolated.
+        """
+        log2 = self.log2_of(theta)
+        root_b = self.root_b(theta)
         if self.sampled_root_b is None:
             return log2, root_b
         a_T, exact = self.factors(theta)
@@ -83,12 +100,14 @@ class ShiftCurve:
 def shift_curve(material: Material) -> ShiftCurve:
     """Return the curve of a material's shift, which the material keeps.
 
-    Raises ParameterError for a material without a shift, for a shift that is not defined at the reference or does not
-    fall with temperature.
+    Raises ParameterError for a material without a shift, for a shift that is not defined at the
+    reference or does not fall with temperature.
     """
     found: Any = material.__dict__.get("_shift_curve")
     if found is None:
-        found = material.__dict__["_shift_curve"] = _make_curve(material, material.shift, material.vertical_shift)
+        found = material.__dict__["_shift_curve"] = _make_curve(
+            material, material.shift, material.vertical_shift
+        )
     return found
 
 
@@ -100,12 +119,17 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
     reference = material.temperature
     if isinstance(shift, WLF | Arrhenius) and vertical is None:
         own = 0.0 if reference is None else float(shift.log(np.asarray(reference)))
-        low, high = _range_of(shift, (shift.T0 - shift.C2 if isinstance(shift, WLF) else -273.15, math.inf))
+        low, high = _range_of(
+            shift, (shift.T0 - shift.C2 if isinstance(shift, WLF) else -273.15, math.inf)
+        )
         ln2 = math.log(2.0)
         return ShiftCurve(
-            material, low, high,
-            lambda theta: (shift.log(theta) - own) / ln2, lambda x: shift.temperature_of(x * ln2 + own),
-        )  # fmt: skip
+            material=material,
+            low=low,
+            high=high,
+            log2_of=lambda theta: (shift.log(theta) - own) / ln2,
+            temperature_of=lambda x: shift.temperature_of(x * ln2 + own),
+        )
     theta, a_T = _sampled(shift, *_range_of(shift, _SAMPLED_RANGE), reference)
     roots = np.sqrt([vertical_factor(vertical, at, reference) for at in theta.tolist()])
     log2 = np.log2(a_T * roots)
@@ -118,22 +142,29 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
     logs = np.insert(log2, [0, log2.size], log2[[0, -1]] + beyond * slopes)
     whole = np.insert(theta, [0, theta.size], theta[[0, -1]] + beyond)
     return ShiftCurve(
-        material, float(theta[0]), float(theta[-1]),
-        lambda at: np.interp(at, whole, logs),
-        lambda x: np.where(x < logs[-1], np.inf, np.interp(x, logs[::-1], whole[::-1])),
-        lambda at: np.interp(at, theta, roots),
-    )  # fmt: skip
+        material=material,
+        low=float(theta[0]),
+        high=float(theta[-1]),
+        log2_of=lambda at: np.interp(at, whole, logs),
+        temperature_of=lambda x: np.where(
+            x < logs[-1], np.inf, np.interp(x, logs[::-1], whole[::-1])
+        ),
+        sampled_root_b=lambda at: np.interp(at, theta, roots),
+    )
 
 
 def _range_of(shift: Any, default: tuple[float, float]) -> tuple[float, float]:
-    """Return (lowest, highest) temperature of a shift by its attribute or method ``range``, else the default."""
+    """Return (lowest, highest) temperature of a shift by its attribute or method ``range``, else
+    the default.
+    """
     found = getattr(shift, "range", None)
     found = found() if callable(found) else found
     return default if found is None else (float(found[0]), float(found[1]))
 
 
 def _sampled(shift: Any, low: float, high: float, reference: float | None) -> tuple[Floats, Floats]:
-    """Return temperatures and a_T relative to the reference there, over the range around it in which it is defined.
+    """Return temperatures and a_T relative to the reference there, over the range around it in
+    which it is defined.
 
     shift: function of a temperature in degrees Celsius.
     low, high: temperatures between which it is sampled.
@@ -150,9 +181,16 @@ def _sampled(shift: Any, low: float, high: float, reference: float | None) -> tu
             except (ViscorollError, ArithmeticError, ValueError):
                 continue
     known = np.isfinite(a_T)
-    at = int(np.argmin(np.abs(theta - reference)) if reference is not None else np.nanargmin(np.abs(np.log(a_T))))
+    at = int(
+        np.argmin(np.abs(theta - reference))
+        if reference is not None
+        else np.nanargmin(np.abs(np.log(a_T)))
+    )
     if not known[at]:
-        raise described_error("shift", "is not defined at the temperature of the material", "defined there")
+        raise described_error(
+            "shift", "is not defined at the temperature of the material", "defined there"
+        )
     ends = np.flatnonzero(~known)
-    first, last = ends[ends < at].max(initial=-1) + 1, ends[ends > at].min(initial=theta.size)
+    first = ends[ends < at].max(initial=-1) + 1
+    last = ends[ends > at].min(initial=theta.size)
     return theta[first:last], a_T[first:last]

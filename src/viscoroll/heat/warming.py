@@ -7,57 +7,71 @@ from typing import Any
 
 import numpy as np
 
-from ..contact_law.parameters import Roller, resolve_model
-from ..core.array_types import Floats, Numbers
-from ..core.checks import check_array, check_number
-from ..core.drive import Schedule
+from ..contact_mechanics.parameters import Roller, resolve_model
+from ..core.checks import Floats, Numbers, check_array, check_number
+from ..core.drive_arguments import Schedule
 from ..core.errors import ParameterError, described_error, shape_error
 from ..core.labels import strip_labels
 from ..core.results import Values
-from .bodies import HeatStates, check_ambient, heat_states
+from .heated_bodies import HeatStates, check_ambient, heat_states
 from .temperature import free_balance, rolling_rows
 
-#: Tolerance of the integrator beside which its own default is loose: the energy then balances to 1e-6 of itself.
+#: Tolerance of the integrator beside which its own default is loose: the energy then balances to
+#: 1e-6 of itself.
 RTOL = 1e-9
 
 
 def warming(
-    roller: Roller, V: Any, t: Numbers, *, ambient: Numbers, conductance: Numbers, capacity: Numbers,
-    start: Numbers | None = None, rtol: float = RTOL,
-) -> Values:  # fmt: skip
-    """Integrate the temperature of a freely rolling cylinder over time, with the law at the temperature of each time.
+    roller: Roller,
+    V: Any,
+    t: Numbers,
+    *,
+    ambient: Numbers,
+    conductance: Numbers,
+    capacity: Numbers,
+    start: Numbers | None = None,
+    rtol: float = RTOL,
+) -> Values:
+    """Integrate the temperature of a freely rolling cylinder over time, with the law at the
+    temperature of each time.
 
     Parameters
     ----------
     roller : a :class:`Cylinder` as of :func:`temperature`.
     V : speed, m/s, any sign: a number, a :class:`Schedule`, or a function of t.
     t : times of the output, s, (t,), ascending, >= 0.
-    ambient, conductance : as of :func:`temperature`; these, ``capacity`` and ``start`` broadcast to the shape of
-        states.
-    capacity : heat that the body stores per kelvin, J/(m K), > 0: the sum of density, specific heat and cross
-        section of what warms together.
+    ambient, conductance : as of :func:`temperature`; these, ``capacity`` and ``start`` broadcast to
+        the shape of states.
+    capacity : heat that the body stores per kelvin, J/(m K), > 0: the sum of density, specific heat
+        and cross section of what warms together.
     start : temperature at t = 0, degrees Celsius; default: ``ambient``.
-    rtol : relative tolerance of the integrator, in [1e-12, 1e-3]; the absolute one is as many kelvin.
+    rtol : relative tolerance of the integrator, in [1e-12, 1e-3]; the absolute one is as many
+        kelvin.
 
     Returns
     -------
     Values
-        Over (states..., t): ``temperature``, ``V``, ``C_rr``, ``M``, ``loss`` (W/m, of both bodies), ``heat``, the
-        energy that heated the body since t = 0, and ``given_off``, the part of it that it gave off, J/m.  What is
-        stored, capacity times the rise of temperature, is the difference.
+        Over (states..., t): ``temperature``, ``V``, ``C_rr``, ``M``, ``loss`` (W/m, of both
+        bodies), ``heat``, the energy that heated the body since t = 0, and ``given_off``, the part
+        of it that it gave off, J/m.  What is stored, capacity times the rise of temperature, is the
+        difference.
 
     Raises
     ------
     ParameterError
-        As of :func:`temperature`; a capacity <= 0, times that do not ascend, an array V, a function V that returns no
-        finite number, a temperature that leaves the range of the shift.
+        As of :func:`temperature`; a capacity <= 0, times that do not ascend, an array V, a function
+        V that returns no finite number, a temperature that leaves the range of the shift.
 
     Examples
     --------
     >>> import numpy as np
     >>> import viscoroll as vr
-    >>> rubber = vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0]), 0.01, temperature=20.0, shift=vr.WLF(T0=-50.0))
-    >>> roller = vr.Cylinder(R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=2e4)
+    >>> rubber = vr.Material(
+    ...     3e6, 0.49, vr.Prony([2.0], [1.0]), 0.01, temperature=20.0, shift=vr.WLF(T0=-50.0)
+    ... )
+    >>> roller = vr.Cylinder(
+    ...     R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=2e4
+    ... )
     >>> t = np.linspace(0.0, 3600.0, 61)
     >>> course = vr.warming(roller, 5.0, t, ambient=20.0, conductance=6.0, capacity=9e3)
     >>> course.to_xarray()["temperature"].dims
@@ -65,14 +79,16 @@ def warming(
 
     Notes
     -----
-    heat less given_off is what is stored to 1e-6, and the end of a long warming is a stable equilibrium
-    (``tests/test_heat.py``).
+    heat less given_off is what is stored to 1e-6, and the end of a long warming is a stable
+    equilibrium (``tests/test_heat.py``).
     """
     from scipy.integrate import solve_ivp
 
     roller, scene, scale = resolve_model(roller, "warming")
     given = {"ambient": ambient, "conductance": conductance, "capacity": capacity, "start": start}
-    plain, labels = strip_labels({name: value for name, value in given.items() if value is not None}, scale)
+    plain, labels = strip_labels(
+        {name: value for name, value in given.items() if value is not None}, scale
+    )
     states = heat_states(roller, scene, "warming", plain)
     capacity, start = (
         _spread(states, check_array(name, plain.get(name, plain["ambient"]), above=low))
@@ -95,7 +111,9 @@ def warming(
         heat = free_balance(states, speed(time)).heat(every, theta)
         return np.concatenate([(heat - off) / capacity, heat, off])
 
-    y, found, time = np.concatenate([start, np.zeros(2 * start.size)]), [], 0.0
+    y = np.concatenate([start, np.zeros(2 * start.size)])
+    found = []
+    time = 0.0
     for stop in np.unique(np.append(corners[(corners > 0.0) & (corners < times[-1])], times[-1])):
         own = times[(times > time) & (times <= stop)] if time else times[times <= stop]
         y, outputs = _integrate(solve_ivp, rates, (time, float(stop)), y, own, rtol)
@@ -103,7 +121,10 @@ def warming(
         time = float(stop)
     theta, heat, off = np.split(np.concatenate(found, axis=1), 3)
     if (hot := theta.max(initial=-np.inf)) > states.curve.high:
-        sentence = f"the roller warms to {hot:.5g} degrees Celsius, beyond the shift's {states.curve.high:g}"
+        sentence = (
+            f"the roller warms to {hot:.5g} degrees Celsius, beyond the shift's "
+            f"{states.curve.high:g}"
+        )
         raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
     n = np.repeat(np.arange(start.size), times.size)
     V_t = np.tile([float(speed(time)) for time in times.tolist()], start.size)
@@ -112,7 +133,9 @@ def warming(
     values |= {"heat": heat.ravel(), "given_off": off.ravel()}
     shape = *states.shape, times.size
     about: dict[str, Any] = {"t": times} | {
-        name: np.asarray(plain[name])[..., np.newaxis] for name in ("ambient", "conductance") if np.ndim(plain[name])
+        name: np.asarray(plain[name])[..., np.newaxis]
+        for name in ("ambient", "conductance")
+        if np.ndim(plain[name])
     }
     found_values = {name: each.reshape(shape) for name, each in values.items()}
     return Values(found_values, about, si=True, title="Warming of a roller", labels=labels)
@@ -124,14 +147,17 @@ def _spread(states: HeatStates, array: Floats) -> Floats:
 
 
 def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
-    """Return the speed as a function of time, m/s, and the times of its corners, at which the integrator stops.
+    """Return the speed as a function of time, m/s, and the times of its corners, at which the
+    integrator stops.
 
     V: a number, a Schedule or a function.
     """
     if isinstance(V, Schedule):
         if V.values.ndim > 1 or V.times.ndim > 1:
             raise shape_error("V", V.values.shape, "a Schedule of one motion")
-        return lambda time: float(np.interp(time, V.times, V.values)), V.times  # at a jump the value after it
+        return lambda time: float(
+            np.interp(time, V.times, V.values)
+        ), V.times  # at a jump the value after it
     if callable(V):
         return lambda time: check_number("V", V(time), unit=scale), np.empty(0)
     speed = check_number("V", V, unit=scale)
@@ -144,7 +170,8 @@ def _integrate(
     """Integrate over one stretch without corners.
 
     solver: ``scipy.integrate.solve_ivp``.
-    rates: function of time and y; span: begin and end, s; y: values at its begin, (k,); times: outputs within it.
+    rates: function of time and y; span: begin and end, s; y: values at its begin, (k,); times:
+        outputs within it.
     rtol: relative tolerance.
     Returns (y at the end, (k,); y at the times, (k, outputs)).
     Raises ParameterError where the integrator finds no step that is small enough.
@@ -153,5 +180,7 @@ def _integrate(
         return y, np.repeat(y[:, np.newaxis], times.size, axis=1)
     found = solver(rates, span, y, "DOP853", np.union1d(times, span[1]), rtol=rtol, atol=rtol)
     if not found.success:
-        raise described_error("temperature", f"cannot be integrated ({found.message})", "one that a balance has")
+        raise described_error(
+            "temperature", f"cannot be integrated ({found.message})", "one that a balance has"
+        )
     return found.y[:, -1], found.y[:, : times.size]

@@ -1,7 +1,14 @@
-"""Two bodies in contact: :class:`Bodies`, a cylinder of one linear viscoelastic material on a half-space of another.
+"""Bodies in contact, dimensionless: pairs of half-spaces, and covers of finite thickness.
 
-The contact law depends on the sum of their compliances alone, J = share J_1 + (1 - share) J_2, which is one series
-again.  The part of the rolling resistance M that a body has is that of its creep modes.
+Two bodies in contact: :class:`Bodies`, a cylinder of one linear viscoelastic material on a
+half-space of another.
+
+The contact law depends on the sum of their compliances alone, J = share J_1 + (1 - share) J_2,
+which is one series again.  The part of the rolling resistance M that a body has is that of its
+creep modes.
+
+A cover, belt or lining of finite thickness under or on a roller, dimensionless:
+:class:`Cover`.
 """
 
 from __future__ import annotations
@@ -9,32 +16,44 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike
 
-from ..core.array_types import Floats, Integers
-from ..core.checks import broadcast_shape, check_array, check_number, read_only
+from ..core.checks import (
+    Floats,
+    Integers,
+    broadcast_shape,
+    check_array,
+    check_choice,
+    check_number,
+    read_only,
+)
 from ..core.errors import ParameterError, described_error, shape_error
+from ..core.quantities import is_real
+from ..core.results import format_value
 from .prony import Block, OneOrMany, Prony, series_of_alpha, sort_modes
-from .prony_forms import MOST_MODES
+from .prony_forms import HIGHEST_ALPHA, MOST_MODES
+
+# --- Two bodies in contact ---
 
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Bodies(OneOrMany):
-    """A pair of materials whose tangential and normal contact do not couple (Dundurs' second constant is 0); or n.
+    """A pair of materials whose tangential and normal contact do not couple (Dundurs' second
+    constant is 0); or n.
 
     Parameters
     ----------
     cylinder, base : :class:`Prony` series of the two bodies, with times in one unit T_ref.
-    share : the cylinder's part of the long-time compliance, (1/E'_1)/(1/E'_1 + 1/E'_2), dimensionless, in [0, 1]; 0:
-        the cylinder is rigid, 1: the half-space is rigid.
-        If a body is n series, or ``share`` is an array (n,), these are n pairs: ``p[i]`` is one of them, ``p[i:k]`` are
-        some; a single series or number is that of all pairs.
+    share : the cylinder's part of the long-time compliance, (1/E'_1)/(1/E'_1 + 1/E'_2),
+        dimensionless, in [0, 1]; 0: the cylinder is rigid, 1: the half-space is rigid.
+        If a body is n series, or ``share`` is an array (n,), these are n pairs: ``p[i]`` is one of
+        them, ``p[i:k]`` are some; a single series or number is that of all pairs.
     poisson : Poisson's ratios of cylinder and base in plane strain, each in (-1, 0.5], of which
-        ``contact(method="coupled")`` computes how shear and pressure couple; other calls take them as uncoupled.
-        None (default): like ratios, of bodies that do not couple.
+        ``contact(method="coupled")`` computes how shear and pressure couple; other calls take them
+        as uncoupled.  None (default): like ratios, of bodies that do not couple.
 
     Attributes
     ----------
@@ -45,12 +64,13 @@ class Bodies(OneOrMany):
     Raises
     ------
     ParameterError
-        A body that is no series, different numbers of series, a share outside [0, 1], n pairs of more than 64 modes.
+        A body that is no series, different numbers of series, a share outside [0, 1], n pairs of
+        more than 64 modes.
 
     Notes
     -----
-    Plane strain, constant Poisson ratios.  No coupling: like bodies, both incompressible, or an incompressible body on
-    a rigid one.  Immutable, hashable, equal where the parameters are.
+    Plane strain, constant Poisson ratios.  No coupling: like bodies, both incompressible, or an
+    incompressible body on a rigid one.  Immutable, hashable, equal where the parameters are.
 
     Examples
     --------
@@ -65,10 +85,11 @@ class Bodies(OneOrMany):
     poisson: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        """Check the bodies, set ``shape``, and replace ``share`` by a float or a read-only copy of the array.
+        """Check the bodies, set ``shape``, and replace ``share`` by a float or a read-only copy of
+        the array.
 
-        The number of modes is checked here for n pairs alone, as the sum of those of both bodies; a single pair of more
-        than 64 modes is refused where :attr:`total` is computed.
+        The number of modes is checked here for n pairs alone, as the sum of those of both bodies; a
+        single pair of more than 64 modes is refused where :attr:`total` is computed.
         Raises ParameterError as the class states.
         """
         bodies = {"cylinder": self.cylinder, "base": self.base}
@@ -76,7 +97,9 @@ class Bodies(OneOrMany):
             if not isinstance(body, Prony):
                 raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
         if self.poisson is not None:
-            values = [check_number("poisson", value, above=-1.0, high=0.5) for value in self.poisson]
+            values = [
+                check_number("poisson", value, above=-1.0, high=0.5) for value in self.poisson
+            ]
             object.__setattr__(self, "poisson", tuple(values))
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
@@ -85,7 +108,9 @@ class Bodies(OneOrMany):
         object.__setattr__(self, "shape", broadcast_shape(**many, share=share))
         modes = sum(body.E.shape[-1] for body in bodies.values()) if self.shape else 0
         if modes > MOST_MODES:
-            raise described_error("the pair", f"has {modes} modes", f"a pair of at most {MOST_MODES} modes")
+            raise described_error(
+                "the pair", f"has {modes} modes", f"a pair of at most {MOST_MODES} modes"
+            )
         object.__setattr__(self, "share", read_only(share))
 
     @property
@@ -94,15 +119,18 @@ class Bodies(OneOrMany):
 
     @property
     def like(self) -> bool:
-        """Whether both bodies deform alike in every pair: then each has half of M, as in the paper, and one series
-        is that of both.
+        """Whether both bodies deform alike in every pair: then each has half of M, as in the paper,
+        and one series is that of both.
         """
         return self.cylinder.shape == self.shape and self._same and bool(np.all(self.share == 0.5))
 
     @cached_property
     def alpha(self) -> Any:
-        """Instantaneous divided by long-time stiffness, >= 1, of the pair a float, of n pairs a read-only (n,)."""
-        first, second = self.cylinder.alpha, self.base.alpha
+        """Instantaneous divided by long-time stiffness, >= 1, of the pair a float, of n pairs a
+        read-only (n,).
+        """
+        first = self.cylinder.alpha
+        second = self.base.alpha
         found = first if self._same else 1.0 / (self.share / first + (1.0 - self.share) / second)
         return np.broadcast_to(found, self.shape) if self.shape else found
 
@@ -112,28 +140,33 @@ class Bodies(OneOrMany):
         return Bodies(cylinder, base, share, self.poisson)
 
     @cached_property
-    def _creep(self) -> tuple[NDArray, ...]:
+    def _creep(self) -> tuple[Floats, ...]:
         """Return the creep modes of both bodies together; those of equal times are added.
 
-        Returns (strengths divided by the long-time compliance of the pair; retardation times in units of T_ref; that
-        part of each strength which is the half-space's, between 0 and the strength), (..., modes) each, slowest first,
-        modes without strength last, as those of a rigid body.
+        Returns (strengths divided by the long-time compliance of the pair; retardation times in
+        units of T_ref; that part of each strength which is the half-space's, between 0 and the
+        strength), (..., modes) each, slowest first, modes without strength last, as those of a
+        rigid body.
         """
         share = np.asarray(self.share)[..., np.newaxis]
         parts = share * self.cylinder.J, (1.0 - share) * self.base.J
         bodies = (0.0 * parts[0], parts[1]), parts, (self.cylinder.T, self.base.T)
         own, J, T = (
-            np.concatenate([np.broadcast_to(body, (*self.shape, body.shape[-1])) for body in both], -1)
+            np.concatenate(
+                [np.broadcast_to(body, (*self.shape, body.shape[-1])) for body in both], -1
+            )
             for both in bodies
         )
         return tuple(sort_modes(J, T, own))
 
     @cached_property
     def total(self) -> Prony:
-        """The :class:`Prony` series that stands for both in the contact law, of the shape of the pairs.
+        """The :class:`Prony` series that stands for both in the contact law, of the shape of the
+        pairs.
 
         Of two equal series it is that series, whatever the share is; else a series in creep form.
-        Raises ParameterError for a single pair of more than 64 modes, or times that span more than 32 decades.
+        Raises ParameterError for a single pair of more than 64 modes, or times that span more than
+        32 decades.
         """
         if not self._same:
             return Prony.creep(*self._creep[:2], alpha=self.alpha)
@@ -141,7 +174,8 @@ class Bodies(OneOrMany):
         return one if one.shape == self.shape else one.repeated(len(self))
 
     def body(self, name: str) -> tuple[Prony, Any, Any]:
-        """Return the series of one body of a single pair, its Poisson's ratio, and None: it is a half-space.
+        """Return the series of one body of a single pair, its Poisson's ratio, and None: it is a
+        half-space.
 
         name : "cylinder" or "base".
         """
@@ -150,21 +184,23 @@ class Bodies(OneOrMany):
 
     @cached_property
     def half_space_weights(self) -> Floats:
-        """Return the half-space's part of each creep mode of :attr:`total`, divided by the mode's strength, slowest
-        mode first.
+        """Return the half-space's part of each creep mode of :attr:`total`, divided by the mode's
+        strength, slowest mode first.
 
-        Returns an array (..., modes), kept for later calls, of numbers from 0 to 1, dimensionless: 1 - share for two
-        equal series, else 0 for a mode without strength.
+        Returns an array (..., modes), kept for later calls, of numbers from 0 to 1, dimensionless:
+        1 - share for two equal series, else 0 for a mode without strength.
         Raises ParameterError as :attr:`total` does.
         """
         J = self.total.J
         if self._same:
             return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()
         own = self._creep[2][..., : J.shape[-1]]
-        return np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
+        weights: Floats = np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
+        return weights
 
     def blocks(self, which: Integers) -> Iterator[Block]:
-        """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations on whole arrays.
+        """Yield pairs in blocks of equal numbers of modes of both bodies together, for computations
+        on whole arrays.
 
         It is for n pairs, not for a single one.
 
@@ -175,8 +211,9 @@ class Bodies(OneOrMany):
         Yields
         ------
         Block
-            One with weights for each number of modes that occurs, ascending: ``rows``, places in ``which``, ascending,
-            ``modes``, the modes of both bodies together, and ``weights``, the half-space's part of each, (rows, modes).
+            One with weights for each number of modes that occurs, ascending: ``rows``, places in
+            ``which``, ascending, ``modes``, the modes of both bodies together, and ``weights``, the
+            half-space's part of each, (rows, modes).
 
         Raises
         ------
@@ -195,28 +232,322 @@ class Bodies(OneOrMany):
         """
         some = self[which]
         for block in some.total.blocks(np.arange(len(some))):
-            yield block._replace(weights=some.half_space_weights[block.rows, : block.modes.J.shape[-1]])
+            yield block._replace(
+                weights=some.half_space_weights[block.rows, : block.modes.J.shape[-1]]
+            )
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
-        return self.cylinder, self.base, np.shape(self.share), np.asarray(self.share).tobytes(), self.poisson
+        return (
+            self.cylinder,
+            self.base,
+            np.shape(self.share),
+            np.asarray(self.share).tobytes(),
+            self.poisson,
+        )
 
     def __repr__(self) -> str:
         if self.shape:
             modes = (body.E.shape[-1] for body in (self.cylinder, self.base))
             return f"<{len(self)} pairs of {' and '.join(map(str, modes))} modes>"
         poisson = "" if self.poisson is None else f", poisson={self.poisson!r}"
-        return f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r}{poisson})"
+        return (
+            f"Bodies(cylinder={self.cylinder!r}, base={self.base!r}, share={self.share!r}{poisson})"
+        )
 
 
 def total_series(material: float | Prony | Bodies) -> Prony:
-    """Return the series of a material: that of an alpha, a series itself, or that of both bodies together.
+    """Return the series of a material: that of an alpha, a series itself, or that of both bodies
+    together.
 
-    material: alpha >= 1 as a float, not checked, with T_epsilon for the unit of time; a :class:`Prony`; or
-        :class:`Bodies`.
-    Returns a :class:`Prony`, of the shape of the material, () for an alpha, times in the unit of the material.
+    material: alpha >= 1 as a float, not checked, with T_epsilon for the unit of time; a
+        :class:`Prony`; or :class:`Bodies`.
+    Returns a :class:`Prony`, of the shape of the material, () for an alpha, times in the unit of
+    the material.
     Raises ParameterError as :attr:`Bodies.total` does.
     """
     if isinstance(material, Bodies):
         return material.total
     return material if isinstance(material, Prony) else series_of_alpha(material)
+
+
+# --- A cover, belt or lining of finite thickness under or on a roller, dimensionless ---
+
+#: thickness divided by l0 beyond which a body is a half-space to rounding at any speed of interest
+_THICKEST = 1e15
+#: largest relative difference of the proportions of two thicknesses that count as one
+_SAME_RATIO = 1e-9
+
+
+@dataclass(frozen=True, eq=False, repr=False, init=False)
+class Cover(Bodies):
+    """A viscoelastic layer bonded to a rigid core or bed, rolling against a rigid body, a
+    half-space or another layer.
+
+    It is the ``material`` of a :class:`viscoroll.Scene`.  In SI units a :class:`viscoroll.Material`
+    has a ``thickness`` instead.
+
+    Parameters
+    ----------
+    series : the layer's :class:`Prony` series, times in units of T_ref; or its alpha >= 1, with
+        T_epsilon for the unit of time.
+    nu : Poisson's ratio of the layer, in [0, 0.5], constant in time; a number, or one for each
+        thickness, (n,).  Laws are then interpolated: with an error of 1e-9 from h/l0 = 0.25 up, of
+        5e-9 down to 0.13.
+    thickness : h/l0, dimensionless, > 0; l0 is the contact length at rest that the same bodies
+        would have as half-spaces.  Half the contact at rest may be at most six thicknesses long.
+        An array (n,) makes n covers, of which ``cover[i]`` is one, for an array parameter of a
+        scene or for the motions of an ensemble.
+    on : "cylinder" (a covered roller; default) or "base" (a belt or lining that a roller runs on).
+    part : the layer's part of the long-time compliance of both bodies as half-spaces, in (0, 1]; 1
+        (default): the other body is rigid.
+    other_nu : Poisson's ratio of the other body; only where ``part`` < 1.
+    other : series of the other body if it relaxes too, times in units of T_ref; default: elastic.
+    other_thickness : h/l0 of the other body if it is a layer too, as in a nip of two covered
+        rollers; default: it is a half-space.  Only where ``part`` < 1; of n covers (n,), in one
+        proportion to ``thickness``.
+
+    Raises
+    ------
+    ParameterError
+        A value out of range, a series of many materials; a cover that is too thin, where its law is
+        computed.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> cover = vr.Cover(vr.Prony([10.0], [1 / 11.0]), nu=0.5, thickness=1.0)
+    >>> scene = vr.Scene(material=cover, kappa=10.0, mu=0.5)
+    >>> state = vr.contact(scene, 0.03, delta=0.0)
+
+    Notes
+    -----
+    Without traction lam, epsilon, M and delta_star solve the normal and the full-slip problem of
+    the layers to 1e-11; boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).
+    Beside a half-space that relaxes too, epsilon and M are good to 1e-7 where kappa |V| is 16 to
+    1e8 times the fastest rate (``tests/test_covers.py``).  Shear acts back to first order
+    (docs/theory_covers.md), with coefficients to 1e-8 of delta_star/mu where nu = 1/2, else to
+    5e-5; :func:`viscoroll.validity` states the error by it.
+
+    Q follows Eq. (15) with the cover's own contact in place of the half-space's: the stick zone of
+    creep limit F' has the traction that a full contact with that creep limit would carry at the
+    same l0/h.  Beside the exact solution without coupling Q/mu is off by at most 1, 3, 4.5 and 6.5
+    % at h/l0 = 5, 1, 0.5 and 0.2, and a third less where nu is near 1/2 (``make prove``;
+    :func:`viscoroll.validity` states it).
+    """
+
+    nu: Any = 0.5
+    thickness: Any = 1.0
+    on: Literal["cylinder", "base"] = "cylinder"
+    other_nu: float = 0.5
+    other_thickness: Any = None
+
+    def __init__(
+        self,
+        series: Prony | float,
+        *,
+        nu: ArrayLike,
+        thickness: ArrayLike,
+        on: Literal["cylinder", "base"] = "cylinder",
+        part: float = 1.0,
+        other_nu: float = 0.5,
+        other: Prony | None = None,
+        other_thickness: ArrayLike | None = None,
+    ) -> None:
+        """Check the parameters and make one or many covers.
+
+        series: :class:`Prony` series of the layer, times in units of T_ref, or its alpha, a number
+            in [1, 1e12], with T_epsilon for the unit of time.
+        nu: Poisson's ratio of the layer, in [0, 0.5], a number, or (n,) if ``thickness`` is (n,).
+        thickness: thickness divided by l0, in (0, 1e15], a number or (n,).
+        on: body that has the layer, "cylinder" or "base".
+        part: part of the layer in the long-time compliance of both bodies as half-spaces, in (0,
+        1].
+        other_nu: Poisson's ratio of the other body, in [0, 0.5]; without effect if ``part`` is 1.
+        other: series of the other body, times in units of T_ref; None: elastic.
+        other_thickness: thickness of the other body divided by l0, in (0, 1e15], of the shape of
+            ``thickness``; None: a half-space.
+        Sets the fields of :class:`Bodies` (cylinder, base, share), nu, thickness, on, other_nu,
+        other_thickness, and ``shape``.
+        Raises ParameterError for a value out of range, a ``series`` or ``other`` of many materials
+        or of another type, shapes that do not agree, and an ``other_thickness`` of a rigid body or
+        in several proportions to ``thickness``.  A cover that is too thin for its law is refused
+        where the law is computed.
+        """
+        if is_real(series):
+            series = series_of_alpha(check_number("alpha", series, low=1.0, high=HIGHEST_ALPHA))
+        if not isinstance(series, Prony) or series.shape:
+            raise ParameterError(
+                "series", f"{series!r:.60}", "a Prony series of one material, or an alpha"
+            )
+        check_choice("on", on, "cylinder", "base")
+        ratio = check_array("nu", nu, low=0.0, high=0.5)
+        other_nu = check_number("other_nu", other_nu, low=0.0, high=0.5)
+        part = check_number("part", part, above=0.0, high=1.0)
+        given = check_array("thickness", thickness, above=0.0, high=_THICKEST)
+        if given.ndim > 1:
+            raise shape_error("thickness", given.shape, "a number, or one for each cover, (n,)")
+        if ratio.shape not in ((), given.shape):
+            raise shape_error("nu", ratio.shape, "a number, or one for each thickness, (n,)")
+        other = Prony.elastic() if other is None else other
+        if not isinstance(other, Prony) or other.shape:
+            raise ParameterError(
+                "other", f"{other!r:.60}", "a Prony series of one material, or None"
+            )
+        if other_thickness is not None:
+            other_thickness = read_only(self._check_other_thickness(other_thickness, given, part))
+        bodies = (series, other) if on == "cylinder" else (other, series)
+        share = part if on == "cylinder" else 1.0 - part
+        values: Any = dict(
+            zip(("cylinder", "base"), bodies, strict=True), share=share, on=on, other_nu=other_nu
+        )
+        values["other_thickness"] = other_thickness
+        self.__dict__.update(values, thickness=read_only(given), nu=read_only(ratio))
+        super().__post_init__()
+        self.__dict__["shape"] = given.shape
+
+    @staticmethod
+    def _check_other_thickness(value: ArrayLike, thickness: Any, part: float) -> Any:
+        """Return the thickness of the other layer over l0, an array of the shape of ``thickness``,
+        which is () or (n,).
+
+        value: as given.
+        part: part of the first layer in the compliance, in (0, 1].
+        Raises ParameterError for a value out of (0, 1e15], another shape, a rigid body (``part`` is
+        1), and proportions of the two thicknesses that differ by more than 1e-9: laws are
+        interpolated over one thickness.
+        """
+        other = check_array("other_thickness", value, above=0.0, high=_THICKEST)
+        if part == 1.0:
+            raise ParameterError(
+                "other_thickness", other, "left out: the other body is rigid, as part is 1"
+            )
+        if other.shape != thickness.shape:
+            raise shape_error("other_thickness", other.shape, "of the shape of thickness")
+        ratio = other / thickness
+        if np.ptp(ratio) > _SAME_RATIO * np.max(ratio):
+            raise described_error(
+                "other_thickness", "varies otherwise than thickness", "in one proportion to it"
+            )
+        return other
+
+    @property
+    def like(self) -> bool:
+        """False: all of M is the layer's."""
+        return False
+
+    @property
+    def layer(self) -> Prony:
+        """Series of the layer alone."""
+        return self.cylinder if self.on == "cylinder" else self.base
+
+    @property
+    def other(self) -> Prony:
+        """Series of the other body."""
+        return self.base if self.on == "cylinder" else self.cylinder
+
+    @property
+    def part(self) -> float:
+        """The layer's part of the long-time compliance, in (0, 1]."""
+        return float(self.share if self.on == "cylinder" else 1.0 - self.share)
+
+    @property
+    def thinnest(self) -> Any:
+        """Thickness of the thinner layer divided by l0, a number or (n,)."""
+        return (
+            self.thickness
+            if self.other_thickness is None
+            else np.minimum(self.thickness, self.other_thickness)
+        )
+
+    def body(self, name: str) -> tuple[Prony, Any, Any]:
+        """Return the series of one body, its Poisson's ratio, and its thickness divided by l0, None
+        of a half-space.
+
+        name : "cylinder" or "base"; of a rigid body series and Poisson's ratio have no meaning.
+        """
+        if name == self.on:
+            return self.layer, self.nu, self.thickness
+        return self.other, self.other_nu, self.other_thickness
+
+    def elastic(self, share: float) -> Cover:
+        """Return the same bodies without relaxation.
+
+        share : the cylinder's part of the compliance of both bodies, in [0, 1], that of the layer
+        above 0.
+        Returns a new :class:`Cover`; where the other body becomes rigid it has no thickness.
+        """
+        part = share if self.on == "cylinder" else 1.0 - share
+        thickness = self.other_thickness if part < 1.0 else None
+        return Cover(
+            1.0,
+            nu=self.nu,
+            thickness=self.thickness,
+            on=self.on,
+            part=part,
+            other_nu=self.other_nu,
+            other_thickness=thickness,
+        )
+
+    def of_thickness(self, thickness: ArrayLike, nu: ArrayLike | None = None) -> Cover:
+        """Return the same bodies with other thicknesses and Poisson's ratios, as one
+        :class:`Cover`.
+
+        Parameters
+        ----------
+        thickness : thickness divided by l0, in (0, 1e15], a number or (n,); that of another layer
+        stays in proportion.
+        nu : Poisson's ratio of the layer, in [0, 0.5], a number or, beside an array of thicknesses,
+            (n,); None: that of this cover, which must then fit.
+
+        Returns
+        -------
+        Cover
+            New, of shape (), or (n,) of n thicknesses.
+
+        Raises
+        ------
+        ParameterError
+            For values out of range, and shapes that do not agree.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Cover(1.0, nu=0.3, thickness=0.5).of_thickness([0.2, 0.4]).thickness
+        array([0.2, 0.4])
+        """
+        more: dict[str, Any] = {
+            name: getattr(self, name) for name in ("on", "part", "other_nu", "other")
+        }
+        if self.other_thickness is not None:
+            ratio = np.ravel(self.other_thickness)[0] / np.ravel(self.thickness)[0]
+            more["other_thickness"] = ratio * np.asarray(thickness)
+        return Cover(self.layer, nu=self.nu if nu is None else nu, thickness=thickness, **more)
+
+    def __getitem__(self, which: Any) -> Cover:
+        return self.of_thickness(
+            self.thickness[which], self.nu[which] if np.ndim(self.nu) else self.nu
+        )
+
+    @cached_property
+    def _key(self) -> tuple[Any, ...]:
+        numbers = (
+            np.shape(self.thickness),
+            *(np.asarray(each).tobytes() for each in (self.thickness, self.nu)),
+        )
+        second = (
+            None if self.other_thickness is None else np.asarray(self.other_thickness).tobytes()
+        )
+        return self.layer, numbers, self.on, self.part, self.other_nu, self.other, second
+
+    def __repr__(self) -> str:
+        other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
+        other += f", other={self.other!r}" if self.other.alpha > 1.0 else ""
+        other += (
+            ""
+            if self.other_thickness is None
+            else f", other_thickness={format_value(self.other_thickness)}"
+        )
+        nu = format_value(self.nu)
+        thickness = format_value(self.thickness)
+        return f"Cover({self.layer!r}, nu={nu}, thickness={thickness}, on={self.on!r}{other})"

@@ -1,8 +1,9 @@
 """Materials as finite element programs state them: constructors of :class:`Material`.
 
-All of these programs relax the shear modulus, G(t), and may relax the bulk modulus, K(t).  Where the bulk terms are not
-given, Poisson's ratio is taken constant in time, so that E(t) = 2 (1 + nu) G(t) relaxes alike.  Where they are given
-and differ from those of shear, nu changes with time; :func:`plane_strain` keeps what a contact in plane strain feels.
+All of these programs relax the shear modulus, G(t), and may relax the bulk modulus, K(t).  Where
+the bulk terms are not given, Poisson's ratio is taken constant in time, so that E(t) = 2 (1 + nu)
+G(t) relaxes alike.  Where they are given and differ from those of shear, nu changes with time;
+:func:`plane_strain` keeps what a contact in plane strain feels.
 """
 
 from __future__ import annotations
@@ -14,8 +15,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.array_types import Floats
-from ..core.checks import check_array, check_bool, check_number
+from ..core.checks import Floats, check_array, check_bool, check_number
 from ..core.errors import (
     ModelWarning,
     ParameterError,
@@ -37,8 +37,9 @@ _MATERIAL_KEYWORDS = ("name", "density", "thickness", "measured", "temperature")
 class FromPrograms:
     """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given.
 
-    A ``temperature`` outside -150 to 200 degrees Celsius gives a ModelWarning: it looks like one in kelvin.  So do bulk
-    terms by which Poisson's ratio is negative, at long times or at t = 0: they look like those of another unit.
+    A ``temperature`` outside -150 to 200 degrees Celsius gives a ModelWarning: it looks like one in
+    kelvin.  So do bulk terms by which Poisson's ratio is negative, at long times or at t = 0: they
+    look like those of another unit.
     """
 
     @classmethod
@@ -55,38 +56,44 @@ class FromPrograms:
     ) -> Any:
         """Make the material of ``*VISCOELASTIC, TIME=PRONY`` under ``*ELASTIC``.
 
-        g_R(t) = G(t)/G0 = 1 - sum g_i (1 - exp(-t/tau_i)), so that E_i = g_i/(1 - sum g), and k_R(t) = K(t)/K0 alike:
-        Abaqus 2017, Materials, "Time domain viscoelasticity" (abaqus-docs.mit.edu, simamat-c-timevisco).
+        g_R(t) = G(t)/G0 = 1 - sum g_i (1 - exp(-t/tau_i)), so that E_i = g_i/(1 - sum g), and
+        k_R(t) = K(t)/K0 alike: Abaqus 2017, Materials, "Time domain viscoelasticity"
+        (abaqus-docs.mit.edu, simamat-c-timevisco).
 
         Parameters
         ----------
-        E0 : modulus of ``*ELASTIC``, Pa, finite, > 0: the instantaneous one, or the long-time one where ``long_term``
-            (``MODULI=LONG TERM``).
-        nu : Poisson's ratio of ``*ELASTIC``, in (-1, 0.5], of the same time as E0.  Without ``k`` it is taken constant
-            in time, as k_i = g_i make it.
-        g : g_i, fractions of the instantaneous shear modulus, >= 0, of a sum below 1, (n,); or the table (n, 3) of
-            ``*VISCOELASTIC``, a row (g_i, k_i, tau_i) each, without ``tau`` and ``k``.
+        E0 : modulus of ``*ELASTIC``, Pa, finite, > 0: the instantaneous one, or the long-time one
+            where ``long_term`` (``MODULI=LONG TERM``).
+        nu : Poisson's ratio of ``*ELASTIC``, in (-1, 0.5], of the same time as E0.  Without ``k``
+            it is taken constant in time, as k_i = g_i make it.
+        g : g_i, fractions of the instantaneous shear modulus, >= 0, of a sum below 1, (n,); or the
+            table (n, 3) of ``*VISCOELASTIC``, a row (g_i, k_i, tau_i) each, without ``tau`` and
+            ``k``.
         tau : relaxation times tau_i, s, > 0, (n,); None where ``g`` is the table.
-        k : k_i, fractions of the instantaneous bulk modulus, >= 0, of a sum below 1, at the same times; zeros are a
-            constant bulk modulus, which is also what Abaqus takes where they are left out.  Where they differ from g,
-            nu of the material is that of long times, and its series that of E/(1 - nu^2) in plane strain.  For nu = 0.5
-            they are checked, but have no effect.
+        k : k_i, fractions of the instantaneous bulk modulus, >= 0, of a sum below 1, at the same
+            times; zeros are a constant bulk modulus, which is also what Abaqus takes where they are
+            left out.  Where they differ from g, nu of the material is that of long times, and its
+            series that of E/(1 - nu^2) in plane strain.  For nu = 0.5 they are checked, but have no
+            effect.
         long_term : whether E0 and nu are those of long times; default: instantaneous.
         more : ``name``, ``density``, ``thickness``, ``measured``, ``temperature`` of the material.
 
         Returns
         -------
         Material
-            With its long-time modulus, and T_ref = 1 s.  Without ``k``, where k equals g, and for nu = 0.5, E is E0 (1
-            - sum g), or E0 with ``long_term``, and nu is that given; else both are those of the long-time moduli G and
+            With its long-time modulus, and T_ref = 1 s.  Without ``k``, where k equals g, and for
+            nu = 0.5, E is E0 (1
+            - sum g), or E0 with ``long_term``, and nu is that given; else both are those of the
+              long-time moduli G and
             K.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
-            decades, a table of another shape or with ``k``, a ``long_term`` that is no truth value, an unknown keyword;
-            where k differs from g, more than 64 creep modes of shear and bulk together.
+            A value out of range, lists of different lengths, more than 64 terms or times that span
+            more than 32 decades, a table of another shape or with ``k``, a ``long_term`` that is no
+            truth value, an unknown keyword; where k differs from g, more than 64 creep modes of
+            shear and bulk together.
 
         Examples
         --------
@@ -97,46 +104,59 @@ class FromPrograms:
         if tau is None:
             table = check_array("g", g, low=0.0)
             if table.ndim != 2 or table.shape[1] != 3 or k is not None:
-                sentence = f"tau is not given: give tau, or rows (g_i, k_i, tau_i) for g, here of shape {table.shape}"
+                sentence = (
+                    "tau is not given: give tau, or rows (g_i, k_i, tau_i) for g, here of "
+                    f"shape {table.shape}"
+                )
                 raise ParameterError("tau", None, "one time for each g", sentence)
             g, k, tau = table.T
         return cls._from_fractions(E0, nu, "g", g, tau, k, check_bool("long_term", long_term), more)
 
     @classmethod
     def ansys(
-        cls, E0: float, nu: float, alpha: ArrayLike, tau: ArrayLike, *, k: ArrayLike | None = None, **more: Any
+        cls,
+        E0: float,
+        nu: float,
+        alpha: ArrayLike,
+        tau: ArrayLike,
+        *,
+        k: ArrayLike | None = None,
+        **more: Any,
     ) -> Any:
-        """Make the material of ``TB,PRONY,,,,SHEAR`` (and ``BULK``) under ``MP,EX`` and ``MP,PRXY``.
+        """Make the material of ``TB,PRONY,,,,SHEAR`` (and ``BULK``) under ``MP,EX`` and
+        ``MP,PRXY``.
 
-        G(t) = G0 (alpha_inf + sum alpha_i exp(-t/tau_i)), alpha_inf = 1 - sum alpha_i, K(t) alike: Mechanical APDL,
-        Material Reference, "Viscoelasticity", whose elastic constants are those of t = 0.
+        G(t) = G0 (alpha_inf + sum alpha_i exp(-t/tau_i)), alpha_inf = 1 - sum alpha_i, K(t) alike:
+        Mechanical APDL, Material Reference, "Viscoelasticity", whose elastic constants are those of
+        t = 0.
 
         Parameters
         ----------
         E0 : instantaneous Young's modulus EX, Pa, finite, > 0.
-        nu : instantaneous Poisson's ratio PRXY, in (-1, 0.5].  Without ``k`` it is taken constant in time, as a bulk
-            table equal to that of shear makes it.
-        alpha, tau : the pairs alpha_i (dimensionless, >= 0, of a sum below 1) and tau_i (s, > 0) of the table
-            ``SHEAR``, (n,) each.
-        k : alpha_i of the table ``BULK`` at the same times, >= 0, of a sum below 1, (n,); zeros are a constant bulk
-            modulus.  If that table has other times, give all times of both as ``tau``, and 0 in ``alpha`` or ``k``
-            where a table has no term.  For nu = 0.5 it is checked, but has no effect.
+        nu : instantaneous Poisson's ratio PRXY, in (-1, 0.5].  Without ``k`` it is taken constant
+            in time, as a bulk table equal to that of shear makes it.
+        alpha, tau : the pairs alpha_i (dimensionless, >= 0, of a sum below 1) and tau_i (s, > 0) of
+            the table ``SHEAR``, (n,) each.
+        k : alpha_i of the table ``BULK`` at the same times, >= 0, of a sum below 1, (n,); zeros are
+            a constant bulk modulus.  If that table has other times, give all times of both as
+            ``tau``, and 0 in ``alpha`` or ``k`` where a table has no term.  For nu = 0.5 it is
+            checked, but has no effect.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
-            With its long-time modulus, and T_ref = 1 s.  Without ``k``, where k equals alpha, and for nu = 0.5, E is E0
-            (1 - sum alpha), nu is that given, and the series is that of G(t), of strengths E_i = alpha_i/(1 - sum
-            alpha).  Else E and nu are those of the long-time moduli G and K, and the series is that of E/(1 - nu^2) in
-            plane strain.
+            With its long-time modulus, and T_ref = 1 s.  Without ``k``, where k equals alpha, and
+            for nu = 0.5, E is E0 (1 - sum alpha), nu is that given, and the series is that of G(t),
+            of strengths E_i = alpha_i/(1 - sum alpha).  Else E and nu are those of the long-time
+            moduli G and K, and the series is that of E/(1 - nu^2) in plane strain.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
-            decades, an unknown keyword; where k differs from alpha, more than 64 creep modes of shear and bulk
-            together.
+            A value out of range, lists of different lengths, more than 64 terms or times that span
+            more than 32 decades, an unknown keyword; where k differs from alpha, more than 64 creep
+            modes of shear and bulk together.
 
         Examples
         --------
@@ -148,35 +168,44 @@ class FromPrograms:
 
     @classmethod
     def comsol(
-        cls, E: float, nu: float, G: ArrayLike, tau: ArrayLike, *, K: ArrayLike | None = None, **more: Any
+        cls,
+        E: float,
+        nu: float,
+        G: ArrayLike,
+        tau: ArrayLike,
+        *,
+        K: ArrayLike | None = None,
+        **more: Any,
     ) -> Any:
         """Make the material of a generalized Maxwell node under Linear Elastic Material.
 
-        G(t) = G + sum G_m exp(-t/tau_m), G that of the main elastic branch: COMSOL Structural Mechanics Module User's
-        Guide, "Linear Viscoelasticity" (doc.comsol.com, sme_ug_theory).
+        G(t) = G + sum G_m exp(-t/tau_m), G that of the main elastic branch: COMSOL Structural
+        Mechanics Module User's Guide, "Linear Viscoelasticity" (doc.comsol.com, sme_ug_theory).
 
         Parameters
         ----------
-        E, nu : Young's modulus, Pa, finite, > 0, and Poisson's ratio, in (-1, 0.5], of the elastic node: the long-time
-            values (static stiffness "Long-term").  Without ``K`` nu is taken constant in time.
+        E, nu : Young's modulus, Pa, finite, > 0, and Poisson's ratio, in (-1, 0.5], of the elastic
+            node: the long-time values (static stiffness "Long-term").  Without ``K`` nu is taken
+            constant in time.
         G : shear moduli G_m of the branches, Pa, >= 0, (n,).
         tau : their relaxation times tau_m, s, finite, > 0, (n,).
-        K : bulk moduli of the branches, Pa, >= 0, at the same times, (n,); zeros where only deviatoric strains are
-            viscoelastic.  For nu = 0.5 they are checked, but have no effect.
+        K : bulk moduli of the branches, Pa, >= 0, at the same times, (n,); zeros where only
+            deviatoric strains are viscoelastic.  For nu = 0.5 they are checked, but have no effect.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
-            With the given E and nu, and T_ref = 1 s.  Its series is that of G(t), of strengths G_m/G with G = E/(2 (1 +
-            nu)); where nu < 0.5 and K(t) is not in proportion to G(t), that of E/(1 - nu^2) in plane strain.
+            With the given E and nu, and T_ref = 1 s.  Its series is that of G(t), of strengths
+            G_m/G with G = E/(2 (1 + nu)); where nu < 0.5 and K(t) is not in proportion to G(t),
+            that of E/(1 - nu^2) in plane strain.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
-            decades, an unknown keyword; where K is not in proportion to G, more than 64 creep modes of shear and bulk
-            together.
+            A value out of range, lists of different lengths, more than 64 terms or times that span
+            more than 32 decades, an unknown keyword; where K is not in proportion to G, more than
+            64 creep modes of shear and bulk together.
 
         Examples
         --------
@@ -184,7 +213,8 @@ class FromPrograms:
         >>> vr.Material.comsol(3e6, 0.5, G=[2e6], tau=[0.01]).instant  # long-time G is 1 MPa
         9000000.0
         """
-        E, nu = check_number("E", E, unit=SI, above=0.0), check_poisson(nu)
+        E = check_number("E", E, unit=SI, above=0.0)
+        nu = check_poisson(nu)
         strengths, times = check_pairs("G", G, "tau", tau)
         bulk = None if K is None else check_pairs("K", K, "tau", times)[0]
         return cls._from_moduli(E / (2.0 * (1.0 + nu)), nu, strengths, times, bulk, more, E=E)
@@ -202,42 +232,45 @@ class FromPrograms:
         K: ArrayLike | None = None,
         **more: Any,
     ) -> Any:
-        """Make the material of ``*MAT_GENERAL_VISCOELASTIC`` (076), or of ``*MAT_VISCOELASTIC`` (006) as one pair.
+        """Make the material of ``*MAT_GENERAL_VISCOELASTIC`` (076), or of ``*MAT_VISCOELASTIC``
+        (006) as one pair.
 
-        G(t) = sum G_i exp(-beta_i t), G_i absolute and beta_i = 1/tau_i; a pair with beta = 0 is the long-time modulus:
-        LS-DYNA Keyword Manual, Vol. II.  In 006 G(t) = G_inf + (G0 - G_inf) exp(-beta t) (help.altair.com,
-        mat_006_viscoelastic): give G = [G0 - G_inf] and G_inf.
+        G(t) = sum G_i exp(-beta_i t), G_i absolute and beta_i = 1/tau_i; a pair with beta = 0 is
+        the long-time modulus: LS-DYNA Keyword Manual, Vol. II.  In 006 G(t) = G_inf + (G0 - G_inf)
+        exp(-beta t) (help.altair.com, mat_006_viscoelastic): give G = [G0 - G_inf] and G_inf.
 
         Parameters
         ----------
         G : G_i, Pa, >= 0, (n,).
         beta : beta_i, 1/s, >= 0, (n,).
-        nu : Poisson's ratio, in (-1, 0.5], constant in time, with ``K`` that of long times; exactly one of this,
-            ``bulk`` and a K_i with beta = 0 is given.
-        bulk : constant bulk modulus, Pa, > 0, with ``K`` that of long times.  Then nu(t) is not constant; what the
-            contact feels in plane strain is kept exactly (:func:`plane_strain`), and ``nu`` of the material is the
-            long-time one.
-        G0 : instantaneous shear modulus, Pa, above the sum of all G_i, which is subtracted from it; exactly one of
-            this, ``G_inf`` and a pair with beta = 0 is given.
+        nu : Poisson's ratio, in (-1, 0.5], constant in time, with ``K`` that of long times; exactly
+            one of this, ``bulk`` and a K_i with beta = 0 is given.
+        bulk : constant bulk modulus, Pa, > 0, with ``K`` that of long times.  Then nu(t) is not
+            constant; what the contact feels in plane strain is kept exactly (:func:`plane_strain`),
+            and ``nu`` of the material is the long-time one.
+        G0 : instantaneous shear modulus, Pa, above the sum of all G_i, which is subtracted from it;
+            exactly one of this, ``G_inf`` and a pair with beta = 0 is given.
         G_inf : long-time shear modulus, Pa, > 0.
-        K : K_i, Pa, >= 0, at the same beta, (n,); that with beta = 0, if it is not 0, is the long-time one, in place of
-            ``nu`` and ``bulk``.  None: the bulk modulus is constant if ``bulk`` is given, else relaxes in proportion to
-            G.  For nu = 0.5 it is checked, but has no effect.
+        K : K_i, Pa, >= 0, at the same beta, (n,); that with beta = 0, if it is not 0, is the
+            long-time one, in place of ``nu`` and ``bulk``.  None: the bulk modulus is constant if
+            ``bulk`` is given, else relaxes in proportion to G.  For nu = 0.5 it is checked, but has
+            no effect.
         more : as of :meth:`abaqus`.
 
         Returns
         -------
         Material
-            With its long-time modulus 2 (1 + nu) G(infinity), nu of long times, and T_ref = 1 s.  Its series is that of
-            G(t), of strengths G_i/G(infinity) and times 1/beta_i; where nu < 0.5 and K(t) is not in proportion to G(t),
-            that of E/(1 - nu^2) in plane strain.
+            With its long-time modulus 2 (1 + nu) G(infinity), nu of long times, and T_ref = 1 s.
+            Its series is that of G(t), of strengths G_i/G(infinity) and times 1/beta_i; where nu <
+            0.5 and K(t) is not in proportion to G(t), that of E/(1 - nu^2) in plane strain.
 
         Raises
         ------
         ParameterError
-            A value out of range, lists of different lengths, more than 64 terms or times that span more than 32
-            decades, no long-time modulus or several, both or neither of nu and bulk, an unknown keyword; more than 64
-            creep modes of shear and bulk together where these do not relax in proportion.
+            A value out of range, lists of different lengths, more than 64 terms or times that span
+            more than 32 decades, no long-time modulus or several, both or neither of nu and bulk,
+            an unknown keyword; more than 64 creep modes of shear and bulk together where these do
+            not relax in proportion.
 
         Examples
         --------
@@ -248,7 +281,8 @@ class FromPrograms:
         strengths, rates = check_pairs("G", G, "beta", beta, above=-math.inf)
         resting = rates == 0.0
         rest = _long_time_shear(strengths, G0, G_inf, strengths[resting])
-        strengths, times = strengths[~resting], 1.0 / rates[~resting]
+        strengths = strengths[~resting]
+        times = 1.0 / rates[~resting]
         terms = None if K is None else check_pairs("K", K, "beta", rates, above=-math.inf)[0]
         if terms is not None:
             if terms[resting].any():
@@ -265,32 +299,44 @@ class FromPrograms:
 
     @classmethod
     def _from_fractions(
-        cls, E: float, nu: float, name: str, fractions: ArrayLike, tau: ArrayLike, bulk: ArrayLike | None,
-        long_term: bool, more: dict[str, Any],
-    ) -> Any:  # fmt: skip
+        cls,
+        E: float,
+        nu: float,
+        name: str,
+        fractions: ArrayLike,
+        tau: ArrayLike,
+        bulk: ArrayLike | None,
+        long_term: bool,
+        more: dict[str, Any],
+    ) -> Any:
         """Make a material from terms that are fractions of the instantaneous moduli.
 
-        E, nu: Young's modulus, Pa, and Poisson's ratio, of long times if ``long_term``, else instantaneous.
+        E, nu: Young's modulus, Pa, and Poisson's ratio, of long times if ``long_term``, else
+            instantaneous.
         name: name of the parameter ``fractions``, for errors.
         fractions: terms of G(t) divided by G(0), dimensionless, (terms,), >= 0, of a sum below 1.
         tau: relaxation times, s, > 0, (terms,).
-        bulk: terms of K(t) divided by K(0), (terms,), as ``fractions``; None: nu is constant in time.  Without effect
-            on an incompressible body, nu = 0.5.
+        bulk: terms of K(t) divided by K(0), (terms,), as ``fractions``; None: nu is constant in
+            time.  Without effect on an incompressible body, nu = 0.5.
         long_term: whether E and nu are those of long times.
         more: keywords of the material, as ``name`` and ``density``.
-        Returns the material, of the class ``cls``, with its long-time modulus and, where bulk and shear terms differ,
-        nu of long times.
-        Raises ParameterError for values out of range, lists of different lengths, too many terms, and an unknown
-        keyword.
+        Returns the material, of the class ``cls``, with its long-time modulus and, where bulk and
+        shear terms differ, nu of long times.
+        Raises ParameterError for values out of range, lists of different lengths, too many terms,
+        and an unknown keyword.
         """
-        E, nu = check_number("E0", E, unit=SI, above=0.0), check_poisson(nu)
+        E = check_number("E0", E, unit=SI, above=0.0)
+        nu = check_poisson(nu)
         values, times = check_pairs(name, fractions, "tau", tau)
         rest = _remaining_fraction(name, values)
         others = values if bulk is None else check_pairs("k", bulk, "tau", times)[0]
         if np.array_equal(values, others):  # nu is constant in time
-            return cls._from_moduli(1.0, nu, values / rest, times, None, more, E=E if long_term else E * rest)
+            return cls._from_moduli(
+                1.0, nu, values / rest, times, None, more, E=E if long_term else E * rest
+            )
         rest_of_bulk = _remaining_fraction("k", others)
-        G, K = E / (2.0 * (1.0 + nu)), E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else math.inf
+        G = E / (2.0 * (1.0 + nu))
+        K = E / (3.0 * (1.0 - 2.0 * nu)) if nu < 0.5 else math.inf
         G, K = (G, K) if long_term else (G * rest, K * rest_of_bulk)
         if nu < 0.5:  # nu of long times
             nu = _poisson(G, K)
@@ -299,25 +345,35 @@ class FromPrograms:
 
     @classmethod
     def _from_moduli(
-        cls, G_inf: float, nu: float, G: Floats, tau: Floats, K: Floats | None, more: dict[str, Any],
-        K_inf: float | None = None, E: float | None = None,
-    ) -> Any:  # fmt: skip
+        cls,
+        G_inf: float,
+        nu: float,
+        G: Floats,
+        tau: Floats,
+        K: Floats | None,
+        more: dict[str, Any],
+        K_inf: float | None = None,
+        E: float | None = None,
+    ) -> Any:
         """Make a material from the terms of its moduli.
 
-        G_inf, nu: shear modulus, in any unit (in Pa if ``E`` is None), and Poisson's ratio of long times.
+        G_inf, nu: shear modulus, in any unit (in Pa if ``E`` is None), and Poisson's ratio of long
+            times.
         G: terms of G(t), in the unit of G_inf, (terms,).
         tau: relaxation times, s, (terms,).
-        K: terms of K(t), in the unit of G_inf, (terms,); None: nu is constant in time.  Ignored for an incompressible
-            body, nu = 0.5, which has no bulk strain.
+        K: terms of K(t), in the unit of G_inf, (terms,); None: nu is constant in time.  Ignored for
+            an incompressible body, nu = 0.5, which has no bulk strain.
         more: keywords of the material, as ``name`` and ``density``.
-        K_inf: bulk modulus of long times, in the unit of G_inf; None: it follows from E and nu.  Used only with ``K``.
+        K_inf: bulk modulus of long times, in the unit of G_inf; None: it follows from E and nu.
+            Used only with ``K``.
         E: Young's modulus of long times, Pa; None: 2 (1 + nu) G_inf.
-        Returns the material, of the class ``cls``, with T_ref = 1 s.  Its series is that of G(t); where K is not
-        proportional to G it is that of E/(1 - nu^2) (:func:`plane_strain`).
+        Returns the material, of the class ``cls``, with T_ref = 1 s.  Its series is that of G(t);
+        where K is not proportional to G it is that of E/(1 - nu^2) (:func:`plane_strain`).
         Raises ParameterError for values out of range, too many terms, and an unknown keyword.
         """
         E = 2.0 * (1.0 + nu) * G_inf if E is None else E
-        prony, early = Prony(G / G_inf, tau), None
+        prony = Prony(G / G_inf, tau)
+        early = None
         if K is not None and nu < 0.5:  # an incompressible body has no bulk strain that could relax
             K_inf = E / (3.0 * (1.0 - 2.0 * nu)) if K_inf is None else K_inf
             if not np.array_equal(K * G_inf, G * K_inf):
@@ -329,7 +385,9 @@ class FromPrograms:
 
 
 def check_poisson(nu: Any, name: str = "nu") -> float:
-    """Return Poisson's ratio ``nu`` as a float in (-1, 0.5]; raises ParameterError with ``name`` for other values."""
+    """Return Poisson's ratio ``nu`` as a float in (-1, 0.5]; raises ParameterError with ``name``
+    for other values.
+    """
     nu = check_number(name, nu)
     if not -1.0 < nu <= 0.5:
         raise ParameterError(name, nu, "in (-1, 0.5]")
@@ -342,13 +400,17 @@ def _poisson(G: float, K: float) -> float:
 
 
 def _warn_of_negative(late: float, early: float | None) -> None:
-    """Warn where bulk terms make Poisson's ratio negative, at long times or at t = 0: their unit may be another.
+    """Warn where bulk terms make Poisson's ratio negative, at long times or at t = 0: their unit
+    may be another.
 
     late, early: Poisson's ratio of long times and of t = 0; None: as of long times.
     """
     lowest = late if early is None else min(late, early)
     if lowest < 0.0:
-        text = f"bulk and shear moduli make nu = {lowest:.3g}: give both in one unit, and as moduli or as fractions"
+        text = (
+            f"bulk and shear moduli make nu = {lowest:.3g}: give both in one unit, and as "
+            "moduli or as fractions"
+        )
         warnings.warn(f"{text}, as the program has them", ModelWarning, stacklevel=caller_level())
 
 
@@ -357,12 +419,15 @@ def check_pairs(
 ) -> tuple[Floats, Floats]:
     """Check two lists of equal length, and return them as arrays in SI units.
 
-    name, values: name of the first list, for errors, and its numbers, >= 0; in Pa if it is called G or K, else
-        dimensionless.  Values with a unit are converted.
-    other, at: name of the second list, for errors, and its numbers, > 0; in s if it is called tau, else in 1/s.
-    above: number that those of the second list must exceed; they must be >= 0 in any case, so that -inf allows 0.
+    name, values: name of the first list, for errors, and its numbers, >= 0; in Pa if it is called G
+        or K, else dimensionless.  Values with a unit are converted.
+    other, at: name of the second list, for errors, and its numbers, > 0; in s if it is called tau,
+        else in 1/s.
+    above: number that those of the second list must exceed; they must be >= 0 in any case, so
+        that -inf allows 0.
     Returns (numbers of the first list, numbers of the second), (n,) each; n may be 0.
-    Raises ParameterError for numbers out of range, lists of different lengths, and other shapes than (n,).
+    Raises ParameterError for numbers out of range, lists of different lengths, and other shapes
+    than (n,).
     """
     first = check_array(name, values, unit="Pa" if name in ("G", "K") else "1", low=0.0)
     second = check_array(other, at, unit="s" if other == "tau" else "s-1", low=0.0, above=above)
@@ -371,7 +436,9 @@ def check_pairs(
     return first, second
 
 
-def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray) -> float:
+def _long_time_shear(
+    strengths: NDArray, G0: float | None, G_inf: float | None, resting: NDArray
+) -> float:
     """Return the long-time shear modulus of LS-DYNA, Pa, > 0, by exactly one of its three ways.
 
     strengths: all G_i, Pa, (terms,).
@@ -388,8 +455,11 @@ def _long_time_shear(strengths: NDArray, G0: float | None, G_inf: float | None, 
     given = {name: value for name, value in ways.items() if value is not None}
     if len(given) != 1:
         found = f"is given by {' and '.join(given) or 'no parameter'}"
-        raise described_error("the long-time modulus", found, "given by one of G_inf, G0 and a pair with beta = 0")
-    (name, value), named = given.popitem(), {"G0": "G0 - sum G", "beta = 0": "G with beta = 0"}
+        raise described_error(
+            "the long-time modulus", found, "given by one of G_inf, G0 and a pair with beta = 0"
+        )
+    (name, value) = given.popitem()
+    named = {"G0": "G0 - sum G", "beta = 0": "G with beta = 0"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)
 
 
@@ -397,7 +467,8 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
     """Return 1 - sum fractions, the long-time modulus divided by the instantaneous one, in (0, 1].
 
     name: name of the parameter, for errors.
-    fractions: fractions of the instantaneous modulus that relax, >= 0, (terms,); 1 is returned without terms.
+    fractions: fractions of the instantaneous modulus that relax, >= 0, (terms,); 1 is returned
+        without terms.
     Raises ParameterError where the sum is 1 or more, or NaN.
     """
     rest = 1.0 - math.fsum(fractions)
@@ -408,15 +479,18 @@ def _remaining_fraction(name: str, fractions: Floats) -> float:
 
 
 def plane_strain(G_inf: float, G: NDArray, K_inf: float, K: NDArray, tau: NDArray) -> Prony:
-    """Return the series of E/(1 - nu^2), divided by its long-time value, if shear and bulk modulus both relax.
+    """Return the series of E/(1 - nu^2), divided by its long-time value, if shear and bulk modulus
+    both relax.
 
-    As operators (1 - nu^2)/E = (3 K + 4 G)/(4 G (3 K + G)) = 1/(4 G) + 3/(4 (3 K + G)): two materials in series, whose
-    creep terms are added (the correspondence principle of linear viscoelasticity).
+    As operators (1 - nu^2)/E = (3 K + 4 G)/(4 G (3 K + G)) = 1/(4 G) + 3/(4 (3 K + G)): two
+    materials in series, whose creep terms are added (the correspondence principle of linear
+    viscoelasticity).
 
     Parameters
     ----------
     G_inf, K_inf : long-time moduli, > 0 (not checked), in one unit.
-    G, K : strengths of their terms in that unit, >= 0, shape (n,) each; 0 where one of them has no term at that time.
+    G, K : strengths of their terms in that unit, >= 0, shape (n,) each; 0 where one of them has no
+        term at that time.
     tau : relaxation times of both, s, > 0, shape (n,).
 
     Returns
@@ -428,10 +502,12 @@ def plane_strain(G_inf: float, G: NDArray, K_inf: float, K: NDArray, tau: NDArra
     Raises
     ------
     ParameterError
-        Strengths or times out of range, more than 64 creep modes of both together, times that span more than 32
-        decades.
+        Strengths or times out of range, more than 64 creep modes of both together, times that span
+        more than 32 decades.
     """
     stiff = 3.0 * K_inf + G_inf
-    first, second = Prony(G / G_inf, tau), Prony((3.0 * K + G) / stiff, tau)
-    soft, hard = 0.25 / G_inf, 0.75 / stiff
+    first = Prony(G / G_inf, tau)
+    second = Prony((3.0 * K + G) / stiff, tau)
+    soft = 0.25 / G_inf
+    hard = 0.75 / stiff
     return Bodies(first, second, soft / (soft + hard)).total

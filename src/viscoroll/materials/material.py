@@ -11,15 +11,13 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.array_types import Floats
-from ..core.checks import check_array, check_number, check_text
+from ..core.checks import Floats, check_array, check_number, check_text
 from ..core.errors import ParameterError
 from ..core.results import Result, SummaryRow
 from ..core.scale import SI
 from .importers import FromPrograms, check_poisson
-from .measured import Measured
+from .measured_data import Measured, check_celsius, check_fields, relative_shift, vertical_factor
 from .prony import Prony
-from .shift import check_celsius, check_fields, relative_shift, vertical_factor
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -30,37 +28,40 @@ if TYPE_CHECKING:
 class Material(FromPrograms):
     """An isotropic linear viscoelastic material, in SI units.
 
-    E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.  A material that was imported
-    with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of E/(1 - nu^2) in plane strain in
-    place of that of E: its methods then give E times this series as the moduli, and the compliance that belongs to
-    it.
+    E(t) = E (1 + sum E_i exp(-t/(tau_i T_ref))), with strengths and times of ``prony``.  A material
+    that was imported with bulk terms unlike those of shear, as by :meth:`abaqus`, has the series of
+    E/(1 - nu^2) in plane strain in place of that of E: its methods then give E times this series as
+    the moduli, and the compliance that belongs to it.
 
     Parameters
     ----------
     E : long-time Young's modulus, Pa, > 0; infinite for a rigid body.
-    nu : Poisson's ratio, in (-1, 0.5], constant in time: shear, bulk and tensile modulus relax alike; of a material
-        imported with other bulk terms that of long times.
+    nu : Poisson's ratio, in (-1, 0.5], constant in time: shear, bulk and tensile modulus relax
+        alike; of a material imported with other bulk terms that of long times.
     prony : strengths divided by E, and times in units of T_ref; default: elastic.
     T_ref : unit of the times of ``prony``, s.
     name : name in tables and figures.
     density : kg/m^3, for the comparison of the speed with the shear wave speed.
-    thickness : thickness of a layer, m, that is bonded to a rigid core (covered roller) or bed (belt, lining); the
-        other body may be one too.  Default: a half-space.
+    thickness : thickness of a layer, m, that is bonded to a rigid core (covered roller) or bed
+        (belt, lining); the other body may be one too.  Default: a half-space.
     measured : :class:`Measured` range of frequencies of the data; outside of it functions warn.
-    temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at` starts there.
-        Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
-    nu_instant : Poisson's ratio at t = 0, in (-1, 0.5], of a material imported with bulk terms unlike those of shear;
+    temperature : temperature at which moduli and times are as given, degrees Celsius; :meth:`at`
+        starts there.  Outside -150 to 200 it gives a ModelWarning: it looks like one in kelvin.
+    nu_instant : Poisson's ratio at t = 0, in (-1, 0.5], of a material imported with bulk terms
+        unlike those of shear;
         None: nu is constant in time.  Only ``instant`` needs it.
-    shift : :class:`WLF`, :class:`Arrhenius`, or a function of the temperature in degrees Celsius that returns a_T;
-        it is the default of :meth:`at`, and what :meth:`Cylinder.temperature` needs.  Default: none.
-    vertical_shift : b_T, by which all moduli are multiplied: "entropic", the absolute temperature, or a function of
-        the temperature in degrees Celsius, dimensionless, > 0.  It needs a ``temperature``.  Default: moduli stay.
+    shift : :class:`WLF`, :class:`Arrhenius`, or a function of the temperature in degrees Celsius
+        that returns a_T; it is the default of :meth:`at`, and what :meth:`Cylinder.temperature`
+        needs.  Default: none.
+    vertical_shift : b_T, by which all moduli are multiplied: "entropic", the absolute temperature,
+        or a function of the temperature in degrees Celsius, dimensionless, > 0.  It needs a
+        ``temperature``.  Default: moduli stay.
 
     Raises
     ------
     ParameterError
-        A value that is not finite or out of range, a rigid body that relaxes, a name with NUL or surrogates, a shift
-        that is no function.
+        A value that is not finite or out of range, a rigid body that relaxes, a name with NUL or
+        surrogates, a shift that is no function.
 
     Notes
     -----
@@ -85,15 +86,20 @@ class Material(FromPrograms):
     temperature: float | None = None
     nu_instant: float | None = None
     shift: Callable[[float], float] | None = field(default=None, compare=False)
-    vertical_shift: Callable[[float], float] | Literal["entropic"] | None = field(default=None, compare=False)
+    vertical_shift: Callable[[float], float] | Literal["entropic"] | None = field(
+        default=None, compare=False
+    )
 
     def __post_init__(self) -> None:
-        """Check the fields, and replace numbers by floats in SI units (``temperature`` in degrees Celsius).
+        """Check the fields, and replace numbers by floats in SI units (``temperature`` in degrees
+        Celsius).
 
-        A value with a unit is converted.  E (unless infinite), T_ref, density and thickness must be finite and > 0,
-        nu in (-1, 0.5]; ``prony`` must be one series; a rigid body must neither relax nor have a thickness.
-        Raises ParameterError for the first field that is not allowed.  A temperature outside -150 to 200 warns with
-        ModelWarning, as it looks like kelvin (:func:`.shift.check_celsius`).
+        A value with a unit is converted.  E (unless infinite), T_ref, density and thickness must be
+        finite and > 0, nu in (-1, 0.5]; ``prony`` must be one series; a rigid body must neither
+        relax nor have a thickness.
+        Raises ParameterError for the first field that is not allowed.  A temperature outside -150
+        to 200 warns with ModelWarning, as it looks like kelvin
+        (:func:`.measured_data.check_celsius`).
         """
         if not isinstance(self.prony, Prony) or self.prony.shape:
             raise ParameterError("prony", f"{self.prony!r:.60}", "a Prony series")
@@ -116,9 +122,13 @@ class Material(FromPrograms):
         if self.temperature is not None:
             object.__setattr__(self, "temperature", check_celsius("temperature", self.temperature))
         if self.shift is not None:
-            _refuse_no_shift("shift", self.shift, "a WLF, an Arrhenius or a function of the temperature")
+            _refuse_no_shift(
+                "shift", self.shift, "a WLF, an Arrhenius or a function of the temperature"
+            )
         if self.vertical_shift not in (None, "entropic"):
-            _refuse_no_shift("vertical_shift", self.vertical_shift, "'entropic' or a function of the temperature")
+            _refuse_no_shift(
+                "vertical_shift", self.vertical_shift, "'entropic' or a function of the temperature"
+            )
 
     @classmethod
     def sls(cls, E: float, nu: float, T_epsilon: float, T_sigma: float, **more: Any) -> Material:
@@ -128,10 +138,10 @@ class Material(FromPrograms):
         ----------
         E : long-time Young's modulus, Pa, > 0.
         nu : Poisson's ratio, in (-1, 0.5].
-        T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is T_epsilon.  Where
-            they are equal, or their ratio rounds to 1, the material is elastic.
-        more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
-            ``temperature``.
+        T_epsilon, T_sigma : retardation and relaxation time, s, T_epsilon >= T_sigma > 0; T_ref is
+            T_epsilon.  Where they are equal, or their ratio rounds to 1, the material is elastic.
+        more : further parameters of :class:`Material` by name: ``name``, ``density``,
+            ``thickness``, ``measured``, ``temperature``.
 
         Returns
         -------
@@ -143,7 +153,8 @@ class Material(FromPrograms):
         ParameterError
             A value out of range, T_epsilon below T_sigma, T_epsilon/T_sigma above 1e12.
         TypeError
-            A name in ``more`` that :class:`Material` does not have, or E, nu, ``prony`` or ``T_ref``.
+            A name in ``more`` that :class:`Material` does not have, or E, nu, ``prony`` or
+            ``T_ref``.
 
         Examples
         --------
@@ -155,7 +166,11 @@ class Material(FromPrograms):
         T_sigma = check_number("T_sigma", T_sigma, unit=SI, above=0.0)
         refuse_short_retardation(T_epsilon, T_sigma)
         ratio = T_sigma / T_epsilon
-        prony = Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma) if ratio < 1.0 else Prony.elastic()
+        prony = (
+            Prony.creep([1.0 - ratio], [1.0], alpha=T_epsilon / T_sigma)
+            if ratio < 1.0
+            else Prony.elastic()
+        )
         return cls(E, nu, prony, T_epsilon, **more)
 
     @classmethod
@@ -166,8 +181,8 @@ class Material(FromPrograms):
         ----------
         E : Young's modulus, Pa, > 0; infinite for a rigid body.
         nu : Poisson's ratio, in (-1, 0.5].
-        more : further parameters of :class:`Material` by name: ``name``, ``density``, ``thickness``, ``measured``,
-            ``temperature``, ``T_ref``.
+        more : further parameters of :class:`Material` by name: ``name``, ``density``,
+            ``thickness``, ``measured``, ``temperature``, ``T_ref``.
 
         Returns
         -------
@@ -191,11 +206,13 @@ class Material(FromPrograms):
 
     @classmethod
     def rigid(cls, **more: Any) -> Material:
-        """Make a body that does not deform, with infinite E; its Poisson's ratio, 0.5, has no effect.
+        """Make a body that does not deform, with infinite E; its Poisson's ratio, 0.5, has no
+        effect.
 
         Parameters
         ----------
-        more : ``name`` and ``density``, and other parameters of :class:`Material` but E, nu and ``thickness``.
+        more : ``name`` and ``density``, and other parameters of :class:`Material` but E, nu and
+            ``thickness``.
 
         Returns
         -------
@@ -226,10 +243,11 @@ class Material(FromPrograms):
     def instant(self) -> float:
         """Instantaneous Young's modulus, Pa.
 
-        Of a material with ``nu_instant`` alpha is that of E/(1 - nu^2), so that the modulus is E alpha (1 -
-        nu_instant^2)/(1 - nu^2).
+        Of a material with ``nu_instant`` alpha is that of E/(1 - nu^2), so that the modulus is E
+        alpha (1 - nu_instant^2)/(1 - nu^2).
         """
-        late, early = self.nu, self.nu if self.nu_instant is None else self.nu_instant
+        late = self.nu
+        early = self.nu if self.nu_instant is None else self.nu_instant
         return self.E * self.prony.alpha * (1.0 - early**2) / (1.0 - late**2)
 
     @property
@@ -238,18 +256,20 @@ class Material(FromPrograms):
         return self.E / (2.0 * (1.0 + self.nu))
 
     def at(self, temperature: float, shift: Callable[[float], float] | None = None) -> Material:
-        """Return the material at another temperature: T_ref, and with it all times, is multiplied by a_T.
+        """Return the material at another temperature: T_ref, and with it all times, is multiplied
+        by a_T.
 
-        The measured band moves with it.  E is multiplied by b_T of ``vertical_shift``, or stays; all other fields
-        stay.
+        The measured band moves with it.  E is multiplied by b_T of ``vertical_shift``, or stays;
+        all other fields stay.
 
         Parameters
         ----------
         temperature : degrees Celsius, one number.
-        shift : :class:`WLF`, :class:`Arrhenius`, or any function of the temperature in degrees Celsius that returns
-            a_T, dimensionless, > 0, as a number.  Where the material has a ``temperature``, times are multiplied by
-            a_T(temperature)/a_T(its own), so that constants that refer to another temperature (T0 of the glass
-            transition, say) are converted; where it has none, it is taken to be at the temperature where the shift is
+        shift : :class:`WLF`, :class:`Arrhenius`, or any function of the temperature in degrees
+            Celsius that returns a_T, dimensionless, > 0, as a number.  Where the material has a
+            ``temperature``, times are multiplied by a_T(temperature)/a_T(its own), so that
+            constants that refer to another temperature (T0 of the glass transition, say) are
+            converted; where it has none, it is taken to be at the temperature where the shift is
             1.  Default: the material's own ``shift``.
 
         Returns
@@ -260,9 +280,10 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A temperature that the shift does not allow, an array of temperatures, one at or below absolute zero; a
-            shift that is no function or does not return a finite positive number; a ratio of shifts, a time or a
-            frequency of the measured band that no double holds.  Other exceptions of the shift pass.
+            A temperature that the shift does not allow, an array of temperatures, one at or below
+            absolute zero; a shift that is no function or does not return a finite positive number;
+            a ratio of shifts, a time or a frequency of the measured band that no double holds.
+            Other exceptions of the shift pass.
 
         Warns
         -----
@@ -282,8 +303,10 @@ class Material(FromPrograms):
         given = check_array("temperature", temperature, unit="degC")
         if given.ndim:
             sentence = (
-                f"temperature is an array of shape {given.shape}, but a material has one temperature: make "
-                "a list, [rubber.at(T, shift) for T in temperatures], or give the temperatures to a run file as a "
+                f"temperature is an array of shape {given.shape}, but a material has one "
+                "temperature: make "
+                "a list, [rubber.at(T, shift) for T in temperatures], or give the temperatures to "
+                "a run file as a "
                 "column or a distribution, [material] temperature = ... (docs/ensembles.md)"
             )
             raise ParameterError("temperature", given.shape, "one number", sentence)
@@ -292,13 +315,16 @@ class Material(FromPrograms):
         measured = None if self.measured is None else self.measured.shifted(factor)
         E = self.E * vertical_factor(self.vertical_shift, temperature, self.temperature)
         T_ref = self.T_ref * factor
-        return replace(self, E=E, T_ref=T_ref, measured=measured, temperature=temperature, shift=shift)
+        return replace(
+            self, E=E, T_ref=T_ref, measured=measured, temperature=temperature, shift=shift
+        )
 
     def storage(self, omega: ArrayLike) -> Any:
-        """Return the storage modulus E' in tension, which rises from E at omega = 0 to the instantaneous modulus.
+        """Return the storage modulus E' in tension, which rises from E at omega = 0 to the
+        instantaneous modulus.
 
-        It is E (1 + sum E_i x_i^2/(1 + x_i^2)) with x_i = omega tau_i T_ref.  Of a material imported with bulk terms
-        unlike those of shear the series is that of E/(1 - nu^2).
+        It is E (1 + sum E_i x_i^2/(1 + x_i^2)) with x_i = omega tau_i T_ref.  Of a material
+        imported with bulk terms unlike those of shear the series is that of E/(1 - nu^2).
 
         Parameters
         ----------
@@ -311,7 +337,8 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A frequency that is negative, NaN, infinite or no number, or has a unit of another dimension.
+            A frequency that is negative, NaN, infinite or no number, or has a unit of another
+            dimension.
 
         Examples
         --------
@@ -323,9 +350,11 @@ class Material(FromPrograms):
         return self.E * self._moduli(omega)[0]
 
     def loss(self, omega: ArrayLike) -> Any:
-        """Return the loss modulus E'' in tension, E sum E_i x_i/(1 + x_i^2) with x_i = omega tau_i T_ref.
+        """Return the loss modulus E'' in tension, E sum E_i x_i/(1 + x_i^2) with x_i = omega tau_i
+        T_ref.
 
-        Of a material imported with bulk terms unlike those of shear the series is that of E/(1 - nu^2).
+        Of a material imported with bulk terms unlike those of shear the series is that of E/(1 -
+        nu^2).
 
         Parameters
         ----------
@@ -338,7 +367,8 @@ class Material(FromPrograms):
         Raises
         ------
         ParameterError
-            A frequency that is negative, NaN, infinite or no number, or has a unit of another dimension.
+            A frequency that is negative, NaN, infinite or no number, or has a unit of another
+            dimension.
 
         Examples
         --------
@@ -360,12 +390,14 @@ class Material(FromPrograms):
 
         Returns
         -------
-        number or array, dimensionless, >= 0, of the shape of ``omega``; 0 of an elastic and of a rigid body
+        number or array, dimensionless, >= 0, of the shape of ``omega``; 0 of an elastic and of a
+        rigid body
 
         Raises
         ------
         ParameterError
-            A frequency that is negative, NaN, infinite or no number, or has a unit of another dimension.
+            A frequency that is negative, NaN, infinite or no number, or has a unit of another
+            dimension.
 
         Examples
         --------
@@ -378,9 +410,11 @@ class Material(FromPrograms):
         return loss / storage
 
     def relaxation(self, t: ArrayLike) -> Any:
-        """Return the tensile relaxation modulus E(t), which falls from the instantaneous modulus at t = 0 to E.
+        """Return the tensile relaxation modulus E(t), which falls from the instantaneous modulus at
+        t = 0 to E.
 
-        Of a material imported with bulk terms unlike those of shear it is E times the series of E/(1 - nu^2).
+        Of a material imported with bulk terms unlike those of shear it is E times the series of
+        E/(1 - nu^2).
 
         Parameters
         ----------
@@ -388,7 +422,8 @@ class Material(FromPrograms):
 
         Returns
         -------
-        number or array, Pa, of the shape of ``t``; E at all times for an elastic and infinite for a rigid body
+        number or array, Pa, of the shape of ``t``; E at all times for an elastic and infinite for a
+        rigid body
 
         Raises
         ------
@@ -406,11 +441,11 @@ class Material(FromPrograms):
         return self.E * (1.0 + (self.prony.E * decay).sum(axis=-1))[()]
 
     def creep(self, t: ArrayLike) -> Any:
-        """Return the creep compliance in tension times E, 1 - sum J_j exp(-t/(T_j T_ref)), with the creep form of
-        ``prony``.
+        """Return the creep compliance in tension times E, 1 - sum J_j exp(-t/(T_j T_ref)), with the
+        creep form of ``prony``.
 
-        It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of shear it is that
-        of (1 - nu^2)/E, divided by its long-time value.
+        It rises from E/E(0) at t = 0 to 1.  Of a material imported with bulk terms unlike those of
+        shear it is that of (1 - nu^2)/E, divided by its long-time value.
 
         Parameters
         ----------
@@ -418,7 +453,8 @@ class Material(FromPrograms):
 
         Returns
         -------
-        number or array, dimensionless, of the shape of ``t``; 1 at all times for an elastic and a rigid body
+        number or array, dimensionless, of the shape of ``t``; 1 at all times for an elastic and a
+        rigid body
 
         Raises
         ------
@@ -436,15 +472,17 @@ class Material(FromPrograms):
         return (1.0 / self.prony.alpha + (self.prony.J * growth).sum(axis=-1))[()]
 
     def to_xarray(self) -> xr.Dataset:
-        """Return both forms of the series and the constants as a dataset, with names and units, as in files.
+        """Return both forms of the series and the constants as a dataset, with names and units, as
+        in files.
 
         Returns
         -------
         xarray.Dataset
-            E, tau, J, T over "mode" (of length 0 if elastic), slowest first, strengths dimensionless and times in
-            units of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of density (kg/m^3), thickness (m), temperature
-            (degrees Celsius) and the measured band (measured_low and measured_high in rad/s, measured_misfit) those
-            that are given.  Its attributes are those of :func:`.material_netcdf.material_as_dataset`.
+            E, tau, J, T over "mode" (of length 0 if elastic), slowest first, strengths
+            dimensionless and times in units of T_ref; E_long (Pa), nu, T_ref (s), alpha, and of
+            density (kg/m^3), thickness (m), temperature (degrees Celsius) and the measured band
+            (measured_low and measured_high in rad/s, measured_misfit) those that are given.  Its
+            attributes are those of :func:`.checked_netcdf.material_as_dataset`.
 
         Examples
         --------
@@ -452,32 +490,38 @@ class Material(FromPrograms):
         >>> vr.Material(3e6, 0.49, vr.Prony([2.0], [1.0])).to_xarray().sizes["mode"]
         1
         """
-        from .material_netcdf import material_as_dataset
+        from .checked_netcdf import material_as_dataset
 
         return material_as_dataset(self)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
         """Return what the HTML of a notebook shows: a title, and a line for each property.
 
-        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value and unit as
-        texts, numbers to six digits): E, instantaneous modulus, nu, number of modes, T_ref, relaxation times in s,
-        density, thickness, temperature, measured band.  Properties that are None are left out, as are the
-        relaxation times of an elastic material; of these the longest and the shortest are shown, in this order, to
-        three digits.
+        Returns (the name, or "Material" without one; a list of :class:`SummaryRow` with name, value
+        and unit as texts, numbers to six digits): E, instantaneous modulus, nu, number of modes,
+        T_ref, relaxation times in s, density, thickness, temperature, measured band.  Properties
+        that are None are left out, as are the relaxation times of an elastic material; of these the
+        longest and the shortest are shown, in this order, to three digits.
         """
         times = self.prony.tau * self.T_ref
         values: list[tuple[str, Any, str]] = [
-            ("E", self.E, "Pa, of long times"), ("instantaneous", self.instant, "Pa"), ("nu", self.nu, ""),
-            ("instantaneous nu", self.nu_instant, ""), ("modes", times.size, ""), ("T_ref", self.T_ref, "s"),
+            ("E", self.E, "Pa, of long times"),
+            ("instantaneous", self.instant, "Pa"),
+            ("nu", self.nu, ""),
+            ("instantaneous nu", self.nu_instant, ""),
+            ("modes", times.size, ""),
+            ("T_ref", self.T_ref, "s"),
             ("relaxation times", f"{times[0]:.3g} to {times[-1]:.3g}" if times.size else None, "s"),
-            ("density", self.density, "kg m-3"), ("thickness", self.thickness, "m"),
+            ("density", self.density, "kg m-3"),
+            ("thickness", self.thickness, "m"),
             ("temperature", self.temperature, "degrees Celsius"),
             ("measured", self.measured and str(self.measured), ""),
-        ]  # fmt: skip
+        ]
         return self.name or "Material", [
             SummaryRow(name, value if isinstance(value, str) else f"{value:g}", unit)
-            for name, value, unit in values if value is not None
-        ]  # fmt: skip
+            for name, value, unit in values
+            if value is not None
+        ]
 
     _repr_html_ = Result._repr_html_
 
@@ -485,12 +529,13 @@ class Material(FromPrograms):
 
     def _figure(self) -> Figure:
         """Return a figure of E', E'' and tan delta over frequency, and of E(t)."""
-        from ..core.plots.measurements import master_curve
+        from ..core.plots.result_figures import master_curve
 
         return master_curve(self)
 
     def to_netcdf(self, path: str | PathLike[str]) -> None:
-        """Write the material with both forms of its series as netCDF-4, whole or not at all, sealed by a SHA-256.
+        """Write the material with both forms of its series as netCDF-4, whole or not at all, sealed
+        by a SHA-256.
 
         Parameters
         ----------
@@ -526,8 +571,8 @@ class Material(FromPrograms):
         Raises
         ------
         FileError
-            A file that is missing, larger than 128 MiB, damaged in any byte, without the SHA-256 at its end, or no
-            material, or has values out of range.
+            A file that is missing, larger than 128 MiB, damaged in any byte, without the SHA-256 at
+            its end, or no material, or has values out of range.
 
         Examples
         --------
@@ -537,25 +582,29 @@ class Material(FromPrograms):
         >>> vr.Material.from_netcdf("steel.nc") == steel
         True
         """
-        from .material_netcdf import load_material
+        from .checked_netcdf import load_material
 
         return load_material(path, cls)
 
     def _moduli(self, omega: ArrayLike) -> tuple[Any, Any]:
         """Return storage and loss modulus divided by E.
 
-        omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation time that
-        overflows
+        omega: angular frequencies, rad/s, >= 0, of any shape.  A product of omega and a relaxation
+        time that overflows
             is taken as infinite.
-        Returns (E'/E, E''/E), dimensionless, each a number or an array of that shape; (1, 0) of an elastic and of a
-        rigid body.
-        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of another dimension.
+        Returns (E'/E, E''/E), dimensionless, each a number or an array of that shape; (1, 0) of an
+        elastic and of a rigid body.
+        Raises ParameterError for a frequency that is negative, NaN, infinite or no number, or of
+        another dimension.
         """
         with np.errstate(over="ignore"):
-            product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (self.T_ref * self.prony.tau)
+            product = check_array("omega", omega, unit=SI, low=0.0)[..., None] * (
+                self.T_ref * self.prony.tau
+            )
         fast = product > 1.0
         ratio = np.where(fast, 1.0 / np.maximum(product, 1.0), product)
-        whole, E = 1.0 + ratio * ratio, self.prony.E
+        whole = 1.0 + ratio * ratio
+        E = self.prony.E
         storage = 1.0 + (E * (np.where(fast, 1.0, ratio * ratio) / whole)).sum(axis=-1)
         return storage[()], (E * (ratio / whole)).sum(axis=-1)[()]
 
@@ -564,28 +613,32 @@ class Material(FromPrograms):
 
         t: s, >= 0, of any shape.
         times: relaxation or retardation times in units of T_ref, > 0, (times,); may be empty.
-        Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite where the
-        quotient overflows.
-        Raises ParameterError for a time t that is negative, NaN, infinite or no number, or of another dimension.
+        Returns the ratios, dimensionless, of the shape of t with a last axis of the times; infinite
+        where the quotient overflows.
+        Raises ParameterError for a time t that is negative, NaN, infinite or no number, or of
+        another dimension.
         """
         with np.errstate(over="ignore"):
             return check_array("t", t, unit=SI, low=0.0)[..., None] / (self.T_ref * times)
 
 
 def _refuse_no_shift(name: str, shift: Any, allowed: str) -> None:
-    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in words ``allowed``."""
+    """Raise ParameterError where the argument ``name`` has a ``shift`` that cannot be called, in
+    words ``allowed``.
+    """
     if not callable(shift) or isinstance(shift, type):
         raise ParameterError(name, f"{shift!r:.60}", allowed)
 
 
 def refuse_short_retardation(T_epsilon: ArrayLike, T_sigma: ArrayLike) -> None:
-    """Raise ParameterError where T_epsilon < T_sigma, as no material has it; equal times are allowed.
+    """Raise ParameterError where T_epsilon < T_sigma, as no material has it; equal times are
+    allowed.
 
-    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that broadcast; nothing else
-    is
+    T_epsilon, T_sigma: retardation and relaxation times in one unit, numbers or arrays that
+    broadcast; nothing else is
         checked, and NaN is no fault.
-    The error states, of the elements at fault, the T_epsilon and T_sigma of that with the longest T_sigma (of equal
-    ones the first).
+    The error states, of the elements at fault, the T_epsilon and T_sigma of that with the longest
+    T_sigma (of equal ones the first).
     """
     slow, fast = np.broadcast_arrays(T_epsilon, T_sigma)
     short = fast > slow

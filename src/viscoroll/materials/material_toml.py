@@ -1,4 +1,6 @@
-"""Materials in files: sections [material] and [base] of TOML, or a netCDF file -> :class:`Material`."""
+"""Materials in files: sections [material] and [base] of TOML, or a netCDF file ->
+:class:`Material`.
+"""
 
 from __future__ import annotations
 
@@ -17,13 +19,11 @@ import numpy as np
 
 from ..core.checks import check_number
 from ..core.errors import FileError
-from ..core.sections import as_section_error, as_struct, read_toml, section_error
-from .law_file import is_law, read_law
+from ..core.toml_sections import as_section_error, as_struct, read_toml, section_error
+from .checked_netcdf import SUFFIX, is_law, read_law
 from .material import Material
-from .material_netcdf import SUFFIX
-from .measured import Measured
+from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured, relative_shift, shifts_as_toml
 from .prony import Prony
-from .shift import ABSOLUTE_ZERO, WLF, Arrhenius, relative_shift, shifts_as_toml
 
 #: sections of a file that describe a body
 SECTIONS = ("material", "base")
@@ -50,7 +50,8 @@ class FileSection(msgspec.Struct, kw_only=True):
     """Section [material] or [base] that names a netCDF or TOML file.
 
     thickness, density : as of :class:`MaterialSection`; they replace those of the file.
-    wlf, arrhenius, temperature, vertical_shift : as of :class:`MaterialSection`; they shift the material of the file.
+    wlf, arrhenius, temperature, vertical_shift : as of :class:`MaterialSection`; they shift the
+    material of the file.
     """
 
     file: str
@@ -63,16 +64,19 @@ class FileSection(msgspec.Struct, kw_only=True):
 
 
 class MaterialSection(FileSection, kw_only=True):
-    """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`, and a temperature.
+    """Section [material] or [base]: the parameters of :class:`Material` or :meth:`Material.sls`,
+    and a temperature.
 
     nu : Poisson's ratio; it may be left out of a rigid body (E = inf), on which it has no effect.
     T_epsilon : retardation time of a standard linear solid, s, in place of a series.
     T_sigma : relaxation time of a standard linear solid, s, in place of a series.
     creep : instead of ``prony``, strengths and times of creep, and optionally alpha.
     wlf, arrhenius : time-temperature shift.
-    vertical_shift : "entropic": moduli are multiplied by the absolute temperature over that of ``reference``.
+    vertical_shift : "entropic": moduli are multiplied by the absolute temperature over that of
+    ``reference``.
     temperature : temperature of the material, degrees Celsius.
-    reference : temperature at which moduli and times are as given, degrees Celsius; default: where the shift is 1.
+    reference : temperature at which moduli and times are as given, degrees Celsius; default: where
+    the shift is 1.
     nu_instant : Poisson's ratio at t = 0, where it differs from nu.
     """
 
@@ -95,19 +99,21 @@ def read_materials(path: str | PathLike[str]) -> dict[str, Material]:
 
     Parameters
     ----------
-    path : a TOML file with [material], [base] or both: a scene file, a run file, or one of its own; other sections are
-        ignored.  Or a netCDF file (suffix .nc) that :meth:`Material.to_netcdf` wrote.
+    path : a TOML file with [material], [base] or both: a scene file, a run file, or one of its own;
+        other sections are ignored.  Or a netCDF file (suffix .nc) that :meth:`Material.to_netcdf`
+        wrote.
 
     Returns
     -------
     dict of str to Material
-        By the names of the sections, "material" and "base", those that exist; of a netCDF file "material" alone.
+        By the names of the sections, "material" and "base", those that exist; of a netCDF file
+        "material" alone.
 
     Raises
     ------
     FileError
-        A file that cannot be read, is not TOML, has neither section, or a misspelt or missing key, a value of
-        the wrong type or out of its range, a temperature without a shift.
+        A file that cannot be read, is not TOML, has neither section, or a misspelt or missing key,
+        a value of the wrong type or out of its range, a temperature without a shift.
         A netCDF file that is missing, damaged, or no material (also the law of one).
 
     Warns
@@ -128,10 +134,13 @@ def parse_materials(path: Any, content: Mapping[str, Any]) -> dict[str, Material
 
     path: path of the file, for errors; paths in its sections are relative to its folder.
     content: sections of the file by name, as tomllib reads them.
-    Returns a dict from "material" and "base", those that exist, to :class:`Material`; empty without either.
+    Returns a dict from "material" and "base", those that exist, to :class:`Material`; empty without
+    either.
     Raises FileError and warns as :func:`read_materials` does, but not for missing sections.
     """
-    return {name: _parse_material(path, name, content[name]) for name in SECTIONS if name in content}
+    return {
+        name: _parse_material(path, name, content[name]) for name in SECTIONS if name in content
+    }
 
 
 def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[float], float]]:
@@ -139,17 +148,21 @@ def parse_shifts(path: Any, content: Mapping[str, Any]) -> dict[str, Callable[[f
 
     path: path of the file, for errors.
     content: sections of the file by name, as tomllib reads them.
-    Returns a dict from "material" and "base", those with a key wlf or arrhenius, to a function of a temperature in
-    degrees Celsius.  It returns the factor of all times, dimensionless, > 0, from the key ``temperature`` of the
-    section, at which it is 1, to that temperature; without the key it is the shift itself.  The function raises
-    ParameterError for a temperature that the shift does not allow and for a factor that no double holds.
+    Returns a dict from "material" and "base", those with a key wlf or arrhenius, to a function of a
+    temperature in degrees Celsius.  It returns the factor of all times, dimensionless, > 0, from
+    the key ``temperature`` of the section, at which it is 1, to that temperature; without the key
+    it is the shift itself.  The function raises ParameterError for a temperature that the shift
+    does not allow and for a factor that no double holds.
     Raises FileError for a section that is wrong, also one with both wlf and arrhenius.
     """
-    sections = {name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content}
+    sections = {
+        name: _parse_section(path, name, content[name]) for name in SECTIONS if name in content
+    }
     return {
         name: partial(relative_shift, shift, reference=section.temperature)
-        for name, section in sections.items() if (shift := _shift_of(path, name, section))
-    }  # fmt: skip
+        for name, section in sections.items()
+        if (shift := _shift_of(path, name, section))
+    }
 
 
 def material_as_toml(material: Material, section: str = "material") -> str:
@@ -157,16 +170,21 @@ def material_as_toml(material: Material, section: str = "material") -> str:
 
     material: the :class:`Material`.
     section: name of the section, "material" or "base".
-    Returns the text, which ends with a line feed: a header; a line each for name, E, nu and T_ref, and for those of
-    nu_instant, density, thickness, temperature (as ``reference``), shifts and measured that are given; the series.  A
-    shift that is a function other than WLF and Arrhenius is left out.
+    Returns the text, which ends with a line feed: a header; a line each for name, E, nu and T_ref,
+    and for those of nu_instant, density, thickness, temperature (as ``reference``), shifts and
+    measured that are given; the series.  A shift that is a function other than WLF and Arrhenius is
+    left out.
     """
     band = material.measured
-    values = {name: getattr(material, name) for name in ("E", "nu", "nu_instant", "T_ref", "density", "thickness")}
+    values = {
+        name: getattr(material, name)
+        for name in ("E", "nu", "nu_instant", "T_ref", "density", "thickness")
+    }
     values = {"name": _quote(material.name)} | values | {"reference": material.temperature}
     strain = "" if band is None or band.strain is None else f", strain = {band.strain}"
     values["measured"] = band and (
-        f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = {_quote(band.source)}{strain}"
+        f"{{ low = {band.low}, high = {band.high}, misfit = {band.misfit}, source = "
+        f"{_quote(band.source)}{strain}"
         f"{f', M_error = {[list(pair) for pair in band.M_error]}' * bool(band.M_error)} }}"
     )
     values |= shifts_as_toml(material.shift, material.vertical_shift)
@@ -175,33 +193,46 @@ def material_as_toml(material: Material, section: str = "material") -> str:
 
 
 def series_as_toml(series: Prony) -> str:
-    """Return the key ``prony`` or ``creep``, in the form in which the series was given, that reads back to the bit.
+    """Return the key ``prony`` or ``creep``, in the form in which the series was given, that reads
+    back to the bit.
 
     series: :class:`Prony` of one material; an elastic one has empty lists.
-    Returns one line of TOML without a line feed, as "prony = { E = [2.0], tau = [1.0] }"; of creep with alpha too.
+    Returns one line of TOML without a line feed, as "prony = { E = [2.0], tau = [1.0] }"; of creep
+    with alpha too.
     """
     if series.by_creep:
-        return f"creep = {{ J = {series.J.tolist()}, T = {series.T.tolist()}, alpha = {series.alpha!r} }}"
+        return (
+            f"creep = {{ J = {series.J.tolist()}, T = {series.T.tolist()}, alpha = "
+            f"{series.alpha!r} }}"
+        )
     return f"prony = {{ E = {series.E.tolist()}, tau = {series.tau.tolist()} }}"
 
 
 def _quote(text: str) -> str:
-    """Return ``text`` as a TOML string: TOML allows no surrogates, and the character DEL only escaped."""
+    """Return ``text`` as a TOML string: TOML allows no surrogates, and the character DEL only
+    escaped.
+    """
     return json.dumps(text, ensure_ascii=False).replace("\x7f", r"\u007f")
 
 
 def _parse_section(path: Any, name: str, content: Any) -> Any:
-    """Return a section as a :class:`FileSection`, if it has the key file, or as a :class:`MaterialSection`.
+    """Return a section as a :class:`FileSection`, if it has the key file, or as a
+    :class:`MaterialSection`.
 
     path, name: path of the file and name of the section, for errors.
     content: keys and values of the section, as tomllib reads them.
-    Raises FileError, with the line of the key, for a key that is unknown, missing or of the wrong type, and for a
-    property of the material beside the key file.
+    Raises FileError, with the line of the key, for a key that is unknown, missing or of the wrong
+    type, and for a property of the material beside the key file.
     """
     if not (isinstance(content, dict) and "file" in content):
         return as_struct(path, name, content, MaterialSection)
-    for key in content.keys() & set(MaterialSection.__struct_fields__) - set(FileSection.__struct_fields__):
-        problem = f"{key}: must be left out beside file; to change it, write the content of the file here in its place"
+    for key in content.keys() & set(MaterialSection.__struct_fields__) - set(
+        FileSection.__struct_fields__
+    ):
+        problem = (
+            f"{key}: must be left out beside file; to change it, write the content of the "
+            "file here in its place"
+        )
         raise section_error(path, name, key, problem)
     return as_struct(path, name, content, FileSection)
 
@@ -209,13 +240,14 @@ def _parse_section(path: Any, name: str, content: Any) -> Any:
 def _parse_material(path: Any, name: str, content: Any) -> Material:
     """Return the material of a section at its temperature.
 
-    path, name: path of the file, relative to whose folder a path in the section is, and name of the section.
+    path, name: path of the file, relative to whose folder a path in the section is, and name of the
+    section.
     content: keys and values of the section, as tomllib reads them.
-    Returns the :class:`Material`: of the section itself, or of the file that it names, with the thickness and the
-    density of the section where these are given; shifted if the section has a ``temperature``, else as at its
-    reference.
-    Raises FileError, with the line of the key, for a key or value that is wrong, a temperature without a shift, and a
-    file that the section names and that is wrong.
+    Returns the :class:`Material`: of the section itself, or of the file that it names, with the
+    thickness and the density of the section where these are given; shifted if the section has a
+    ``temperature``, else as at its reference.
+    Raises FileError, with the line of the key, for a key or value that is wrong, a temperature
+    without a shift, and a file that the section names and that is wrong.
     """
     section = _parse_section(path, name, content)
     with as_section_error(path, name):
@@ -224,8 +256,11 @@ def _parse_material(path: Any, name: str, content: Any) -> Material:
         else:
             material = _read_other_file(path, name, Path(path).parent / section.file)
             values = {"thickness": section.thickness, "density": section.density}
-            material = replace(material, **{key: value for key, value in values.items() if value is not None})
-        shift, temperature = _shift_of(path, name, section), section.temperature
+            material = replace(
+                material, **{key: value for key, value in values.items() if value is not None}
+            )
+        shift = _shift_of(path, name, section)
+        temperature = section.temperature
         vertical = section.vertical_shift or material.vertical_shift
         material = replace(material, shift=shift or material.shift, vertical_shift=vertical)
         if temperature is None:
@@ -240,10 +275,11 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
     """Return the material of a file that a section names.
 
     path, name: path of the file with that section, and name of the section, for errors.
-    other: netCDF file (suffix .nc) of a material or of its law, or TOML file with a section of this name or, without
-        one, [material].
+    other: netCDF file (suffix .nc) of a material or of its law, or TOML file with a section of this
+        name or, without one, [material].
     Returns the :class:`Material`, at the temperature of that file.
-    Raises FileError for the key ``file`` of the section if that file is missing or wrong, or names a file again.
+    Raises FileError for the key ``file`` of the section if that file is missing or wrong, or names
+    a file again.
     """
     try:
         if other.suffix.lower() == SUFFIX:
@@ -253,11 +289,17 @@ def _read_other_file(path: Any, name: str, other: Path) -> Material:
         if section not in content:
             raise section_error(other, "", "material", _NO_MATERIAL)
         if isinstance(content[section], dict) and "file" in content[section]:
-            raise section_error(other, section, "file", "file: the file of a material must not name another file")
+            raise section_error(
+                other, section, "file", "file: the file of a material must not name another file"
+            )
         return _parse_material(other, section, content[section])
     except FileError as error:
         known = other.suffix.lower() in (SUFFIX, ".toml")
-        advice = "" if known else "; file must be TOML with [material], or the .nc file of a material or its law"
+        advice = (
+            ""
+            if known
+            else "; file must be TOML with [material], or the .nc file of a material or its law"
+        )
         raise section_error(path, name, "file", f"{error}{advice}") from error
 
 
@@ -265,41 +307,58 @@ def _material_of_law(path: Path) -> Material:
     """Return the :class:`Material` of the law in the file ``path``.
 
     The attribute ``material`` of the file states it as TOML.
-    Raises FileError for a pair, for a law without units, and for a file that is damaged or no law; KeyError for one
-    without that attribute (the law of every alpha), ValueError where it is not TOML.
+    Raises FileError for a pair, for a law without units, and for a file that is damaged or no law;
+    KeyError for one without that attribute (the law of every alpha), ValueError where it is not
+    TOML.
     """
     content = tomllib.loads(read_law(path).attributes["material"])
     if not content.keys() & set(SECTIONS):
-        raise FileError(path, "is the law of a material without units: it must be the law of a [material] in SI units")
+        raise FileError(
+            path,
+            "is the law of a material without units: it must be the law of a [material] in SI "
+            "units",
+        )
     if "base" in content:
-        raise FileError(path, "is the law of a pair: give one material here, or load it by vr.load_law")
+        raise FileError(
+            path, "is the law of a pair: give one material here, or load it by vr.load_law"
+        )
     return parse_materials(path, content)["material"]
 
 
 def _make_material(path: Any, name: str, section: MaterialSection) -> Material:
-    """Return the material of a section at its reference temperature, by its standard linear solid or its series.
+    """Return the material of a section at its reference temperature, by its standard linear solid
+    or its series.
 
     path, name: path of the file and name of the section, for errors.
     section: checked content of the section, without the key file.
-    Returns the :class:`Material`, at the temperature ``reference``: with T_epsilon and T_sigma the standard linear
-    solid, else with the series and T_ref (1 s if it is not given); elastic if the section has neither times nor a
-    series.
-    Raises FileError for a finite E without nu, one of T_epsilon and T_sigma without the other, either beside T_ref or a
-    series, both series, and a series that is wrong; ParameterError for another value out of range.
+    Returns the :class:`Material`, at the temperature ``reference``: with T_epsilon and T_sigma the
+    standard linear solid, else with the series and T_ref (1 s if it is not given); elastic if the
+    section has neither times nor a series.
+    Raises FileError for a finite E without nu, one of T_epsilon and T_sigma without the other,
+    either beside T_ref or a series, both series, and a series that is wrong; ParameterError for
+    another value out of range.
     """
     nu = section.nu
     if nu is None:
         if not math.isinf(section.E):
             raise section_error(path, name, "", "needs nu")
         nu = Material.rigid().nu
-    more = {key: getattr(section, key) for key in ("name", "density", "thickness", "measured", "nu_instant")}
+    more = {
+        key: getattr(section, key)
+        for key in ("name", "density", "thickness", "measured", "nu_instant")
+    }
     reference = section.reference
     more["temperature"] = reference and check_number("reference", reference, above=ABSOLUTE_ZERO)
-    series = parse_series(path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep}))
+    series = parse_series(
+        path, name, msgspec.to_builtins({"prony": section.prony, "creep": section.creep})
+    )
     times = section.T_epsilon, section.T_sigma
     if times != (None, None):
         if None in times or section.T_ref is not None or series:
-            problem = "T_epsilon and T_sigma (s) must be given together, and without T_ref, prony and creep"
+            problem = (
+                "T_epsilon and T_sigma (s) must be given together, and without T_ref, prony "
+                "and creep"
+            )
             raise section_error(path, name, "", problem)
         return Material.sls(section.E, nu, *times, **more)  # type: ignore[arg-type]
     T_ref = 1.0 if section.T_ref is None else section.T_ref
@@ -310,23 +369,31 @@ def parse_series(path: Any, name: str, given: Mapping[str, Any]) -> Any:
     """Return the series of a section by its key prony or creep.
 
     path, name: path of the file and name of the section, for errors.
-    given: keys and values of the section; prony is a dict of E and tau, creep of J, T and perhaps alpha: strengths E
-        and J divided by the long-time modulus and compliance, times tau and T divided by T_ref, alpha the glassy
-        modulus divided by the long-time one.  Each but alpha is a list by mode, whose elements may be arrays (n,) of n
-        materials; other keys are ignored, as is a key that is None.
-    Returns a :class:`Prony`, of shape () or (n,), also for empty lists (elastic); None if neither key is given.
-    Raises FileError for both keys, values out of range, and lists of different lengths; TypeError for another key in
-    such a dict, ValueError for arrays of different lengths in a list.
+    given: keys and values of the section; prony is a dict of E and tau, creep of J, T and perhaps
+        alpha: strengths E and J divided by the long-time modulus and compliance, times tau and T
+        divided by T_ref, alpha the glassy modulus divided by the long-time one.  Each but alpha is
+        a list by mode, whose elements may be arrays (n,) of n materials; other keys are ignored, as
+        is a key that is None.
+    Returns a :class:`Prony`, of shape () or (n,), also for empty lists (elastic); None if neither
+    key is given.
+    Raises FileError for both keys, values out of range, and lists of different lengths; TypeError
+    for another key in such a dict, ValueError for arrays of different lengths in a list.
     """
     forms = {key: given[key] for key in ("prony", "creep") if given.get(key) is not None}
     if len(forms) > 1:
-        raise section_error(path, name, "creep", "prony and creep are both given: give one of the two")
+        raise section_error(
+            path, name, "creep", "prony and creep are both given: give one of the two"
+        )
     for key, lists in forms.items():
         columns = {
-            column: np.stack(np.broadcast_arrays(*value), axis=-1) if isinstance(value, list) and value else value
+            column: np.stack(np.broadcast_arrays(*value), axis=-1)
+            if isinstance(value, list) and value
+            else value
             for column, value in lists.items()
         }
-        with as_section_error(path, f"{name}.{key}"):  # E is a key of the material too: name the line of the series
+        with as_section_error(
+            path, f"{name}.{key}"
+        ):  # E is a key of the material too: name the line of the series
             return Prony(**columns) if key == "prony" else Prony.creep(**columns)
     return None
 
@@ -340,5 +407,7 @@ def _shift_of(path: Any, name: str, section: FileSection) -> WLF | Arrhenius | N
     Raises FileError for both keys.
     """
     if section.wlf is not None and section.arrhenius is not None:
-        raise section_error(path, name, "arrhenius", "wlf and arrhenius are both given: give one of the two")
+        raise section_error(
+            path, name, "arrhenius", "wlf and arrhenius are both given: give one of the two"
+        )
     return section.wlf or section.arrhenius

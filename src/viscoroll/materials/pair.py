@@ -1,7 +1,8 @@
 """Two bodies in contact, in SI units: :class:`Pair`.
 
-Compliances are added: 2/E' = 1/E'_1 + 1/E'_2, E'_k = pi E_k/(1 - nu_k^2) (Sect. 3.1), and each body creeps in
-proportion to its part of them.  Shear and pressure do not couple where Dundurs' constant beta_D is 0 at all times.
+Compliances are added: 2/E' = 1/E'_1 + 1/E'_2, E'_k = pi E_k/(1 - nu_k^2) (Sect. 3.1), and each body
+creeps in proportion to its part of them.  Shear and pressure do not couple where Dundurs' constant
+beta_D is 0 at all times.
 """
 
 from __future__ import annotations
@@ -14,8 +15,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from ..core.errors import ParameterError, described_error
-from .bodies import Bodies
-from .cover import Cover
+from .bodies import Bodies, Cover
 from .material import Material
 from .prony import Prony
 
@@ -23,7 +23,8 @@ Plane = Literal["strain", "stress"]
 
 
 class Solid(NamedTuple):
-    """The properties of a :class:`Material` that the law depends on; of many bodies as arrays and as many series.
+    """The properties of a :class:`Material` that the law depends on; of many bodies as arrays and
+    as many series.
 
     E : long-time Young's modulus, Pa, a number or (n,); infinite for a rigid body.
     nu : Poisson's ratio, a number or (n,).
@@ -52,7 +53,8 @@ class Pair:
     Raises
     ------
     ParameterError
-        A body that is no :class:`Material` or :class:`Solid`; two rigid bodies; a layer in plane stress.
+        A body that is no :class:`Material` or :class:`Solid`; two rigid bodies; a layer in plane
+        stress.
     """
 
     cylinder: Any
@@ -62,7 +64,8 @@ class Pair:
     def __post_init__(self) -> None:
         """Check the bodies, and what a layer of finite thickness allows.
 
-        Of many pairs two rigid bodies are refused only where all of them are; ``plane`` is not checked without a layer.
+        Of many pairs two rigid bodies are refused only where all of them are; ``plane`` is not
+        checked without a layer.
         Raises ParameterError as the class states.
         """
         for name in ("cylinder", "base"):
@@ -76,17 +79,21 @@ class Pair:
             self._refuse_covers()
 
     def _refuse_covers(self) -> None:
-        """Refuse pairs with a layer to which the law of a cover does not apply; called only where a body has a
-        thickness.
+        """Refuse pairs with a layer to which the law of a cover does not apply; called only where a
+        body has a thickness.
 
         Raises ParameterError for a layer in plane stress.
         """
         if self.plane != "strain":
-            raise ParameterError("plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)")
+            raise ParameterError(
+                "plane", repr(self.plane), "'strain' beside a layer (a material with a thickness)"
+            )
 
     @property
     def covered(self) -> Literal["cylinder", "base"] | None:
-        """Name of the body that is a layer of finite thickness, of two layers "cylinder", or None."""
+        """Name of the body that is a layer of finite thickness, of two layers "cylinder", or
+        None.
+        """
         if self.cylinder.thickness is not None:
             return "cylinder"
         return "base" if self.half_space.thickness is not None else None
@@ -98,69 +105,90 @@ class Pair:
 
     @property
     def like(self) -> bool:
-        """Whether both bodies deform and relax alike: one body is given for both, or E, nu, series and T_ref are equal.
+        """Whether both bodies deform and relax alike: one body is given for both, or E, nu, series
+        and T_ref are equal.
 
-        Two different objects of which one is a :class:`Solid` are never alike.  A thickness is not compared.
+        Two different objects of which one is a :class:`Solid` are never alike.  A thickness is not
+        compared.
         """
-        one, other = self.cylinder, self.half_space
+        one = self.cylinder
+        other = self.half_space
         if one is other or Solid in (type(one), type(other)):
             return one is other
-        return (one.E, one.nu, one.prony, one.T_ref) == (other.E, other.nu, other.prony, other.T_ref)
+        return (one.E, one.nu, one.prony, one.T_ref) == (
+            other.E,
+            other.nu,
+            other.prony,
+            other.T_ref,
+        )
 
     @cached_property
     def _moduli(self) -> tuple[Any, Any]:
         """E' of the cylinder and of the half-space at long times, Pa."""
-        one, other = self.cylinder, self.half_space
-        return effective_modulus(one.E, one.nu, self.plane), effective_modulus(other.E, other.nu, self.plane)
+        one = self.cylinder
+        other = self.half_space
+        return effective_modulus(one.E, one.nu, self.plane), effective_modulus(
+            other.E, other.nu, self.plane
+        )
 
     @property
     def E_prime(self) -> Any:
-        """Return the contact modulus E' of the pair at long times, 2/E' = 1/E'_1 + 1/E'_2 (Sect. 3.1), Pa.
+        """Return the contact modulus E' of the pair at long times, 2/E' = 1/E'_1 + 1/E'_2 (Sect.
+        3.1), Pa.
 
-        A float, or an array (n,) of many pairs, NaN where both bodies are rigid; that of one body if both are alike; if
-        one body is rigid twice that of the other.
+        A float, or an array (n,) of many pairs, NaN where both bodies are rigid; that of one body
+        if both are alike; if one body is rigid twice that of the other.
         """
         one, other = self._moduli
         if self.like:
             return one
-        softer, stiffer = np.minimum(one, other), np.maximum(one, other)
+        softer = np.minimum(one, other)
+        stiffer = np.maximum(one, other)
         found = 2.0 * softer / (1.0 + softer / stiffer)
         return found if found.ndim else float(found)
 
     @property
     def share(self) -> Any:
-        """The cylinder's part of the long-time compliance, dimensionless, a number or (n,): 0 if it is rigid, 1 on a
-        rigid base, 1/2 of like bodies.
+        """The cylinder's part of the long-time compliance, dimensionless, a number or (n,): 0 if it
+        is rigid, 1 on a rigid base, 1/2 of like bodies.
         """
         one, other = self._moduli
         return 1.0 / (1.0 + one / other)
 
     @property
     def T_ref(self) -> float:
-        """Unit of time, s: the cylinder's T_ref if it relaxes or is many series, else that of the half-space."""
+        """Unit of time, s: the cylinder's T_ref if it relaxes or is many series, else that of the
+        half-space.
+        """
         series = self.cylinder.prony
         return (self.cylinder if series.shape or series.alpha > 1.0 else self.half_space).T_ref
 
     @cached_property
     def law(self) -> Prony | Bodies:
-        """Return the material of the law: a :class:`Prony` series for like bodies, else :class:`Bodies`.
+        """Return the material of the law: a :class:`Prony` series for like bodies, else
+        :class:`Bodies`.
 
-        Its times are in units of ``T_ref``; strengths are divided by the long-time modulus or compliance.  Of many
-        bodies it is as many series or pairs.
+        Its times are in units of ``T_ref``; strengths are divided by the long-time modulus or
+        compliance.  Of many bodies it is as many series or pairs.
 
         Raises
         ------
         ParameterError
-            A body with a thickness: its law depends on the load and the radius too (:meth:`cover`); a time of the other
-            body that no double holds in units of ``T_ref``; n pairs of more than 64 modes; many series and many parts
-            of the compliance whose numbers differ.
+            A body with a thickness: its law depends on the load and the radius too
+            (:meth:`bodies`);
+            a time of the other body that no double holds in units of ``T_ref``; n pairs of more
+            than 64 modes; many series and many parts of the compliance whose numbers differ.
         """
         if self.covered is not None:
-            allowed = "left out, or in a Cylinder: the law of a layer depends on its load and radius"
+            allowed = (
+                "left out, or in a Cylinder: the law of a layer depends on its load and radius"
+            )
             raise described_error(f"thickness of the {self.covered}", "is given", allowed)
         if self.like:
             return self.cylinder.prony
-        one, other = (body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space))
+        one, other = (
+            body.prony.slower(body.T_ref / self.T_ref) for body in (self.cylinder, self.half_space)
+        )
         ratios = [np.asarray(body.nu) for body in (self.cylinder, self.half_space)]
         if any(nu.shape for nu in ratios):
             return Bodies(one, other, self.share)
@@ -169,14 +197,15 @@ class Pair:
         return Bodies(one, other, self.share, (strain[0], strain[1]))
 
     def cover(self, l0: Any) -> Cover:
-        """Return the layer of finite thickness and the other body, a layer or not, as a dimensionless :class:`Cover`.
+        """Return the layer of finite thickness and the other body, a layer or not, as a
+        dimensionless :class:`Cover`.
 
         One of the bodies must have a thickness (:attr:`covered`).
 
         Parameters
         ----------
-        l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an array (n,) for n
-            covers.
+        l0 : contact length at rest that the bodies would have as half-spaces, m; a number, or an
+            array (n,) for n covers.
 
         Returns
         -------
@@ -186,53 +215,70 @@ class Pair:
         Raises
         ------
         ParameterError
-            Many series; beside a body that is not rigid many parts of the compliance, or an array of its nu; a
-            thickness or Poisson's ratio out of the range of :class:`Cover`; a time that no double holds in units of
-            ``T_ref``.
+            Many series; beside a body that is not rigid many parts of the compliance, or an array
+            of its nu; a thickness or Poisson's ratio out of the range of :class:`Cover`; a time
+            that no double holds in units of ``T_ref``.
         AssertionError
             If no body has a thickness.
         """
         on = self.covered
         assert on is not None
-        layer, other = (self.cylinder, self.half_space) if on == "cylinder" else (self.half_space, self.cylinder)
+        layer, other = (
+            (self.cylinder, self.half_space)
+            if on == "cylinder"
+            else (self.half_space, self.cylinder)
+        )
         parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
         found = "differs from motion to motion"
         if layer.prony.shape:
-            allowed = "the same in all of them: thickness, load and R may differ, and beside a rigid body E and nu"
+            allowed = (
+                "the same in all of them: thickness, load and R may differ, and beside a "
+                "rigid body E and nu"
+            )
             raise described_error(f"the series of the {on}, which is a cover,", found, allowed)
         if np.ptp(parts) > 0.0:
             allowed = (
-                "the same in all of them for a cover beside an elastic body: let thickness, load or R alone differ, or "
+                "the same in all of them for a cover beside an elastic body: let thickness, load "
+                "or R alone differ, or "
                 "make the other body rigid (E = inf)"
             )
             raise described_error("E or nu of a body", found, allowed)
-        series, other_series = (body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other))
+        series, other_series = (
+            body.prony.slower(body.T_ref / self.T_ref) for body in (layer, other)
+        )
         part = float(np.max(parts))
         more = {} if part == 1.0 else {"other_nu": other.nu, "other": other_series}
         if other.thickness is not None and part < 1.0:
-            more["other_thickness"] = np.broadcast_to(other.thickness / l0, np.shape(layer.thickness / l0))
+            more["other_thickness"] = np.broadcast_to(
+                other.thickness / l0, np.shape(layer.thickness / l0)
+            )
         return Cover(series, nu=layer.nu, thickness=layer.thickness / l0, on=on, part=part, **more)
 
     @cached_property
     def dundurs(self) -> tuple[float, float]:
-        """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous moduli), floats,
-        dimensionless, any sign.
+        """Dundurs' constant beta_D as (that of the long-time moduli, that of the instantaneous
+        moduli), floats, dimensionless, any sign.
 
-        The moduli relax from one end to the other; the two numbers serve the check that shear and pressure do not
-        couple.  Body 1 of the formula of :func:`dundurs` is the cylinder; one body may be rigid.  It is exactly
-        (0.0, 0.0) for like bodies.  Both must be a :class:`Material`: a :class:`Solid` has no shear modulus, which is
-        an AttributeError.
+        The moduli relax from one end to the other; the two numbers serve the check that shear and
+        pressure do not couple.  Body 1 of the formula of :func:`dundurs` is the cylinder; one body
+        may be rigid.  It is exactly (0.0, 0.0) for like bodies.  Both must be a :class:`Material`:
+        a :class:`Solid` has no shear modulus, which is an AttributeError.
         """
-        one, other = self.cylinder, self.half_space
+        one = self.cylinder
+        other = self.half_space
         instant = one.G * one.prony.alpha, other.G * other.prony.alpha
-        return tuple(dundurs(G, one.nu, G_2, other.nu, self.plane) for G, G_2 in ((one.G, other.G), instant))  # type: ignore[return-value]
+        return tuple(
+            dundurs(G, one.nu, G_2, other.nu, self.plane) for G, G_2 in ((one.G, other.G), instant)
+        )  # type: ignore[return-value]
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
-    """Return the contact modulus E' = pi E/(1 - nu^2) of Sect. 3.1 of the paper; in plane stress pi E.
+    """Return the contact modulus E' = pi E/(1 - nu^2) of Sect. 3.1 of the paper; in plane stress pi
+    E.
 
     E: Young's modulus, a number or an array; infinite for a rigid body.
-    nu: Poisson's ratio, in (-1, 0.5], not checked, likewise; they broadcast.  Ignored in plane stress.
+    nu: Poisson's ratio, in (-1, 0.5], not checked, likewise; they broadcast.  Ignored in plane
+    stress.
     plane: "strain"; any other text is taken as "stress".
     Returns E' in the unit of E, a number or an array.
     """
@@ -240,17 +286,22 @@ def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
 
 
 def dundurs(G_1: float, nu_1: float, G_2: float, nu_2: float, plane: str = "strain") -> float:
-    """Return Dundurs' constant beta_D of two bodies; where it is 0, shear does not change the pressure.
+    """Return Dundurs' constant beta_D of two bodies; where it is 0, shear does not change the
+    pressure.
 
-    beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), with k = 3 - 4 nu in plane strain and k =
-    (3 - nu)/(1 + nu) in plane stress.
+    beta_D = (G_1 (k_2 - 1) - G_2 (k_1 - 1))/(G_1 (k_2 + 1) + G_2 (k_1 + 1)), with k = 3 - 4 nu in
+    plane strain and k = (3 - nu)/(1 + nu) in plane stress.
 
-    G_1, G_2: shear moduli in one unit, > 0; one of them may be infinite, and its nu then has no effect on the result.
+    G_1, G_2: shear moduli in one unit, > 0; one of them may be infinite, and its nu then has no
+    effect on the result.
     nu_1, nu_2: Poisson's ratios, in (-1, 0.5], not checked.
     plane: "strain"; any other text is taken as "stress".
-    Returns a float, dimensionless; its sign changes where the bodies are exchanged, and it is 0.0 for like bodies.
+    Returns a float, dimensionless; its sign changes where the bodies are exchanged, and it is 0.0
+    for like bodies.
     """
-    k_1, k_2 = (3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu) for nu in (nu_1, nu_2))
+    k_1, k_2 = (
+        3.0 - 4.0 * nu if plane == "strain" else (3.0 - nu) / (1.0 + nu) for nu in (nu_1, nu_2)
+    )
     largest = max(G_1, G_2)
     g_1, g_2 = (1.0 if G == largest else G / largest for G in (G_1, G_2))
     return (g_1 * (k_2 - 1.0) - g_2 * (k_1 - 1.0)) / (g_1 * (k_2 + 1.0) + g_2 * (k_1 + 1.0))

@@ -1,6 +1,8 @@
-"""Linear viscoelastic materials as Prony series: :class:`Prony`, one or many, in relaxation and in creep form.
+"""Linear viscoelastic materials as Prony series: :class:`Prony`, one or many, in relaxation and in
+creep form.
 
-With moduli divided by the long-time modulus and times in units of a time T_ref of the user's choice,
+With moduli divided by the long-time modulus and times in units of a time T_ref of the user's
+choice,
 
     E(t) = 1 + sum E_i exp(-a_i t)   a_i = 1/tau_i     alpha = 1 + sum E_i
     J(t) = 1 - sum J_j exp(-b_j t)   b_j = 1/T_j       1/alpha = 1 - sum J_j
@@ -18,8 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.array_types import Floats, Integers
-from ..core.checks import broadcast_shape, check_array
+from ..core.checks import Floats, Integers, broadcast_shape, check_array
 from ..core.errors import ParameterError, shape_error
 from .prony_forms import (
     HIGHEST_ALPHA,
@@ -31,7 +32,8 @@ from .prony_forms import (
     modes_of_relaxation,
 )
 
-#: difference of 1/alpha and 1 - sum J that rounding of the strengths explains, for each mode and one more
+#: difference of 1/alpha and 1 - sum J that rounding of the strengths explains, for each mode and
+#: one more
 _AGREEMENT = 1e-14
 
 
@@ -39,9 +41,10 @@ class Block(NamedTuple):
     """Materials of equal numbers of modes, along the last axis.
 
     rows : their places in the list of indices that was asked for, (materials,).
-    modes : :class:`.prony_forms.Modes`, strengths and rates of relaxation and creep, arrays (materials, modes).
-    weights : for pairs the part of each creep mode that is the half-space's, 0 to 1, (materials, modes); None of
-        series.
+    modes : :class:`.prony_forms.Modes`, strengths and rates of relaxation and creep, arrays
+        (materials, modes).
+    weights : for pairs the part of each creep mode that is the half-space's, 0 to 1, (materials,
+        modes); None of series.
     """
 
     rows: Integers
@@ -86,29 +89,32 @@ class Prony(OneOrMany):
 
     Parameters
     ----------
-    E : strengths of the modes divided by the long-time modulus, >= 0, dimensionless; zeros are dropped.
+    E : strengths of the modes divided by the long-time modulus, >= 0, dimensionless; zeros are
+        dropped.
     tau : their relaxation times in units of T_ref, > 0; strengths of equal times are added.
-        Arrays (n, N), one of which may be (N,), are n materials: ``p[i]`` is one of them, ``p[i:k]`` are some.  Where
-        they differ in the number of modes, those of strength 0 stand after the others.
+        Arrays (n, N), one of which may be (N,), are n materials: ``p[i]`` is one of them,
+        ``p[i:k]`` are some.  Where they differ in the number of modes, those of strength 0 stand
+        after the others.
 
     Attributes
     ----------
     shape : (), or (n,).
     alpha : instantaneous divided by long-time modulus, >= 1, a float, or (n,).
     E, tau : strengths and times of relaxation, slowest mode first, (modes,) or (n, modes).
-    J, T : strengths and times of creep, likewise; each form is computed from the given one at its first use.
+    J, T : strengths and times of creep, likewise; each form is computed from the given one at its
+        first use.
     by_creep : whether it was given by its creep compliance.
 
     Raises
     ------
     ParameterError
-        Negative strengths, times that are not positive, more than 64 modes, times outside 1e-140 to 1e140 or that span
-        more than 32 decades, or a sum of E above 1e12; for any of them.
+        Negative strengths, times that are not positive, more than 64 modes, times outside 1e-140 to
+        1e140 or that span more than 32 decades, or a sum of E above 1e12; for any of them.
 
     Notes
     -----
-    Immutable, hashable, equal where modes and ``alpha`` are, and both were given in the same form.  Values are not
-    rescaled.
+    Immutable, hashable, equal where modes and ``alpha`` are, and both were given in the same form.
+    Values are not rescaled.
 
     Examples
     --------
@@ -124,14 +130,17 @@ class Prony(OneOrMany):
         """Make one or many materials from their relaxation modulus, divided by its long-time value.
 
         E: strengths, >= 0, dimensionless, (modes,) or (n, modes); empty (default): elastic.
-        tau: relaxation times in units of T_ref, > 0, in the shape of E; one of the two may be (modes,) where the other
-            is (n, modes), or one number for all modes.
-        Raises ParameterError as the class states, and for shapes that do not fit, also for two single numbers.
+        tau: relaxation times in units of T_ref, > 0, in the shape of E; one of the two may be
+            (modes,) where the other is (n, modes), or one number for all modes.
+        Raises ParameterError as the class states, and for shapes that do not fit, also for two
+        single numbers.
         """
         strengths, times = _check_modes(("E", "tau"), E, tau)
         alpha = 1.0 + _exact_sums(strengths)
         if (np.asarray(alpha) > HIGHEST_ALPHA).any():
-            raise ParameterError("sum of E", f"{np.max(alpha) - 1.0:g}", f"at most {HIGHEST_ALPHA:g}")
+            raise ParameterError(
+                "sum of E", f"{np.max(alpha) - 1.0:g}", f"at most {HIGHEST_ALPHA:g}"
+            )
         self._set(False, strengths, times, alpha)
 
     @classmethod
@@ -140,24 +149,26 @@ class Prony(OneOrMany):
 
         Parameters
         ----------
-        J : strengths divided by the long-time compliance, >= 0, of a sum below 1, dimensionless, (modes,) or (n,
-            modes).
-        T : retardation times in units of T_ref, > 0, in the shape of J; one of the two may be (modes,) where the other
-            is (n, modes), or one number for all modes.
-        alpha : instantaneous divided by long-time modulus, 1/(1 - sum J), in [1, 1e12]; a number or, for arrays (n,
-            modes), (n,). That difference loses digits where the sum is near 1: a value given here replaces it, and must
-            agree with it to rounding of J: |1/alpha - (1 - sum J)| <= 1e-14 (1 + modes).  None: it is computed.
+        J : strengths divided by the long-time compliance, >= 0, of a sum below 1, dimensionless,
+            (modes,) or (n, modes).
+        T : retardation times in units of T_ref, > 0, in the shape of J; one of the two may be
+            (modes,) where the other is (n, modes), or one number for all modes.
+        alpha : instantaneous divided by long-time modulus, 1/(1 - sum J), in [1, 1e12]; a number
+            or, for arrays (n, modes), (n,). That difference loses digits where the sum is near 1: a
+            value given here replaces it, and must agree with it to rounding of J: |1/alpha - (1 -
+            sum J)| <= 1e-14 (1 + modes).  None: it is computed.
 
         Returns
         -------
         Prony
-            With these modes of creep; those of relaxation, ``E`` and ``tau``, are computed at their first use.
+            With these modes of creep; those of relaxation, ``E`` and ``tau``, are computed at their
+            first use.
 
         Raises
         ------
         ParameterError
-            As for the class, for shapes that do not fit, and where the sum of J is not below 1, 1/(1 - sum J) exceeds
-            1e12, or ``alpha`` does not agree with it.
+            As for the class, for shapes that do not fit, and where the sum of J is not below 1,
+            1/(1 - sum J) exceeds 1e12, or ``alpha`` does not agree with it.
 
         Examples
         --------
@@ -170,16 +181,24 @@ class Prony(OneOrMany):
         if not (rest > 0.0).all():
             allowed = "below 1: otherwise the instantaneous modulus is infinite"
             raise ParameterError("sum of J", f"{1.0 - rest.min()!s}", allowed)
-        given = 1.0 / rest if alpha is None else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
+        given = (
+            1.0 / rest
+            if alpha is None
+            else check_array("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
+        )
         if given.shape not in ((), rest.shape):
-            raise shape_error("alpha", given.shape, f"a number, or one for each material, {rest.shape}")
+            raise shape_error(
+                "alpha", given.shape, f"a number, or one for each material, {rest.shape}"
+            )
         given = np.broadcast_to(given, rest.shape)
         off = np.abs(1.0 / given - rest) > _AGREEMENT * (1.0 + np.count_nonzero(strengths, axis=-1))
         if off.any():
             allowed = f"1/(1 - sum J), here {1.0 / rest[off].flat[0]!s} to rounding"
             raise ParameterError("alpha", given[off].flat[0], allowed)
         if (given > HIGHEST_ALPHA).any():
-            raise ParameterError("J", strengths.tolist(), f"such that 1/(1 - sum J) is at most {HIGHEST_ALPHA:g}")
+            raise ParameterError(
+                "J", strengths.tolist(), f"such that 1/(1 - sum J) is at most {HIGHEST_ALPHA:g}"
+            )
         return cls._make(True, strengths, times, given if given.ndim else float(given))
 
     @classmethod
@@ -210,27 +229,35 @@ class Prony(OneOrMany):
         """Set all attributes of a new object to checked values, and make the arrays read-only.
 
         by_creep: whether the modes are those of creep, else of relaxation.
-        strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength last; dimensionless,
-            times in units of T_ref.  Contiguous arrays are kept and locked themselves, of others a copy.
+        strengths, times: modes, longest time first, (modes,) or (n, modes), those without strength
+            last; dimensionless, times in units of T_ref.  Contiguous arrays are kept and locked
+            themselves, of others a copy.
         alpha: instantaneous divided by long-time modulus, a number or (n,).
         These are ``by_creep``, ``shape``, ``alpha``, ``_strengths`` and ``_times``.
         """
-        self.by_creep, self.shape = by_creep, strengths.shape[:-1]
+        self.by_creep = by_creep
+        self.shape = strengths.shape[:-1]
         self._strengths, self._times = map(lock_array, (strengths, times))
         self.alpha = lock_array(alpha) if isinstance(alpha, np.ndarray) else alpha
 
     def __getitem__(self, which: Any) -> Prony:
-        """Return one of n materials for an index, or some for a slice or an array of indices; as a new :class:`Prony`.
+        """Return one of n materials for an index, or some for a slice or an array of indices; as a
+        new :class:`Prony`.
 
         which: what numpy accepts along the first axis; of a single material nothing is accepted.
-        Returns one material, of shape (), for an integer, without the modes that have no strength; else some, (k,),
-        whose arrays keep their number of modes.
-        Raises TypeError or IndexError for a single material, IndexError for an index beyond the n materials.
+        Returns one material, of shape (), for an integer, without the modes that have no strength;
+        else some, (k,), whose arrays keep their number of modes.
+        Raises TypeError or IndexError for a single material, IndexError for an index beyond the n
+        materials.
         """
-        strengths, times, alpha = self._strengths[which], self._times[which], self.alpha[which]
+        strengths = self._strengths[which]
+        times = self._times[which]
+        alpha = self.alpha[which]
         if strengths.ndim == 1:
             count = np.count_nonzero(strengths)
-            strengths, times, alpha = strengths[:count], times[:count], float(alpha)
+            strengths = strengths[:count]
+            times = times[:count]
+            alpha = float(alpha)
         return Prony._make(self.by_creep, strengths, times, alpha)
 
     def repeated(self, count: int) -> Prony:
@@ -251,7 +278,10 @@ class Prony(OneOrMany):
         >>> vr.Prony([2.0], [1.0]).repeated(3).alpha
         array([3., 3., 3.])
         """
-        strengths, times = (np.broadcast_to(values, (count, values.size)) for values in (self._strengths, self._times))
+        strengths, times = (
+            np.broadcast_to(values, (count, values.size))
+            for values in (self._strengths, self._times)
+        )
         return Prony._make(self.by_creep, strengths, times, np.full(count, self.alpha))
 
     @property
@@ -261,8 +291,8 @@ class Prony(OneOrMany):
 
     @cached_property
     def modes(self) -> Modes:
-        """Both forms of a single series, and the gaps between their rates, as :class:`.prony_forms.Modes` with rates in
-        1/T_ref.
+        """Both forms of a single series, and the gaps between their rates, as
+        :class:`.prony_forms.Modes` with rates in 1/T_ref.
         """
         return self._convert(self._strengths, self._times, self.alpha)
 
@@ -278,9 +308,9 @@ class Prony(OneOrMany):
         Yields
         ------
         Block
-            One for each number of modes that occurs, ascending, without weights: ``rows``, places in ``which``,
-            ascending, and ``modes``, both forms of the series, (rows, modes).  Elastic materials make a block of 0
-            modes.
+            One for each number of modes that occurs, ascending, without weights: ``rows``, places
+            in ``which``, ascending, and ``modes``, both forms of the series, (rows, modes).
+            Elastic materials make a block of 0 modes.
 
         Raises
         ------
@@ -292,31 +322,41 @@ class Prony(OneOrMany):
         >>> import numpy as np
         >>> import viscoroll as vr
         >>> materials = vr.Prony([[2.0, 6.0], [3.0, 0.0]], [1.0, 0.1])
-        >>> [(block.rows.tolist(), block.modes.E.tolist()) for block in materials.blocks(np.arange(2))]
+        >>> [
+        ...     (block.rows.tolist(), block.modes.E.tolist())
+        ...     for block in materials.blocks(np.arange(2))
+        ... ]
         [([1], [[3.0]]), ([0], [[2.0, 6.0]])]
         """
         counts = np.count_nonzero(self._strengths[which], axis=-1)
         for count in np.unique(counts).tolist():
             rows = np.flatnonzero(counts == count)
             index = which[rows]
-            form = (np.ascontiguousarray(values[index, :count]) for values in (self._strengths, self._times))
+            form = (
+                np.ascontiguousarray(values[index, :count])
+                for values in (self._strengths, self._times)
+            )
             yield Block(rows, self._convert(*form, self.alpha[index]))
 
     @cached_property
     def _other_form(self) -> tuple[NDArray, NDArray]:
-        """Return the modes of the form that was not given: creep if relaxation was given, and the reverse.
+        """Return the modes of the form that was not given: creep if relaxation was given, and the
+        reverse.
 
-        Returns read-only arrays (strengths, dimensionless; times in units of T_ref), (modes,) each; for many materials
-        (n, modes), with strength 0 and time 1 after the last mode.
+        Returns read-only arrays (strengths, dimensionless; times in units of T_ref), (modes,) each;
+        for many materials (n, modes), with strength 0 and time 1 after the last mode.
         """
         names = ("E", "a") if self.by_creep else ("J", "b")
         if not self.shape:
             strengths, rates = (getattr(self.modes, name) for name in names)
         else:
-            strengths, rates = np.zeros(self._strengths.shape), np.ones(self._strengths.shape)
+            strengths = np.zeros(self._strengths.shape)
+            rates = np.ones(self._strengths.shape)
             for rows, modes, _ in self.blocks(np.arange(len(self))):
                 count = modes.a.shape[-1]
-                strengths[rows, :count], rates[rows, :count] = (getattr(modes, name) for name in names)
+                strengths[rows, :count], rates[rows, :count] = (
+                    getattr(modes, name) for name in names
+                )
         return lock_array(strengths), lock_array(1.0 / rates)
 
     def _form(self, by_creep: bool) -> tuple[NDArray, NDArray]:
@@ -345,27 +385,30 @@ class Prony(OneOrMany):
 
     @property
     def T_mean(self) -> Any:
-        """sum J_j T_j = sum E_i tau_i in units of T_ref, a float or (n,): M = V T_mean at low speed; 0 of elastic
-        materials.
+        """sum J_j T_j = sum E_i tau_i in units of T_ref, a float or (n,): M = V T_mean at low
+        speed; 0 of elastic materials.
         """
         return _exact_sums(self._strengths * self._times)
 
     @property
     def slow_time(self) -> float:
-        """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean in units of T_ref, a float or (n,): slow rolling is kappa V below
-        its inverse, with V in units of R/T_ref.
+        """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean in units of T_ref, a float or (n,): slow rolling
+        is kappa V below its inverse, with V in units of R/T_ref.
 
         1.0 of an elastic material, also of one among others.
         """
         elastic = self.T_mean == 0.0
-        return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2) + elastic) / (self.T_mean + elastic)
+        return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2) + elastic) / (
+            self.T_mean + elastic
+        )
 
     def slower(self, factor: ArrayLike) -> Prony:
         """Return the material with all times multiplied by a factor, as of a colder rubber.
 
         Parameters
         ----------
-        factor : dimensionless, > 0, a number, or (n,), one for each of n materials; of a single material (n,) makes n.
+        factor : dimensionless, > 0, a number, or (n,), one for each of n materials; of a single
+            material (n,) makes n.
 
         Returns
         -------
@@ -375,8 +418,9 @@ class Prony(OneOrMany):
         Raises
         ------
         ParameterError
-            A factor that is not positive or not finite, or with which a time leaves 1e-140 to 1e140; several factors of
-            another number than that of several materials, factors of more than one axis.
+            A factor that is not positive or not finite, or with which a time leaves 1e-140 to
+            1e140; several factors of another number than that of several materials, factors of more
+            than one axis.
 
         Examples
         --------
@@ -388,16 +432,19 @@ class Prony(OneOrMany):
         broadcast_shape(factor=factors, materials=np.empty(self.shape))
         times = self._times * factors[..., np.newaxis]
         if self.by_creep:
-            return Prony.creep(self._strengths, times, alpha=np.broadcast_to(self.alpha, times.shape[:-1]))
+            return Prony.creep(
+                self._strengths, times, alpha=np.broadcast_to(self.alpha, times.shape[:-1])
+            )
         return Prony(self._strengths, times)
 
     def in_own_time(self) -> tuple[Prony, float]:
-        """Return a single series with its :attr:`slow_time` near 1, and the unit of time that this takes.
+        """Return a single series with its :attr:`slow_time` near 1, and the unit of time that this
+        takes.
 
         Returns
         -------
-        series : the :class:`Prony` with times divided by the unit, so that its slow time is within a factor of 2^(1/2)
-            of 1; with a unit of 1, as of an elastic series, the series itself.
+        series : the :class:`Prony` with times divided by the unit, so that its slow time is within
+            a factor of 2^(1/2) of 1; with a unit of 1, as of an elastic series, the series itself.
         unit : the unit in T_ref, a float, a power of two, so that no time is rounded.
 
         Raises
@@ -422,32 +469,46 @@ class Prony(OneOrMany):
     @cached_property
     def _key(self) -> tuple[Any, ...]:
         alpha = np.asarray(self.alpha).tobytes()
-        return self.by_creep, self._strengths.shape, self._strengths.tobytes(), self._times.tobytes(), alpha
+        return (
+            self.by_creep,
+            self._strengths.shape,
+            self._strengths.tobytes(),
+            self._times.tobytes(),
+            alpha,
+        )
 
     def __repr__(self) -> str:
-        """Return the call that makes the series, with numbers to the bit; of many materials their number and form."""
+        """Return the call that makes the series, with numbers to the bit; of many materials their
+        number and form.
+        """
         if self.shape:
             form = "creep" if self.by_creep else "relaxation"
             return f"<{len(self)} series of {self._strengths.shape[-1]} modes, by {form}>"
-        strengths, times = self._strengths.tolist(), self._times.tolist()
+        strengths = self._strengths.tolist()
+        times = self._times.tolist()
         if self.by_creep:
             return f"Prony.creep(J={strengths}, T={times}, alpha={self.alpha!r})"
         return f"Prony(E={strengths}, tau={times})"
 
 
-def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike) -> tuple[NDArray, NDArray]:
+def _check_modes(
+    names: tuple[str, str], strengths: ArrayLike, times: ArrayLike
+) -> tuple[NDArray, NDArray]:
     """Check modes, sort them, and add those of equal times.
 
     names: names of strengths and times, for errors.
-    strengths, times: strengths, >= 0, and times, > 0, of the modes, (modes,) or (n, modes), or one of them a number;
-        dimensionless, times in units of T_ref.  No modes, and no materials, are allowed; not changed.
-    Returns (strengths, times) by descending time, (modes,) or (n, modes) with as many modes as the material with most
-    has; modes without strength are dropped or, of many materials, put after the others, where the times have no
-    meaning.  Modes of equal times are one, with the sum of their strengths.
-    Raises ParameterError for numbers out of range, shapes that do not fit, more than :data:`MOST_MODES` modes, and
-    times that span more than :data:`LARGEST_TIME_RATIO`.
+    strengths, times: strengths, >= 0, and times, > 0, of the modes, (modes,) or (n, modes), or one
+        of them a number; dimensionless, times in units of T_ref.  No modes, and no materials, are
+        allowed; not changed.
+    Returns (strengths, times) by descending time, (modes,) or (n, modes) with as many modes as the
+    material with most has; modes without strength are dropped or, of many materials, put after the
+    others, where the times have no meaning.  Modes of equal times are one, with the sum of their
+    strengths.
+    Raises ParameterError for numbers out of range, shapes that do not fit, more than
+    :data:`MOST_MODES` modes, and times that span more than :data:`LARGEST_TIME_RATIO`.
     """
-    values, each = check_array(names[0], strengths, low=0.0), check_array(names[1], times, above=0.0)
+    values = check_array(names[0], strengths, low=0.0)
+    each = check_array(names[1], times, above=0.0)
     values = np.minimum(values, 1e300)  # sums stay finite, and are refused
     check_array(names[1], each, low=1.0 / LONGEST_TIME, high=LONGEST_TIME)
     if values.ndim == each.ndim == 1 and values.shape != each.shape:
@@ -461,7 +522,8 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
     most = int(present.sum(axis=-1).max(initial=0))
     if most > MOST_MODES:
         raise ParameterError(names[1], f"{most} times", f"at most {MOST_MODES}")
-    longest, shortest = each.max(axis=-1, initial=0.0, where=present), each.min(axis=-1, initial=np.inf, where=present)
+    longest = each.max(axis=-1, initial=0.0, where=present)
+    shortest = each.min(axis=-1, initial=np.inf, where=present)
     wide = longest > LARGEST_TIME_RATIO * shortest
     if wide.any():
         ends = f"from {shortest[wide].flat[0]:g} to {longest[wide].flat[0]:g}"
@@ -470,30 +532,40 @@ def _check_modes(names: tuple[str, str], strengths: ArrayLike, times: ArrayLike)
 
 
 def series_of_alpha(alpha: float) -> Prony:
-    """Return the standard linear solid of the paper, with both forms of its series by formulas, without a conversion.
+    """Return the standard linear solid of the paper, with both forms of its series by formulas,
+    without a conversion.
 
-    alpha: instantaneous divided by long-time modulus, >= 1, a float, not checked; for 1 the series is elastic.
-    Returns a :class:`Prony` in creep form with times in units of T_epsilon: one mode, J = (alpha - 1)/alpha, T = 1, tau
+    alpha: instantaneous divided by long-time modulus, >= 1, a float, not checked; for 1 the series
+        is elastic.
+    Returns a :class:`Prony` in creep form with times in units of T_epsilon: one mode, J = (alpha -
+    1)/alpha, T = 1, tau
     = 1/alpha; for 1 none.
     """
-    c, one = np.array([(alpha - 1.0) / alpha]), np.ones(1)
+    c = np.array([(alpha - 1.0) / alpha])
+    one = np.ones(1)
     if alpha == 1.0:
-        c, one = c[:0], one[:0]
+        c = c[:0]
+        one = one[:0]
     series = Prony._make(True, c, one, alpha)
-    series.modes = Modes(alpha, alpha * one, 1.0 * one, alpha * c, c, (alpha * c)[:, np.newaxis])
+    series.modes = Modes(
+        alpha=alpha, a=alpha * one, b=1.0 * one, E=alpha * c, J=c, gap=(alpha * c)[:, np.newaxis]
+    )
     return series
 
 
 def sort_modes(strengths: NDArray, times: NDArray, *parts: NDArray) -> list[Floats]:
-    """Sort modes by descending time, add those of equal times, and put those without strength after the others.
+    """Sort modes by descending time, add those of equal times, and put those without strength after
+    the others.
 
     strengths, times: strengths and times of the modes, (..., modes), any unit; not changed.
     parts: parts of the strengths, (..., modes) each, which are sorted and added like them.
-    Returns a list of new arrays [strengths, times, *parts], each (..., modes).  Of modes of equal times one has the sum
-    of the strengths; the others have strength 0 and stand last.
+    Returns a list of new arrays [strengths, times, *parts], each (..., modes).  Of modes of equal
+    times one has the sum of the strengths; the others have strength 0 and stand last.
     """
     order = np.argsort(-times, axis=-1, kind="stable")
-    values, each, *rest = (np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts))
+    values, each, *rest = (
+        np.take_along_axis(given, order, axis=-1) for given in (strengths, times, *parts)
+    )
     for n in range(each.shape[-1] - 1):
         equal = each[..., n] == each[..., n + 1]
         for given in (values, *rest) if equal.any() else ():
@@ -516,8 +588,8 @@ def _exact_sums(values: NDArray) -> Any:
 def lock_array(values: Any) -> Any:
     """Make an array read-only.
 
-    values: a contiguous array, which is locked itself and so read-only for the caller too; or another one, of which a
-        contiguous copy is made and locked.
+    values: a contiguous array, which is locked itself and so read-only for the caller too; or
+        another one, of which a contiguous copy is made and locked.
     Returns the array that was locked.  A scalar becomes an array (1,).
     """
     values = np.ascontiguousarray(values)

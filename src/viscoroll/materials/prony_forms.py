@@ -1,10 +1,11 @@
-"""Conversion between the relaxation and the creep form of a series, for one material or many at once.
+"""Conversion between the relaxation and the creep form of a series, for one material or many at
+once.
 
-A series of N modes has the relaxation form E(t) = 1 + sum E_i exp(-a_i t) and the creep form J(t) = 1 - sum J_j
-exp(-b_j t), over the long-time modulus and compliance, with 1/alpha = 1 - sum J_j and alpha = 1 + sum E_i.  The rates
-of one form are the zeros of a sum over the poles of the other, and they alternate: b_1 < a_1 < b_2 < ... < a_N.  The
-unknown is the distance of a zero from the nearer pole, so that the gaps a_i - b_j keep all digits; the strengths are
-products of gaps.
+A series of N modes has the relaxation form E(t) = 1 + sum E_i exp(-a_i t) and the creep form J(t) =
+1 - sum J_j exp(-b_j t), over the long-time modulus and compliance, with 1/alpha = 1 - sum J_j and
+alpha = 1 + sum E_i.  The rates of one form are the zeros of a sum over the poles of the other, and
+they alternate: b_1 < a_1 < b_2 < ... < a_N.  The unknown is the distance of a zero from the nearer
+pole, so that the gaps a_i - b_j keep all digits; the strengths are products of gaps.
 """
 
 from __future__ import annotations
@@ -15,29 +16,33 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.array_types import Floats
+from ..core.checks import Floats
 
-#: highest alpha: beyond 1e18 the 1/alpha is lost beside 1; at 1e12 the law is that of alpha -> infinity where alpha
-#: zeta is large
+#: highest alpha: beyond 1e18 the 1/alpha is lost beside 1; at 1e12 the law is that of alpha ->
+#: infinity where alpha zeta is large
 HIGHEST_ALPHA = 1e12
-#: largest number of modes of a series, with which conversions stay accurate (tests/materials/test_prony.py)
+#: largest number of modes of a series, with which conversions stay accurate
+#: (tests/materials/test_prony.py)
 MOST_MODES = 64
 #: largest ratio of the longest to the shortest time of a series, likewise
 LARGEST_TIME_RATIO = 1e32
-#: longest time of a series, and inverse of the shortest one, with which neither conversions nor sums overflow
+#: longest time of a series, and inverse of the shortest one, with which neither conversions nor
+#: sums overflow
 LONGEST_TIME = 1e140
-#: halvings of the interval of ln(distance): 20 leave an error of 1e-3, from which Newton's method converges
+#: halvings of the interval of ln(distance): 20 leave an error of 1e-3, from which Newton's method
+#: converges
 _HALVINGS = 20
 #: steps of Newton's method from there to rounding
 _NEWTON_STEPS = 3
-#: least distance of a zero from its pole, as a fraction of the interval, whose logarithm is halved; where it underflows
-#: it is the smallest double
+#: least distance of a zero from its pole, as a fraction of the interval, whose logarithm is halved;
+#: where it underflows it is the smallest double
 _CLOSEST = 1e-300
 
 
 @dataclass(frozen=True)
 class Modes:
-    """Relaxation and creep form of one material, or of many along leading axes, and the gaps between their rates.
+    """Relaxation and creep form of one material, or of many along leading axes, and the gaps
+    between their rates.
 
     All arrays are empty along the modes for an elastic material.
     alpha : instantaneous divided by long-time modulus, a number or (...).
@@ -45,7 +50,8 @@ class Modes:
     b : rates of creep, 1/T_j, in units of 1/T_ref, ascending, (..., modes).
     E : strengths of relaxation divided by the long-time modulus, (..., modes).
     J : strengths of creep divided by the long-time compliance, (..., modes).
-    gap : a_i - b_j, in units of 1/T_ref, (..., modes, modes), [..., j, i]; positive where i >= j, else negative.
+    gap : a_i - b_j, in units of 1/T_ref, (..., modes, modes), [..., j, i]; positive where i >= j,
+    else negative.
     """
 
     alpha: Any
@@ -59,77 +65,98 @@ class Modes:
 def modes_of_relaxation(E: NDArray, tau: NDArray, alpha: Any) -> Modes:
     """Compute the creep form of a series from its relaxation form.
 
-    E: strengths divided by the long-time modulus, > 0, (..., modes); of any number of modes, also 0.
+    E: strengths divided by the long-time modulus, > 0, (..., modes); of any number of modes, also
+    0.
     tau: relaxation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1 + sum E, a number or (...).
-    Returns both forms as :class:`Modes` (alpha, rates a and b, strengths E and J, gaps a_i - b_j), whose rates are in
-    the inverse unit of ``tau``; E and alpha are the arguments themselves.
+    Returns both forms as :class:`Modes` (alpha, rates a and b, strengths E and J, gaps a_i - b_j),
+    whose rates are in the inverse unit of ``tau``; E and alpha are the arguments themselves.
     """
-    a, modes = 1.0 / tau, tau.shape[-1]
+    a = 1.0 / tau
+    modes = tau.shape[-1]
     # -1/s + sum E/(a - s): the pole at 0 stands for the long-time modulus
     spread = np.zeros((*tau.shape[:-1], modes + 1, modes + 1))
-    spread[..., 1:, 1:], spread[..., 1:, 0], spread[..., 0, 1:] = _rate_differences(tau), a, -a
-    gaps = zeros_from_poles(spread, np.concatenate([np.ones((*E.shape[:-1], 1)), E], axis=-1), np.zeros(()))
-    b, gap = gaps[..., 0, :].copy(), np.ascontiguousarray(np.swapaxes(-gaps[..., 1:, :], -1, -2))
-    return Modes(alpha, a, b, E, _strengths(gap, alpha)[0] / b, gap)
+    spread[..., 1:, 1:] = _rate_differences(tau)
+    spread[..., 1:, 0] = a
+    spread[..., 0, 1:] = -a
+    gaps = zeros_from_poles(
+        spread, np.concatenate([np.ones((*E.shape[:-1], 1)), E], axis=-1), np.zeros(())
+    )
+    b = gaps[..., 0, :].copy()
+    gap = np.ascontiguousarray(np.swapaxes(-gaps[..., 1:, :], -1, -2))
+    return Modes(alpha=alpha, a=a, b=b, E=E, J=_strengths(gap, alpha)[0] / b, gap=gap)
 
 
 def modes_of_creep(J: NDArray, T: NDArray, alpha: Any) -> Modes:
     """Compute the relaxation form of a series from its creep form.
 
-    J: strengths divided by the long-time compliance, > 0, (..., modes); of any number of modes, also 0.
+    J: strengths divided by the long-time compliance, > 0, (..., modes); of any number of modes,
+    also 0.
     T: retardation times, > 0, descending and different, (..., modes), in any unit.
     alpha: 1/(1 - sum J), a number or (...).
-    Returns both forms as :class:`Modes` (alpha, rates a and b, strengths E and J, gaps a_i - b_j), whose rates are in
-    the inverse unit of ``T``; J and alpha are the arguments themselves.
+    Returns both forms as :class:`Modes` (alpha, rates a and b, strengths E and J, gaps a_i - b_j),
+    whose rates are in the inverse unit of ``T``; J and alpha are the arguments themselves.
     """
     b = 1.0 / T
     gap = zeros_from_poles(_rate_differences(T), J * b, np.asarray(1.0 / alpha))
     a = b + np.diagonal(gap, axis1=-2, axis2=-1)
-    return Modes(alpha, a, b, _strengths(gap, alpha)[1] / a, J, gap)
+    return Modes(alpha=alpha, a=a, b=b, E=_strengths(gap, alpha)[1] / a, J=J, gap=gap)
 
 
 def _rate_differences(times: NDArray) -> Floats:
-    """Return the differences of the rates 1/times of the modes, computed from the differences of the times.
+    """Return the differences of the rates 1/times of the modes, computed from the differences of
+    the times.
 
     For close times their difference is exact, that of the rounded rates is not.
 
     times: relaxation or retardation times, > 0, (..., modes).
-    Returns rate[j] - rate[l] as (..., modes, modes), [..., j, l], in the inverse unit of the times; 0 on the diagonal.
+    Returns rate[j] - rate[l] as (..., modes, modes), [..., j, l], in the inverse unit of the times;
+    0 on the diagonal.
     """
-    row, column = times[..., None, :], times[..., :, None]
+    row = times[..., None, :]
+    column = times[..., :, None]
     return (row - column) / (column * row)
 
 
 def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Floats:
-    """Return the gaps between the zeros of constant + sum weight_j/(pole_j - s) and its poles, to full relative
-    accuracy.
+    """Return the gaps between the zeros of constant + sum weight_j/(pole_j - s) and its poles, to
+    full relative accuracy.
 
-    The sum increases from pole to pole: one zero s_i lies between two neighbours, and one right of the last if
-    ``constant`` > 0.  A zero is measured from the nearer of its two poles, from the left one where it is in the middle.
-    ln of that distance is found by 20 halvings, the distance then by three steps of Newton's method; convergence is not
-    tested.
+    The sum increases from pole to pole: one zero s_i lies between two neighbours, and one right of
+    the last if ``constant`` > 0.  A zero is measured from the nearer of its two poles, from the
+    left one where it is in the middle.  ln of that distance is found by 20 halvings, the distance
+    then by three steps of Newton's method; convergence is not tested.
 
-    spread: pole_j - pole_l, (..., poles, poles), [..., j, l], any unit; poles are ascending and different.
-    weight: weights of the poles, positive, (..., poles), in the unit of the constant times that of the poles.
+    spread: pole_j - pole_l, (..., poles, poles), [..., j, l], any unit; poles are ascending and
+    different.
+    weight: weights of the poles, positive, (..., poles), in the unit of the constant times that of
+    the poles.
     constant: the constant, () or (...): > 0 for all, or 0 for all.
-    Returns gap[..., j, i] = s_i - pole_j, (..., poles, zeros), in the unit of the poles, zeros ascending: as many as
-    poles for a positive constant, one fewer for 0; an empty array where there is no zero, as without poles.
+    Returns gap[..., j, i] = s_i - pole_j, (..., poles, zeros), in the unit of the poles, zeros
+    ascending: as many as poles for a positive constant, one fewer for 0; an empty array where there
+    is no zero, as without poles.
     """
-    poles, constant = weight.shape[-1], constant[..., None]
+    poles = weight.shape[-1]
+    constant = constant[..., None]
     half = 0.5 * np.diagonal(spread, -1, -2, -1)
-    if poles and (constant > 0.0).all():  # right of all poles every term is at least -weight over the distance
+    if (
+        poles and (constant > 0.0).all()
+    ):  # right of all poles every term is at least -weight over the distance
         half = np.concatenate([half, 2.0 * weight.sum(axis=-1, keepdims=True) / constant], axis=-1)
     left = np.broadcast_to(np.arange(half.shape[-1]), half.shape)
     in_left = np.ones(half.shape, dtype=bool)
     middle = _sum_near(half, _relative_poles(left, spread), weight, constant)
     in_left[..., : poles - 1] = middle[..., : poles - 1] >= 0.0
-    origin, side = np.where(in_left, left, left + 1), np.where(in_left, 1.0, -1.0)
-    seen, low, high = _relative_poles(origin, spread), np.log(np.maximum(half * _CLOSEST, 5e-324)), np.log(half)
+    origin = np.where(in_left, left, left + 1)
+    side = np.where(in_left, 1.0, -1.0)
+    seen = _relative_poles(origin, spread)
+    low = np.log(np.maximum(half * _CLOSEST, 5e-324))
+    high = np.log(half)
     for _ in range(_HALVINGS):
         mid = 0.5 * (low + high)
         beyond = side * _sum_near(side * np.exp(mid), seen, weight, constant) > 0.0
-        low, high = np.where(beyond, low, mid), np.where(beyond, mid, high)
+        low = np.where(beyond, low, mid)
+        high = np.where(beyond, mid, high)
     distance = np.exp(0.5 * (low + high))
     for _ in range(_NEWTON_STEPS):
         distance = _improve_distance(distance, origin, side, seen, weight, constant)
@@ -137,11 +164,13 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
 
 
 def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
-    """Return the poles relative to the origin of each zero, that pole from which the zero is measured.
+    """Return the poles relative to the origin of each zero, that pole from which the zero is
+    measured.
 
     origin: index of the origin of each zero, int, (..., zeros).
     spread: pole_j - pole_l, (..., poles, poles), [..., j, l], in the unit of the rates.
-    Returns pole_j - pole of the origin of zero i, (..., zeros, poles), [..., i, j], in that unit, 0 at the origin.
+    Returns pole_j - pole of the origin of zero i, (..., zeros, poles), [..., i, j], in that unit, 0
+    at the origin.
     """
     return np.take_along_axis(np.swapaxes(spread, -1, -2), origin[..., None], axis=-2)
 
@@ -149,26 +178,33 @@ def _relative_poles(origin: NDArray, spread: NDArray) -> Floats:
 def _sum_near(step: NDArray, seen: NDArray, weight: NDArray, constant: NDArray) -> Floats:
     """Return constant + sum weight_j/(pole_j - s) at one s for each zero, s = pole[origin] + step.
 
-    step: signed distance of s from the pole of its origin, in the unit of the poles, not 0, (..., zeros); s is at no
-        other pole either.
+    step: signed distance of s from the pole of its origin, in the unit of the poles, not 0, (...,
+        zeros); s is at no other pole either.
     seen: poles relative to the origin of each zero, in that unit, (..., zeros, poles), [..., i, j].
     weight: weights of the poles, in the unit of the constant times that of the poles, (..., poles).
     constant: the constant, (..., 1).
-    Returns the value of the sum at the point of each zero, (..., zeros), in the unit of the constant.
+    Returns the value of the sum at the point of each zero, (..., zeros), in the unit of the
+    constant.
     """
     return constant + (weight[..., None, :] / (seen - step[..., None])).sum(axis=-1)
 
 
 def _improve_distance(
-    distance: NDArray, origin: NDArray, side: NDArray, seen: NDArray, weight: NDArray, constant: NDArray
+    distance: NDArray,
+    origin: NDArray,
+    side: NDArray,
+    seen: NDArray,
+    weight: NDArray,
+    constant: NDArray,
 ) -> Floats:
     """Improve the distances of zeros from their poles by one step of Newton's method.
 
-    The equation is weight[origin] = distance side rest, where rest is the sum without the pole at the origin.  A step
-    to at most half or at least twice the distance, or to NaN, is left out, and that distance stays as it is.
+    The equation is weight[origin] = distance side rest, where rest is the sum without the pole at
+    the origin.  A step to at most half or at least twice the distance, or to NaN, is left out, and
+    that distance stays as it is.
 
-    distance: distance of each zero from its origin, the pole that it is measured from, > 0, in the unit of the poles,
-        (..., zeros); not changed.
+    distance: distance of each zero from its origin, the pole that it is measured from, > 0, in the
+        unit of the poles, (..., zeros); not changed.
     origin: index of that pole, int, (..., zeros).
     side: 1.0 for a zero right of its origin, -1.0 left of it, (..., zeros).
     seen: poles relative to the origin of each zero, in that unit, (..., zeros, poles), [..., i, j].
@@ -176,10 +212,14 @@ def _improve_distance(
     constant: the constant of the sum, >= 0, (..., 1).
     Returns a new array of the distances, > 0, (..., zeros), in the unit of the poles.
     """
-    inverse, own = 1.0 / (seen - (side * distance)[..., None]), np.arange(weight.shape[-1]) == origin[..., None]
+    inverse = 1.0 / (seen - (side * distance)[..., None])
+    own = np.arange(weight.shape[-1]) == origin[..., None]
     terms = np.where(own, 0.0, weight[..., None, :] * inverse)
     # with the poles along the first axis numpy adds in their order: results keep their last bits
-    sums = (np.ascontiguousarray(np.moveaxis(values, -1, 0)).sum(axis=0) for values in (terms, terms * inverse))
+    sums = (
+        np.ascontiguousarray(np.moveaxis(values, -1, 0)).sum(axis=0)
+        for values in (terms, terms * inverse)
+    )
     rest, slope = sums
     rest = constant + rest
     value = np.take_along_axis(weight, origin, axis=-1) - distance * side * rest
@@ -188,21 +228,29 @@ def _improve_distance(
 
 
 def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
-    """Return the strengths of both forms of a series from the differences between the rates of the two forms.
+    """Return the strengths of both forms of a series from the differences between the rates of the
+    two forms.
 
-    A strength times its rate is a product of gaps between rates of the two forms, divided by differences of rates of
-    one form.  The rates of the two forms alternate, so that such a difference is a sum of two gaps: no digits cancel.
-    Factors are paired so that nothing overflows.
+    A strength times its rate is a product of gaps between rates of the two forms, divided by
+    differences of rates of one form.  The rates of the two forms alternate, so that such a
+    difference is a sum of two gaps: no digits cancel.  Factors are paired so that nothing
+    overflows.
 
-    gap: a_i - b_j, rates of relaxation minus rates of creep, in any unit, (..., modes, modes), [..., j, i].
+    gap: a_i - b_j, rates of relaxation minus rates of creep, in any unit, (..., modes, modes),
+    [..., j, i].
     alpha: instantaneous divided by long-time modulus, a number or (...).
-    Returns (J b, E a): strengths of creep and of relaxation, each times its rate, in the unit of the gaps, (..., modes)
-    each, > 0.
+    Returns (J b, E a): strengths of creep and of relaxation, each times its rate, in the unit of
+    the gaps, (..., modes) each, > 0.
     """
-    size, own = np.abs(gap), np.eye(gap.shape[-1], dtype=bool)
-    nearest, alpha = np.diagonal(size, 0, -2, -1), np.asarray(alpha)[..., None]
+    size = np.abs(gap)
+    own = np.eye(gap.shape[-1], dtype=bool)
+    nearest = np.diagonal(size, 0, -2, -1)
+    alpha = np.asarray(alpha)[..., None]
     # b_j - b_l = (a_l - b_l) + (b_j - a_l) and a_i - a_l = (a_i - b_i) + (b_i - a_l), j, i > l
     sums = nearest[..., None, :] + size, nearest[..., :, None] + size
-    apart = (np.where(own, 1.0, low + np.swapaxes(low, -1, -2)) for low in (np.tril(each, -1) for each in sums))
+    apart = (
+        np.where(own, 1.0, low + np.swapaxes(low, -1, -2))
+        for low in (np.tril(each, -1) for each in sums)
+    )
     per_b, per_a = (np.where(own, 1.0, size / each) for each in apart)
     return nearest / alpha * per_b.prod(axis=-1), nearest * alpha * per_a.prod(axis=-2)

@@ -1,1 +1,7 @@
-"""Motion of the cylinder, Eq. (22): one, or an ensemble of many."""
+"""Motion of the cylinder, Eq. (22): one, or an ensemble of many.
+
+A roller, a start, times and a drive enter :func:`.roll.roll` and :func:`.ensemble.ensemble`;
+:mod:`.motion_arguments` and :mod:`.drive_functions` check them, :mod:`.motion_problem` calls the
+integrator, :mod:`.flow` looks up free motions.  They leave as :class:`.motion_result.Motion` and
+:class:`.ensemble.Ensemble`, as datasets, and as summaries that merge (:mod:`.summaries`).
+"""

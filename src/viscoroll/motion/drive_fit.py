@@ -1,17 +1,19 @@
-"""Fit of a callable of time by polynomials: a piece is halved until its fit is good, and joined to the previous one.
+"""Fit of a callable of time by polynomials: a piece is halved until its fit is good, and joined to
+the previous one.
 
-A fit is good where it agrees with the callable between its nodes, and at samples spread over the whole time, which find
-narrow pulses: a thousand, or as many as ``resolve`` requires.
+A fit is good where it agrees with the callable between its nodes, and at samples spread over the
+whole time, which find narrow pulses: a thousand, or as many as ``resolve`` requires.
 
-It may differ by a part of the largest value so far, or by a small part of the largest value at all: a callable that
-rises from nearly nothing, as a Gauss pulse does, would otherwise never be fitted.  Before it has risen to that level
-the fit is 0, since an error of the wrong sign would start a motion from rest in the wrong direction.
+It may differ by a part of the largest value so far, or by a small part of the largest value at all:
+a callable that rises from nearly nothing, as a Gauss pulse does, would otherwise never be fitted.
+Before it has risen to that level the fit is 0, since an error of the wrong sign would start a
+motion from rest in the wrong direction.
 
-Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined they are one to the left and one to the
-right, which meet in it.  A jump is located between two neighbouring doubles.
+Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined they are one to the
+left and one to the right, which meet in it.  A jump is located between two neighbouring doubles.
 
-All is dimensionless.  T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref`` of any other
-material.
+All is dimensionless.  T_ref is the unit of time: T_epsilon of a material that is an alpha, the
+``T_ref`` of any other material.
 """
 
 from __future__ import annotations
@@ -25,24 +27,27 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from ..core.array_types import Floats
-from ..core.checks import check_array
+from ..core.checks import Floats, check_array
 from ..core.errors import ParameterError, mark_dimensionless, shape_error
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: Terms of a polynomial.
 TERMS = 14
-#: Samples of a callable over the whole time, without ``resolve``: a pulse of a thousandth of the motion is seen.
+#: Samples of a callable over the whole time, without ``resolve``: a pulse of a thousandth of the
+#: motion is seen.
 SAMPLES = 1000
 #: Largest number of values taken of a callable: some tenths of a second for a cheap one.
 MOST = 500_000
 #: Error allowed to a fit, divided by rtol of the motion: small beside the error of the integrator.
 _SHARE = 0.1
-#: Level below which errors are not compared with values so far, divided by the largest value of all.
+#: Level below which errors are not compared with values so far, divided by the largest value of
+#: all.
 _FOOT = 1e-9
-#: Level up to which a callable that has not risen yet counts as 0, divided by the error allowed there.
+#: Level up to which a callable that has not risen yet counts as 0, divided by the error allowed
+#: there.
 _ZERO_LEVEL = 1e3
-#: Part of a piece within which a callable that rises from 0 must have risen: else the piece is cut where it rises.
+#: Part of a piece within which a callable that rises from 0 must have risen: else the piece is cut
+#: where it rises.
 _RISE = 1e-5
 #: Roundings of the largest value that a fit may show.
 _ROUNDINGS = 8.0
@@ -50,12 +55,15 @@ _ROUNDINGS = 8.0
 _TIME_ROUNDINGS = 8.0
 #: Smallest length of a piece that is halved, in spacings of doubles.
 _LEAST_SPACINGS = 64
-#: Ratio of the neighbours' lengths to that of a piece at which the piece is taken to contain a corner.
+#: Ratio of the neighbours' lengths to that of a piece at which the piece is taken to contain a
+#: corner.
 _SHORTER = 50.0
-#: Nodes of a piece in [-1, 1], its ends among them so that pieces meet, and points between them to compare at.
+#: Nodes of a piece in [-1, 1], its ends among them so that pieces meet, and points between them to
+#: compare at.
 _POINTS = -np.cos(np.pi * np.arange(2 * TERMS - 1) / (2 * TERMS - 2))
 _POINTS[TERMS - 1] = 0.0
-#: Matrix from values at the nodes to Chebyshev coefficients, by the orthogonality of the polynomials at the nodes.
+#: Matrix from values at the nodes to Chebyshev coefficients, by the orthogonality of the
+#: polynomials at the nodes.
 _TO_SERIES = chebyshev.chebvander(_POINTS[::2], TERMS - 1) * (2.0 / (TERMS - 1))
 _TO_SERIES[[0, -1]] *= 0.5
 _TO_SERIES[:, [0, -1]] *= 0.5
@@ -69,7 +77,8 @@ Cut = tuple[float, float]
 
 
 class Piece(NamedTuple):
-    """A polynomial of x = -1 ... 1 from ``start`` to ``stop``, in T_ref, that fits a callable; dimensionless.
+    """A polynomial of x = -1 ... 1 from ``start`` to ``stop``, in T_ref, that fits a callable;
+    dimensionless.
 
     terms : coefficients of powers of x, ascending, (TERMS,).
     largest : largest magnitude of the callable at the points of the piece; 0 where it counts as 0.
@@ -85,12 +94,17 @@ class Piece(NamedTuple):
     so_far: float
 
     def value(self, t: float) -> float:
-        """Return the polynomial at time t, in T_ref, a float; it is extrapolated outside of the piece."""
-        return float(polyval((2.0 * t - self.start - self.stop) / (self.stop - self.start), self.terms))
+        """Return the polynomial at time t, in T_ref, a float; it is extrapolated outside of the
+        piece.
+        """
+        return float(
+            polyval((2.0 * t - self.start - self.stop) / (self.stop - self.start), self.terms)
+        )
 
 
 class _Sampled:
-    """A callable with its samples, evenly spread over the whole time; dimensionless, times in T_ref.
+    """A callable with its samples, evenly spread over the whole time; dimensionless, times in
+    T_ref.
 
     name, function, low : name of the argument; the callable; the smallest value allowed.
     times, samples : times of the samples and values there, (samples,).
@@ -100,95 +114,139 @@ class _Sampled:
     """
 
     def __init__(
-        self, name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, samples: int
+        self,
+        name: str,
+        function: Callable[[float], Any],
+        end: float,
+        rtol: float,
+        low: float,
+        samples: int,
     ) -> None:
         """Take the samples of a callable.
 
         name: name of the argument, for refusals.
         function: takes t in T_ref, returns a number, dimensionless.
         end: last time, >= 0, in T_ref.
-        rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the largest magnitude so far.
+        rtol: relative tolerance of the motion; the fit may differ by a tenth of it, times the
+        largest magnitude so far.
         low: smallest value allowed, in the unit of the values of the function.
-        samples: number of samples, >= 1, which are taken at the middle of as many equal parts of the time from 0 to
-        ``end``.
-        Raises ParameterError for values that are no finite numbers or below ``low``.  Exceptions of the function pass.
+        samples: number of samples, >= 1, which are taken at the middle of as many equal parts of
+        the time from 0 to ``end``.
+        Raises ParameterError for values that are no finite numbers or below ``low``.  Exceptions of
+        the function pass.
         """
-        self.name, self.function, self.low, self.taken = name, function, low, 0
+        self.name = name
+        self.function = function
+        self.low = low
+        self.taken = 0
         self.share = _SHARE * rtol
         self.times = end * (np.arange(samples) + 0.5) / samples
         self.samples = self.values(self.times)
         self.largest = float(np.abs(self.samples).max())
 
     def values(self, t: Floats) -> Floats:
-        """Return the values of the callable, dimensionless, in the shape of ``t``; they count in ``taken``.
+        """Return the values of the callable, dimensionless, in the shape of ``t``; they count in
+        ``taken``.
 
         t: times, (n,), in T_ref.
-        Raises ParameterError for a value that is no finite number, no single number, or below the smallest value
-        allowed.  Exceptions of the callable pass.
+        Raises ParameterError for a value that is no finite number, no single number, or below the
+        smallest value allowed.  Exceptions of the callable pass.
         """
         self.taken += t.size
-        values = check_array(f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low)
+        values = check_array(
+            f"{self.name}(t)", [self.function(x) for x in t.tolist()], low=self.low
+        )
         if values.shape != t.shape:
             raise shape_error(f"{self.name}(t)", values.shape[1:], "a number")
         return values
 
     def value(self, t: float) -> float:
-        """Return the value at a time t, in T_ref, a float; it counts in ``taken``.  Raises as :meth:`values`."""
+        """Return the value at a time t, in T_ref, a float; it counts in ``taken``.  Raises as
+        :meth:`values`.
+        """
         return float(self.values(np.array([t]))[0])
 
     def fit(self, start: float, stop: float, so_far: float) -> tuple[Piece | None, Cut | None]:
         """Fit the callable between two times by one polynomial.
 
-        It passes through the values at 14 Chebyshev nodes, and is good if it agrees with the callable to the error
-        allowed at these, at points between them and at the samples.  ``largest`` and ``taken`` are updated.
+        It passes through the values at 14 Chebyshev nodes, and is good if it agrees with the
+        callable to the error allowed at these, at points between them and at the samples.
+        ``largest`` and ``taken`` are updated.
 
         start, stop: ends of the piece, start <= stop, in T_ref.
-        so_far: largest magnitude of the callable before the piece, dimensionless; 0: it has not risen yet.
-        Returns (piece, cut).  ``piece`` is the :class:`Piece` if the fit is good, and None if it is not; its polynomial
-        is 0 where no value exceeds the error allowed, or, before the callable has risen, a thousand times the least
-        error allowed.  ``cut`` says where to divide the interval if the fit is not good: between two neighbouring
-        doubles, in T_ref, where the callable first rises from 0 or where it jumps; None: in the middle.  With a piece
-        it is None.
+        so_far: largest magnitude of the callable before the piece, dimensionless; 0: it has not
+        risen yet.
+        Returns (piece, cut).  ``piece`` is the :class:`Piece` if the fit is good, and None if it is
+        not; its polynomial is 0 where no value exceeds the error allowed, or, before the callable
+        has risen, a thousand times the least error allowed.  ``cut`` says where to divide the
+        interval if the fit is not good: between two neighbouring doubles, in T_ref, where the
+        callable first rises from 0 or where it jumps; None: in the middle.  With a piece it is
+        None.
         Raises as :meth:`values`.
         """
-        middle, half = 0.5 * (start + stop), 0.5 * (stop - start)
+        middle = 0.5 * (start + stop)
+        half = 0.5 * (stop - start)
         t = middle + half * _POINTS
-        t[0], t[-1] = start, stop
+        t[0] = start
+        t[-1] = stop
         t = np.append(t, start + _RISE * (stop - start)) if so_far == 0.0 else t
-        values, part = self.values(t), slice(*np.searchsorted(self.times, [start, stop]))
+        values = self.values(t)
+        part = slice(*np.searchsorted(self.times, [start, stop]))
         nodes = values[: _POINTS.size : 2]
-        t, values = np.append(t, self.times[part]), np.append(values, self.samples[part])
+        t = np.append(t, self.times[part])
+        values = np.append(values, self.samples[part])
         order = np.argsort(t, kind="stable")
-        t, values = t[order], values[order]
+        t = t[order]
+        values = values[order]
         largest = float(np.abs(values).max())
         self.largest = max(self.largest, largest)
         least = max(self.share * _FOOT, _ROUNDINGS * _EPSILON) * self.largest
         zero = _ZERO_LEVEL * least if so_far == 0.0 else max(self.share * so_far, least)
         if largest <= zero:
-            return Piece(start, stop, np.zeros(TERMS), 0.0, largest, so_far), None
+            return Piece(
+                start=start,
+                stop=stop,
+                terms=np.zeros(TERMS),
+                largest=0.0,
+                error=largest,
+                so_far=so_far,
+            ), None
         if so_far == 0.0 and np.abs(values[:2]).max() <= zero:
             n = int(np.argmax(np.abs(values) > zero))
             return None, _bisect(t[n - 1], t[n], lambda time: abs(self.value(time)) <= zero)
-        allowed = np.maximum(self.share * np.maximum(np.maximum.accumulate(np.abs(values)), so_far), least)
+        allowed = np.maximum(
+            self.share * np.maximum(np.maximum.accumulate(np.abs(values)), so_far), least
+        )
         # The effect of the rounding of t on the values is no error of the fit.
         rounding = float(np.spacing(stop))
         allowed += _TIME_ROUNDINGS * rounding / max(half, rounding) * np.ptp(values)
-        # Values are fitted about the first one: terms are large and of both signs, and would magnify its rounding.
+        # Values are fitted about the first one: terms are large and of both signs, and would
+        # magnify its rounding.
         terms = _product(_product((nodes - nodes[0])[None], _TO_SERIES), _TO_TERMS)[0]
         terms[0] += nodes[0]
         error = np.abs(polyval((t - middle) / (half or 1.0), terms) - values)
         if (error <= allowed).all():
-            return Piece(start, stop, terms, largest, float(error.max()), so_far), None
+            return Piece(
+                start=start,
+                stop=stop,
+                terms=terms,
+                largest=largest,
+                error=float(error.max()),
+                so_far=so_far,
+            ), None
         return None, self._locate_jump(t, values, float(allowed[-1]))
 
     def _locate_jump(self, t: NDArray, values: NDArray, allowed: float) -> Cut | None:
         """Return the neighbouring doubles between which the callable jumps.
 
-        t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,), n >= 2.
-        allowed: absolute error of a fit allowed at the end of the piece, dimensionless; a change up to it is no jump.
-        Returns (last time before the jump, first time after it), in T_ref.  Returns None unless the largest change
-        between two neighbouring times exceeds ``allowed`` and half of the sum of all changes, and more than half of it
-        is left where the interval has shrunk to two neighbouring doubles.  Raises as :meth:`values`.
+        t, values: ascending times of a piece, in T_ref, and the values there, dimensionless, (n,),
+        n >= 2.
+        allowed: absolute error of a fit allowed at the end of the piece, dimensionless; a change up
+        to it is no jump.
+        Returns (last time before the jump, first time after it), in T_ref.  Returns None unless the
+        largest change between two neighbouring times exceeds ``allowed`` and half of the sum of all
+        changes, and more than half of it is left where the interval has shrunk to two neighbouring
+        doubles.  Raises as :meth:`values`.
         """
         change = np.abs(np.diff(values))
         n = int(change.argmax())
@@ -197,7 +255,9 @@ class _Sampled:
         ends = values[n : n + 2].tolist()
 
         def is_before(time: float) -> bool:
-            """Return whether the value at ``time`` is nearer to that before the jump, and replace the nearer one."""
+            """Return whether the value at ``time`` is nearer to that before the jump, and replace
+            the nearer one.
+            """
             value = self.value(time)
             before = abs(value - ends[0]) < abs(ends[1] - value)
             ends[0 if before else 1] = value
@@ -208,38 +268,48 @@ class _Sampled:
 
 
 def _bisect(low: float, high: float, is_before: Callable[[float], bool]) -> Cut:
-    """Return the neighbouring doubles between which a condition of time becomes false, found by halving the interval.
+    """Return the neighbouring doubles between which a condition of time becomes false, found by
+    halving the interval.
 
     low, high: times, low < high, in T_ref: the condition is true at ``low`` and false at ``high``.
-    is_before: function of a time, in T_ref, that returns whether the change comes after it.  It is not called at
-    ``low`` and ``high``.
-    Returns (last time before the change, first time after it), in T_ref; (low, high) if these are neighbours already.
+    is_before: function of a time, in T_ref, that returns whether the change comes after it.  It is
+    not called at ``low`` and ``high``.
+    Returns (last time before the change, first time after it), in T_ref; (low, high) if these are
+    neighbours already.
     """
-    low, high = float(low), float(high)
+    low = float(low)
+    high = float(high)
     while low < (middle := 0.5 * (low + high)) < high:
         low, high = (middle, high) if is_before(middle) else (low, middle)
     return low, high
 
 
 def fit_callable(
-    name: str, function: Callable[[float], Any], end: float, rtol: float, low: float, resolve: float | None = None
+    name: str,
+    function: Callable[[float], Any],
+    end: float,
+    rtol: float,
+    low: float,
+    resolve: float | None = None,
 ) -> tuple[Floats, Floats, float]:
     """Fit a callable by piecewise polynomials, so that the integrator never calls it.
 
     name: name of the argument, for errors.
     function: takes the time in T_ref, returns a dimensionless number.
     end: last time, >= 0, in T_ref.
-    rtol: relative tolerance of the motion.  The fit may differ by a tenth of it times the largest magnitude so far;
-    below 1e-9 of the largest magnitude of all it is not compared with values so far, and it is 0 there until the
-    callable has risen.
+    rtol: relative tolerance of the motion.  The fit may differ by a tenth of it times the largest
+    magnitude so far; below 1e-9 of the largest magnitude of all it is not compared with values so
+    far, and it is 0 there until the callable has risen.
     low: smallest value allowed, in the unit of the values of the function.
-    resolve: largest spacing of the samples, > 0, in T_ref; None, and at most: ``end`` divided by :data:`SAMPLES`.
-    Returns (starts of the k pieces in T_ref, (k,), ascending, the first 0; coefficients of powers of x, ascending, (k,
-    TERMS), dimensionless, where x runs from -1 to 1 over a piece, and the last piece ends at ``end``; largest absolute
-    difference seen between callable and fit, a float).
-    Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that requires more than
-    :data:`MOST` samples; a callable of which :data:`MOST` values beside these are not enough, or that is not smooth
-    within the shortest piece.  Exceptions of the callable pass.
+    resolve: largest spacing of the samples, > 0, in T_ref; None, and at most: ``end`` divided by
+    :data:`SAMPLES`.
+    Returns (starts of the k pieces in T_ref, (k,), ascending, the first 0; coefficients of powers
+    of x, ascending, (k, TERMS), dimensionless, where x runs from -1 to 1 over a piece, and the last
+    piece ends at ``end``; largest absolute difference seen between callable and fit, a float).
+    Raises ParameterError for values that are no finite numbers or below ``low``; a ``resolve`` that
+    requires more than :data:`MOST` samples; a callable of which :data:`MOST` values beside these
+    are not enough, or that is not smooth within the shortest piece.  Exceptions of the callable
+    pass.
     """
     samples = SAMPLES
     if resolve is not None:
@@ -257,17 +327,20 @@ def fit_callable(
 def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
     """Fit a callable by pieces as long as the tolerance allows: no two neighbours could be one.
 
-    sampled: the callable, a :class:`_Sampled`; more values of it are taken, which changes ``taken`` and ``largest``.
+    sampled: the callable, a :class:`_Sampled`; more values of it are taken, which changes ``taken``
+    and ``largest``.
     end: last time, in T_ref.
-    Returns the pieces from 0 to ``end``, at least one, in the order of time.  Each starts where the one before it
-    stops, or, at a jump, at the next double; the first starts at 0, or, where the callable jumps there, at the smallest
-    double above 0.
-    Raises ParameterError where a piece of the shortest length (64 spacings of doubles) is not fitted, or where more
-    than :data:`MOST` values beside the samples were taken before all is fitted, and as :meth:`_Sampled.values`.
+    Returns the pieces from 0 to ``end``, at least one, in the order of time.  Each starts where the
+    one before it stops, or, at a jump, at the next double; the first starts at 0, or, where the
+    callable jumps there, at the smallest double above 0.
+    Raises ParameterError where a piece of the shortest length (64 spacings of doubles) is not
+    fitted, or where more than :data:`MOST` values beside the samples were taken before all is
+    fitted, and as :meth:`_Sampled.values`.
     """
     pieces: list[Piece] = []
     failed: set[tuple[float, float]] = set()
-    open_intervals, so_far = [(0.0, end)], 0.0
+    open_intervals = [(0.0, end)]
+    so_far = 0.0
     while open_intervals:
         start, stop = open_intervals.pop()
         piece, cut = sampled.fit(start, stop, so_far)
@@ -275,7 +348,8 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
             if pieces and (pieces[-1].start, stop) not in failed:
                 joined, _ = sampled.fit(pieces[-1].start, stop, pieces[-1].so_far)
                 if joined is not None:
-                    piece, _ = joined, pieces.pop()
+                    piece = joined
+                    _ = pieces.pop()
             pieces.append(piece)
             so_far = max(so_far, piece.largest)
             continue
@@ -294,15 +368,19 @@ def _fit_pieces(sampled: _Sampled, end: float) -> list[Piece]:
 
 
 def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
-    """Return the pieces without the short ones that contain a corner; their neighbours are extended to the corner.
+    """Return the pieces without the short ones that contain a corner; their neighbours are extended
+    to the corner.
 
-    A piece that is more than 50 times shorter than both of its neighbours is taken to contain a corner, at the time at
-    which the polynomials of the neighbours are equal, else in its middle (:func:`_intersection`).  The two neighbours
-    are fitted anew and meet in the corner.  The first and the last piece stay.
+    A piece that is more than 50 times shorter than both of its neighbours is taken to contain a
+    corner, at the time at which the polynomials of the neighbours are equal, else in its middle
+    (:func:`_intersection`).  The two neighbours are fitted anew and meet in the corner.  The first
+    and the last piece stay.
 
     pieces: consecutive :class:`Piece` of the fit, in the order of time.
-    sampled: the callable, a :class:`_Sampled`; more values of it are taken, which changes ``taken`` and ``largest``.
-    Returns a new list; a short piece and its neighbours stay as they are where a fit to the corner is not good.
+    sampled: the callable, a :class:`_Sampled`; more values of it are taken, which changes ``taken``
+    and ``largest``.
+    Returns a new list; a short piece and its neighbours stay as they are where a fit to the corner
+    is not good.
     Raises as :meth:`_Sampled.values`.
     """
     merged: list[Piece] = []
@@ -310,30 +388,38 @@ def _merge_corners(pieces: list[Piece], sampled: _Sampled) -> list[Piece]:
     while rest:
         piece = rest.pop()
         if merged and rest:
-            before, after = merged[-1], rest[-1]
-            if _SHORTER * (piece.stop - piece.start) < min(before.stop - before.start, after.stop - after.start):
+            before = merged[-1]
+            after = rest[-1]
+            if _SHORTER * (piece.stop - piece.start) < min(
+                before.stop - before.start, after.stop - after.start
+            ):
                 corner = _intersection(before, after, piece)
                 left, _ = sampled.fit(before.start, corner, before.so_far)
                 right, _ = sampled.fit(corner, after.stop, piece.so_far)
                 if left and right:
-                    merged[-1], rest[-1] = left, right
+                    merged[-1] = left
+                    rest[-1] = right
                     continue
         merged.append(piece)
     return merged
 
 
 def _intersection(before: Piece, after: Piece, between: Piece) -> float:
-    """Return the time, within a piece, at which the polynomials of its neighbours are equal: where a corner lies.
+    """Return the time, within a piece, at which the polynomials of its neighbours are equal: where
+    a corner lies.
 
-    before, after: :class:`Piece`, the piece before it and the piece after it, whose polynomials are extended over it.
+    before, after: :class:`Piece`, the piece before it and the piece after it, whose polynomials are
+    extended over it.
     between: :class:`Piece`, the piece.
-    Returns the time, in T_ref; the middle of the piece where the same polynomial is the larger one at both of its ends.
+    Returns the time, in T_ref; the middle of the piece where the same polynomial is the larger one
+    at both of its ends.
     """
 
     def is_above(t: float) -> bool:
         return before.value(t) > after.value(t)
 
-    low, high = between.start, between.stop
+    low = between.start
+    high = between.stop
     above_at_end = is_above(high)
     if is_above(low) == above_at_end:
         return 0.5 * (low + high)
@@ -341,6 +427,8 @@ def _intersection(before: Piece, after: Piece, between: Piece) -> float:
 
 
 def _product(A: NDArray[Any], B: NDArray[Any]) -> Floats:
-    """Return the product of two matrices; its bits do not depend on numpy's library of linear algebra."""
+    """Return the product of two matrices; its bits do not depend on numpy's library of linear
+    algebra.
+    """
     product: Floats = np.einsum("ij,jk->ik", A, B)
     return product

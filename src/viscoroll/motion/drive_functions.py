@@ -1,6 +1,8 @@
-"""A drive as checked functions of time without dimension, and its layout for the kernels: :class:`DriveFunctions`.
+"""A drive as checked functions of time without dimension, and its layout for the kernels:
+:class:`DriveFunctions`.
 
-T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref`` of any other material.
+T_ref is the unit of time: T_epsilon of a material that is an alpha, the ``T_ref`` of any other
+material.
 """
 
 from __future__ import annotations
@@ -11,20 +13,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.array_types import Floats
-from ..core.checks import broadcast_shape, check_array
-from ..core.drive import Feedback, slope_tan_cos
+from ..core.checks import Floats, broadcast_shape, check_array
+from ..core.drive_arguments import Feedback, slope_tan_cos
 from ..core.errors import ParameterError, described_error, exactly_one_error, mark_dimensionless
-from ..kernels.motion.records import (
+from ..kernels.records import (
     COL_COEFFICIENTS,
     N_DRIVE_FUNCTIONS,
     NOT_PRESCRIBED,
     PRESCRIBED_OMEGA,
     PRESCRIBED_V,
 )
-from .checks import start_speeds
-from .drive import Drive
 from .drive_fit import TERMS
+from .motion_arguments import Drive, start_speeds
 from .piecewise import (
     Piecewise,
     TimeFunction,
@@ -36,40 +36,50 @@ from .piecewise import (
     piecewise,
     take_motions,
     values_at_start,
-)  # fmt: skip
+)
 
-#: Bytes of pieces that are packed at a time where motions have functions of their own: little beside the schedules,
-#: and yet many motions at once where these are short.
+#: Bytes of pieces that are packed at a time where motions have functions of their own: little
+#: beside the schedules, and yet many motions at once where these are short.
 _BLOCK_BYTES = 1 << 18
-#: Largest difference between a given and the prescribed start, divided by the largest prescribed speed.
+#: Largest difference between a given and the prescribed start, divided by the largest prescribed
+#: speed.
 _START = 1e-9
 #: (argument, prescribed speed beside which it must not be given, reason).
 _BESIDE = (
-    ("torque", "omega", "the torque follows from the prescribed omega"), ("force", "V", "the force follows "
-        "from the prescribed V"),
-    ("brake", "omega", "omega is prescribed"), ("drag", "omega", "omega is prescribed"),
-)  # fmt: skip
+    ("torque", "omega", "the torque follows from the prescribed omega"),
+    ("force", "V", "the force follows from the prescribed V"),
+    ("brake", "omega", "omega is prescribed"),
+    ("drag", "omega", "omega is prescribed"),
+)
 #: Names of the gains in the order of the kernel's.
-_GAINS = ("gain of force on V", "gain of force on omega", "gain of torque on V", "gain of torque on omega")
+_GAINS = (
+    "gain of force on V",
+    "gain of force on omega",
+    "gain of torque on V",
+    "gain of torque on omega",
+)
 
 #: Code in the kernels of the prescribed speed, by its name; "" for none.
 _PRESCRIBED_CODES = {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}
 
-#: (pieces (1 or m, k, columns); gains (4, 1 or m); code of the prescribed speed), as the kernels take a drive.
+#: (pieces (1 or m, k, columns); gains (4, 1 or m); code of the prescribed speed), as the kernels
+#: take a drive.
 KernelDrive = tuple[Floats, Floats, int]
 
 
 @dataclass(frozen=True, eq=False)
 class DriveFunctions:
-    """The functions of time that drive motions, dimensionless, each the same for all motions or one for each.
+    """The functions of time that drive motions, dimensionless, each the same for all motions or one
+    for each.
 
     Attributes
     ----------
-    functions : name -> :data:`.piecewise.TimeFunction`; always "force", "torque" and "brake" (0 where not given), and
-        the prescribed speed, "omega" or "V", if there is one.
+    functions : name -> :data:`.piecewise.TimeFunction`; always "force", "torque" and "brake" (0
+        where not given), and the prescribed speed, "omega" or "V", if there is one.
     tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
-    gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last less the drag.
+    gains : gains of force on V, force on omega, torque on V, torque on omega, (4, 1 or m); the last
+    less the drag.
     end : last time, in T_ref.
     """
 
@@ -83,60 +93,80 @@ class DriveFunctions:
     def _function_motions(self) -> int:
         """Number of motions that have functions or slopes of their own; 1 if all are alike.
 
-        By it :meth:`block` and :meth:`for_kernel` decide whether all motions share their pieces; :attr:`counts` has the
-        number of the gains too.
-        Raises ParameterError if two of the functions, or a function and the slope, have values for different numbers of
-        motions, both other than 1.
+        By it :meth:`block` and :meth:`for_kernel` decide whether all motions share their pieces;
+        :attr:`counts` has the number of the gains too.
+        Raises ParameterError if two of the functions, or a function and the slope, have values for
+        different numbers of motions, both other than 1.
         """
-        counts = {name: count_motions(f) for name, f in (self.functions | {"slope": self.tangent}).items()}
-        shape = broadcast_shape(**{name: np.empty(count) for name, count in counts.items() if count != 1})
+        counts = {
+            name: count_motions(f) for name, f in (self.functions | {"slope": self.tangent}).items()
+        }
+        shape = broadcast_shape(
+            **{name: np.empty(count) for name, count in counts.items() if count != 1}
+        )
         return shape[0] if shape else 1
 
     @property
     def counts(self) -> tuple[int, int]:
-        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if all are alike.
+        """(Number of motions with functions or slopes of their own, with gains of their own); 1 if
+        all are alike.
 
-        Raises ParameterError if two of the functions, or a function and the slope, have values for different numbers of
-        motions, both other than 1.  Whether the two numbers agree is not checked here.
+        Raises ParameterError if two of the functions, or a function and the slope, have values for
+        different numbers of motions, both other than 1.  Whether the two numbers agree is not
+        checked here.
         """
         return self._function_motions, self.gains.shape[1]
 
     @property
     def corners(self) -> int:
-        """Number of corners of a motion's schedules, and of pieces of its callables; 0 for numbers alone."""
+        """Number of corners of a motion's schedules, and of pieces of its callables; 0 for numbers
+        alone.
+        """
         return sum(map(count_corners, self.functions.values()))
 
     @property
     def error(self) -> float:
-        """Largest difference seen between a callable and its fit, dimensionless; 0.0 without callables."""
+        """Largest difference seen between a callable and its fit, dimensionless; 0.0 without
+        callables.
+        """
         return max(getattr(function, "error", 0.0) for function in self.functions.values())
 
     def block(self, most: int) -> int:
-        """Return how many motions to pack at a time, so that their pieces take some :data:`_BLOCK_BYTES`.
+        """Return how many motions to pack at a time, so that their pieces take some
+        :data:`_BLOCK_BYTES`.
 
-        most: largest number to return, >= 1; it is returned where all motions have the same functions and slope.
+        most: largest number to return, >= 1; it is returned where all motions have the same
+        functions and slope.
         Returns an int in 1 ... ``most``.
         Raises ParameterError as :attr:`counts` does.
         """
         if self._function_motions == 1:
             return most
-        columns = 2 + 5 * (TERMS if any(isinstance(f, Piecewise) for f in self.functions.values()) else 2)
+        columns = 2 + 5 * (
+            TERMS if any(isinstance(f, Piecewise) for f in self.functions.values()) else 2
+        )
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def _blocks(self, count: int) -> list[slice]:
-        """Return slices that divide ``count`` motions into blocks, ascending, a list; for 0 motions one slice."""
+        """Return slices that divide ``count`` motions into blocks, ascending, a list; for 0 motions
+        one slice.
+        """
         step = self.block(max(count, 1))
         return [slice(first, first + step) for first in range(0, max(count, 1), step)]
 
     def speed_at_start(self, name: str) -> tuple[Floats, Floats]:
         """Return the value of a prescribed speed at t = 0, and a bound of its largest magnitude.
 
-        name: name of the prescribed speed, "omega" or "V" (KeyError for one that is not prescribed).
+        name: name of the prescribed speed, "omega" or "V" (KeyError for one that is not
+        prescribed).
         Raises ParameterError where it jumps.
-        Returns (values at t = 0; upper bounds of the magnitude over all times: the largest sum of the magnitudes of the
-        coefficients of a piece), dimensionless, (1,) each where the speed is the same for all motions, else (m,).
+        Returns (values at t = 0; upper bounds of the magnitude over all times: the largest sum of
+        the magnitudes of the coefficients of a piece), dimensionless, (1,) each where the speed is
+        the same for all motions, else (m,).
         """
-        speed, firsts, sizes = self.functions[name], [], []
+        speed = self.functions[name]
+        firsts = []
+        sizes = []
         for part in self._blocks(count_motions(speed)):
             curve = piecewise(take_motions(speed, part))
             differentiate(name, curve)
@@ -146,62 +176,83 @@ class DriveFunctions:
 
     @cached_property
     def pieces(self) -> Floats:
-        """Return all functions over common pieces of time, dimensionless, in the layout of the kernels.
+        """Return all functions over common pieces of time, dimensionless, in the layout of the
+        kernels.
 
-        Columns of the result, (1 or m, k, columns): start of the piece in T_ref; 2 divided by its length, 0 where it
-        has no length or no end; then as many coefficients of powers of x in [-1, 1] for each of force (with the pull of
-        the slope), torque, derivative of the prescribed speed, brake, prescribed speed.  The coefficients of what is
-        not given are 0.  Here m is the number of motions that have functions, times or slopes of their own.
+        Columns of the result, (1 or m, k, columns): start of the piece in T_ref; 2 divided by its
+        length, 0 where it has no length or no end; then as many coefficients of powers of x in [-1,
+        1] for each of force (with the pull of the slope), torque, derivative of the prescribed
+        speed, brake, prescribed speed.  The coefficients of what is not given are 0.  Here m is the
+        number of motions that have functions, times or slopes of their own.
         Raises ParameterError where a prescribed speed jumps.
         """
-        zero, name = piecewise(np.zeros(())), self.prescribed
+        zero = piecewise(np.zeros(()))
+        name = self.prescribed
         force, torque, brake, speed = (
-            piecewise(self.functions[f]) if f in self.functions else zero for f in ("force", "torque", "brake", name)
+            piecewise(self.functions[f]) if f in self.functions else zero
+            for f in ("force", "torque", "brake", name)
         )
         tilt = np.zeros((np.size(self.tangent), 1, force.terms.shape[-1]))
         tilt[:, 0, 0] = self.tangent
         rate = differentiate(name, speed) if name else speed
-        return pack_pieces((force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end)
+        return pack_pieces(
+            (force._replace(terms=force.terms + tilt), torque, rate, brake, speed), self.end
+        )
 
     def for_kernel(self, index: Any = slice(None)) -> KernelDrive:
         """Return the drive of some motions as the kernels take it, :data:`KernelDrive`.
 
-        index: index of numpy, a slice or a vector of integers, that selects the motions; default: all.
-        Returns (pieces, (1 or m, k, columns), see :attr:`pieces`, where m is the number of selected motions, and 1 if
-        all have the same functions, which are returned for any ``index``; gains, (4, 1 or m); code of the prescribed
-        speed, an int: NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V).
+        index: index of numpy, a slice or a vector of integers, that selects the motions; default:
+        all.
+        Returns (pieces, (1 or m, k, columns), see :attr:`pieces`, where m is the number of selected
+        motions, and 1 if all have the same functions, which are returned for any ``index``; gains,
+        (4, 1 or m); code of the prescribed speed, an int: NOT_PRESCRIBED, PRESCRIBED_OMEGA or
+        PRESCRIBED_V).
         Raises ParameterError where a prescribed speed jumps.
         """
         pieces = self.pieces if self._function_motions == 1 else self._take(index).pieces
         gains = self.gains[:, index] if self.gains.shape[1] > 1 else self.gains
-        return np.ascontiguousarray(pieces), np.ascontiguousarray(gains), _PRESCRIBED_CODES[self.prescribed]
+        return (
+            np.ascontiguousarray(pieces),
+            np.ascontiguousarray(gains),
+            _PRESCRIBED_CODES[self.prescribed],
+        )
 
     def _take(self, index: Any) -> DriveFunctions:
-        """Return the :class:`DriveFunctions` of some motions; their gains stay those of all motions.
+        """Return the :class:`DriveFunctions` of some motions; their gains stay those of all
+        motions.
 
-        index: index of numpy, a slice or a vector of integers, that selects the motions; what is the same for all
-        motions stays.
-        Returns a new object; its functions and tangent are those of the selected motions, in the order of ``index``.
+        index: index of numpy, a slice or a vector of integers, that selects the motions; what is
+        the same for all motions stays.
+        Returns a new object; its functions and tangent are those of the selected motions, in the
+        order of ``index``.
         """
         functions = {name: take_motions(f, index) for name, f in self.functions.items()}
         return replace(
-            self, functions=functions, tangent=self.tangent[index] if self.tangent.size > 1 else self.tangent
+            self,
+            functions=functions,
+            tangent=self.tangent[index] if self.tangent.size > 1 else self.tangent,
         )
 
     @property
     def acts_at_end(self) -> bool:
-        """Whether a load, a prescribed speed or a gain still acts on any motion at the end: in the last piece of time.
+        """Whether a load, a prescribed speed or a gain still acts on any motion at the end: in the
+        last piece of time.
 
         A prescribed speed counts even where it is 0, and a brake and a drag other than 0 do too.
         """
         if self.prescribed or self.gains.any():
             return True
-        return any(self.for_kernel(part)[0][:, -1, 2:].any() for part in self._blocks(self._function_motions))
+        return any(
+            self.for_kernel(part)[0][:, -1, 2:].any()
+            for part in self._blocks(self._function_motions)
+        )
 
 
 @cache
 def undriven() -> KernelDrive:
-    """Return the :data:`KernelDrive` of free motions: pieces (1, 1, columns) and gains (4, 1), all 0; NOT_PRESCRIBED.
+    """Return the :data:`KernelDrive` of free motions: pieces (1, 1, columns) and gains (4, 1), all
+    0; NOT_PRESCRIBED.
 
     The same arrays are returned by every call.
     """
@@ -230,11 +281,12 @@ def prepare_drive(
     end: last time, >= 0, in T_ref.
     rtol: relative tolerance of the motion.
     resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
-    Raises ParameterError for a load or speed that :func:`viscoroll.roll` refuses; for V and omega both prescribed, or a
-    load beside the prescribed speed from which it follows; for a start that is missing, out of range, or not the
-    prescribed one; for shapes of V0 and omega0 that do not broadcast.  Exceptions of a callable pass.
-    Returns the :class:`DrivenStart`; its ``functions`` are None where the drive is empty, in which case ``end``,
-    ``rtol`` and ``resolve`` are ignored.
+    Raises ParameterError for a load or speed that :func:`viscoroll.roll` refuses; for V and omega
+    both prescribed, or a load beside the prescribed speed from which it follows; for a start that
+    is missing, out of range, or not the prescribed one; for shapes of V0 and omega0 that do not
+    broadcast.  Exceptions of a callable pass.
+    Returns the :class:`DrivenStart`; its ``functions`` are None where the drive is empty, in which
+    case ``end``, ``rtol`` and ``resolve`` are ignored.
     """
     if not drive.acts:
         return DrivenStart(None, *start_speeds(V0, omega0))
@@ -244,23 +296,33 @@ def prepare_drive(
     names = ["force", "torque", "brake", *([prescribed] if prescribed else [])]
     functions = {
         name: check_function(
-            name, getattr(drive, name), end, rtol, low=0.0 if name == "brake" else -np.inf, resolve=resolve
+            name,
+            getattr(drive, name),
+            end,
+            rtol,
+            low=0.0 if name == "brake" else -np.inf,
+            resolve=resolve,
         )
         for name in names
     }
-    checked_drive = DriveFunctions(functions, tangent, prescribed, _gains(drive), end)
+    checked_drive = DriveFunctions(
+        functions=functions, tangent=tangent, prescribed=prescribed, gains=_gains(drive), end=end
+    )
     starts = {"V": V0, "omega": omega0}
     if prescribed:
         start = starts[prescribed], checked_drive, getattr(drive, prescribed)
         starts[prescribed] = _prescribed_start(prescribed, *start)
     for name, start in starts.items():
         if start is None:
-            raise ParameterError(f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it")
+            raise ParameterError(
+                f"{name}0", None, "a number", f"{name}0 is not given, and no {name}= prescribes it"
+            )
     return DrivenStart(checked_drive, *start_speeds(*starts.values()))
 
 
 def _refuse_both(drive: Drive) -> None:
-    """Raise ParameterError where V and omega are both prescribed, or a load that follows from one is given beside it.
+    """Raise ParameterError where V and omega are both prescribed, or a load that follows from one
+    is given beside it.
 
     Beside omega these loads are the torque, the brake and the drag, beside V the force.
 
@@ -272,7 +334,10 @@ def _refuse_both(drive: Drive) -> None:
     for name, speed, why in _BESIDE:
         if getattr(drive, speed) is not None and (value := getattr(drive, name)) is not None:
             raise ParameterError(
-                name, value, "left out", f"{name} is given together with {speed}=: leave it out, {why}"
+                name,
+                value,
+                "left out",
+                f"{name} is given together with {speed}=: leave it out, {why}",
             )
 
 
@@ -283,14 +348,17 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     stated: the start that the caller gave, a number or (n,), dimensionless; None without.
     functions: :class:`DriveFunctions` of the drive, with the prescribed speed.
     speed: the prescribed speed as in the drive: a number, an array, a Schedule or a callable.
-    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest magnitude, is not numeric or
-    not finite, where the speed jumps or is an empty array, and where both have values for different numbers of motions.
-    Returns (m,) where the speed has values for m > 1 motions.  Where it is the same for all motions: a float if
-    ``stated`` is a number or None, else an array in the shape of ``stated``.  Of a callable it is the value of the
-    callable itself, not of its fit.
+    Raises ParameterError where ``stated`` differs from it by more than 1e-9 of its largest
+    magnitude, is not numeric or not finite, where the speed jumps or is an empty array, and where
+    both have values for different numbers of motions.
+    Returns (m,) where the speed has values for m > 1 motions.  Where it is the same for all
+    motions: a float if ``stated`` is a number or None, else an array in the shape of ``stated``.
+    Of a callable it is the value of the callable itself, not of its fit.
     """
     if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
-        raise described_error(name, "is empty", "a number, an array with one for each motion, or a function of t")
+        raise described_error(
+            name, "is empty", "a number, an array with one for each motion, or a function of t"
+        )
     start, scale = functions.speed_at_start(name)
     if callable(speed):  # its fit has rounding errors, and may be of the other sign
         start = np.array([float(speed(0.0))])
@@ -311,10 +379,15 @@ def _gains(drive: Drive) -> Floats:
     The drag, a torque against omega, is subtracted from the last.
 
     drive: :class:`Drive`, dimensionless.
-    Raises ParameterError for a drag below 0, not numeric or not finite, and for gains whose numbers of motions differ.
-    Returns (4, 1) where the gains are the same for all motions, else (4, m), dimensionless; 0 where nothing is given.
+    Raises ParameterError for a drag below 0, not numeric or not finite, and for gains whose numbers
+    of motions differ.
+    Returns (4, 1) where the gains are the same for all motions, else (4, m), dimensionless; 0 where
+    nothing is given.
     """
-    pairs = [(x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0) for x in (drive.force, drive.torque)]
+    pairs = [
+        (x.V, x.omega) if isinstance(x, Feedback) else (0.0, 0.0)
+        for x in (drive.force, drive.torque)
+    ]
     rows = [np.atleast_1d(gain) for pair in pairs for gain in pair]
     rows[3] = rows[3] - check_array("drag", 0.0 if drive.drag is None else drive.drag, low=0.0)
     count = broadcast_shape(**dict(zip(_GAINS, rows, strict=True)))
@@ -324,13 +397,17 @@ def _gains(drive: Drive) -> Floats:
 def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
     """Raise ParameterError where a motion is to end at rest while something drives it to the end.
 
-    rest: rest threshold, the speed below which the motion ends, in the unit of the roller.  It is not examined but only
-    quoted in the message, so that the caller must not call this function where it is None.
-    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`; None of free motions, which
-    may end at rest.
+    rest: rest threshold, the speed below which the motion ends, in the unit of the roller.  It is
+    not examined but only quoted in the message, so that the caller must not call this function
+    where it is None.
+    functions: :class:`DriveFunctions`, refused where :attr:`DriveFunctions.acts_at_end`; None of
+    free motions, which may end at rest.
     Returns None where the motion may end at rest.
     """
     if functions is not None and functions.acts_at_end:
-        sentence = f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the end of the motion: "
+        sentence = (
+            f"rest = {rest!s:.60} is given, but a load or a prescribed speed acts at the "
+            "end of the motion: "
+        )
         sentence += "leave it out (a brake stops the motion in finite time: see switches)"
         raise ParameterError("rest", rest, "None", sentence)

@@ -1,25 +1,317 @@
-"""Many motions at once: :func:`ensemble`."""
+"""Many motions: :func:`ensemble`, and their result, :class:`Ensemble`.
+
+The result of many motions: :class:`Ensemble`.
+
+Many motions at once: :func:`ensemble`.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from typing import Any, Literal
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import Roller, scale_of
-from ..contact_law.validity.model_warnings import warn_of_speeds, warn_of_start
-from ..core.array_types import Numbers
+from ..contact_mechanics.assumptions import Validity
+from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
+from ..contact_mechanics.parameters import Roller, scale_of
+from ..contact_mechanics.validity import validity
 from ..core.blocks import broadcast_vector, thread_count
-from ..core.checks import broadcast_shape, check_bool, check_choice, check_number
-from ..core.drive import Feedback, Schedule, make_dimensionless
-from ..core.errors import ParameterError, check_names, shape_error
-from .batch import Batch, Solution, solve_batch
-from .checks import output_times, with_scales
-from .drive import ACTING, ROWS, Drive, strip_units
-from .ensemble_result import Ensemble
-from .problem import MotionProblem, SolverOptions, make_problem
+from ..core.checks import (
+    Booleans,
+    Floats,
+    Integers,
+    Numbers,
+    broadcast_shape,
+    check_array,
+    check_bool,
+    check_choice,
+    check_number,
+)
+from ..core.drive_arguments import Feedback, Schedule, make_dimensionless
+from ..core.errors import MotionStatus, ParameterError, check_names, describe_value, shape_error
+from ..core.labels import Labels
+from ..core.results import SummaryRow
+from .many_motions import Batch, Solution, solve_batch
+from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
+from .motion_problem import MotionProblem, SolverOptions, make_problem
+from .roll_result import RollResult
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+# --- The result of many motions ---
+
+#: Largest number of motions that ``validity`` examines: some tenths of a second.
+_EXAMINED = 256
+
+
+class Fastest(NamedTuple):
+    """Motions of an ensemble and their highest speeds, in the unit of the roller.
+
+    motion : indices of the motions, (m,), int.
+    V, omega : largest magnitudes of the speeds that each starts with or reaches at an output time,
+    (m,); omega has the sign of the product V0 omega0, and is positive where that is 0.
+    """
+
+    motion: Integers
+    V: Floats
+    omega: Floats
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Ensemble(RollResult):
+    """Motions 0 ... n - 1 at common output times, in the units of the roller, as of a
+    :class:`Motion`.
+
+    Attributes
+    ----------
+    roller : the :class:`Scene` or :class:`Cylinder`, on its slope.
+    t : output times, (times,), divided by T_ref or in s.
+    V, omega, x, angle, delta, regime : shape (n, times), in the units of a :class:`Motion`; those
+        not requested are None.  Codes of the regime are those of a :class:`Motion` as floats, NaN
+        where it was not reached.
+    slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_ref)^2 or in
+        J/m: the integrals of gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.
+        Without a drive their sum is what (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
+    force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0
+    without a drive.
+    onset_time : (n,), first change from full to partial slip; NaN if there is none.
+    rest_time : (n,), when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
+    success, status : (n,), whether each reached the last output time or rest, and the code of its
+        :class:`MotionStatus`; outputs that a motion did not reach are NaN.
+    switches, steps : (n,), changes of regime, and integration steps taken.
+    flow : (n,), whether the motion is from the flow map; the others were integrated.
+    flow_error : stated error of the map relative to max(|V|, |omega|), or, with ``x`` or
+        ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
+        relative to the energy at the start if larger; NaN without a map.
+    flow_problem : why a map that was tried could not be used, or "".
+    drive_error : as of a :class:`Motion`.
+    drive : loads and prescribed speeds as they were given.
+    labels : labels of the starts and loads, where they came as arrays of xarray or pandas;
+    :meth:`to_xarray` has them.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> result = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+    >>> len(result), bool(result.success.all())
+    (2, True)
+    """
+
+    V0: Floats
+    omega0: Floats
+    flow: Booleans
+    flow_error: float
+    flow_problem: str
+    labels: Labels | None = None
+
+    def __len__(self) -> int:
+        return self.status.size
+
+    @property
+    def message(self) -> str:
+        """How the motions ended, in words."""
+        return "; ".join(f"{count}: {text}" for text, count in self.messages().items())
+
+    def messages(self) -> dict[str, int]:
+        """Return the number of motions that ended in each way, by the way in words.
+
+        Returns
+        -------
+        dict
+            Message of a :class:`MotionStatus` -> number of motions, > 0; empty without motions.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0).messages()
+        {'reached the last output time': 2}
+        """
+        codes, counts = np.unique(self.status, return_counts=True)
+        return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
+
+    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
+        """Compute moments, quantiles and histograms over the motions, per output time, named as
+        those of a run's store.
+
+        Parameters
+        ----------
+        quantiles : levels of the quantiles, numbers in [0, 1], in any order.
+
+        Returns
+        -------
+        xarray.Dataset
+            In the units of the roller.  Of every field kept but the regime, with x also of
+            ``distance``, |x|, and of onset_time and rest_time, which have no axis t: over t
+            ``NAME_counted``, the number of motions with a finite value, ``_mean``, ``_std``
+            (divided by that number), ``_min`` and ``_max`` of these values; ``_quantiles`` over
+            (quantile, t), exact; ``_histogram`` over (NAME_bin, t), whose bins run from
+            ``NAME_bin_low`` to ``NAME_bin_high``.  Without finite values they are NaN, counts 0.
+            ``ended`` over
+            status: how many motions have each :class:`MotionStatus`.  Attributes: ``motions``,
+            ``failed_motions`` and ``motions_from_the_flow_map``, numbers of motions; Conventions,
+            title, source.
+
+        Raises
+        ------
+        ParameterError
+            If there are no motions, or ``quantiles`` is no list of numbers in [0, 1].
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+        >>> motions.summary(quantiles=[0.5])["V_quantiles"].dims
+        ('quantile', 't')
+        """
+        from .summaries import summary_of
+
+        values: Any = list(quantiles) if isinstance(quantiles, Iterator) else quantiles
+        levels = check_array("quantiles", values, low=0.0, high=1.0)
+        if levels.ndim != 1:
+            raise ParameterError("quantiles", describe_value(quantiles), "a list of numbers")
+        return summary_of(self, tuple(levels.tolist()))
+
+    def validity(self) -> Validity:
+        """Report which assumptions of the model the motions violate, at the highest speeds of each.
+
+        See :func:`viscoroll.validity`.  ``steady`` examines the start speed and all output times of
+        a motion; without V among the fields its highest speed alone, and of a cover it is not
+        decided.
+
+        Returns
+        -------
+        Validity
+            The report, with arrays over the motions, (n,); for more than 256 over that many of
+            them, evenly spaced (:meth:`fastest`).
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+        >>> motions.validity().steady.holds.shape
+        (2,)
+        """
+        index, V, omega = self.fastest()
+        roller = self.roller.take(index, len(self))
+        report = validity(roller, V, omega=omega)
+        if self.V is None or not index.size or roller.scene().cover is not None:
+            return report
+        speeds = np.vstack([self.V0[index], self.V[index].T])
+        rolls = ~(np.append(0.0, self.t)[:, np.newaxis] < self.onset_time[index]) & ~np.isnan(
+            speeds
+        )
+        x = (
+            np.full(speeds.shape, np.nan)
+            if self.x is None
+            else np.vstack([np.zeros(index.size), self.x[index].T])
+        )
+        return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
+
+    def fastest(self) -> Fastest:
+        """Return the motions that :meth:`validity` examines, with their highest speeds.
+
+        These are all motions, or, of more than 256, as many as that, evenly spaced.  The highest
+        speed is the largest magnitude of the start and of the output times that the motion reached;
+        of a speed that is not among the fields, that of the start.
+
+        Returns
+        -------
+        Fastest
+            Named tuple of arrays (m,), m <= 256: ``motion``, indices of the motions, ascending;
+            ``V``, >= 0, and ``omega``, in the unit of the roller.  omega has the sign of V0 omega0,
+            and is positive where that is 0.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+        >>> motions.fastest().V
+        array([1., 2.])
+        """
+        speeds = {name: np.abs(getattr(self, f"{name}0")) for name in ("V", "omega")}
+        for name, start in speeds.items():
+            if (values := getattr(self, name)) is not None:
+                speeds[name] = np.fmax(
+                    start, np.nanmax(np.abs(values), axis=1, initial=0.0, where=~np.isnan(values))
+                )
+        index = np.unique(np.linspace(0, len(self) - 1, min(len(self), _EXAMINED)).astype(np.int64))
+        sense = (
+            self.V0 * self.omega0 + 0.0
+        )  # +0 from rest: friction moves the axis in the sense of the rotation
+        return Fastest(index, speeds["V"][index], np.copysign(speeds["omega"], sense)[index])
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return title and rows of the printed report, a list of :class:`SummaryRow`.
+
+        The rows are: output times; median, 5 % and 95 % quantile of the last V, omega and x, of
+        those that are fields, over the motions that reached the last time, NaN if none did, left
+        out if there are no motions; number of motions with an onset of partial slip; number of
+        motions from the flow map and its stated error, if any; how many motions ended in which way,
+        a row each.
+        """
+        ends = [
+            SummaryRow("ended", f"{count}: {message}") for message, count in self.messages().items()
+        ]
+        rows = [self._row_of_times()]
+        for name in ("V", "omega", "x"):
+            if (values := getattr(self, name)) is not None and values.size:
+                last = values[:, -1][np.isfinite(values[:, -1])]
+                low, middle, high = (
+                    np.quantile(last, (0.05, 0.5, 0.95)) if last.size else [np.nan] * 3
+                )
+                text = f"at the end: median {middle:.6g}, 5 % {low:.6g}, 95 % {high:.6g}"
+                rows.append(SummaryRow(name, text, self._unit(name)))
+        rows.append(SummaryRow("onset of partial slip", f"in {np.isfinite(self.onset_time).sum()}"))
+        if self.flow.any():
+            rows.append(
+                SummaryRow(
+                    "by the flow map", f"{self.flow.sum()}, stated error {self.flow_error:.2g}"
+                )
+            )
+        return f"Ensemble of {len(self)} motions", rows + ends
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status,
+        drive and scene.
+
+        Returns
+        -------
+        xarray.Dataset
+            In the units of the roller, alpha, kappa, mu, gamma and j dimensionless.  Fields that
+            were not requested are left out; labels of the starts become coordinates of the axis
+            "motion", called given_NAME where a variable has their name.  Over motion it has V0,
+            omega0, onset_time, rest_time, status and flow; alpha, kappa, mu, gamma, j and the drive
+            are without axis where one was given for all motions.
+            :func:`.motion_datasets.ensemble_dataset` states the attributes.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motions = vr.ensemble(vr.presets.RUBBER_CYLINDER, [1.0, 2.0], [10.0, 20.0], 1.0)
+        >>> motions.to_xarray()["V"].dims
+        ('motion', 't')
+        """
+        from .motion_datasets import ensemble_dataset
+
+        return ensemble_dataset(self)
+
+    def _figure(self) -> Figure:
+        """Return the figure of quantiles over time and of the last values: of speeds, distance and
+        angle.
+        """
+        from ..core.plots import draw
+        from .summaries import drawn_summary
+
+        return draw(drawn_summary(self.to_xarray()))
+
+
+# --- Many motions at once ---
 
 #: A function of time of each motion.
 Function = Numbers | Schedule | Callable[[float], float]
@@ -52,36 +344,41 @@ def ensemble(
     threads: int | None = None,
     progress: bool = False,
 ) -> Ensemble:
-    """Compute the motions of n cylinders or n starts; the result has the same bits for any number of threads.
+    """Compute the motions of n cylinders or n starts; the result has the same bits for any number
+    of threads.
 
     Parameters
     ----------
-    roller : a :class:`Scene`, or a :class:`Cylinder` in SI units; its numbers may be arrays of n too: every motion can
-        have a scene of its own.  The unit of time T_ref of a scene is T_epsilon of an ``alpha``, else that of its
-        material.
-    V0, omega0 : start speeds, numbers or arrays (n,), divided by R/T_ref and 1/T_ref, or in m/s and rad/s; None where
-        they are prescribed.  Labels of xarray and pandas come back in ``to_xarray``.
-    t : output times, (times,), >= 0, ascending, common to all, divided by T_ref or in s; one number: the final state
-        only.
-    force, torque, slope, brake, drag, omega, V : loads and prescribed speeds, as for :func:`roll`; numbers may be
-        arrays (n,), times and values of a :class:`Schedule` of shape (n, k).
+    roller : a :class:`Scene`, or a :class:`Cylinder` in SI units; its numbers may be arrays of n
+        too: every motion can have a scene of its own.  The unit of time T_ref of a scene is
+        T_epsilon of an ``alpha``, else that of its material.
+    V0, omega0 : start speeds, numbers or arrays (n,), divided by R/T_ref and 1/T_ref, or in m/s and
+        rad/s; None where they are prescribed.  Labels of xarray and pandas come back in
+        ``to_xarray``.
+    t : output times, (times,), >= 0, ascending, common to all, divided by T_ref or in s; one
+        number: the final state only.
+    force, torque, slope, brake, drag, omega, V : loads and prescribed speeds, as for :func:`roll`;
+        numbers may be arrays (n,), times and values of a :class:`Schedule` of shape (n, k).
     method : "integrate": each motion as :func:`roll` would, bit for bit at one alpha, to the
         error of ``rtol`` at an alpha each.  "flow": look the
         motions up in the flow map of their one scene, which is built if it is not on disk
         yet.  "auto": "flow" for 4096 motions or more of one scene.  The map is used only
         where its stated error is at most ``rtol``, and only for the motions that it contains;
-        all others are integrated, with "flow" too.  The result says which, and the map's error.  Driven and unsteady
-        motions, and those of bodies that differ, are integrated: "flow" is refused.
-    rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of the result are
-        those after the cost of a standstill.  With a material each an unsteady motion takes some milliseconds more,
-        for its N.
-    fields : names of the quantities to compute, out of ``V omega x angle delta regime slip_loss rolling_loss``, and
-        ``force torque work_force work_torque brake_loss``; only these are kept in memory.  Works and losses are good to
-        some rtol of the energy that moves.
-    speed : highest speed, > 0, in the unit of V0, that the flow map is made for; default the largest of the starts.
-        Where a large ensemble is computed in several calls, one number for all makes the
+        all others are integrated, with "flow" too.  The result says which, and the map's error.
+        Driven and unsteady motions, and those of bodies that differ, are integrated: "flow" is
+        refused.
+    rtol, rest, unsteady, rested, max_steps, resolve : as for :func:`roll`; ``V0`` and ``omega0`` of
+        the result are those after the cost of a standstill.  With a material each an unsteady
+        motion takes some milliseconds more, for its N.
+    fields : names of the quantities to compute, out of ``V omega x angle delta regime slip_loss
+        rolling_loss``, and ``force torque work_force work_torque brake_loss``; only these are kept
+        in memory.  Works and losses are good to some rtol of the energy that moves.
+    speed : highest speed, > 0, in the unit of V0, that the flow map is made for; default the
+        largest of the starts.  Where a large ensemble is computed in several calls, one number for
+        all makes the
         bits independent of how it is divided.  Ignored where no flow map is used.
-    threads : threads to use, >= 1; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    threads : threads to use, >= 1; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+        available.
     progress : draw a progress bar on standard error if the call takes longer than a second.
 
     Returns
@@ -93,9 +390,10 @@ def ensemble(
     ------
     ParameterError
         NaN or infinite input, unsorted times, shapes that do not broadcast to (n,),
-        unknown fields or method; method "flow" with parameters that differ between motions, with a drive, with
-        ``unsteady`` or with bodies that differ; arrays with labels beside arrays without, or with other labels; a
-        number of threads that is no whole number >= 1; what :func:`roll` refuses.
+        unknown fields or method; method "flow" with parameters that differ between motions, with a
+        drive, with ``unsteady`` or with bodies that differ; arrays with labels beside arrays
+        without, or with other labels; a number of threads that is no whole number >= 1; what
+        :func:`roll` refuses.
     Exception
         What a callable raises.
 
@@ -120,48 +418,64 @@ def ensemble(
     hold the sliding cylinder (mu below about M/2), for alpha = 1, and for motions that stick
     at speeds 10^6 times below the highest (``tests/motion/test_flow.py``).
 
-    Nothing is raised where a motion cannot be rolled to the end: its ``status`` says so, its outputs from
-    there on are NaN, and :meth:`Ensemble.messages` counts such motions.
+    Nothing is raised where a motion cannot be rolled to the end: its ``status`` says so, its
+    outputs from there on are NaN, and :meth:`Ensemble.messages` counts such motions.
 
     Beside float64 input and its result a call takes a few megabytes, whatever the number of
     motions (``tests/test_invariance.py``).
     """
     units = scale_of(roller)
-    times, names = output_times(t, units), check_names("fields", fields, FIELDS, "a field")
+    times = output_times(t, units)
+    names = check_names("fields", fields, FIELDS, "a field")
     check_choice("method", method, "auto", "flow", "integrate")
-    start, drive, labels = strip_units((V0, omega0), Drive(force, torque, slope, brake, drag, omega, V), units)
+    start, drive, labels = strip_units(
+        (V0, omega0),
+        Drive(force=force, torque=torque, slope=slope, brake=brake, drag=drag, omega=omega, V=V),
+        units,
+    )
     progress = check_bool("progress", progress)
     if speed is not None:
         speed = check_number("speed", speed, unit=units, above=0.0)
-    options = SolverOptions(rtol, rest, max_steps, resolve, unsteady, rested)
+    options = SolverOptions(
+        rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
+    )
     problem = make_problem(roller, start, drive, times[-1], options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)
     warn_of_start(problem.roller, problem.scene, start, problem.V0, problem.omega0, problem.driven)
     scale = problem.roller.scale
     batch = Batch(
-        problem, inputs, np.broadcast_to(problem.immobile, (count,)), times / scale["t"],
-        names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
-        thread_count(threads), "motions" if progress else None,
-    )  # fmt: skip
+        problem=problem,
+        inputs=inputs,
+        immobile=np.broadcast_to(problem.immobile, (count,)),
+        times=times / scale["t"],
+        rows=names if problem.drive.acts else tuple(name for name in names if name not in ACTING),
+        threads=thread_count(threads),
+        progress="motions" if progress else None,
+    )
     try:
         solution = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
     except ParameterError as error:
         raise with_scales(error, scale) from error
-    columns: dict[str, Any] = dict.fromkeys(FIELDS) | {name: np.zeros((count, times.size)) for name in names}
+    columns: dict[str, Any] = dict.fromkeys(FIELDS) | {
+        name: np.zeros((count, times.size)) for name in names
+    }
     columns |= _in_units(batch, solution)
     result = Ensemble(roller=problem.roller, t=times, drive=problem.drive, labels=labels, **columns)
     warn_of_speeds(problem.roller, start[0], result.V)
     return result
 
 
-def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tuple[dict[str, NDArray], int]:
+def _broadcast_inputs(
+    problem: MotionProblem, drives: dict[str, NDArray]
+) -> tuple[dict[str, NDArray], int]:
     """Broadcast the parameters and start speeds of an ensemble to the number of its motions.
 
-    problem: :class:`MotionProblem`, checked motions of the ensemble; scene, V0, omega0 and functions are read.
-    drives: name -> loads or prescribed speeds that are numbers or arrays, as the caller gave them; only their shapes
-    matter.
-    Returns (name -> read-only vector, (1,) where one value holds for all motions, else (n,): alpha, kappa, mu, gamma,
-    j, V0, omega0, dimensionless; n, which is 1 if all are numbers).
+    problem: :class:`MotionProblem`, checked motions of the ensemble; scene, V0, omega0 and
+        functions are read.
+    drives: name -> loads or prescribed speeds that are numbers or arrays, as the caller gave them;
+    only their shapes matter.
+    Returns (name -> read-only vector, (1,) where one value holds for all motions, else (n,): alpha,
+    kappa, mu, gamma, j, V0, omega0, dimensionless; n, which is 1 if all are numbers).
     Raises ParameterError where they, the functions of the drive included, do not broadcast to (n,).
     """
     arrays = {name: np.asarray(value) for name, value in problem.scene.numbers.items()}
@@ -176,16 +490,22 @@ def _broadcast_inputs(problem: MotionProblem, drives: dict[str, NDArray]) -> tup
 
 
 def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
-    """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its roller.
+    """Convert the solution of an ensemble to the fields of :class:`Ensemble`, in the units of its
+    roller.
 
-    batch: :class:`Batch`, motions of the ensemble, of which problem, inputs, rows and the size of immobile are read.
-    solution: :class:`Solution`, dimensionless; of a cylinder its quantities are overwritten by those in SI units.
-    Returns name -> field: quantities (n, times) by their names in :attr:`Batch.rows`, which are views of those of
-    ``solution``, NaN at times that a motion did not reach; onset_time, rest_time (NaN where there is none), V0 and
-    omega0, read-only, status (codes of :class:`MotionStatus`), switches, steps, flow, (n,); drive_error, which stays
-    dimensionless, flow_error, floats; flow_problem, a text.
+    batch: :class:`Batch`, motions of the ensemble, of which problem, inputs, rows and the size of
+        immobile are read.
+    solution: :class:`Solution`, dimensionless; of a cylinder its quantities are overwritten by
+        those in SI units.
+    Returns name -> field: quantities (n, times) by their names in :attr:`Batch.rows`, which are
+    views of those of ``solution``, NaN at times that a motion did not reach; onset_time, rest_time
+    (NaN where there is none), V0 and omega0, read-only, status (codes of :class:`MotionStatus`),
+    switches, steps, flow, (n,); drive_error, which stays dimensionless, flow_error, floats;
+    flow_problem, a text.
     """
-    found, scale, shape = solution.motions, batch.problem.roller.scale, (batch.immobile.size,)
+    found = solution.motions
+    scale = batch.problem.roller.scale
+    shape = (batch.immobile.size,)
     rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))
     times = {
         "onset_time": found.onset,
@@ -198,5 +518,9 @@ def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
             np.multiply(row, np.reshape(scale[name], (-1, 1)), out=row)
         times = {name: value * scale[name] for name, value in times.items()}
     times = {name: np.broadcast_to(value, shape) for name, value in times.items()}
-    notes = {"status": found.status, "switches": found.switches, "drive_error": batch.problem.drive_error}
+    notes = {
+        "status": found.status,
+        "switches": found.switches,
+        "drive_error": batch.problem.drive_error,
+    }
     return rows | times | notes | solution.about

@@ -1,12 +1,15 @@
 """Flow map of one scene: built once, kept on disk, and used to look up any number of motions.
 
-A flow map is a set of tables from which the state of a free motion of the scene at any time follows without
-integration. The tables are described in :mod:`viscoroll.kernels.flow.layout`.  They depend on alpha, kappa, mu and j;
-gamma only scales time.  A map covers onsets of partial slip at kappa V from 2**(octave - 20) to 2**octave.  2**octave
-is the next power of 16 above kappa times the highest speed of the call, but at least 2**-16 and at most 2**14.
+A flow map is a set of tables from which the state of a free motion of the scene at any time follows
+without integration. The tables are described in :mod:`viscoroll.kernels.motion.flow_layout`.  They
+depend on alpha, kappa, mu and j; gamma only scales time.  A map covers onsets of partial slip at
+kappa V
+from 2**(octave - 20) to 2**octave.  2**octave is the next power of 16 above kappa times the highest
+speed of the call, but at least 2**-16 and at most 2**14.
 
-All is dimensionless.  The unit of time T is the material's own: T_epsilon of a material that is an alpha, of a series
-one near its slow time (``Parameters.in_own_time``).  Speeds are divided by R/T, and gamma is P T^2/(m R).
+All is dimensionless.  The unit of time T is the material's own: T_epsilon of a material that is an
+alpha, of a series one near its slow time (``Parameters.in_own_time``).  Speeds are divided by R/T,
+and gamma is P T^2/(m R).
 """
 
 from __future__ import annotations
@@ -19,16 +22,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_law.parameters import Parameters
-from ..core.array_types import Floats, Integers
+from ..contact_mechanics.parameters import Parameters
 from ..core.blocks import broadcast_vector, run_blocks
-from ..kernels.flow.records import Motions
+from ..core.checks import Floats, Integers
+from ..kernels.records import Motions
 from .flow_store import FlowMap, load, path_of, save
-from .problem import integrate_motions
+from .motion_problem import integrate_motions
 
 #: ratio of the stated error to the largest error of the sampled motions
 _MARGIN = 4.0
-#: least stated error of speeds, path and losses: below it the error of the integrator at rtol 1e-12 is visible
+#: least stated error of speeds, path and losses: below it the error of the integrator at rtol 1e-12
+#: is visible
 _FLOOR = np.array([1e-10, 5e-10, 1e-10])
 #: motions on which the error of a new map is measured
 _SAMPLE_SIZE = 100
@@ -36,8 +40,8 @@ _SAMPLE_SIZE = 100
 _SAMPLE_TIMES = 40
 #: output rows that are measured: V, omega, x, angle, slip_loss, rolling_loss
 _MEASURED_ROWS = (0, 1, 2, 3, 6, 7)
-#: errors of distance and angle are divided by the path so far plus this fraction of the whole path, since the map
-#: computes both as differences of the remaining path to rest
+#: errors of distance and angle are divided by the path so far plus this fraction of the whole path,
+#: since the map computes both as differences of the remaining path to rest
 _PATH_SHARE = 1e-5
 #: maps kept in memory
 _MAPS_IN_MEMORY = 4
@@ -48,49 +52,57 @@ _OCTAVE_STEP = 4
 
 
 def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
-    """Return by what a flow map is found: the parameters that it depends on, and the speeds that it covers.
+    """Return by what a flow map is found: the parameters that it depends on, and the speeds that it
+    covers.
 
-    scene : :class:`Parameters` of one scene, numbers; its material in its own time, kappa, mu and j are read.
+    scene : :class:`Parameters` of one scene, numbers; its material in its own time, kappa, mu and j
+    are read.
     speed : highest speed, > 0 and finite, divided by R/T in the material's own unit of time T.
-    Returns ((material, kappa, mu, j); octave): the map covers kappa V < 2**octave at the onset of partial slip.  The
-    material is alpha, or the :class:`Prony` series in its own unit of time.  The octave is the least multiple of 4 with
-    kappa ``speed`` <= 2**octave, but at least -16 and at most 14, the limits of the tables; a scene with faster motions
-    has no map for those.
+    Returns ((material, kappa, mu, j); octave): the map covers kappa V < 2**octave at the onset of
+    partial slip.  The material is alpha, or the :class:`Prony` series in its own unit of time.  The
+    octave is the least multiple of 4 with kappa ``speed`` <= 2**octave, but at least -16 and at
+    most 14, the limits of the tables; a scene with faster motions has no map for those.
     """
-    from ..kernels.flow.layout import OCTAVE_RANGE
+    from ..kernels.motion.flow_layout import OCTAVE_RANGE
 
     parameters = (scene.in_own_time()[0], scene.kappa, scene.mu, scene.j)
     octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVE_STEP) * _OCTAVE_STEP
-    return parameters, min(max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1])  # motions beyond find nothing there
+    return parameters, min(
+        max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1]
+    )  # motions beyond find nothing there
 
 
 def flow_map(scene: Parameters, speed: float, *, threads: int | None = None) -> FlowMap:
-    """Return the flow map of a scene: from memory, from disk, or built, which takes as long as some thousand motions.
+    """Return the flow map of a scene: from memory, from disk, or built, which takes as long as some
+    thousand motions.
 
     scene : :class:`Parameters` of one scene, numbers; gamma is ignored.
-    speed : highest speed for which the map is made, > 0, dimensionless, in the material's own unit of time.  Beyond the
-    limits of :func:`map_key` the map covers slower motions only.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
-    Returns the :class:`FlowMap`.  Nothing is raised if the scene has none: its ``problem`` then says why, and its
-    stated errors are infinite.  Raises ParameterError where one is built with a number of threads that is no whole
-    number >= 1.
+    speed : highest speed for which the map is made, > 0, dimensionless, in the material's own unit
+    of time.  Beyond the limits of :func:`map_key` the map covers slower motions only.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    Returns the :class:`FlowMap`.  Nothing is raised if the scene has none: its ``problem`` then
+    says why, and its stated errors are infinite.  Raises ParameterError where one is built with a
+    number of threads that is no whole number >= 1.
 
-    A damaged map on disk is built again, with a RuntimeWarning.  A new map is written to disk, that of a scene without
-    one too; if that fails it is kept in memory alone.
+    A damaged map on disk is built again, with a RuntimeWarning.  A new map is written to disk, that
+    of a scene without one too; if that fails it is kept in memory alone.
     """
     return _map(*map_key(scene, speed), threads)
 
 
 @lru_cache(_MAPS_IN_MEMORY)
 def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowMap:
-    """Return a flow map from memory, from disk, or built and written to disk; the last four stay in memory.
+    """Return a flow map from memory, from disk, or built and written to disk; the last four stay in
+    memory.
 
-    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series in its own unit of
-    time.
+    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony`
+    series in its own unit of time.
     octave : the map covers kappa V < 2**octave at the onset of partial slip.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
-    Returns the :class:`FlowMap`, as :func:`build_map` does, and raises as it does; one of :data:`_MAPS_IN_MEMORY` for
-    equal arguments is returned again.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    Returns the :class:`FlowMap`, as :func:`build_map` does, and raises as it does; one of
+    :data:`_MAPS_IN_MEMORY` for equal arguments is returned again.
     """
     path = path_of(parameters, octave)
     found = load(path, parameters)
@@ -103,18 +115,26 @@ def _map(parameters: tuple[Any, ...], octave: int, threads: int | None) -> FlowM
 def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = None) -> FlowMap:
     """Build the flow map of a scene and measure its error; nothing is written to disk.
 
-    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series in its own unit of
-    time.
+    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony`
+    series in its own unit of time.
     octave : the map covers kappa V < 2**octave at the onset of partial slip.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
-    Returns a :class:`FlowMap`.  If the scene has none, as an elastic one (alpha = 1), its ``problem`` says why, its
-    errors are infinite, and its table is incomplete.
-    Raises ParameterError for a number of threads that is no whole number >= 1, unless the scene is elastic.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    Returns a :class:`FlowMap`.  If the scene has none, as an elastic one (alpha = 1), its
+    ``problem`` says why, its errors are infinite, and its table is incomplete.
+    Raises ParameterError for a number of threads that is no whole number >= 1, unless the scene is
+    elastic.
     """
-    from ..kernels.flow.layout import OCTAVES, SIZE
-    from .flow_fill import fill_tables
+    from ..kernels.motion.flow_layout import OCTAVES, SIZE
+    from .flow_tables import fill_tables
 
-    new_map = FlowMap(parameters, octave - OCTAVES, np.zeros(SIZE), (math.inf,) * 3, "")
+    new_map = FlowMap(
+        parameters=parameters,
+        first=octave - OCTAVES,
+        table=np.zeros(SIZE),
+        errors=(math.inf,) * 3,
+        problem="",
+    )
     problem = fill_tables(new_map, threads)
     if problem:
         return replace(new_map, problem=problem)
@@ -127,13 +147,16 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
     The random numbers are the same for every map; they are scaled to the speeds of the map.
 
     new_map : the :class:`FlowMap`, with all tables.
-    octave : the map covers kappa V < 2**octave at the onset of partial slip; the starts lie in the ten octaves below.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
-    Returns four times the largest relative errors: (of speeds and onset time; of distance and angle; of slip and
-    rolling loss), floats, at least 1e-10, 5e-10, 1e-10, infinite if a number is not finite.  Errors of V and omega are
-    divided by the larger of the two, that of the onset time by that time (and the relaxation time there), those of
-    distance and angle by the larger so far, those of losses by the energy at the start.  Motions that the map does not
-    contain count as exact.
+    octave : the map covers kappa V < 2**octave at the onset of partial slip; the starts lie in the
+    ten octaves below.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    Returns four times the largest relative errors: (of speeds and onset time; of distance and
+    angle; of slip and rolling loss), floats, at least 1e-10, 5e-10, 1e-10, infinite if a number is
+    not finite.  Errors of V and omega are divided by the larger of the two, that of the onset time
+    by that time (and the relaxation time there), those of distance and angle by the larger so far,
+    those of losses by the energy at the start.  Motions that the map does not contain count as
+    exact.
     """
     _, kappa, mu, _ = new_map.parameters
     rng = np.random.default_rng(20)
@@ -154,27 +177,30 @@ def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple
 
 
 def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, ...]:
-    """Return the largest relative errors of one motion of a new map, against the integrator, at times from its onset
-    on.
+    """Return the largest relative errors of one motion of a new map, against the integrator, at
+    times from its onset on.
 
-    Most of the times lie in the boundary layer after the onset of partial slip, two before the onset, and the last
-    ones at four times the time in which V falls by e at low speeds.
+    Most of the times lie in the boundary layer after the onset of partial slip, two before the
+    onset, and the last ones at four times the time in which V falls by e at low speeds.
 
     new_map : the :class:`FlowMap`, with all tables.
     V0, omega0 : start speeds, not both 0, dimensionless.
-    Returns (error of V and omega divided by the larger of the two, or error of the onset time divided by that time and
-    the relaxation time there, if larger; error of distance and angle, divided by the larger so far and 1e-5 of that at
-    rest; error of both losses, divided by the energy at the start), floats.  An error that is not finite is infinite;
-    all are 0 for a motion outside the map.
+    Returns (error of V and omega divided by the larger of the two, or error of the onset time
+    divided by that time and the relaxation time there, if larger; error of distance and angle,
+    divided by the larger so far and 1e-5 of that at rest; error of both losses, divided by the
+    energy at the start), floats.  An error that is not finite is infinite; all are 0 for a motion
+    outside the map.
     """
     _, _, _, j = new_map.parameters
-    decay, start = 1.0 / new_map.slow_rate, (np.array([V0]), np.array([omega0]))
+    decay = 1.0 / new_map.slow_rate
+    start = (np.array([V0]), np.array([omega0]))
 
     def flow(times: NDArray) -> FlowResult:
         """Look the motion up in the new map with gamma = 1.
 
         times : output times, (times,), dimensionless, ascending.
-        Returns a :class:`FlowResult` of one motion with the rows V, omega, x, angle, slip_loss, rolling_loss.
+        Returns a :class:`FlowResult` of one motion with the rows V, omega, x, angle, slip_loss,
+        rolling_loss.
         """
         return look_up_ensemble(new_map, Motions(1.0, 0.0, *start, times, _MEASURED_ROWS))
 
@@ -188,12 +214,20 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
     if at_rest.status[0] < 0 or found.status[0] < 0:
         return 0.0, 0.0, 0.0
     exact, how = integrate_motions(new_map.parameters, start, np.ones(1), times)
-    out, true_onset = exact[list(_MEASURED_ROWS), 0], how[0, 3]
+    out = exact[list(_MEASURED_ROWS), 0]
+    true_onset = how[0, 3]
     difference = np.abs(found.out[:, 0] - out)
     speed = np.maximum(np.abs(out[:2]).max(axis=0), np.finfo(float).tiny)  # both may have died out
-    path = np.maximum.accumulate(np.abs(out[2:4]).max(axis=0)) + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
+    path = (
+        np.maximum.accumulate(np.abs(out[2:4]).max(axis=0))
+        + _PATH_SHARE * np.abs(at_rest.out[2:4, 0, 1]).max()
+    )
     energy = 0.5 * (V0 * V0 + j * omega0 * omega0)
-    errors = [(difference[:2] / speed).max(), (difference[2:4] / path).max(), difference[4:].max() / energy]
+    errors = [
+        (difference[:2] / speed).max(),
+        (difference[2:4] / path).max(),
+        difference[4:].max() / energy,
+    ]
     if onset > 0.0:
         errors[0] = max(errors[0], abs(onset - true_onset) / (onset + stiff_time))
     return tuple(float(error) if math.isfinite(error) else math.inf for error in errors)
@@ -202,13 +236,15 @@ def _motion_errors(new_map: FlowMap, V0: float, omega0: float) -> tuple[float, .
 def _stiff_time(new_map: FlowMap, speed: float) -> float:
     """Return the time 1/k0 in which omega - V relaxes after the onset of partial slip near a speed.
 
-    It is taken at the middle of the octave in which the speed lies, so that it is off by a factor of up to about 1.5.
+    It is taken at the middle of the octave in which the speed lies, so that it is off by a factor
+    of up to about 1.5.
 
     new_map : the :class:`FlowMap`, from whose tables it is read.
-    speed : magnitude of the speed at onset, > 0, dimensionless; beyond the tables their first or last octave counts.
+    speed : magnitude of the speed at onset, > 0, dimensionless; beyond the tables their first or
+    last octave counts.
     Returns the time gamma t, a float > 0, dimensionless.
     """
-    from ..kernels.flow.layout import PLUS, views
+    from ..kernels.motion.flow_layout import PLUS, views
 
     # the constant of the second of a pair: at the middle of an octave
     rates = views(new_map.table).asymptote[PLUS, :, 2]
@@ -220,10 +256,11 @@ class FlowResult(NamedTuple):
     """Motions as arrays, dimensionless.
 
     out : quantities, (rows, motions, times), float64.
-    status : code of the :class:`MotionStatus` of each motion, (motions,), int8; below 0 for a motion without a result,
-    as it is outside the map or was not computed yet, whose other entries are undefined.
-    onset, rest : times from the start to the onset of partial slip and to rest, (motions,); NaN where there is none up
-    to the last output time.
+    status : code of the :class:`MotionStatus` of each motion, (motions,), int8; below 0 for a
+    motion without a result, as it is outside the map or was not computed yet, whose other entries
+    are undefined.
+    onset, rest : times from the start to the onset of partial slip and to rest, (motions,); NaN
+    where there is none up to the last output time.
     switches : number of changes of regime, (motions,), int64.
     """
 
@@ -235,7 +272,8 @@ class FlowResult(NamedTuple):
 
     @classmethod
     def empty(cls, rows: int, count: int, times: int) -> FlowResult:
-        """Return arrays for motions of which none is computed yet: status -1, 0 switches, all else undefined.
+        """Return arrays for motions of which none is computed yet: status -1, 0 switches, all else
+        undefined.
 
         rows : number of quantities.
         count : number of motions.
@@ -243,9 +281,12 @@ class FlowResult(NamedTuple):
         Returns a :class:`FlowResult` of new arrays.
         """
         return cls(
-            np.empty((rows, count, times)), np.full(count, -1, np.int8), np.empty(count), np.empty(count),
+            np.empty((rows, count, times)),
+            np.full(count, -1, np.int8),
+            np.empty(count),
+            np.empty(count),
             np.zeros(count, np.int64),
-        )  # fmt: skip
+        )
 
 
 def look_up_ensemble(
@@ -254,25 +295,35 @@ def look_up_ensemble(
     """Compute motions from the tables of a flow map.
 
     chosen : the :class:`FlowMap`, with all tables (its ``problem`` is "").
-    motions : :class:`Motions`: (gamma; threshold of rest, 0 for none; V0; omega0, (1,) or (n,); output times, (times,),
-    ascending; a tuple of the indices of the quantities in V, omega, x, angle, delta, regime, slip_loss, rolling_loss),
-    dimensionless, in the unit of time of the map's material.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores available.
+    motions : :class:`Motions`: (gamma; threshold of rest, 0 for none; V0; omega0, (1,) or (n,);
+    output times, (times,), ascending; a tuple of the indices of the quantities in V, omega, x,
+    angle, delta, regime, slip_loss, rolling_loss), dimensionless, in the unit of time of the map's
+    material.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
     progress : title of a progress bar, None for none.
-    Returns the n motions as a :class:`FlowResult`, whose quantities are in the order of the indices, dimensionless, in
-    the same unit of time; those outside the map have a status below 0, and their other entries are undefined.
+    Returns the n motions as a :class:`FlowResult`, whose quantities are in the order of the
+    indices, dimensionless, in the same unit of time; those outside the map have a status below 0,
+    and their other entries are undefined.
     """
-    from ..kernels.flow.loop import look_up_motions
-    from ..kernels.flow.records import Flow
+    from ..kernels.motion.flow_loop import look_up_motions
+    from ..kernels.records import Flow
 
-    V0, omega0, times = (broadcast_vector(a, a.shape) for a in (motions.V0, motions.omega0, motions.t))
+    V0, omega0, times = (
+        broadcast_vector(a, a.shape) for a in (motions.V0, motions.omega0, motions.t)
+    )
     count = np.broadcast_shapes(V0.shape, omega0.shape)[0]  # one of the two may be a single value
     result = FlowResult.empty(len(motions.rows), count, times.size)
     motions = motions._replace(V0=V0, omega0=omega0, t=times, rows=np.array(motions.rows, np.int64))
     _, kappa, mu, j = chosen.parameters
-    flow = Flow(chosen.table, chosen.first, kappa, mu, j, chosen.slow_rate)
+    flow = Flow(
+        table=chosen.table, first=chosen.first, kappa=kappa, mu=mu, j=j, slow_rate=chosen.slow_rate
+    )
     run_blocks(
-        lambda start, stop: look_up_motions(flow, motions, result, start, stop), count, _BLOCK,
-        threads=threads, progress=progress,
-    )  # fmt: skip
+        lambda start, stop: look_up_motions(flow, motions, result, start, stop),
+        count,
+        _BLOCK,
+        threads=threads,
+        progress=progress,
+    )
     return result

@@ -1,9 +1,19 @@
-"""Summaries of motions: of an ensemble in memory, and of blocks of a run, with the same bits in whatever order these
-were computed.
+"""Summaries of many motions: histograms, moments and quantiles.
 
-Counts are whole numbers, and moments are kept for each block and merged in the order of blocks.  A quantile of blocks
-lies between two values that are known to 2^-8 each (``tests/runs/test_runs.py``); that of an ensemble in memory is
-exact.
+Counts and moments of one quantity, which merge with those of further values: :class:`Histogram`.
+
+Counts merge to the same bits in any order, moments to rounding.
+
+A bin holds the doubles that share sign, exponent and the first eight bits after the point: 256 bins
+to the octave, so each is at most 2^-8 of its value wide (of magnitudes from 2^-1022 on), with no
+range to choose beforehand (as in DDSketch: C. Masson, J. Rim, H. Lee, VLDB 2019).
+
+Summaries of motions: of an ensemble in memory, and of blocks of a run, with the same bits in
+whatever order these were computed.
+
+Counts are whole numbers, and moments are kept for each block and merged in the order of blocks.  A
+quantile of blocks lies between two values that are known to 2^-8 each
+(``tests/runs/test_runs.py``); that of an ensemble in memory is exact.
 """
 
 from __future__ import annotations
@@ -16,13 +26,152 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.array_types import Floats
+from ..core.checks import Floats, Integers
 from ..core.errors import MotionStatus, ParameterError
-from .export import column_attributes, provenance
-from .histogram import Histogram, edges_of
+from .motion_datasets import column_attributes, provenance
 
 if TYPE_CHECKING:
     import xarray as xr
+
+
+# --- Counts and moments of one quantity, which merge with those of further values ---
+
+#: Bits of a double below those that number a bin: 52 of the fraction less the eight that are kept.
+_DROPPED = 44
+#: All bits of a double but its sign.
+_MAGNITUDE = np.int64(2**63 - 1)
+
+
+class Histogram(msgspec.Struct):
+    """Counts and moments of the finite values of one quantity at one time.
+
+    bins : numbers of the bins that hold values, ascending, (bins,).
+    counts : number of the values in each bin, > 0, (bins,).
+    count : number of all values.
+    mean, low, high : mean, least and largest value, in the unit of the quantity; NaN without
+    values.
+    spread : sum of squares of the differences from the mean; NaN without values.
+    values : all values, (count,), where quantiles are to be exact; else None.
+    """
+
+    bins: NDArray[np.int32]
+    counts: Integers
+    count: int = 0
+    mean: float = np.nan
+    spread: float = np.nan
+    low: float = np.nan
+    high: float = np.nan
+    values: Floats | None = None
+
+    @classmethod
+    def of(cls, values: Floats, exact: bool = False) -> Histogram:
+        """Make the histogram of those values that are finite.
+
+        values: float64, (n,), in the unit of the quantity; those that are not finite are left out,
+        and -0 counts as 0.
+        exact: whether to keep the values that are finite, (count,), for exact quantiles.
+        Returns the :class:`Histogram`; without finite values it has no bins, its moments are NaN,
+        and its ``values`` None.
+        """
+        kept = values[np.isfinite(values)]
+        bits = (kept + 0.0).view(np.int64)  # -0 becomes 0
+        # The order of numbers is that of their bins.
+        numbers = ((bits ^ ((bits >> 63) & _MAGNITUDE)) >> _DROPPED).astype(np.int32)
+        bins, counts = np.unique(numbers, return_counts=True)
+        if not kept.size:
+            return cls(bins, counts)
+        mean = float(kept.mean())
+        moments = mean, float(np.square(kept - mean).sum()), float(kept.min()), float(kept.max())
+        return cls(bins, counts, kept.size, *moments, kept if exact else None)
+
+    def merge(self, other: Histogram) -> Histogram:
+        """Return the histogram of the values of two histograms.
+
+        Moments after T. Chan, G. Golub, R. LeVeque (The American Statistician 37, 1983).
+
+        other: :class:`Histogram`, the second histogram.
+        Returns a new histogram, which does not keep the values, so that its quantiles are not
+        exact.  If one of the two has no values the other one itself is returned, with the values
+        that it keeps.
+        """
+        if not self.count or not other.count:
+            return self if self.count else other
+        bins = np.union1d(self.bins, other.bins)
+        count = self.count + other.count
+        distance = other.mean - self.mean
+        mean = self.mean + distance * (other.count / count)
+        spread = self.spread + other.spread + distance**2 * (self.count * (other.count / count))
+        extremes = min(self.low, other.low), max(self.high, other.high)
+        return Histogram(
+            bins, self.counts_in(bins) + other.counts_in(bins), count, mean, spread, *extremes
+        )
+
+    def counts_in(self, bins: NDArray[np.int32]) -> Integers:
+        """Return the counts in other bins, so that those of two histograms can be added
+        (:meth:`merge`).
+
+        bins: numbers of bins, (bins,), int32, ascending and different, which must contain all bins
+            of this histogram.  It is not checked: one that is missing gives IndexError or counts in
+            a wrong bin.
+        Returns the counts, (bins,), int64; 0 in bins without values.
+        """
+        counts = np.zeros(bins.size, np.int64)
+        counts[np.searchsorted(bins, self.bins)] = self.counts
+        return counts
+
+    def quantiles(self, levels: tuple[float, ...]) -> Floats:
+        """Return the quantiles, (levels,), in the unit of the quantity; NaN without values.
+
+        A quantile lies at rank level (count - 1), counted from 0, linear between the values of the
+        two nearest ranks.  If the values were kept it is exact.  If not, the values of each bin
+        count as evenly spread in it, within the least and the largest value, so that each is known
+        to the width of its bin, 2^-8 of the value.
+
+        levels: levels of the quantiles, in [0, 1], in any order; not checked.  For others numpy
+            raises ValueError if the values were kept; else the result has no meaning, or IndexError
+            is raised.
+        """
+        if not self.count:
+            return np.full(len(levels), np.nan)
+        if self.values is not None:
+            return np.quantile(self.values, levels)
+        position = np.asarray(levels) * (self.count - 1)
+        lower = np.floor(position).astype(np.int64)
+        first = self._at_rank(lower)
+        second = self._at_rank(np.minimum(lower + 1, self.count - 1))
+        return first + (position - lower) * (second - first)
+
+    def _at_rank(self, ranks: Integers) -> Floats:
+        """Return the values of ranks from 0, as if those of each bin were evenly spread.
+
+        The bin of zero is no interval: it holds 0 and positive values below 1e-310, and all of them
+        count as 0.
+
+        ranks: ranks among the values in ascending order, 0 ... count - 1, (k,), int.
+        Returns the values, (k,), in the unit of the quantity, between the least and the largest
+        value.
+        """
+        below, above = edges_of(self.bins)
+        above = np.where(self.bins == 0, below, above)
+        reached = np.cumsum(self.counts)
+        index = np.searchsorted(reached, ranks, side="right")
+        share = (ranks - (reached[index] - self.counts[index]) + 0.5) / self.counts[index]
+        return np.clip(below[index] + share * (above[index] - below[index]), self.low, self.high)
+
+
+def edges_of(bins: NDArray[np.int32]) -> tuple[Any, Any]:
+    """Return the edges of bins.
+
+    bins: numbers of bins, (bins,), as of :class:`Histogram`.
+    Returns (smallest value of each bin; smallest value of the bin after it, infinite for the last
+    bin of finite values), floats, in the shape of ``bins`` each.
+    """
+    bits = np.stack([bins, bins + 1]).astype(np.int64) << _DROPPED
+    below, above = (bits ^ ((bits >> 63) & _MAGNITUDE)).view(np.float64)
+    return below, above
+
+
+# --- Summaries of motions ---
 
 #: Levels of the quantiles that are computed where no others are given.
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
@@ -34,9 +183,10 @@ class Quantity(NamedTuple):
     """A quantity that summaries describe.
 
     fields : names of the fields of an ensemble that it needs.
-    values : function (motions, index of the output time) -> its values, (n,), in the unit of the roller or, of a part,
-    dimensionless; the index is ignored without ``over_time``.
-    column : name of the field whose long_name and unit it has; "" for a part of the kinetic energy at the start.
+    values : function (motions, index of the output time) -> its values, (n,), in the unit of the
+    roller or, of a part, dimensionless; the index is ignored without ``over_time``.
+    column : name of the field whose long_name and unit it has; "" for a part of the kinetic energy
+    at the start.
     part : words on which part that is; "" else.
     over_time : whether it has a value at each output time.
     """
@@ -48,9 +198,11 @@ class Quantity(NamedTuple):
     over_time: bool = True
 
     def about(self, si: bool) -> dict[str, Any]:
-        """Return the attributes long_name and units of the quantity, further ones of a field, as a dict.
+        """Return the attributes long_name and units of the quantity, further ones of a field, as a
+        dict.
 
-        si: whether the units are those of a cylinder; a part of the energy at the start has "1" in either case.
+        si: whether the units are those of a cylinder; a part of the energy at the start has "1" in
+        either case.
         """
         if self.part:
             return {"long_name": f"share of the initial kinetic energy {self.part}", "units": "1"}
@@ -58,7 +210,8 @@ class Quantity(NamedTuple):
 
 
 def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
-    """Return a field at an output time, made dimensionless, (n,); NaN for motions that did not reach it.
+    """Return a field at an output time, made dimensionless, (n,); NaN for motions that did not
+    reach it.
 
     motions: an :class:`Ensemble`, of which the field and scale are read.
     name, k: name of a field over (motion, t) that it has, and index of the output time.
@@ -67,11 +220,11 @@ def _dimensionless(motions: Any, name: str, k: int) -> NDArray:
 
 
 def _start_energy(motions: Any) -> NDArray:
-    """Return V0^2 + j omega0^2, twice the kinetic energy at the start divided by m (R/T_ref)^2, (n,); NaN for motions
-    from rest.  T_ref is the unit of time of dimensionless motions.
+    """Return V0^2 + j omega0^2, twice the kinetic energy at the start divided by m (R/T_ref)^2,
+    (n,); NaN for motions from rest.  T_ref is the unit of time of dimensionless motions.
 
-    motions: an :class:`Ensemble`, of which V0, omega0, scale and scene.j are read; its start speeds are those after the
-        cost of a standstill.
+    motions: an :class:`Ensemble`, of which V0, omega0, scale and scene.j are read; its start speeds
+        are those after the cost of a standstill.
     """
     V, omega = (getattr(motions, name) / motions.scale[name] for name in ("V0", "omega0"))
     energy = V**2 + motions.scene.j * omega**2
@@ -79,21 +232,21 @@ def _start_energy(motions: Any) -> NDArray:
 
 
 def _translation(motions: Any, k: int) -> NDArray:
-    """Return V(t_k)^2/(V0^2 + j omega0^2), dimensionless, (n,): the translational energy at output time t_k divided by
-    the kinetic energy at the start, above 1 perhaps under a drive; NaN for motions from rest, and for those that did
-    not reach t_k.
+    """Return V(t_k)^2/(V0^2 + j omega0^2), dimensionless, (n,): the translational energy at output
+    time t_k divided by the kinetic energy at the start, above 1 perhaps under a drive; NaN for
+    motions from rest, and for those that did not reach t_k.
 
-    motions: an :class:`Ensemble` with the field V; V0, omega0 (after the cost of a standstill), scale and scene.j are
-        read too.
+    motions: an :class:`Ensemble` with the field V; V0, omega0 (after the cost of a standstill),
+        scale and scene.j are read too.
     k: index of the output time.
     """
     return _dimensionless(motions, "V", k) ** 2 / _start_energy(motions)
 
 
 def _rotation(motions: Any, k: int) -> NDArray:
-    """Return j omega(t_k)^2/(V0^2 + j omega0^2), dimensionless, (n,): the rotational energy at output time t_k divided
-    by the kinetic energy at the start, above 1 perhaps under a drive; NaN for motions from rest, and for those that did
-    not reach t_k.
+    """Return j omega(t_k)^2/(V0^2 + j omega0^2), dimensionless, (n,): the rotational energy at
+    output time t_k divided by the kinetic energy at the start, above 1 perhaps under a drive; NaN
+    for motions from rest, and for those that did not reach t_k.
 
     motions: an :class:`Ensemble` with the field omega; V0, omega0, scale and scene.j are read too.
     k: index of the output time.
@@ -102,47 +255,77 @@ def _rotation(motions: Any, k: int) -> NDArray:
 
 
 def _loss(name: str, motions: Any, k: int) -> NDArray:
-    """Return a loss up to an output time divided by the kinetic energy at the start, dimensionless, (n,); NaN for
-    motions from rest, and for those that did not reach the time.
+    """Return a loss up to an output time divided by the kinetic energy at the start, dimensionless,
+    (n,); NaN for motions from rest, and for those that did not reach the time.
 
-    name, k: name of the field, "slip_loss" or "rolling_loss", in m (R/T_ref)^2 or J/m; index of the output time.
+    name, k: name of the field, "slip_loss" or "rolling_loss", in m (R/T_ref)^2 or J/m; index of the
+    output time.
     motions: an :class:`Ensemble` with that field; V0, omega0, scale and scene.j are read too.
     """
     return 2.0 * _dimensionless(motions, name, k) / _start_energy(motions)
 
 
 def _field(name: str, motions: Any, k: int) -> NDArray:
-    """Return the field ``name`` of ``motions`` at output time ``k``, (n,), in its unit; NaN where not reached."""
+    """Return the field ``name`` of ``motions`` at output time ``k``, (n,), in its unit; NaN where
+    not reached.
+    """
     return getattr(motions, name)[:, k]
 
 
 #: Fields of an ensemble that are summarised as they are.
 _FIELDS = (
-    "V", "omega", "x", "angle", "delta", "force", "torque",
-    "work_force", "work_torque", "brake_loss", "slip_loss", "rolling_loss",
-)  # fmt: skip
+    "V",
+    "omega",
+    "x",
+    "angle",
+    "delta",
+    "force",
+    "torque",
+    "work_force",
+    "work_torque",
+    "brake_loss",
+    "slip_loss",
+    "rolling_loss",
+)
 #: All quantities by name.
 QUANTITIES = {
-    **{name: Quantity((name,), partial(_field, name), name) for name in _FIELDS},
-    "distance": Quantity(("x",), lambda motions, k: np.abs(motions.x[:, k]), "x"),
-    "translation": Quantity(("V",), _translation, part="in translation"),
-    "rotation": Quantity(("omega",), _rotation, part="in rotation"),
+    **{
+        name: Quantity(fields=(name,), values=partial(_field, name), column=name)
+        for name in _FIELDS
+    },
+    "distance": Quantity(
+        fields=("x",), values=lambda motions, k: np.abs(motions.x[:, k]), column="x"
+    ),
+    "translation": Quantity(fields=("V",), values=_translation, part="in translation"),
+    "rotation": Quantity(fields=("omega",), values=_rotation, part="in rotation"),
     "lost": Quantity(
-        ("V", "omega"), lambda motions, k: 1.0 - _translation(motions, k) - _rotation(motions, k),
+        fields=("V", "omega"),
+        values=lambda motions, k: 1.0 - _translation(motions, k) - _rotation(motions, k),
         part="lost to slip and rolling resistance",
     ),
-    "lost_to_slip": Quantity(("slip_loss",), partial(_loss, "slip_loss"), part="lost in slip"),
-    "lost_to_rolling": Quantity(("rolling_loss",), partial(_loss, "rolling_loss"), part="lost in rolling"),
-    "onset_time": Quantity((), lambda motions, k: motions.onset_time, "onset_time", over_time=False),
-    "rest_time": Quantity((), lambda motions, k: motions.rest_time, "rest_time", over_time=False),
-}  # fmt: skip
+    "lost_to_slip": Quantity(
+        fields=("slip_loss",), values=partial(_loss, "slip_loss"), part="lost in slip"
+    ),
+    "lost_to_rolling": Quantity(
+        fields=("rolling_loss",), values=partial(_loss, "rolling_loss"), part="lost in rolling"
+    ),
+    "onset_time": Quantity(
+        fields=(),
+        values=lambda motions, k: motions.onset_time,
+        column="onset_time",
+        over_time=False,
+    ),
+    "rest_time": Quantity(
+        fields=(), values=lambda motions, k: motions.rest_time, column="rest_time", over_time=False
+    ),
+}
 
 
 class Summary(msgspec.Struct):
     """Summary of a block of motions.
 
-    histograms : name of a quantity -> a histogram for each output time, or one for a quantity that is one number per
-    motion.
+    histograms : name of a quantity -> a histogram for each output time, or one for a quantity that
+    is one number per motion.
     statuses : code of :class:`MotionStatus` -> number of motions.
     mapped : number of motions from the flow map.
     """
@@ -156,29 +339,40 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     """Return the summary of an ensemble in memory with exact quantiles, see ``Ensemble.summary``.
 
     motions: the :class:`Ensemble`.
-    levels: levels of the quantiles, in [0, 1], in any order; the caller checks them (ValueError of numpy).
+    levels: levels of the quantiles, in [0, 1], in any order; the caller checks them (ValueError of
+    numpy).
     Raises ParameterError for an ensemble without motions.
-    Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the regime, of the distance
-    |x| if it has x, and of onset and rest time, in the units of the roller; its attributes also are ``motions``, their
-    number, and those of :func:`.export.provenance`.
+    Returns the dataset of :func:`summary_dataset`, of all fields that the ensemble has but the
+    regime, of the distance
+    |x| if it has x, and of onset and rest time, in the units of the roller; its attributes also are
+    ``motions``, their number, and those of :func:`.motion_datasets.provenance`.
     """
     if not len(motions):
         raise ParameterError("motions", 0, "at least 1")
     names = [
-        name for name, quantity in QUANTITIES.items()
-        if not quantity.part and all(getattr(motions, field) is not None for field in quantity.fields)
-    ]  # fmt: skip
-    dataset = summary_dataset(summarise(motions, names, exact=True), motions.t, levels, motions.scale.si)
-    return dataset.assign_attrs(provenance("Summary of an ensemble of motions"), motions=len(motions))
+        name
+        for name, quantity in QUANTITIES.items()
+        if not quantity.part
+        and all(getattr(motions, field) is not None for field in quantity.fields)
+    ]
+    dataset = summary_dataset(
+        summarise(motions, names, exact=True), motions.t, levels, motions.scale.si
+    )
+    return dataset.assign_attrs(
+        provenance("Summary of an ensemble of motions"), motions=len(motions)
+    )
 
 
 def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
-    """Return the summary by which an ensemble is drawn: of both speeds, the distance and the angle, as it has them.
+    """Return the summary by which an ensemble is drawn: of both speeds, the distance and the angle,
+    as it has them.
 
-    ensemble: dataset of ``Ensemble.to_xarray``.  Those of V, omega, x and angle that it has are summarised, at its t;
-        status and flow are read too; an attribute R tells that it is in SI units.
-    Returns the dataset of :func:`summary_dataset`, with the quantiles of :data:`LEVELS`, in the units of ``ensemble``;
-    its attributes also are ``motions``, their number.  A dataset without status or flow raises AttributeError.
+    ensemble: dataset of ``Ensemble.to_xarray``.  Those of V, omega, x and angle that it has are
+        summarised, at its t; status and flow are read too; an attribute R tells that it is in SI
+        units.
+    Returns the dataset of :func:`summary_dataset`, with the quantiles of :data:`LEVELS`, in the
+    units of ``ensemble``; its attributes also are ``motions``, their number.  A dataset without
+    status or flow raises AttributeError.
     """
     names = [name for name in _DRAWN if name in ensemble]
     summary = summarise(ensemble, names, exact=True)
@@ -189,31 +383,38 @@ def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
 def summarise(motions: Any, names: Iterable[str], exact: bool = False) -> Summary:
     """Return the summary of the motions of a block, which merges with those of other blocks.
 
-    motions: an :class:`Ensemble`, or its dataset, for which names of parts of the energy are not allowed; t, status,
-        flow and the fields of the quantities are read, for a part of the energy V0, omega0, scale and scene.j too.
-    names: names of quantities, keys of :data:`QUANTITIES` (else KeyError), whose fields the ensemble has.
+    motions: an :class:`Ensemble`, or its dataset, for which names of parts of the energy are not
+        allowed; t, status, flow and the fields of the quantities are read, for a part of the energy
+        V0, omega0, scale and scene.j too.
+    names: names of quantities, keys of :data:`QUANTITIES` (else KeyError), whose fields the
+    ensemble has.
     exact: whether to keep the values for exact quantiles.
-    Returns the :class:`Summary`, in the units of the roller: a list of histograms for each name, one for each output
-    time, or a single one of a quantity that is one number for each motion; its ``statuses`` have only those that occur.
-    Values that are not finite are left out.
+    Returns the :class:`Summary`, in the units of the roller: a list of histograms for each name,
+    one for each output time, or a single one of a quantity that is one number for each motion; its
+    ``statuses`` have only those that occur.  Values that are not finite are left out.
     """
     histograms = {}
     for name in names:
         quantity = QUANTITIES[name]
         times = range(motions.t.size if quantity.over_time else 1)
-        histograms[name] = [Histogram.of(np.asarray(quantity.values(motions, k)), exact) for k in times]
+        histograms[name] = [
+            Histogram.of(np.asarray(quantity.values(motions, k)), exact) for k in times
+        ]
     codes, counts = np.unique(motions.status, return_counts=True)
-    return Summary(histograms, dict(zip(codes.tolist(), counts.tolist(), strict=True)), int(motions.flow.sum()))
+    return Summary(
+        histograms, dict(zip(codes.tolist(), counts.tolist(), strict=True)), int(motions.flow.sum())
+    )
 
 
 def merge_summaries(summaries: Iterator[Summary]) -> Summary:
     """Merge the summaries of blocks to one of all their motions.
 
     summaries: iterator over at least one :class:`Summary`, in the order of blocks.
-    Returns the first one, which is changed and then counts all motions.  A histogram keeps its values only if no more
-    than one of the blocks has values there; else its quantiles are known to their bins.
-    Raises StopIteration without a summary, KeyError for one that lacks a quantity of the first, ValueError for one of
-    another number of times.  Quantities that the first lacks are left out.
+    Returns the first one, which is changed and then counts all motions.  A histogram keeps its
+    values only if no more than one of the blocks has values there; else its quantiles are known to
+    their bins.
+    Raises StopIteration without a summary, KeyError for one that lacks a quantity of the first,
+    ValueError for one of another number of times.  Quantities that the first lacks are left out.
     """
     total = next(summaries)
     for other in summaries:
@@ -230,13 +431,15 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
     """Return moments, quantiles and histograms, and counts of how motions ended, as a dataset.
 
     total: the :class:`Summary`, with at least one histogram for each quantity.
-    t: output times, (times,), in the unit of the roller, as many as histograms of a quantity over time.
+    t: output times, (times,), in the unit of the roller, as many as histograms of a quantity over
+    time.
     levels: levels of the quantiles, in [0, 1].
     si: whether the attributes name the SI units of a cylinder; values are not converted.
-    Returns the dataset over t, quantile (``levels``) and status (codes of :class:`MotionStatus`), its coordinates: of
-    each quantity the variables of :func:`_variables`; ``ended`` over status, the number of motions with each status, 0
-    included, whose attribute ``meanings`` has the messages as "CODE: MESSAGE; ..."; attributes ``failed_motions``, the
-    number of those that reached neither the last output time nor rest, and ``motions_from_the_flow_map``.
+    Returns the dataset over t, quantile (``levels``) and status (codes of :class:`MotionStatus`),
+    its coordinates: of each quantity the variables of :func:`_variables`; ``ended`` over status,
+    the number of motions with each status, 0 included, whose attribute ``meanings`` has the
+    messages as "CODE: MESSAGE; ..."; attributes ``failed_motions``, the number of those that
+    reached neither the last output time nor rest, and ``motions_from_the_flow_map``.
     """
     import xarray as xr
 
@@ -245,35 +448,53 @@ def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bo
         data |= _variables(name, histograms, levels, si)
     codes = np.array([int(code) for code in MotionStatus], np.int8)
     ended = column_attributes("status") | {
-        "long_name": "number of motions with each status", "units": "1",
+        "long_name": "number of motions with each status",
+        "units": "1",
         "meanings": "; ".join(f"{int(code)}: {code.message}" for code in MotionStatus),
-    }  # fmt: skip
-    data["ended"] = "status", np.array([total.statuses.get(code, 0) for code in codes.tolist()]), ended
+    }
+    data["ended"] = (
+        "status",
+        np.array([total.statuses.get(code, 0) for code in codes.tolist()]),
+        ended,
+    )
     coords = {
         "t": ("t", t, column_attributes("t", si)),
-        "quantile": ("quantile", np.array(levels), {"long_name": "share of motions below", "units": "1"}),
+        "quantile": (
+            "quantile",
+            np.array(levels),
+            {"long_name": "share of motions below", "units": "1"},
+        ),
         "status": ("status", codes, {"long_name": "code of MotionStatus"}),
     }
     failed = sum(n for code, n in total.statuses.items() if code > MotionStatus.RESTED)
-    return xr.Dataset(data, coords, {"failed_motions": failed, "motions_from_the_flow_map": total.mapped})
+    return xr.Dataset(
+        data, coords, {"failed_motions": failed, "motions_from_the_flow_map": total.mapped}
+    )
 
 
-def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...], si: bool) -> dict[str, Any]:
-    """Return the variables of one quantity: moments, quantiles, and counts in all bins that hold a value at some time.
+def _variables(
+    name: str, histograms: list[Histogram], levels: tuple[float, ...], si: bool
+) -> dict[str, Any]:
+    """Return the variables of one quantity: moments, quantiles, and counts in all bins that hold a
+    value at some time.
 
     name: name of the quantity, a key of :data:`QUANTITIES`.
     histograms: one :class:`Histogram` for each output time, or one.
     levels: levels of the quantiles, in [0, 1].
     si: whether the attributes name the SI units of a cylinder; values are not converted.
-    Returns name of the variable -> (dimensions, values, attributes): NAME_counted, _mean, _std (the root of the mean
-    square of the differences from the mean), _min, _max over t, NAME_quantiles over (quantile, t), NAME_histogram over
-    (NAME_bin, t), NAME_bin_low and NAME_bin_high over NAME_bin; all without t of a quantity that is one number per
-    motion.  At a time without values the moments and quantiles are NaN, and counts 0.  Attributes are long_name and
-    units ("1" of counts), of the quantiles also ``comment``, their accuracy.
+    Returns name of the variable -> (dimensions, values, attributes): NAME_counted, _mean, _std (the
+    root of the mean square of the differences from the mean), _min, _max over t, NAME_quantiles
+    over (quantile, t), NAME_histogram over (NAME_bin, t), NAME_bin_low and NAME_bin_high over
+    NAME_bin; all without t of a quantity that is one number per motion.  At a time without values
+    the moments and quantiles are NaN, and counts 0.  Attributes are long_name and units ("1" of
+    counts), of the quantiles also ``comment``, their accuracy.
     """
-    about, times = QUANTITIES[name].about(si), ("t",) if QUANTITIES[name].over_time else ()
+    about = QUANTITIES[name].about(si)
+    times = ("t",) if QUANTITIES[name].over_time else ()
     bins = np.unique(np.concatenate([one.bins for one in histograms]))
-    moments = np.array([[one.count, one.mean, one.spread, one.low, one.high] for one in histograms]).T
+    moments = np.array(
+        [[one.count, one.mean, one.spread, one.low, one.high] for one in histograms]
+    ).T
     counted, mean, spread, low, high = moments
     below, above = edges_of(bins)
     in_bins = f"{name}_bin"
@@ -283,8 +504,16 @@ def _variables(name: str, histograms: list[Histogram], levels: tuple[float, ...]
         "std": (times, np.sqrt(spread / np.maximum(counted, 1)), "standard deviation"),
         "min": (times, low, "least value"),
         "max": (times, high, "largest value"),
-        "quantiles": (("quantile", *times), np.array([one.quantiles(levels) for one in histograms]).T, "quantiles"),
-        "histogram": ((in_bins, *times), np.array([one.counts_in(bins) for one in histograms]).T, "motions a bin"),
+        "quantiles": (
+            ("quantile", *times),
+            np.array([one.quantiles(levels) for one in histograms]).T,
+            "quantiles",
+        ),
+        "histogram": (
+            (in_bins, *times),
+            np.array([one.counts_in(bins) for one in histograms]).T,
+            "motions a bin",
+        ),
         "bin_low": ((in_bins,), below, "lower edge of a bin"),
         "bin_high": ((in_bins,), above, "upper edge of a bin"),
     }

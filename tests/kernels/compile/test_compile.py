@@ -1,4 +1,6 @@
-"""Compiling: deferred to the call from Python, cached on disk, plain where numba's inner names fail."""
+"""Compiling: deferred to the call from Python, cached on disk, plain where numba's inner names
+fail.
+"""
 
 import grp
 import hashlib
@@ -21,9 +23,9 @@ from filelock import FileLock
 from ordinary_user import NOBODY, as_ordinary_user, let_in
 from processes import python
 
-from viscoroll.kernels.compile import cache as cache_module
-from viscoroll.kernels.compile import deferred, folder, notice
-from viscoroll.kernels.compile.jit import kernel
+from viscoroll.kernels.numerics import cache_folder, deferred_compilation
+from viscoroll.kernels.numerics import jit as cache_module
+from viscoroll.kernels.numerics.jit import kernel
 
 FACTOR = 3.0
 
@@ -32,7 +34,7 @@ FACTOR = 3.0
 def _anew(monkeypatch):
     """Whatever is told once is told again; what fell back is forgotten."""
     cache_module.warn_once.cache_clear()
-    monkeypatch.setattr(deferred, "_deferring", True)
+    monkeypatch.setattr(deferred_compilation, "_deferring", True)
     yield
     cache_module.warn_once.cache_clear()
 
@@ -77,13 +79,14 @@ def test_a_process_waits_for_what_another_one_compiles(kernels, monkeypatch):
     """And compiles by itself where that takes too long."""
     assert cubed(2.0) == 8.0
     (stored,) = kernels.rglob("*.nbc")
-    content, lock = stored.read_bytes(), FileLock(f"{stored}.lock", thread_local=False)
+    content = stored.read_bytes()
+    lock = FileLock(f"{stored}.lock", thread_local=False)
     stored.unlink()
     lock.acquire()
     with monkeypatch.context() as hasty:
         hasty.setattr(cache_module, "PATIENCE", 0.0)
         assert kernel(cubed.py_func)(2.0) == 8.0
-    monkeypatch.delattr(deferred.EntryPipeline, "compile_extra")
+    monkeypatch.delattr(deferred_compilation.EntryPipeline, "compile_extra")
     stored.unlink()
     lock = FileLock(f"{stored}.lock", thread_local=False)
     lock.acquire()
@@ -107,7 +110,9 @@ def test_a_cache_folder_that_cannot_be_searched(kernels, monkeypatch):
 
 
 def test_an_ordinary_function_between_kernels_works(kernels):
-    """It is compiled by itself, with all below it: LLVM would end the process for a symbol that it misses."""
+    """It is compiled by itself, with all below it: LLVM would end the process for a symbol that it
+    misses.
+    """
     between = numba.njit(lambda x: square(x) + 1.0)
 
     @kernel
@@ -127,10 +132,15 @@ def test_an_ordinary_function_between_kernels_works(kernels):
     ],
 )
 def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypatch, holder, name):
-    # asked anew for these kernels alone: parts that others compiled before belong to the pipelines that are kept
-    monkeypatch.setattr(deferred, "_pipelines", deferred._pipelines.__wrapped__)
+    # asked anew for these kernels alone: parts that others compiled before belong to the pipelines
+    # that are kept
+    monkeypatch.setattr(
+        deferred_compilation, "_pipelines", deferred_compilation._pipelines.__wrapped__
+    )
     monkeypatch.delattr(f"{holder}.{name}")
-    with pytest.warns(RuntimeWarning, match=r"does not compile cubed with what it calls \(.*one by one"):
+    with pytest.warns(
+        RuntimeWarning, match=r"does not compile cubed with what it calls \(.*one by one"
+    ):
         assert cubed(2.0) == 8.0
     assert square(2.0) == 4.0  # told once, and warnings are errors here
 
@@ -142,7 +152,7 @@ def test_an_error_in_a_kernel_is_no_reason_to_fall_back(kernels):
 
     with pytest.raises(numba.TypingError, match="nothing_of_the_kind"):
         wrong(1.0)
-    assert deferred._deferring
+    assert deferred_compilation._deferring
 
 
 # --- the cache ---
@@ -161,7 +171,9 @@ def cache(tmp_path, monkeypatch):
 
 
 def fresh():
-    """Use the kernel as a new process would: the value is right; returns the number of cache hits."""
+    """Use the kernel as a new process would: the value is right; returns the number of cache
+    hits.
+    """
     function = kernel(scaled)
     assert function(2.0) == 6.0
     return sum(function.stats.cache_hits.values())
@@ -173,15 +185,17 @@ def test_second_use_is_from_the_cache(cache):
 
 
 #: without a figure: the first kernel does not know how many follow it
-NOTICE = r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll warmup` does it ahead\n"
+NOTICE = (
+    r"viscoroll: compiling kernels, \D*, once for this machine; `viscoroll warmup` does it ahead\n"
+)
 
 
 def test_settings_that_machine_code_follows_have_code_of_their_own(tmp_path):
-    """What one process compiled without checks is not what another one, that asks for them, is given.  A process that
-    compiles says so once."""
+    """What one process compiled without checks is not what another one, that asks for them, is
+    given.  A process that compiles says so once."""
     script = """
 import numpy as np
-from viscoroll.kernels.compile.jit import kernel
+from viscoroll.kernels.numerics.jit import kernel
 
 @kernel
 def at(array, n):
@@ -200,7 +214,9 @@ print(sum(at.stats.cache_hits.values()))
         ({"NUMBA_BOUNDSCHECK": "1"}, "100.0 refused 0\n", NOTICE),
         ({"NUMBA_BOUNDSCHECK": "1"}, "100.0 refused 1\n", ""),
     ):
-        done = python("-c", script, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="", **settings)
+        done = python(
+            "-c", script, VISCOROLL_CACHE_DIR=str(tmp_path), VISCOROLL_QUIET="", **settings
+        )
         assert done.stdout == said, (settings, done.stderr)
         assert re.fullmatch(told, done.stderr), settings
 
@@ -246,7 +262,10 @@ def plant(path):
     return trace
 
 
-SHARED = r"compiled kernels are not cached \(.*: others may write to it; `chmod go-w .*, or name a folder of your own"
+SHARED = (
+    r"compiled kernels are not cached \(.*: others may write to it; `chmod go-w .*, or name "
+    r"a folder of your own"
+)
 
 
 @pytest.mark.parametrize("place", ["folder", "root", "above"])
@@ -261,7 +280,9 @@ def test_what_others_may_have_written_is_not_run(cache, place):
     with pytest.warns(RuntimeWarning, match=SHARED):
         assert fresh() == 0
     assert not trace.exists()
-    shared.chmod(before if place != "above" else 0o1777)  # sticky as /tmp: nobody there replaces what is another's
+    shared.chmod(
+        before if place != "above" else 0o1777
+    )  # sticky as /tmp: nobody there replaces what is another's
     path.write_bytes(stored)
     assert fresh() == 1
 
@@ -294,7 +315,10 @@ def test_what_belongs_to_another_is_not_run(cache):
     (path,) = cache.iterdir()
     trace = plant(path)
     os.chown(cache, NOBODY, -1)
-    with pytest.warns(RuntimeWarning, match=r"compiled kernels are not cached \(.*: it belongs to another user; name"):
+    with pytest.warns(
+        RuntimeWarning,
+        match=r"compiled kernels are not cached \(.*: it belongs to another user; name",
+    ):
         assert fresh() == 0
     assert not trace.exists()
 
@@ -303,10 +327,15 @@ def test_a_group_of_one_is_no_others(cache, monkeypatch):
     """As where every user has a group that bears their name, and a umask of 002."""
     cache.chmod(0o775)
     user = pwd.getpwuid(os.geteuid()).pw_name
-    for name, members, hits in ((user, [], 1), (user, [user], 1), (user, ["another"], 0), ("staff", [], 0)):
+    for name, members, hits in (
+        (user, [], 1),
+        (user, [user], 1),
+        (user, ["another"], 0),
+        ("staff", [], 0),
+    ):
         found = SimpleNamespace(gr_name=name, gr_mem=members)
         monkeypatch.setattr(grp, "getgrgid", lambda group, found=found: found)
-        monkeypatch.setattr(folder, "_SUPERUSERS", -1)
+        monkeypatch.setattr(cache_folder, "_SUPERUSERS", -1)
         cache_module.warn_once.cache_clear()
         with warnings.catch_warnings():
             warnings.simplefilter("ignore")
@@ -362,11 +391,15 @@ def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, 
 
 
 def test_bits_cannot_follow_the_history_of_the_cache():
-    """No kernel is granted numerical freedom: what LLVM makes of that depends on what is compiled together."""
+    """No kernel is granted numerical freedom: what LLVM makes of that depends on what is compiled
+    together.
+    """
     kernels = [
         each
         for path in cache_module.KERNELS.glob("*/[!_]*.py")
-        for each in vars(importlib.import_module(f"viscoroll.kernels.{path.parent.name}.{path.stem}")).values()
+        for each in vars(
+            importlib.import_module(f"viscoroll.kernels.{path.parent.name}.{path.stem}")
+        ).values()
         if hasattr(each, "targetoptions")
     ]
     assert len(kernels) > 100
@@ -376,9 +409,9 @@ def test_bits_cannot_follow_the_history_of_the_cache():
 def test_cache_folder_follows_the_environment(monkeypatch):
     monkeypatch.delenv("VISCOROLL_CACHE_DIR", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", "/xdg")
-    assert folder.cache_root() == Path("/xdg/viscoroll")
+    assert cache_folder.cache_root() == Path("/xdg/viscoroll")
     monkeypatch.delenv("XDG_CACHE_HOME")
-    assert folder.cache_root() == Path.home() / ".cache" / "viscoroll"
+    assert cache_folder.cache_root() == Path.home() / ".cache" / "viscoroll"
 
 
 def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch):
@@ -391,12 +424,14 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
         monkeypatch.delenv(name, raising=False)
     monkeypatch.setattr(Path, "home", nowhere)
     monkeypatch.setenv("TMPDIR", str(tmp_path))
-    folder._without_home.cache_clear()
-    with pytest.warns(RuntimeWarning, match=f"there is no home directory: caches are in {tmp_path}"):
+    cache_folder._without_home.cache_clear()
+    with pytest.warns(
+        RuntimeWarning, match=f"there is no home directory: caches are in {tmp_path}"
+    ):
         assert fresh() == 0
     assert fresh() == 1
     assert [path.name for path in tmp_path.iterdir()] == [f"viscoroll-{os.geteuid()}"]
-    folder._without_home.cache_clear()
+    cache_folder._without_home.cache_clear()
 
 
 # --- what is said ---
@@ -404,23 +439,27 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
 
 @pytest.fixture
 def untold(monkeypatch):
-    monkeypatch.setattr(notice, "announced", False)
+    monkeypatch.setattr(cache_folder, "announced", False)
     monkeypatch.delenv("VISCOROLL_QUIET", raising=False)
 
 
 def test_nothing_is_said_where_it_is_not_wanted(untold, capsys, monkeypatch):
     with monkeypatch.context() as quiet:
         quiet.setenv("VISCOROLL_QUIET", "1")
-        notice.announce_compiling()
+        cache_folder.announce_compiling()
     with monkeypatch.context() as child:
-        child.setattr(notice.multiprocessing, "parent_process", lambda: "this process has one")
-        notice.announce_compiling()
+        child.setattr(
+            cache_folder.multiprocessing, "parent_process", lambda: "this process has one"
+        )
+        cache_folder.announce_compiling()
     with monkeypatch.context() as worker:
-        worker.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=lambda: "a worker of dask"))
-        notice.announce_compiling()
+        worker.setitem(
+            sys.modules, "distributed", SimpleNamespace(get_worker=lambda: "a worker of dask")
+        )
+        cache_folder.announce_compiling()
     with monkeypatch.context() as window:
         window.setattr(sys, "stderr", None)
-        notice.announce_compiling()
+        cache_folder.announce_compiling()
     assert capsys.readouterr() == ("", "")
 
 
@@ -429,13 +468,15 @@ def test_a_client_of_dask_is_told(untold, capsys, monkeypatch):
         raise ValueError("No worker found")
 
     monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=get_worker))
-    notice.announce_compiling()
+    cache_folder.announce_compiling()
     assert re.fullmatch(NOTICE, capsys.readouterr().err)
 
 
 def test_numba_switched_off_is_one_line():
     """Vectors of four are machine code alone."""
     rubber = "src/viscoroll/datasets/rubber.toml"
-    done = python("-m", "viscoroll", "contact", rubber, "--V", 0.5, "--delta", 0.01, NUMBA_DISABLE_JIT="1")
+    done = python(
+        "-m", "viscoroll", "contact", rubber, "--V", 0.5, "--delta", 0.01, NUMBA_DISABLE_JIT="1"
+    )
     assert (done.returncode, done.stderr.count("\n")) == (2, 1)
     assert "NUMBA_DISABLE_JIT = 1: must be 0" in done.stderr

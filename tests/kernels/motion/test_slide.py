@@ -7,7 +7,9 @@ from closeness import close
 
 import viscoroll as vr
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # the paper's own scene is beyond the model
+pytestmark = pytest.mark.filterwarnings(
+    "ignore::viscoroll.ModelWarning"
+)  # the paper's own scene is beyond the model
 
 PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
 #: rolling resistance widens the slip where it is at its largest, before friction closes it
@@ -22,9 +24,14 @@ def test_elastic_cylinder():
         end = abs(omega0 - V0) / (scene.gamma * scene.mu * (1.0 + 1.0 / scene.j))
         t = end * np.array([1e-9, 1e-4, 0.1, 0.5, 0.9])
         motion = vr.roll(scene, V0, omega0, [*t, 2.0 * end], rtol=1e-8)
-        for speed, way, start, rate in (("V", "x", V0, push), ("omega", "angle", omega0, -push / scene.j)):
+        for speed, way, start, rate in (
+            ("V", "x", V0, push),
+            ("omega", "angle", omega0, -push / scene.j),
+        ):
             assert close(getattr(motion, speed)[:5], start + rate * t, tol.SLIDE, scale=1.0)
-            assert close(getattr(motion, way)[:5], start * t + 0.5 * rate * t**2, tol.SLIDE, scale=end)
+            assert close(
+                getattr(motion, way)[:5], start * t + 0.5 * rate * t**2, tol.SLIDE, scale=end
+            )
         # in the end it rolls at the speed that conserves V + j omega, for ever
         final = (V0 + scene.j * omega0) / (1.0 + scene.j)
         rolls = vr.roll(scene, V0, omega0, [1.0, 1e3], rtol=1e-8)
@@ -33,7 +40,9 @@ def test_elastic_cylinder():
 
 
 def test_the_first_instants():
-    """Distance and angle to full relative accuracy, however early: from V = 0 and from omega = 0."""
+    """Distance and angle to full relative accuracy, however early: from V = 0 and from omega =
+    0.
+    """
     t = np.array([1e-12, 1e-9, 1e-7]) / PAPER.gamma
     rises = vr.roll(PAPER, 0.0, 1.0, [*t, 1e-4])
     assert close(rises.x[:3], 0.5 * PAPER.gamma * PAPER.mu * t**2, 1e-6)
@@ -55,12 +64,15 @@ def test_a_held_cylinder_takes_no_steps(spin):
 
 
 def test_a_slip_that_nearly_ends_is_noticed():
-    """Friction closes the slip, resistance widens it again: onset jumps where slip just touches its limit."""
+    """Friction closes the slip, resistance widens it again: onset jumps where slip just touches its
+    limit.
+    """
 
     def early(omega0, rtol):
         return vr.roll(WIDENING, 2.0, omega0, [1e-2], rtol=rtol).onset_time < 5e-3
 
-    low, high = 2.0 - 0.55, 2.0 - 0.525
+    low = 2.0 - 0.55
+    high = 2.0 - 0.525
     for _ in range(16):
         middle = 0.5 * (low + high)
         low, high = (low, middle) if early(middle, 1e-9) else (middle, high)
@@ -71,9 +83,13 @@ def test_a_slip_that_nearly_ends_is_noticed():
 
 
 def test_largest_rolling_resistance():
-    """kappa M grows with alpha at every speed, to 0.30905 at most: with more friction nothing holds V."""
+    """kappa M grows with alpha at every speed, to 0.30905 at most: with more friction nothing holds
+    V.
+    """
     V = np.geomspace(1e-4, 1e6, 4001)
     alphas = np.geomspace(1.0001, 1e12, 60)
-    M = np.array([vr.contact(vr.Scene(alpha, 1.0, 1.0), V, delta=0.0, fields="M").M for alpha in alphas])
+    M = np.array(
+        [vr.contact(vr.Scene(alpha, 1.0, 1.0), V, delta=0.0, fields="M").M for alpha in alphas]
+    )
     assert np.diff(M, axis=0).min() > -tol.CONTACT * M.max()
     assert 0.3090 < M.max() < 0.3091

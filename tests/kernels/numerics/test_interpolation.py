@@ -1,4 +1,6 @@
-"""Nodes, weights and matrices of polynomials; what is computed with them is claimed in ``test_claims.py``."""
+"""Nodes, weights and matrices of polynomials; what is computed with them is claimed in
+``test_claims.py``.
+"""
 
 import decimal
 
@@ -16,9 +18,13 @@ def test_digits_do_not_depend_on_the_caller():
 
 
 def test_matrices_are_in_c_order():
-    """numpy's einsum adds in the order of memory, so that last bits of all that matrices are applied to follow it."""
+    """numpy's einsum adds in the order of memory, so that last bits of all that matrices are
+    applied to follow it.
+    """
     nodes = radau(9, 1)
     interpolation = Interpolation(nodes)
     matrices = [interpolation.powers(), to_chebyshev(9)]
-    matrices += [of(nodes) for of in (interpolation.values, interpolation.slopes, interpolation.integrals)]
+    matrices += [
+        of(nodes) for of in (interpolation.values, interpolation.slopes, interpolation.integrals)
+    ]
     assert all(matrix.flags.c_contiguous for matrix in matrices)

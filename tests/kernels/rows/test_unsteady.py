@@ -1,4 +1,6 @@
-"""N of M = M(V) + N V': against its definition in many digits, its limits, and what is known of its shape."""
+"""N of M = M(V) + N V': against its definition in many digits, its limits, and what is known of its
+shape.
+"""
 
 import flint
 import mpmath as mp
@@ -22,15 +24,21 @@ def random_series(seed):
 
 
 def N(material, kappa_V):
-    return vr.contact(vr.Scene(material=material, kappa=10.0, mu=0.3), 0.1 * kappa_V, delta=0.0, fields="N").N
+    return vr.contact(
+        vr.Scene(material=material, kappa=10.0, mu=0.3), 0.1 * kappa_V, delta=0.0, fields="N"
+    ).N
 
 
 def exact(known, z):
-    """N by derivatives of H and H m of a material that is shifted, K(s + sigma), or stretched, K(s + sigma s)."""
+    """N by derivatives of H and H m of a material that is shifted, K(s + sigma), or stretched,
+    K(s + sigma s).
+    """
 
     def state(z, shift, stretch):
         z, shift, stretch = map(flint.arb, (z, shift, stretch))
-        moved = Material.of_rates(*([(rate - shift) / (1 + stretch) for rate in rates] for rates in (known.a, known.b)))
+        moved = Material.of_rates(
+            *([(rate - shift) / (1 + stretch) for rate in rates] for rates in (known.a, known.b))
+        )
         found = zone_of(moved, z)
         compliance = flint.arb(1)  # of long times
         for own_a, own_b in zip(known.a, known.b, strict=True):
@@ -45,7 +53,8 @@ def exact(known, z):
 
     H, _, g = state(z, 0, 0)
     theta = 2 * H / mp.diff(lambda at: state(at, 0, 0)[0], z)
-    dg, dU = mp.diff(lambda at: state(at, 0, 0)[2], z), mp.diff(lambda at: form(at, 1), z)
+    dg = mp.diff(lambda at: state(at, 0, 0)[2], z)
+    dU = mp.diff(lambda at: form(at, 1), z)
     return -(mp.mpf(1.5) * form(z, 1) - theta / 2 * dU + (theta * dg - g) * form(z, 0)) / H
 
 
@@ -54,14 +63,22 @@ def test_rows_against_its_definition(material):
     """Over its largest size: N has a zero."""
     with mp.workdps(50), flint.ctx.workprec(1000):
         known = material_of(material)
-        slow, fast = float(1 / known.b[0]), float(1 / known.a[-1])
-        found, truth = [], []
-        for z in 10.0 ** np.random.default_rng(4).uniform(np.log10(fast) - 2.0, np.log10(slow) + 3.0, 4):
+        slow = float(1 / known.b[0])
+        fast = float(1 / known.a[-1])
+        found = []
+        truth = []
+        for z in 10.0 ** np.random.default_rng(4).uniform(
+            np.log10(fast) - 2.0, np.log10(slow) + 3.0, 4
+        ):
             u = 1 / (2 * (z * (z + 2 * zone_of(known, flint.arb(z)).h)).sqrt())
             one = {"alpha" if isinstance(material, float) else "material": material}
-            found.append(vr.contact(vr.Scene(kappa=1.0, mu=0.1, **one), float(u), delta=0.0, fields="N").N)
+            found.append(
+                vr.contact(vr.Scene(kappa=1.0, mu=0.1, **one), float(u), delta=0.0, fields="N").N
+            )
             if "alpha" in one:  # among others it is read from another place
-                many = vr.contact(vr.Scene([material, 1.0], kappa=1.0, mu=0.1), float(u), delta=0.0, fields="N").N
+                many = vr.contact(
+                    vr.Scene([material, 1.0], kappa=1.0, mu=0.1), float(u), delta=0.0, fields="N"
+                ).N
                 assert close(many, [found[-1], 0.0], tol.AXIS_UNSTEADY, scale=LARGEST)
             truth.append(float(exact(known, mp.mpf(z))))
         S_J = sum(J / b**2 for J, b in zip(known.J, known.b, strict=True))
@@ -70,9 +87,13 @@ def test_rows_against_its_definition(material):
 
 @pytest.mark.parametrize("seed", range(8))
 def test_limits(seed):
-    """Slow: -S_E + kappa V (w_3 - 2 w_1 w_2), w_n = (n - 1)! (sum T^n - sum tau^n); fast: sum J/(4 kappa V)^2."""
+    """Slow: -S_E + kappa V (w_3 - 2 w_1 w_2), w_n = (n - 1)! (sum T^n - sum tau^n); fast: sum J/(4
+    kappa V)^2.
+    """
     p = random_series(seed)
-    w = [factor * ((p.T**n).sum() - (p.tau**n).sum()) for n, factor in ((1, 1.0), (2, 1.0), (3, 2.0))]
+    w = [
+        factor * ((p.T**n).sum() - (p.tau**n).sum()) for n, factor in ((1, 1.0), (2, 1.0), (3, 2.0))
+    ]
     S_E = (p.E * p.tau**2).sum()
     slow = 1e-4 / p.T[0]
     assert close(N(p, 0.0), -S_E, tol.UNSTEADY_SERIES)
@@ -85,5 +106,10 @@ def test_limits(seed):
 def test_two_bodies():
     kappa_V = np.geomspace(1e-2, 1e3, 40)
     pair = vr.Bodies(random_series(1), random_series(2), 0.3)
-    both = vr.contact(vr.Scene(material=pair, kappa=10.0, mu=0.3), 0.1 * kappa_V, delta=0.0, fields=("N", "M_cylinder"))
+    both = vr.contact(
+        vr.Scene(material=pair, kappa=10.0, mu=0.3),
+        0.1 * kappa_V,
+        delta=0.0,
+        fields=("N", "M_cylinder"),
+    )
     assert close(both.N, N(pair.total, kappa_V), tol.UNSTEADY_UNIT)

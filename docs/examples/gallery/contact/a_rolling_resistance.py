@@ -27,10 +27,12 @@ axes.legend(frameon=False)
 
 # %%
 # ``alpha`` is the instantaneous modulus divided by the long-time modulus, ``kappa`` the radius
-# divided by the static contact length.  The maximum for one relaxation time lies at kappa V of order 1.
-# M is proportional to 1/kappa: a hard roller with a short contact has little rolling resistance.
+# divided by the static contact length.  The maximum for one relaxation time lies at kappa V of
+# order 1.  M is proportional to 1/kappa: a hard roller with a short contact has little rolling
+# resistance.
 for alpha in (1.5, 3.0, 11.0, 81.5):
     top = vr.resistance_extrema(vr.Scene(alpha=alpha, kappa=10.0, mu=0.3))
     print(
-        f"alpha = {alpha:4g}: maximum at kappa V = {10.0 * top.V[0]:.3f}, kappa M = {10.0 * top.M[0]:.4f}"
+        f"alpha = {alpha:4g}: maximum at kappa V = {10.0 * top.V[0]:.3f}, kappa M = "
+        f"{10.0 * top.M[0]:.4f}"
     )

@@ -56,8 +56,9 @@ figure.suptitle(
 )
 
 # %%
-# For one roller, in SI units.  The theory is quasistatic: it holds up to 20 % of the shear wave speed of
-# the rubber, sqrt(G/density).  The last two steady speeds exceed that speed: the theory does not apply.
+# For one roller, in SI units.  The theory is quasistatic: it holds up to 20 % of the shear wave
+# speed of the rubber, sqrt(G/density).  The last two steady speeds exceed that speed: the theory
+# does not apply.
 roller = vr.presets.RUBBER_CYLINDER
 s = roller.steady(slope=np.radians(0.3))
 share = roller.validity(s.V).quasistatic.value

@@ -3,7 +3,8 @@ A start with wheel spin
 =======================
 
 The torque of a motor rises linearly.  Above (1 + j) mu times load and radius the whole contact
-slips and the wheel spins.  When the torque is reduced, the stick zone forms again.  Full slip is grey.
+slips and the wheel spins.  When the torque is reduced, the stick zone forms again.  Full slip is
+grey.
 """
 
 import matplotlib.pyplot as plt

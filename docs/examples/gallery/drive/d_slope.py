@@ -2,9 +2,9 @@
 Motions on a slope
 ==================
 
-The plane (V, omega) on a slope of 3 degrees.  Motions that start left of the orange line (separatrix)
-settle at the stable steady speed (filled dot).  Motions that start right of it accelerate without
-limit.  The line ends in the unstable steady speed (open dot).
+The plane (V, omega) on a slope of 3 degrees.  Motions that start left of the orange line
+(separatrix) settle at the stable steady speed (filled dot).  Motions that start right of it
+accelerate without limit.  The line ends in the unstable steady speed (open dot).
 """
 
 import matplotlib.pyplot as plt

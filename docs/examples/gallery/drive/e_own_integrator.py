@@ -57,5 +57,5 @@ bottom.legend(frameon=False)
 print(f"{found.nfev} calls of the law, {found.njev} of its slopes")
 
 # %%
-# The horizontal line is the rolling resistance at the speed of the tractor.  The same law is available
-# in numba (``law.jitted``) and C (``law.address``): :doc:`/howto/law`.
+# The horizontal line is the rolling resistance at the speed of the tractor.  The same law is
+# available in numba (``law.jitted``) and C (``law.address``): :doc:`/howto/law`.

@@ -2,7 +2,8 @@
 A roller in another tool
 ========================
 
-``viscoroll fmu`` makes an FMU for Modelica tools, Simulink and others.  Here fmpy runs one: a roller
+``viscoroll fmu`` makes an FMU for Modelica tools, Simulink and others.  Here fmpy runs one: a
+roller
 at rest is driven by a motor for one second.
 """
 
@@ -25,9 +26,14 @@ with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "roller.fmu"
     fmu.build(roller, path)  # or: viscoroll fmu rubber.toml -o roller.fmu
     found = fmpy.simulate_fmu(
-        str(path), stop_time=3.0, output_interval=0.02, fmi_type="CoSimulation", input=drive,
-        start_values={"v0": 0.0}, output=["v", "omega", "traction"],
-    )  # fmt: skip
+        str(path),
+        stop_time=3.0,
+        output_interval=0.02,
+        fmi_type="CoSimulation",
+        input=drive,
+        start_values={"v0": 0.0},
+        output=["v", "omega", "traction"],
+    )
 
 figure, axes = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
 axes.plot(found["time"], found["v"], label="$v$")
@@ -37,6 +43,7 @@ axes.legend(frameon=False)
 print(f"v = {found['v'][-1]:.6f} m/s after 3 s")
 
 # %%
-# ``Roller`` takes its own steps between those of the tool.  ``--model ContactElement`` is the contact
-# alone: v, omega and load give force and torque with their slopes, for a mechanism that contains the
-# cylinder.
+# ``Roller`` takes its own steps between those of the tool.  ``--model ContactElement`` is the
+# contact
+# alone: v, omega and load give force and torque with their slopes, for a mechanism that contains
+# the cylinder.

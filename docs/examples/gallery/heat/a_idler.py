@@ -2,9 +2,9 @@
 A cold conveyor idler warms
 ===========================
 
-A rubber idler starts at the temperature of its surroundings, and its losses warm it.  From -20 °C the
-stiff rubber loses little at first; when it is warm enough its losses rise and it runs away.  Each curve
-ends in a stable equilibrium of loss and heat given off.
+A rubber idler starts at the temperature of its surroundings, and its losses warm it.  From -20 °C
+the stiff rubber loses little at first; when it is warm enough its losses rise and it runs away.
+Each curve ends in a stable equilibrium of loss and heat given off.
 """
 
 import matplotlib.pyplot as plt
@@ -13,9 +13,13 @@ import numpy as np
 import viscoroll as vr
 
 rubber = vr.Material(
-    E=3e6, nu=0.49, prony=vr.Prony(E=[2.0, 40.0], tau=[1.0, 1e-2]), T_ref=0.02,
-    temperature=20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
-)  # fmt: skip
+    E=3e6,
+    nu=0.49,
+    prony=vr.Prony(E=[2.0, 40.0], tau=[1.0, 1e-2]),
+    T_ref=0.02,
+    temperature=20.0,
+    shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
+)
 idler = vr.Cylinder(
     R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=20e3
 )

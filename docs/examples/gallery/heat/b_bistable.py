@@ -2,9 +2,10 @@
 A roller with two temperatures
 ==============================
 
-In the cold a stiff rubber loses little and stays cold.  Once it is warm enough it loses much and stays
-warm.  Between lies an unstable equilibrium; where it meets a stable one the branch ends.  So the
-temperature has a hysteresis: it jumps up at the speed of the upper end, and down at the lower one.
+In the cold a stiff rubber loses little and stays cold.  Once it is warm enough it loses much and
+stays warm.  Between lies an unstable equilibrium; where it meets a stable one the branch ends.  So
+the temperature has a hysteresis: it jumps up at the speed of the upper end, and down at the lower
+one.
 """
 
 import matplotlib.pyplot as plt
@@ -13,9 +14,13 @@ import numpy as np
 import viscoroll as vr
 
 rubber = vr.Material(
-    E=3e6, nu=0.49, prony=vr.Prony(E=[2.0, 40.0], tau=[1.0, 1e-2]), T_ref=0.02,
-    temperature=20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
-)  # fmt: skip
+    E=3e6,
+    nu=0.49,
+    prony=vr.Prony(E=[2.0, 40.0], tau=[1.0, 1e-2]),
+    T_ref=0.02,
+    temperature=20.0,
+    shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
+)
 roller = vr.Cylinder(
     R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=20e3
 )

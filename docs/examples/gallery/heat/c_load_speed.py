@@ -3,8 +3,8 @@ The load-speed curve of a wheel
 ===============================
 
 A wheel with a cover of polyurethane, 15 mm thick and 40 mm wide, may not become hotter than 70 °C.
-The curve is the fastest speed at each load: the wheel starts at the temperature of its surroundings, and
-its losses warm it.  Makers of wheels state such a curve, or one point of it.
+The curve is the fastest speed at each load: the wheel starts at the temperature of its
+surroundings, and its losses warm it.  Makers of wheels state such a curve, or one point of it.
 """
 
 import matplotlib.pyplot as plt
@@ -14,9 +14,13 @@ import viscoroll as vr
 
 WIDTH = 0.04  # m
 polyurethane = vr.Material(
-    E=25e6, nu=0.49, prony=vr.Prony(E=[0.08, 0.12, 0.25, 0.8], tau=[1.0, 3e-2, 1e-3, 3e-5]),
-    thickness=0.015, temperature=20.0, shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
-)  # fmt: skip
+    E=25e6,
+    nu=0.49,
+    prony=vr.Prony(E=[0.08, 0.12, 0.25, 0.8], tau=[1.0, 3e-2, 1e-3, 3e-5]),
+    thickness=0.015,
+    temperature=20.0,
+    shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
+)
 wheel = vr.Cylinder(
     R=0.1,
     m=30.0,

@@ -43,5 +43,6 @@ for thickness in (10e-3, 5e-3, 2.5e-3):
     covered = roller.replace(material=replace(rubber, thickness=thickness))
     c = covered.contact(1.0, delta=0.0)
     print(
-        f"{1e3 * thickness:4g} mm: delta_0 = {100 * c.delta_0:.2f} %, delta_star = {100 * c.delta_star:.2f} %"
+        f"{1e3 * thickness:4g} mm: delta_0 = {100 * c.delta_0:.2f} %, delta_star = "
+        f"{100 * c.delta_star:.2f} %"
     )

@@ -30,8 +30,10 @@ colder = cold.validity(V).steady
 slow = cold.T_ref * cold.scene().material.tau[0]
 left.loglog(V, colder.value, "--", label=f"longest time {slow:.0f} s")
 left.loglog(V, bound / V**2, color="0.5", linestyle=":", label="upper bound")
-for reach, height in ((roller.validity(1.0).steady.ten_percent, 0.1),
-                      (roller.validity(1.0).steady.one_percent, 0.01)):  # fmt: skip
+for reach, height in (
+    (roller.validity(1.0).steady.ten_percent, 0.1),
+    (roller.validity(1.0).steady.one_percent, 0.01),
+):
     left.plot(reach.speed, height, "o", color=line.get_color())
 left.set(xlabel="speed, m/s", ylabel="unsteadiness", ylim=(1e-6, 1e3))
 left.legend(frameon=False, fontsize="small")
@@ -54,6 +56,7 @@ print(roller.validity(1.0).steady.sentence)
 print(cold.validity(1.0).steady.sentence)
 
 # %%
-# Left: the dots mark the speeds at which the error of V reaches 1 % and 10 %.  A rubber with relaxation
-# times a thousand times longer has the same limits.  Right: the effect of N on free rolling from 1 m/s
-# down to an error of 10 %; the two curves nearly coincide.  For lower speeds see :doc:`/validity`.
+# Left: the dots mark the speeds at which the error of V reaches 1 % and 10 %.  A rubber with
+# relaxation times a thousand times longer has the same limits.  Right: the effect of N on free
+# rolling from 1 m/s down to an error of 10 %; the two curves nearly coincide.  For lower speeds see
+# :doc:`/validity`.

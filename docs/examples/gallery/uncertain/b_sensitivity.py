@@ -9,8 +9,8 @@ Sobol indices divide the variance of a result among the uncertain inputs.  A run
 from pathlib import Path
 
 from viscoroll.core.plots import draw
-from viscoroll.io.runs import read_run
-from viscoroll.io.runs.sensitivity import sobol_indices
+from viscoroll.runs import read_run
+from viscoroll.runs.sensitivity import sobol_indices
 
 Path("launch.toml").write_text(
     """

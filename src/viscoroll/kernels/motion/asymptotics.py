@@ -1,45 +1,52 @@
-"""Closed-form ends of a motion: steady rolling under a constant drive, and exponential decay at low speed.
+"""Closed-form ends of a motion: steady rolling under a constant drive, and exponential decay at low
+speed.
 
 With P = p' and B = V d' of :mod:`rhs`, partial slip is
 
     V' = (P - p_d B/V)/p_V      d' = B/V
 
-An equilibrium is stable where the Jacobian of (V', d') has a negative trace and a positive determinant.  A motion
-within a small fraction of the tolerance of a stable equilibrium stays there as long as the drive is constant.  In
-full slip V has equilibria of its own, while omega is constant or linear in time.  Steps could not follow either for
+An equilibrium is stable where the Jacobian of (V', d') has a negative trace and a positive
+determinant.  A motion within a small fraction of the tolerance of a stable equilibrium stays there
+as long as the drive is constant.  In full slip V has equilibria of its own, while omega is constant
+or linear in time.  Steps could not follow either for
 long: the rounding of P, times the length of a step, exceeds the tolerance.
 
 Terms of this file, dimensionless (fields of the records in :mod:`records`):
 
 - tau: time gamma t.
-- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
-  partial slip; both in the direction of the Regime, in which V is at least 0.
-- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
-  whether the brake holds omega at 0.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
+  delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
+  under a brake; whether the brake holds omega at 0.
 - Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
-- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
-  the next step.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of
+  steps, length of the next step.
 - Rates: the right-hand side at a State and its derivatives (:mod:`rhs`).
-- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
-  (:mod:`rhs`).  p' is its slope in tau.
-- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
-  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in
+  full slip (:mod:`rhs`).  p' is its slope in tau.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
+  holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
+  Radau nodes.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..compile.by_reference import by_value
-from ..compile.jit import inline_kernel, kernel
-from .collocation import NODE_FRACTIONS, N
-from .drive import current_load, is_unloaded, rest_threshold, store_drive
-from .law import free_decay, low_speed_limits, rest_limits
-from .output import accept_step, record_switch, write_column, write_quadrature
-from .records import AT_REST, CAME_TO_REST, COMPLETED, N_QUADRATURES, PARTIAL_SLIP, State, Step, StepState
-from .rhs import current_rates
-from .step_control import moderate_speed
-from .workspace import (
+from ..numerics.intrinsics import by_value
+from ..numerics.jit import inline_kernel, kernel
+from ..records import (
+    AT_REST,
+    CAME_TO_REST,
+    COMPLETED,
+    N_QUADRATURES,
+    PARTIAL_SLIP,
+    State,
+    Step,
+    StepState,
+)
+from .collocation import (
+    NODE_FRACTIONS,
     REST_TIME,
     ROW_DENSE_OMEGA_OR_D,
     ROW_DENSE_V,
@@ -48,29 +55,37 @@ from .workspace import (
     ROW_P_DIAGONAL,
     ROW_P_RATE,
     ROW_V,
+    N,
     last_output_tau,
     set_step_length,
 )
+from .drive import current_load, is_unloaded, rest_threshold, store_drive
+from .motion_law import free_decay, low_speed_limits, rest_limits
+from .output import accept_step, record_switch, write_column, write_quadrature
+from .rhs import current_rates
+from .step_control import moderate_speed
 
-#: A motion has reached an equilibrium at this relative distance of V divided by rtol: the distance adds nothing that
-#: counts to the errors of the steps before.
+#: A motion has reached an equilibrium at this relative distance of V divided by rtol: the distance
+#: adds nothing that counts to the errors of the steps before.
 _NEAR_EQUILIBRIUM = 1e-3
 #: Smallest such distance that rounding leaves, dimensionless.
 _NEAR_ROUNDING = 1e-14
-#: The equilibrium is evaluated only where V is within this multiple of that distance by p' and p at node 0, which are
-#: stored; p is only about dp/dV times V.
+#: The equilibrium is evaluated only where V is within this multiple of that distance by p' and p at
+#: node 0, which are stored; p is only about dp/dV times V.
 _EQUILIBRIUM_CHECK = 2.0
-#: V divided by rtol and by the moderate speed, below which V decays exponentially: M/V then differs from its limit at V
+#: V divided by rtol and by the moderate speed, below which V decays exponentially: M/V then differs
+#: from its limit at V
 #: = 0 by about 1e-4 rtol, as M is linear in V up to terms of the order kappa V.
 _COASTING_SPEED = 1e-4
-#: |d| divided by rtol, below which V decays exponentially: the part j k L d V of p is then below rtol V for j k up to
-#: 100.
+#: |d| divided by rtol, below which V decays exponentially: the part j k L d V of p is then below
+#: rtol V for j k up to 100.
 _COASTING_D = 1e-2
 
 
 @inline_kernel
 def equilibrium_tolerance(rtol):
-    """Return the relative distance of V from its equilibrium at which V has reached it: max(0.001 rtol, 1e-14).
+    """Return the relative distance of V from its equilibrium at which V has reached it: max(0.001
+    rtol, 1e-14).
 
     rtol: float, relative tolerance of the motion, dimensionless, > 0.
     """
@@ -79,80 +94,102 @@ def equilibrium_tolerance(rtol):
 
 @inline_kernel
 def may_be_at_equilibrium(noise, work):
-    """Return whether p at node 0 may be near its equilibrium, a bool: a check that costs no evaluation of the law.
+    """Return whether p at node 0 may be near its equilibrium, a bool: a check that costs no
+    evaluation of the law.
 
-    p is estimated to be p'/(dp'/dp) away from the equilibrium, and the noise may explain a part of p'; this distance is
-    compared with twice the tolerance of an equilibrium times |p|.  Where dp'/dp >= 0 there is no stable equilibrium,
-    and the result is True only for a p' within the noise.  If True, :func:`find_equilibrium` decides.
+    p is estimated to be p'/(dp'/dp) away from the equilibrium, and the noise may explain a part of
+    p'; this distance is compared with twice the tolerance of an equilibrium times |p|.  Where
+    dp'/dp >= 0 there is no stable equilibrium, and the result is True only for a p' within the
+    noise.  If True, :func:`find_equilibrium` decides.
 
     noise: float, rounding error of p', at least 0, dimensionless.
-    work: Workspace, with p, p' and dp'/dp at node 0 (ROW_P, ROW_P_RATE, ROW_P_DIAGONAL); rtol is read too.
+    work: Workspace, with p, p' and dp'/dp at node 0 (ROW_P, ROW_P_RATE, ROW_P_DIAGONAL); rtol is
+    read too.
     Returns True also at equality, False if one of these is NaN.
     """
-    nodes, tolerance = work.nodes, equilibrium_tolerance(work.options.rtol)
-    return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * tolerance * nodes[ROW_P_DIAGONAL] * abs(nodes[ROW_P])
+    nodes = work.nodes
+    tolerance = equilibrium_tolerance(work.options.rtol)
+    return abs(nodes[ROW_P_RATE]) - noise <= -_EQUILIBRIUM_CHECK * tolerance * nodes[
+        ROW_P_DIAGONAL
+    ] * abs(nodes[ROW_P])
 
 
 @kernel
 def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
     """Return the equilibrium of V in full slip and whether V has reached it, by one Newton step.
 
-    V has no equilibrium here where omega approaches V, or 0 under a brake, where feedback of omega acts on either
-    speed, or where V' does not decrease with V.
+    V has no equilibrium here where omega approaches V, or 0 under a brake, where feedback of omega
+    acts on either speed, or where V' does not decrease with V.
 
     state: State, the present one, in full slip.
-    rates: Rates, at that state; p_rate, weighted_rate, dp_rate_dV, dp_rate_dd and drate_dd are read.
+    rates: Rates, at that state; p_rate, weighted_rate, dp_rate_dV, dp_rate_dd and drate_dd are
+    read.
     regime: Regime, of full slip; ``sigma`` and ``spin_sign`` are read.
     noise: float, rounding error of p', dimensionless.
     tolerance: float, relative distance of V at which it has reached its equilibrium.
-    Returns (reached, State): whether the Newton step is at most ``tolerance`` times V plus the part of it that
-    ``noise`` explains; the State after the step, reached or not, with omega unchanged.  (False, state) where V has no
-    equilibrium.
+    Returns (reached, State): whether the Newton step is at most ``tolerance`` times V plus the part
+    of it that ``noise`` explains; the State after the step, reached or not, with omega unchanged.
+    (False, state) where V has no equilibrium.
     """
     if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
         return False, state
     if regime.sigma * rates.weighted_rate < 0.0 or regime.spin_sign * rates.weighted_rate < 0.0:
         return False, state
     V_off = rates.p_rate / rates.dp_rate_dV
-    return abs(V_off) <= tolerance * state.V - noise / rates.dp_rate_dV, State(state.V - V_off, state.omega_or_d)
+    return abs(V_off) <= tolerance * state.V - noise / rates.dp_rate_dV, State(
+        state.V - V_off, state.omega_or_d
+    )
 
 
 @kernel
 def find_equilibrium(state, regime, noise, step_state, work):
     """Return the stable equilibrium under the present drive and whether the motion has reached it.
 
-    The motion has reached it if the Newton step to it is at most the tolerance, of V relative to itself and of d in
-    absolute terms, plus the step that ``noise`` explains.  In full slip the equilibrium is that of V alone
-    (:func:`_equilibrium_full_slip`).  The Jacobian of the present state decides whether the equilibrium is stable.
+    The motion has reached it if the Newton step to it is at most the tolerance, of V relative to
+    itself and of d in absolute terms, plus the step that ``noise`` explains.  In full slip the
+    equilibrium is that of V alone (:func:`_equilibrium_full_slip`).  The Jacobian of the present
+    state decides whether the equilibrium is stable.
 
     state: State, the present one, with V > 0 in partial slip.
     regime: Regime, at that state; all fields are read.
     noise: float, rounding error of p' at the equilibrium, dimensionless.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene, Drive and rtol are read.
-    Returns (reached, State): a bool, and the State after the Newton step, reached or not, with V at least 0 in partial
-    slip; nothing limits its d.  (False, state) where the equilibrium is not stable, in full slip where V has none, and
-    in partial slip where a speed is prescribed or the brake holds omega.
+    Returns (reached, State): a bool, and the State after the Newton step, reached or not, with V at
+    least 0 in partial slip; nothing limits its d.  (False, state) where the equilibrium is not
+    stable, in full slip where V has none, and in partial slip where a speed is prescribed or the
+    brake holds omega.
     """
-    load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
-    V, tolerance = state.V, equilibrium_tolerance(work.options.rtol)
+    load = current_load(regime, step_state, work)
+    rates = current_rates(state, regime, step_state, work)
+    V = state.V
+    tolerance = equilibrium_tolerance(work.options.rtol)
     if regime.full_slip:
         return _equilibrium_full_slip(state, rates, regime, noise, tolerance)
     # Where one speed is prescribed, p' does not depend on the other.
     if load.inverse_mass == 0.0 or load.inverse_inertia == 0.0:
         return False, state
-    gains, p_d = load.gains, rates.dp_dd
+    gains = load.gains
+    p_d = rates.dp_dd
     # p' depends on d by the feedback of omega, which Newton's matrix of a step neglects.
-    p_rate_d = rates.dp_rate_dd + load.inverse_inertia * (gains.force_omega + gains.torque_omega) * p_d
-    d_rate, d_V, d_d = rates.weighted_rate / V, rates.drate_dV / V, rates.drate_dd / V
+    p_rate_d = (
+        rates.dp_rate_dd + load.inverse_inertia * (gains.force_omega + gains.torque_omega) * p_d
+    )
+    d_rate = rates.weighted_rate / V
+    d_V = rates.drate_dV / V
+    d_d = rates.drate_dd / V
     V_rate = (rates.p_rate - p_d * d_rate) / rates.dp_dV
-    V_V, V_d = (rates.dp_rate_dV - p_d * d_V) / rates.dp_dV, (p_rate_d - p_d * d_d) / rates.dp_dV
+    V_V = (rates.dp_rate_dV - p_d * d_V) / rates.dp_dV
+    V_d = (p_rate_d - p_d * d_d) / rates.dp_dV
     determinant = V_V * d_d - V_d * d_V
     if not (V_V + d_d < 0.0 < determinant):
         return False, state
-    V_off, d_off = (V_rate * d_d - d_rate * V_d) / determinant, (d_rate * V_V - V_rate * d_V) / determinant
+    V_off = (V_rate * d_d - d_rate * V_d) / determinant
+    d_off = (d_rate * V_V - V_rate * d_V) / determinant
     rounding = abs(noise / (rates.dp_dV * determinant))
-    steady = abs(V_off) <= tolerance * V + rounding * abs(d_d) and abs(d_off) <= tolerance + rounding * abs(d_V)
+    steady = abs(V_off) <= tolerance * V + rounding * abs(d_d) and abs(
+        d_off
+    ) <= tolerance + rounding * abs(d_V)
     # Where force and torque cancel, V is 0 but for rounding.
     return steady, State(max(V - V_off, 0.0), state.omega_or_d - d_off)
 
@@ -168,11 +205,12 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     state: State, the present one, with V > 0 in partial slip.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; where the equilibrium is reached, nodes, dense output, drive at the nodes, outputs
-    and quadratures are written.
-    Returns (reached, State, StepState): whether the motion has reached it, a bool; if so the State at the equilibrium,
-    of V alone in full slip, with omega of the end of the segment, and the StepState there, with one trial step and one
-    accepted step more and the length of the next step not chosen; else both unchanged.
+    work: Workspace, of the motion; where the equilibrium is reached, nodes, dense output, drive at
+    the nodes, outputs and quadratures are written.
+    Returns (reached, State, StepState): whether the motion has reached it, a bool; if so the State
+    at the equilibrium, of V alone in full slip, with omega of the end of the segment, and the
+    StepState there, with one trial step and one accepted step more and the length of the next step
+    not chosen; else both unchanged.
     """
     steady, equilibrium = find_equilibrium(state, regime, noise, step_state, work)
     if not steady:
@@ -180,35 +218,50 @@ def continue_at_equilibrium(end, noise, state, regime, step_state, work):
     state = equilibrium
     rates = current_rates(state, regime, step_state, work)
     omega_change = rates.weighted_rate * (end - step_state.tau) if regime.full_slip else 0.0
-    nodes, step = work.nodes, Step(step_state.tau, end - step_state.tau, step_state.segment, True, False)
+    nodes = work.nodes
+    step = Step(
+        tau=step_state.tau,
+        h=end - step_state.tau,
+        segment=step_state.segment,
+        initial_slope_known=True,
+        undriven=False,
+    )
     for i in range(N + 1):
-        nodes[ROW_V + i], nodes[ROW_OMEGA_OR_D + i] = state.V, state.omega_or_d + omega_change * NODE_FRACTIONS[i]
+        nodes[ROW_V + i] = state.V
+        nodes[ROW_OMEGA_OR_D + i] = state.omega_or_d + omega_change * NODE_FRACTIONS[i]
         nodes[ROW_DENSE_V + i] = nodes[ROW_DENSE_OMEGA_OR_D + i] = 0.0
     nodes[ROW_DENSE_OMEGA_OR_D] = 0.5 * omega_change  # The change is linear in v = 0 ... 2.
     store_drive(step, work)
     step_state = set_step_length(0.0, 1, step_state)
-    return True, State(state.V, state.omega_or_d + omega_change), accept_step(end, 2.0, step, regime, step_state, work)
+    return (
+        True,
+        State(state.V, state.omega_or_d + omega_change),
+        accept_step(end, 2.0, step, regime, step_state, work),
+    )
 
 
 @inline_kernel
 def is_coasting(state, regime, step_state, work):
     """Return whether V decays exponentially from here on, to a fraction of the tolerance; a bool.
 
-    It does in partial slip at 0 < V < 1e-4 rtol times the moderate speed with |d| < 0.01 rtol, if the rolling
-    resistance exceeds the feedback and no force, torque, brake or prescribed speed acts from this segment on.  Where
-    alpha = 1 there is no rolling resistance, and V decays only under a feedback that brakes.
+    It does in partial slip at 0 < V < 1e-4 rtol times the moderate speed with |d| < 0.01 rtol, if
+    the rolling resistance exceeds the feedback and no force, torque, brake or prescribed speed acts
+    from this segment on.  Where alpha = 1 there is no rolling resistance, and V decays only under a
+    feedback that brakes.
 
     state: State, the present one.
     regime: Regime, at that state; ``full_slip`` is read.
     step_state: StepState, of which the segment is read.
     work: Workspace, of which Scene, Drive and rtol are read.
-    Returns False in full slip, at V = 0 and where resistance and feedback are equal; :func:`coast_to_end` is for True.
+    Returns False in full slip, at V = 0 and where resistance and feedback are equal;
+    :func:`coast_to_end` is for True.
     """
     rtol = work.options.rtol
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
     return (
-        by_value(work.scene.law).table is None  # that of a table comes to rest by the slip that remains
+        by_value(work.scene.law).table
+        is None  # that of a table comes to rest by the slip that remains
         and free_decay(work).rate > 0.0
         and abs(state.omega_or_d) < _COASTING_D * rtol
         and is_unloaded(step_state.segment, work.drive)
@@ -217,16 +270,18 @@ def is_coasting(state, regime, step_state, work):
 
 @kernel
 def _energies_of_decay(decay, work):
-    """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the start.
+    """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the
+    start.
 
-    The loss in slip is of higher order and counts as 0.  Of half-spaces the loss in rolling is the kinetic energy plus
-    the works of the feedback; of a cover, which rolls freely with the creepage delta_0, it follows from the moments.
+    The loss in slip is of higher order and counts as 0.  Of half-spaces the loss in rolling is the
+    kinetic energy plus the works of the feedback; of a cover, which rolls freely with the creepage
+    delta_0, it follows from the moments.
 
-    decay: :class:`.law.FreeDecay`, of which the rate, above 0, is read.
+    decay: :class:`.motion_law.FreeDecay`, of which the rate, above 0, is read.
     work: Workspace, of the motion; its Scene and the gains of its feedback are read.
-    Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the brake), floats,
-    dimensionless, in the order of quadratures 2 ... 6 of :func:`write_quadrature`; works of a feedback that brakes are
-    negative; the last is 0, as no brake acts.
+    Returns (loss in slip, loss in rolling, work of the force, work of the torque, loss in the
+    brake), floats, dimensionless, in the order of quadratures 2 ... 6 of :func:`write_quadrature`;
+    works of a feedback that brakes are negative; the last is 0, as no brake acts.
     """
     half_space, cylinder, force, torque = low_speed_limits(work)
     force_work = force / decay.rate
@@ -240,46 +295,61 @@ def _energies_of_decay(decay, work):
 
 @kernel
 def coast_to_end(state, regime, step_state, work):
-    """Write the remaining outputs by the closed form of slow rolling, V' = -rate V with delta - delta_0 proportional to
-    V.
+    """Write the remaining outputs by the closed form of slow rolling, V' = -rate V with delta -
+    delta_0 proportional to V.
 
-    Of half-spaces the rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the feedback, in the
-    limit
-    V -> 0 and inertia = 1 + j + gamma N, with gamma N the added mass; :func:`.law.free_decay` has it for covers too.
-    delta_0 is the creepage of free rolling for V -> 0, 0 for half-spaces.
+    Of half-spaces the rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the
+    feedback, in the limit
+    V -> 0 and inertia = 1 + j + gamma N, with gamma N the added mass;
+    :func:`.motion_law.free_decay` has it for covers too.  delta_0 is the creepage of free rolling
+    for V -> 0, 0 for half-spaces.
 
-    With a rest threshold the motion ends when the larger speed has fallen to it; an output at that very time still
-    moves.  From then on V = omega = delta = 0, forces of 0 and the code AT_REST are written, the kinetic energy that is
-    left counts as lost, and works and losses are those of the whole decay to V = 0.
+    With a rest threshold the motion ends when the larger speed has fallen to it; an output at that
+    very time still moves.  From then on V = omega = delta = 0, forces of 0 and the code AT_REST are
+    written, the kinetic energy that is left counts as lost, and works and losses are those of the
+    whole decay to V = 0.
 
     state: State, one for which :func:`is_coasting` holds; V, the start of the decay, is read.
     regime: Regime, at that state; ``direction`` is read.
     step_state: StepState, with the time and its segment.
-    work: Workspace, of the motion; all outputs from ``next_output`` on are written, and where the motion comes to rest
-    REST_TIME, t = tau/gamma, and the change of regime to AT_REST, among the switches.
-    Returns (status, StepState): CAME_TO_REST if the threshold is reached at or before the last output time, else
-    COMPLETED; the StepState at the last output time or, if earlier, at the time of coming to rest, with the numbers of
-    steps unchanged.
+    work: Workspace, of the motion; all outputs from ``next_output`` on are written, and where the
+    motion comes to rest REST_TIME, t = tau/gamma, and the change of regime to AT_REST, among the
+    switches.
+    Returns (status, StepState): CAME_TO_REST if the threshold is reached at or before the last
+    output time, else COMPLETED; the StepState at the last output time or, if earlier, at the time
+    of coming to rest, with the numbers of steps unchanged.
     """
-    scene, direction = work.scene, regime.direction
+    scene = work.scene
+    direction = regime.direction
     _, _, force, torque = low_speed_limits(work)
     L, delta_0 = rest_limits(scene)
     omega_over_V = 1.0 + delta_0
     free = free_decay(work)
     rate = free.rate
-    # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the moments.
+    # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the
+    # moments.
     creep = state.V * free.torque_difference / (4.0 * scene.kappa * free.inertia) * L
     largest_speed = max(state.V, abs(state.V * (omega_over_V + creep)))
-    tau, rest_speed, end = work.output_tau, rest_threshold(step_state.segment, work), np.inf
+    tau = work.output_tau
+    rest_speed = rest_threshold(step_state.segment, work)
+    end = np.inf
     if rest_speed > 0.0:
         end = step_state.tau + max(np.log(largest_speed / rest_speed) / rate, 0.0)
     energies = _energies_of_decay(free, work)
     for column in range(step_state.next_output, tau.size):
         moves = tau[column] <= end
         expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))
-        decay = 1.0 + expm1_decay if expm1_decay > -0.5 else np.exp(-rate * (tau[column] - step_state.tau))
+        decay = (
+            1.0 + expm1_decay
+            if expm1_decay > -0.5
+            else np.exp(-rate * (tau[column] - step_state.tau))
+        )
         V, delta = (state.V * decay, creep * decay) if moves else (0.0, 0.0)
-        speeds = direction * V, direction * (V * (omega_over_V + delta)), delta + delta_0 if moves else 0.0
+        speeds = (
+            direction * V,
+            direction * (V * (omega_over_V + delta)),
+            delta + delta_0 if moves else 0.0,
+        )
         code = PARTIAL_SLIP if moves else AT_REST
         write_column(column, speeds, code, (force * direction * V, torque * direction * V), work)
         distance = -direction * state.V * expm1_decay / (rate * scene.gamma)
@@ -289,7 +359,14 @@ def coast_to_end(state, regime, step_state, work):
         for n in range(2, N_QUADRATURES):
             write_quadrature(column, n, energies[n - 2] * energy, work)
     stop = min(end, last_output_tau(work))
-    step_state = StepState(stop, tau.size, step_state.segment, step_state.n_steps, step_state.n_accepted, 0.0)
+    step_state = StepState(
+        tau=stop,
+        next_output=tau.size,
+        segment=step_state.segment,
+        n_steps=step_state.n_steps,
+        n_accepted=step_state.n_accepted,
+        h=0.0,
+    )
     if end > stop:
         return COMPLETED, step_state
     record_switch(AT_REST, step_state, work)

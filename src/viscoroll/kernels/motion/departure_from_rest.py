@@ -1,40 +1,45 @@
-"""Departure from rest: at V = omega = 0 the cylinder stays, rolls off in partial slip, or slides off in full slip.
+"""Departure from rest: at V = omega = 0 the cylinder stays, rolls off in partial slip, or slides
+off in full slip.
 
-Rolling off in the direction with V' > 0, d is the root of the right side of the equation of d (:mod:`rhs`) in the limit
-V -> 0, where L = 1 and H(v) = 1 (:mod:`rhs`):
+Rolling off in the direction with V' > 0, d is the root of the right side of the equation of d
+(:mod:`rhs`) in the limit V -> 0, where L = 1 and H(v) = 1 (:mod:`rhs`):
 
     2 kappa (omega' - V')/mu = d V'      Q = mu sign(d) (2 |d| - d^2)
 
 (of a cover with L d + 2 kappa delta_0/mu in place of d on the right).
 
-The left side less the right side decreases with d where mu <= 2 kappa: for |d| < 1 there is one root, or slip is full
-from the start.  Where mu > 2 kappa it decreases only from d = -2 kappa/mu on, where omega' = 0, and under a force close
-to the limit of friction the departure is not unique.
+The left side less the right side decreases with d where mu <= 2 kappa: for |d| < 1 there is one
+root, or slip is full from the start.  Where mu > 2 kappa it decreases only from d = -2 kappa/mu on,
+where omega' = 0, and under a force close to the limit of friction the departure is not unique.
 
 Terms of this file, dimensionless (fields of the records in :mod:`records`):
 
-- L = 2 kappa delta_star/mu and delta_0, the creepage of free rolling, in the limit V -> 0: 1 and 0 for half-spaces.
-- d = delta/delta_star, of a cover (delta - delta_0)/delta_star; Q: traction; M: rolling moment, 0 at V = 0.
+- L = 2 kappa delta_star/mu and delta_0, the creepage of free rolling, in the limit V -> 0: 1 and 0
+  for half-spaces.
+- d = delta/delta_star, of a cover (delta - delta_0)/delta_star; Q: traction; M: rolling moment, 0
+  at V = 0.
 - tau: time gamma t.
-- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
-  whether the brake holds omega at 0.
-- Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed V or omega, largest
-  torque of the brake, inverse_mass (1, or 0 where V is prescribed), inverse_inertia (1/j, or 0 where omega is
-  prescribed or held by the brake) and the gains of the feedback.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
+  under a brake; whether the brake holds omega at 0.
+- Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed
+  V or omega, largest torque of the brake, inverse_mass (1, or 0 where V is prescribed),
+  inverse_inertia (1/j, or 0 where omega is prescribed or held by the brake) and the gains of the
+  feedback.
 - Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
-- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
-  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
+  holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
+  Radau nodes.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..compile.by_reference import by_value
-from ..compile.jit import inline_kernel, kernel
+from ..numerics.intrinsics import by_value
+from ..numerics.jit import inline_kernel, kernel
+from ..records import REGIME_AT_REST, Load, Regime
 from .drive import evaluate_load, has_brake, is_constant, segment_end
-from .law import added_inertia, reaction_at_rest, rest_limits
-from .records import REGIME_AT_REST, Load, Regime
+from .motion_law import added_inertia, reaction_at_rest, rest_limits
 from .table_law import balance_of_table, pull_of_table
 
 #: Code of a departure: the cylinder stays at rest for a time.
@@ -45,48 +50,58 @@ ROLLS_OFF = 1
 SLIDES_OFF = 2
 #: Code of a departure: two motions satisfy the equations, the departure is not unique.
 AMBIGUOUS = 3
-#: Largest number of Newton iterations for d: a step outside the bracket bisects it, and 200 bisections of [-1, 1] reach
+#: Largest number of Newton iterations for d: a step outside the bracket bisects it, and 200
+#: bisections of [-1, 1] reach
 #: |d| = 1e-60.
 _MAX_ITERATIONS = 200
-#: Newton's iteration for d ends at this relative change, below the unit of rounding: d changes no more.
+#: Newton's iteration for d ends at this relative change, below the unit of rounding: d changes no
+#: more.
 _D_TOLERANCE = 1e-16
-#: The drive is evaluated later by this fraction of the time to the end of its segment, if nothing moves the cylinder at
-#: the start of the segment: its slope then decides.
+#: The drive is evaluated later by this fraction of the time to the end of its segment, if nothing
+#: moves the cylinder at the start of the segment: its slope then decides.
 _LOOKAHEAD = 1e-6
-#: Rounding error of the forces at rest, divided by the limits of friction and brake: some units of rounding.  A force
-#: that equals its limit to within it is held, and a brake that rises from 0 takes hold.
+#: Rounding error of the forces at rest, divided by the limits of friction and brake: some units of
+#: rounding.  A force that equals its limit to within it is held, and a brake that rises from 0
+#: takes hold.
 _HOLDING_ROUNDING = 4e-15
-#: Number of intervals of a segment in which the holding margin, which consists of polynomials of up to 14 terms, is
-#: searched for a sign change; two sign changes in one interval are not found.
+#: Number of intervals of a segment in which the holding margin, which consists of polynomials of up
+#: to 14 terms, is searched for a sign change; two sign changes in one interval are not found.
 _SCAN_INTERVALS = 64
-#: Force plus torque that counts as 0, dimensionless: speeds under it would underflow in the first steps.
+#: Force plus torque that counts as 0, dimensionless: speeds under it would underflow in the first
+#: steps.
 _NEGLIGIBLE_FORCE = 1e-75
 
 
 @inline_kernel
 def _leverage(used, scene):
-    """Return how much of the traction acts on the axis and on the cylinder at V = 0, the moments that it makes
-    included.
+    """Return how much of the traction acts on the axis and on the cylinder at V = 0, the moments
+    that it makes included.
 
-    With the factors a and excesses e of base and cylinder (:class:`..rows.cover.Reaction`), V' contains Q (1 + a_b +
-    e_b |Q|/mu), and j omega' contains -Q (1 - a_c - e_c |Q|/mu).
+    With the factors a and excesses e of base and cylinder (:class:`.cover_law.Reaction`), V'
+    contains Q (1 + a_b + e_b |Q|/mu), and j omega' contains -Q (1 - a_c - e_c |Q|/mu).
 
     used: float, |Q|/mu, in [0, 1].
     scene: Scene, of which ``law`` and, of a cover, kappa and mu are read.
-    Returns (the factor on the axis, that on the cylinder, derivatives in Q of Q times each), floats, dimensionless; all
-    are 1 of half-spaces.
+    Returns (the factor on the axis, that on the cylinder, derivatives in Q of Q times each),
+    floats, dimensionless; all are 1 of half-spaces.
     """
     if by_value(scene.law).cover_rows is None:
         return 1.0, 1.0, 1.0, 1.0
     reaction = reaction_at_rest(scene)
     on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * used
     on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * used
-    return on_axis, on_spin, on_axis + reaction.half_space_excess * used, on_spin - reaction.cylinder_excess * used
+    return (
+        on_axis,
+        on_spin,
+        on_axis + reaction.half_space_excess * used,
+        on_spin - reaction.cylinder_excess * used,
+    )
 
 
 @inline_kernel
 def _pull(d, scene):
-    """Return what friction does at V = 0: force on the axis, torque against the spin, and their derivatives in d.
+    """Return what friction does at V = 0: force on the axis, torque against the spin, and their
+    derivatives in d.
 
     d: float, in [-1, 1].
     scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
@@ -101,12 +116,14 @@ def _pull(d, scene):
 
 @inline_kernel
 def _residual_of_d(d, load, scene):
-    """Evaluate the equation of d at V = 0, of the module: its left side less its right side, divided by L.
+    """Evaluate the equation of d at V = 0, of the module: its left side less its right side,
+    divided by L.
 
     d: float, delta/delta_star, in [-1, 1]; of a cover that of the excess over free rolling.
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
-    Returns (residual, its slope in d, V'), floats, dimensionless; V' is in the direction of ``load``, of either sign.
+    Returns (residual, its slope in d, V'), floats, dimensionless; V' is in the direction of
+    ``load``, of either sign.
     """
     axis, spin, axis_dd, spin_dd = _pull(d, scene)
     V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
@@ -121,10 +138,11 @@ def _residual_of_d(d, load, scene):
 
 @inline_kernel
 def _d_at_zero_omega(scene):
-    """Return the d at which omega stays 0 as V grows from 0, that of delta = -1; a float below 0, dimensionless.
+    """Return the d at which omega stays 0 as V grows from 0, that of delta = -1; a float below 0,
+    dimensionless.
 
-    It is above -1, so that omega can stay 0 in partial slip, only where mu L > 2 kappa (1 + delta_0); of half-spaces,
-    where L = 1 and delta_0 = 0 at rest, that is mu > 2 kappa.
+    It is above -1, so that omega can stay 0 in partial slip, only where mu L > 2 kappa (1 +
+    delta_0); of half-spaces, where L = 1 and delta_0 = 0 at rest, that is mu > 2 kappa.
 
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
     """
@@ -134,18 +152,23 @@ def _d_at_zero_omega(scene):
 
 @kernel
 def _spin_against_brake(load, scene):
-    """Return what omega does under a brake while V grows from 0: the sign with which it grows, and whether it stays 0.
+    """Return what omega does under a brake while V grows from 0: the sign with which it grows, and
+    whether it stays 0.
 
-    The brake can hold omega in partial slip only where friction is so strong that d at omega = 0 is above -1
-    (:func:`_d_at_zero_omega`); it holds it where the torque that the traction there leaves is at most its own.
+    The brake can hold omega in partial slip only where friction is so strong that d at omega = 0 is
+    above -1 (:func:`_d_at_zero_omega`); it holds it where the torque that the traction there leaves
+    is at most its own.
 
     load: Load, at V = 0, of a segment with a brake, whose torque may be 0 at the time.
-    scene: Scene, of which kappa, mu > 0, ``law`` and, for the added mass (n > -1 at V = 0), gamma are read.
-    Returns (sign, held): sign of omega in the direction of ``load``, 1.0 where d at omega = 0 is at most -1, as omega
-    then grows with V, else that of the torque that is left, 0.0 for none; held, a bool, whether the brake holds omega
-    at 0 (also where both torques are equal), in which case the sign is to be ignored.
+    scene: Scene, of which kappa, mu > 0, ``law`` and, for the added mass (n > -1 at V = 0), gamma
+    are read.
+    Returns (sign, held): sign of omega in the direction of ``load``, 1.0 where d at omega = 0 is at
+    most -1, as omega then grows with V, else that of the torque that is left, 0.0 for none; held, a
+    bool, whether the brake holds omega at 0 (also where both torques are equal), in which case the
+    sign is to be ignored.
     """
-    d_zero, load = _d_at_zero_omega(scene), _effective_load(load, 0.0, scene)
+    d_zero = _d_at_zero_omega(scene)
+    load = _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
         return 1.0, False
     torque = load.torque - _pull(d_zero, scene)[1]
@@ -154,44 +177,60 @@ def _spin_against_brake(load, scene):
 
 @kernel
 def _effective_load(load, spin_sign, scene):
-    """Return the Load that contains the torque of the brake and the effect of the added mass on V' and omega'.
+    """Return the Load that contains the torque of the brake and the effect of the added mass on V'
+    and omega'.
 
-    With the result V' = inverse_mass (Q + force) + V_rate and omega' = inverse_inertia (torque - Q) + omega_rate hold
-    at V = 0, where M is 0, although the moment n V' of the added mass acts, half of it on V and half on omega; V_rate
-    and omega_rate are the prescribed slopes.
+    With the result V' = inverse_mass (Q + force) + V_rate and omega' = inverse_inertia (torque -
+    Q) + omega_rate hold at V = 0, where M is 0, although the moment n V' of the added mass acts,
+    half of it on V and half on omega; V_rate and omega_rate are the prescribed slopes.
 
     load: Load, at V = 0.
     spin_sign: float, sign of omega against which the brake acts; 0 for none.
-    scene: Scene, of which ``law``, kappa and gamma are read, for the factor n = gamma N of the added mass at V = 0; n >
-    -1 where V is free, else the result is not finite or has no meaning.
-    Returns ``load`` with other ``torque``, ``inverse_mass`` and ``inverse_inertia``; without brake and added mass they
-    stay too.  The field ``brake`` stays although its torque is in ``torque``.
+    scene: Scene, of which ``law``, kappa and gamma are read, for the factor n = gamma N of the
+    added mass at V = 0; n > -1 where V is free, else the result is not finite or has no meaning.
+    Returns ``load`` with other ``torque``, ``inverse_mass`` and ``inverse_inertia``; without brake
+    and added mass they stay too.  The field ``brake`` stays although its torque is in ``torque``.
     """
     force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains = load
     half_n = 0.5 * added_inertia(0.0, scene)[0]
     mass_ratio = 1.0 / (1.0 + half_n * inverse_mass)
     inertia_ratio = 1.0 + half_n * mass_ratio * inverse_mass
-    torque = (torque - spin_sign * brake - half_n * (mass_ratio * inverse_mass * force + V_rate)) / inertia_ratio
-    inverse_mass, inverse_inertia = inverse_mass * mass_ratio, inverse_inertia * inertia_ratio
-    return Load(force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains)
+    torque = (
+        torque - spin_sign * brake - half_n * (mass_ratio * inverse_mass * force + V_rate)
+    ) / inertia_ratio
+    inverse_mass = inverse_mass * mass_ratio
+    inverse_inertia = inverse_inertia * inertia_ratio
+    return Load(
+        force=force,
+        torque=torque,
+        prescribed_V_rate=V_rate,
+        prescribed_omega_rate=omega_rate,
+        brake=brake,
+        inverse_mass=inverse_mass,
+        inverse_inertia=inverse_inertia,
+        gains=gains,
+    )
 
 
 @inline_kernel
 def _local_maximum_of_residual(load, scene):
-    """Return the d < 0 at which the residual of the equation of d has its local maximum; it is a cubic in d.
+    """Return the d < 0 at which the residual of the equation of d has its local maximum; it is a
+    cubic in d.
 
-    With Q = mu (2 d + d^2), k = mu L/(2 kappa) and W = inverse_inertia + (1 + delta_0) inverse_mass the terms with d
-    are
+    With Q = mu (2 d + d^2), k = mu L/(2 kappa) and W = inverse_inertia + (1 + delta_0) inverse_mass
+    the terms with d are
 
         -[2 mu W/k + C] d - mu [W/k + 2 inverse_mass] d^2 - mu inverse_mass d^3
 
-    where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so that the larger zero of
-    the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the residual is quadratic, and its only maximum
-    is returned.  The moments of a cover by its traction are left out here: the result bounds a search.
+    where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so
+    that the larger zero of the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the
+    residual is quadratic, and its only maximum is returned.  The moments of a cover by its traction
+    are left out here: the result bounds a search.
 
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
-    Returns d there, a float, dimensionless, which may lie outside [-1, 0]; -inf where the cubic decreases for all d.
+    Returns d there, a float, dimensionless, which may lie outside [-1, 0]; -inf where the cubic
+    decreases for all d.
     """
     L, delta_0 = rest_limits(scene)
     stiffness = (load.inverse_inertia + load.inverse_mass * (1.0 + delta_0)) * 2.0 * scene.kappa / L
@@ -206,18 +245,22 @@ def _local_maximum_of_residual(load, scene):
 def solve_d_at_departure(load, spin_sign, scene):
     """Solve the equation of d at V = 0, of the module, by a bracketed Newton iteration.
 
-    Where friction is strong (mu > 2 kappa for half-spaces) the residual need not decrease everywhere: a root above the
-    d of omega = 0 is taken if the residual is positive there, else one between that d and the local maximum below it.
-    If omega is held at 0, d is that of omega = 0.
+    Where friction is strong (mu > 2 kappa for half-spaces) the residual need not decrease
+    everywhere: a root above the d of omega = 0 is taken if the residual is positive there, else one
+    between that d and the local maximum below it.  If omega is held at 0, d is that of omega = 0.
 
     load: Load, at V = 0.
-    spin_sign: float, sign of omega against which a brake acts; 0 without one, or where it holds omega.
+    spin_sign: float, sign of omega against which a brake acts; 0 without one, or where it holds
+    omega.
     scene: Scene, of which kappa, mu > 0, ``law`` and, for the added mass, gamma are read.
-    Returns (can_roll, d): whether the cylinder can roll off in partial slip, a bool, that is there is a root with |d| <
-    1 and V' > 0 there; d of the root, also where V' <= 0, a float, dimensionless, to rounding; a root at 0 comes out as
-    a |d| of about 1e-60, not as 0.0.  (False, 0.0) where there is no root with |d| < 1.
+    Returns (can_roll, d): whether the cylinder can roll off in partial slip, a bool, that is there
+    is a root with |d| < 1 and V' > 0 there; d of the root, also where V' <= 0, a float,
+    dimensionless, to rounding; a root at 0 comes out as a |d| of about 1e-60, not as 0.0.  (False,
+    0.0) where there is no root with |d| < 1.
     """
-    load, low, high = _effective_load(load, spin_sign, scene), -1.0, 1.0
+    load = _effective_load(load, spin_sign, scene)
+    low = -1.0
+    high = 1.0
     d_zero = _d_at_zero_omega(scene)  # The residual decreases above this d.
     if d_zero > -1.0:
         residual, _, V_rate = _residual_of_d(d_zero, load, scene)
@@ -226,10 +269,12 @@ def solve_d_at_departure(load, spin_sign, scene):
         if residual > 0.0:
             low = d_zero
         else:  # The residual may have a maximum below this d.
-            low, high = min(max(low, _local_maximum_of_residual(load, scene)), d_zero), d_zero
+            low = min(max(low, _local_maximum_of_residual(load, scene)), d_zero)
+            high = d_zero
     if _residual_of_d(low, load, scene)[0] <= 0.0 or _residual_of_d(high, load, scene)[0] >= 0.0:
         return False, 0.0
-    d, V_rate = 0.5 * (low + high), 0.0
+    d = 0.5 * (low + high)
+    V_rate = 0.0
     for _ in range(_MAX_ITERATIONS):
         residual, slope, V_rate = _residual_of_d(d, load, scene)
         low, high = (d, high) if residual > 0.0 else (low, d)
@@ -244,10 +289,12 @@ def solve_d_at_departure(load, spin_sign, scene):
 
 @inline_kernel
 def _traction_at_rest(force, scene):
-    """Return the traction that balances a force on the axis at rest, |Q|, and the torque on the cylinder that it makes.
+    """Return the traction that balances a force on the axis at rest, |Q|, and the torque on the
+    cylinder that it makes.
 
-    Of half-spaces both are |force|.  Of a cover |Q| (1 + a_b + e_b |Q|/mu) = |force| and the torque is |Q| (1 - a_c -
-    e_c |Q|/mu), with the factors a and excesses e of the base and the cylinder (:class:`..rows.cover.Reaction`).
+    Of half-spaces both are |force|.  Of a cover |Q| (1 + a_b + e_b |Q|/mu) = |force| and the torque
+    is |Q| (1 - a_c - e_c |Q|/mu), with the factors a and excesses e of the base and the cylinder
+    (:class:`.cover_law.Reaction`).
 
     force: float, the force, dimensionless, of either sign.
     scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
@@ -264,7 +311,8 @@ def _traction_at_rest(force, scene):
 
 @inline_kernel
 def _traction_of_torque_at_rest(torque, scene):
-    """Return |Q| that balances a torque on the cylinder at rest, a float, dimensionless; of half-spaces |torque|.
+    """Return |Q| that balances a torque on the cylinder at rest, a float, dimensionless; of
+    half-spaces |torque|.
 
     torque: float, the torque that the traction has to balance, dimensionless, of either sign.
     scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
@@ -274,32 +322,39 @@ def _traction_of_torque_at_rest(torque, scene):
     reaction = reaction_at_rest(scene)
     factor = 1.0 - reaction.cylinder
     excess = -reaction.cylinder_excess / scene.mu
-    return 2.0 * abs(torque) / (factor + np.sqrt(max(factor * factor + 4.0 * excess * abs(torque), 0.0)))
+    return (
+        2.0
+        * abs(torque)
+        / (factor + np.sqrt(max(factor * factor + 4.0 * excess * abs(torque), 0.0)))
+    )
 
 
 @kernel
 def holding_margin(load, scene):
-    """Return the margin by which friction and brake hold the cylinder at V = omega = 0; below 0 where it moves.
+    """Return the margin by which friction and brake hold the cylinder at V = omega = 0; below 0
+    where it moves.
 
-    Both limits are taken 4e-15 of themselves larger, so that equality holds the cylinder however its terms were
-    rounded, and a cylinder that the margin moves departs.  A traction within +-mu must leave V constant, and omega too,
-    which a brake may help with.  Of half-spaces:
+    Both limits are taken 4e-15 of themselves larger, so that equality holds the cylinder however
+    its terms were rounded, and a cylinder that the margin moves departs.  A traction within +-mu
+    must leave V constant, and omega too, which a brake may help with.  Of half-spaces:
 
-    - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force + torque|, which
-      counts as 0 up to 1e-75.  Without a brake the margin is at most 0, and 0 only where this modulus counts as 0;
-    - V prescribed to stay 0: mu plus the torque of the brake, less the modulus of the torque of the motor;
+    - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force +
+      torque|, which counts as 0 up to 1e-75.  Without a brake the margin is at most 0, and 0 only
+      where this modulus counts as 0;
+    - V prescribed to stay 0: mu plus the torque of the brake, less the modulus of the torque of the
+      motor;
     - omega prescribed to stay 0: mu - |force|.
 
-    Of a cover the traction is that which balances the force with the moment that it makes, M = -delta_0 Q and more
-    (:func:`_traction_at_rest`), so that rest without a brake needs force + (1 + delta_0) torque = 0 for a cover on the
-    base.
+    Of a cover the traction is that which balances the force with the moment that it makes,
+    M = -delta_0 Q and more (:func:`_traction_at_rest`), so that rest without a brake needs force +
+    (1 + delta_0) torque = 0 for a cover on the base.
 
-    load: Load, at V = omega = 0, where feedback vanishes; force, torque, brake, the prescribed slopes and the inverse
-    mass and inertia are read.  The brake must not hold omega (``locked``), as inverse_inertia = 0 is taken for a
-    prescribed omega.
+    load: Load, at V = omega = 0, where feedback vanishes; force, torque, brake, the prescribed
+    slopes and the inverse mass and inertia are read.  The brake must not hold omega (``locked``),
+    as inverse_inertia = 0 is taken for a prescribed omega.
     scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
-    Returns the margin as a force or torque, a float, dimensionless, at most mu + brake; 0 holds.  It is -1.0 where a
-    prescribed speed has a slope other than 0.
+    Returns the margin as a force or torque, a float, dimensionless, at most mu + brake; 0 holds.
+    It is -1.0 where a prescribed speed has a slope other than 0.
     """
     mu = scene.mu
     if load.prescribed_V_rate != 0.0 or load.prescribed_omega_rate != 0.0:
@@ -320,31 +375,36 @@ def holding_margin(load, scene):
 
 @kernel
 def _holding_margin_at(tau, segment, work):
-    """Evaluate the drive at a time and return by how much friction and brake hold the cylinder at rest against it.
+    """Evaluate the drive at a time and return by how much friction and brake hold the cylinder at
+    rest against it.
 
-    :func:`holding_margin` takes a Load; the search for the time of departure needs the margin as a function of time.
+    :func:`holding_margin` takes a Load; the search for the time of departure needs the margin as a
+    function of time.
 
     tau: float, the time.
     segment: int, index of the segment of the drive that contains the time.
     work: Workspace, of the motion, whose Scene and Drive are read.
-    Returns a force or torque, a float, dimensionless: at least 0 where the cylinder stays, below 0 where the drive
-    moves it, -1.0 where a prescribed speed has a slope other than 0.
+    Returns a force or torque, a float, dimensionless: at least 0 where the cylinder stays, below 0
+    where the drive moves it, -1.0 where a prescribed speed has a slope other than 0.
     """
     return holding_margin(evaluate_load(tau, segment, REGIME_AT_REST, work), work.scene)
 
 
 @kernel
 def find_departure_time(tau, segment, work):
-    """Return the first tau at which the drive moves a cylinder at rest; the end of the segment if it does not.
+    """Return the first tau at which the drive moves a cylinder at rest; the end of the segment if
+    it does not.
 
-    If the drive is constant its margin at ``tau`` decides between ``tau`` and the end; a margin of 0 holds.  Else a
-    sign change of the holding margin is searched in _SCAN_INTERVALS intervals of the rest of the segment, then bisected
-    to rounding; two sign changes in one interval are not found.  The margin at ``tau`` itself is then not evaluated.
+    If the drive is constant its margin at ``tau`` decides between ``tau`` and the end; a margin of
+    0 holds.  Else a sign change of the holding margin is searched in _SCAN_INTERVALS intervals of
+    the rest of the segment, then bisected to rounding; two sign changes in one interval are not
+    found.  The margin at ``tau`` itself is then not evaluated.
 
     tau: float, time from which the search starts, at which the cylinder stays.
     segment: int, index of the segment that contains it.
     work: Workspace, of which mu, Drive and output times are read.
-    Returns a float in [tau, end of the segment or of the motion]; the margin is negative there, unless it is the end.
+    Returns a float in [tau, end of the segment or of the motion]; the margin is negative there,
+    unless it is the end.
     """
     end = segment_end(segment, work)
     if is_constant(segment, work.drive):
@@ -367,25 +427,31 @@ def find_departure_time(tau, segment, work):
 
 @kernel
 def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
-    """Decide whether the cylinder departs in full slip: under full slip its accelerations must increase the slip.
+    """Decide whether the cylinder departs in full slip: under full slip its accelerations must
+    increase the slip.
 
-    The sign sigma = 1 of the slip is tried first, then -1; the first is returned for which sigma (omega' - V' (1 +
-    delta_0)) exceeds ``stick_zone_slip`` times L |V'|.  Neither feedback nor added mass acts, as V = omega = 0 and slip
-    is full.
+    The sign sigma = 1 of the slip is tried first, then -1; the first is returned for which sigma
+    (omega' - V' (1 + delta_0)) exceeds ``stick_zone_slip`` times L |V'|.  Neither feedback nor
+    added mass acts, as V = omega = 0 and slip is full.
 
     tau: float, time at which the drive is evaluated.
     segment: int, index of the segment of the drive that contains the time.
     braked: bool, whether a brake acts on the segment.
-    stick_zone_slip: float, limit of the excess slip divided by L V, dimensionless: mu/(2 kappa), or 0 where no
-    departure in partial slip was found.
+    stick_zone_slip: float, limit of the excess slip divided by L V, dimensionless: mu/(2 kappa), or
+    0 where no departure in partial slip was found.
     work: Workspace, of which Scene and Drive are read.
-    Returns (kind, Regime, 0.0) in the form of :func:`depart_from_rest`: SLIDES_OFF with the Regime of full slip, in the
-    direction in which V grows (1.0 where V' is 0), with the sign of the slip in that direction as ``sigma`` and the
-    ``spin_sign`` and ``locked`` that the brake causes; or STAYS_AT_REST with REGIME_AT_REST if neither sign passes.
-    The third entry, 0.0, is omega.
+    Returns (kind, Regime, 0.0) in the form of :func:`depart_from_rest`: SLIDES_OFF with the Regime
+    of full slip, in the direction in which V grows (1.0 where V' is 0), with the sign of the slip
+    in that direction as ``sigma`` and the ``spin_sign`` and ``locked`` that the brake causes; or
+    STAYS_AT_REST with REGIME_AT_REST if neither sign passes.  The third entry, 0.0, is omega.
     """
     scene = work.scene
-    load = evaluate_load(tau, segment, Regime(True, 1.0, 1.0, 0.0, False), work)
+    load = evaluate_load(
+        tau,
+        segment,
+        Regime(full_slip=True, direction=1.0, sigma=1.0, spin_sign=0.0, locked=False),
+        work,
+    )
     for sigma in (1.0, -1.0):
         L, free_creep = rest_limits(scene, sigma)
         axis, spin, _, _ = _pull(sigma, scene)
@@ -393,12 +459,24 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
         torque = load.torque - spin
         spin_sign = np.sign(torque) if braked and abs(torque) > load.brake else 0.0
         locked = braked and spin_sign == 0.0
-        omega_rate = load.inverse_inertia * (torque - spin_sign * load.brake) + load.prescribed_omega_rate
+        omega_rate = (
+            load.inverse_inertia * (torque - spin_sign * load.brake) + load.prescribed_omega_rate
+        )
         if locked:
             omega_rate = 0.0
         if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > stick_zone_slip * L * abs(V_rate):
             direction = 1.0 if V_rate >= 0.0 else -1.0
-            return SLIDES_OFF, Regime(True, direction, direction * sigma, direction * spin_sign, locked), 0.0
+            return (
+                SLIDES_OFF,
+                Regime(
+                    full_slip=True,
+                    direction=direction,
+                    sigma=direction * sigma,
+                    spin_sign=direction * spin_sign,
+                    locked=locked,
+                ),
+                0.0,
+            )
     return STAYS_AT_REST, REGIME_AT_REST, 0.0
 
 
@@ -406,21 +484,23 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
 def depart_from_rest(tau, segment, work):
     """Decide whether and how a cylinder departs from V = omega = 0.
 
-    Where the drive of a varying segment does not move the cylinder at ``tau``, its values a millionth of the rest of
-    the segment later decide.  A departure in partial slip is sought in both directions, then one in full slip.  Where
-    mu <= 2 kappa the first departure in partial slip is the only one; where friction is stronger, two possible
-    departures are ambiguous.
+    Where the drive of a varying segment does not move the cylinder at ``tau``, its values a
+    millionth of the rest of the segment later decide.  A departure in partial slip is sought in
+    both directions, then one in full slip.  Where mu <= 2 kappa the first departure in partial slip
+    is the only one; where friction is stronger, two possible departures are ambiguous.
 
     tau: float, the time.
     segment: int, index of the segment of the drive that contains the time.
     work: Workspace, of which Scene, Drive and output times are read.
     Returns (kind, Regime, d):
 
-    - STAYS_AT_REST: friction and brake hold the cylinder, or no departure satisfies the equations; REGIME_AT_REST, 0;
-    - ROLLS_OFF: the Regime of partial slip with direction, sigma and brake; d = delta/delta_star at ``tau``,
-      dimensionless;
+    - STAYS_AT_REST: friction and brake hold the cylinder, or no departure satisfies the equations;
+      REGIME_AT_REST, 0;
+    - ROLLS_OFF: the Regime of partial slip with direction, sigma and brake; d = delta/delta_star at
+      ``tau``, dimensionless;
     - SLIDES_OFF: the Regime of full slip; 0, which is omega;
-    - AMBIGUOUS: the cylinder may roll off in both directions, or may roll off as well as slide; REGIME_AT_REST, 0.
+    - AMBIGUOUS: the cylinder may roll off in both directions, or may roll off as well as slide;
+      REGIME_AT_REST, 0.
     """
     scene = work.scene
     tau_drive = tau
@@ -433,13 +513,20 @@ def depart_from_rest(tau, segment, work):
     braked = has_brake(segment, work.drive)
     if holding_margin(load, scene) >= 0.0:
         return STAYS_AT_REST, REGIME_AT_REST, 0.0
-    kind, departure, d_start = STAYS_AT_REST, REGIME_AT_REST, 0.0
+    kind = STAYS_AT_REST
+    departure = REGIME_AT_REST
+    d_start = 0.0
     for direction in (1.0, -1.0):
-        regime = Regime(False, direction, 1.0, 0.0, False)
+        regime = Regime(
+            full_slip=False, direction=direction, sigma=1.0, spin_sign=0.0, locked=False
+        )
         load = evaluate_load(tau_drive, segment, regime, work)
         spin_sign, locked = _spin_against_brake(load, scene) if braked else (0.0, False)
         if locked:
-            regime, spin_sign = Regime(False, direction, -1.0, 0.0, True), 0.0
+            regime = Regime(
+                full_slip=False, direction=direction, sigma=-1.0, spin_sign=0.0, locked=True
+            )
+            spin_sign = 0.0
             load = evaluate_load(tau_drive, segment, regime, work)
         sticks, d = solve_d_at_departure(load, spin_sign, scene)
         if sticks and kind == ROLLS_OFF:
@@ -447,12 +534,21 @@ def depart_from_rest(tau, segment, work):
         if sticks:
             # The motion departs from d at the present time.
             load = evaluate_load(tau, segment, regime, work)
-            kind, d_start = ROLLS_OFF, solve_d_at_departure(load, spin_sign, scene)[1]
-            departure = Regime(False, direction, 1.0 if d >= 0.0 else -1.0, spin_sign, locked)
+            kind = ROLLS_OFF
+            d_start = solve_d_at_departure(load, spin_sign, scene)[1]
+            departure = Regime(
+                full_slip=False,
+                direction=direction,
+                sigma=1.0 if d >= 0.0 else -1.0,
+                spin_sign=spin_sign,
+                locked=locked,
+            )
             if scene.mu <= 2.0 * scene.kappa:
                 return kind, departure, d_start
     stick_zone_slip = 0.0 if kind == STAYS_AT_REST else 0.5 * scene.mu / scene.kappa
     slides = _slide_from_rest(tau_drive, segment, braked, stick_zone_slip, work)
     if kind == STAYS_AT_REST:
         return slides
-    return (AMBIGUOUS, REGIME_AT_REST, 0.0) if slides[0] == SLIDES_OFF else (kind, departure, d_start)
+    return (
+        (AMBIGUOUS, REGIME_AT_REST, 0.0) if slides[0] == SLIDES_OFF else (kind, departure, d_start)
+    )

@@ -1,46 +1,32 @@
-"""Integration within one regime, step after step, to an event or to the end of a segment of the drive.
+"""Integration within one regime, step after step, to an event or to the end of a segment of the
+drive.
 
 Terms of this file, dimensionless (fields of the records in :mod:`records`):
 
 - tau: time gamma t.
-- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
-  partial slip; both in the direction of the Regime, in which V is at least 0.
-- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
-  whether the brake holds omega at 0.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
+  delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
+  under a brake; whether the brake holds omega at 0.
 - Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
 - v: position on a step, 0 at its left end and 2 at its right end.
-- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
-  the next step.
-- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
-  (:mod:`rhs`).  p' is its slope in tau.
-- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
-  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of
+  steps, length of the next step.
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in
+  full slip (:mod:`rhs`).  p' is its slope in tau.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
+  holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
+  Radau nodes.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..compile.jit import inline_kernel, kernel
+from ..numerics.jit import inline_kernel, kernel
+from ..records import PRESCRIBED_V, ROUNDING, ZERO_SPEED, State, Step
 from .asymptotics import continue_at_equilibrium, is_coasting, may_be_at_equilibrium
-from .collocation import N, row_range
-from .drive import drive_rounding, is_constant, is_undriven, is_unloaded, segment_end
-from .error_estimate import estimate_error
-from .events import (
-    NOT_FOUND,
-    ends_at_event,
-    evaluate_event_functions,
-    find_first_event,
-    find_missed_event,
-    locate_zero,
-    refine_event,
-)
-from .output import accept_step
-from .records import PRESCRIBED_V, ROUNDING, ZERO_SPEED, State, Step
-from .rhs import current_rates
-from .step import solve_step, store_rhs
-from .step_control import first_step_length, next_step_length, step_length_after_relaxation, time_to_V_zero
-from .workspace import (
+from .collocation import (
     BELOW_REST_SPEED,
     NO_EVENT,
     ROW_OMEGA_OR_D,
@@ -51,61 +37,94 @@ from .workspace import (
     STEP_FAILED,
     STICK_EDGE,
     V_ZERO,
+    N,
     change_slip,
     dense_state,
+    row_range,
     set_step_length,
     shorten_step,
 )
+from .drive import drive_rounding, is_constant, is_undriven, is_unloaded, segment_end
+from .events import (
+    NOT_FOUND,
+    ends_at_event,
+    evaluate_event_functions,
+    find_first_event,
+    find_missed_event,
+    locate_zero,
+    refine_event,
+)
+from .output import accept_step
+from .rhs import current_rates
+from .step import solve_step, store_rhs
+from .step_control import (
+    estimate_error,
+    first_step_length,
+    next_step_length,
+    step_length_after_relaxation,
+    time_to_V_zero,
+)
 
-#: Largest number of successive rejections: as each shortens the step to 0.7 or 0.4 of its length at most, the step is
-#: then below 1e-23 of the first.
+#: Largest number of successive rejections: as each shortens the step to 0.7 or 0.4 of its length at
+#: most, the step is then below 1e-23 of the first.
 _MAX_REJECTIONS = 60
-#: Error divided by its tolerance up to which a step is accepted where it cannot be shortened: the error of a motion
-#: grows by 2 to 3 rtol at most.
+#: Error divided by its tolerance up to which a step is accepted where it cannot be shortened: the
+#: error of a motion grows by 2 to 3 rtol at most.
 _ACCEPTED_AT_SHORTEST = 10.0
-#: V at the right end of a step divided by V at its left end, below which V = 0 is taken for the event of a step that
-#: was aimed at it and on which no event function changes its sign.
+#: V at the right end of a step divided by V at its left end, below which V = 0 is taken for the
+#: event of a step that was aimed at it and on which no event function changes its sign.
 _V_ZERO_DROP = 0.2
-#: Error divided by its tolerance up to which a step shows where its regime ends; a step with a larger one is repeated.
+#: Error divided by its tolerance up to which a step shows where its regime ends; a step with a
+#: larger one is repeated.
 _MAX_ERROR_FOR_EVENTS = 1e6
 #: Largest number of trials until a step ends at the event.
 _MAX_TRIALS = 8
-#: Error divided by its tolerance that is assigned to a step that did not end at its event: the next step is then
-#: shorter, as after any rejection.
+#: Error divided by its tolerance that is assigned to a step that did not end at its event: the next
+#: step is then shorter, as after any rejection.
 _ERROR_OF_FAILED_TRIAL = 10.0
-#: Position v of an event in full slip, up to which the step is solved again with an end after it: early on a step the
-#: interpolants are less accurate relative to the time so far; the onset was wrong by 7e-12 of it.
+#: Position v of an event in full slip, up to which the step is solved again with an end after it:
+#: early on a step the interpolants are less accurate relative to the time so far; the onset was
+#: wrong by 7e-12 of it.
 _EARLY_EVENT = 0.5
-#: Length of that step divided by the time to the event: above 1, so that the event lies on the step.
+#: Length of that step divided by the time to the event: above 1, so that the event lies on the
+#: step.
 _BEYOND_EARLY_EVENT = 1.1
-#: Shortest step divided by the time so far and to come: a regime that is over at all nodes of such a step ends there.
+#: Shortest step divided by the time so far and to come: a regime that is over at all nodes of such
+#: a step ends there.
 SHORTEST_STEP = 1e-14
-#: Fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next segment: 1 but for
-#: rounding of the time.
+#: Fraction of a segment beyond which a zero of a prescribed V is at its end and belongs to the next
+#: segment: 1 but for rounding of the time.
 BEFORE_SEGMENT_END = 1.0 - 1e-13
 
 
 @inline_kernel
 def _start_step(state, regime, step_state, work):
-    """Store the state and the right-hand side at node 0 of the next step, and choose the branch of the law at d = 0.
+    """Store the state and the right-hand side at node 0 of the next step, and choose the branch of
+    the law at d = 0.
 
     state: State, at the time reached.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with that time and its segment.
-    work: Workspace; node 0 of V, the second unknown, p, p', the weighted rate, the larger speed, V', the relaxation
-    rate and dp'/dp is written.  At V = 0 in partial slip V' is that of p' at fixed d, and the relaxation rate is not
-    finite.
-    Returns the Regime: at d = 0 in partial slip with sigma d' < 0 the one with the opposite sigma, as d moves to that
-    branch; else ``regime`` unchanged.
+    work: Workspace; node 0 of V, the second unknown, p, p', the weighted rate, the larger speed,
+    V', the relaxation rate and dp'/dp is written.  At V = 0 in partial slip V' is that of p' at
+    fixed d, and the relaxation rate is not finite.
+    Returns the Regime: at d = 0 in partial slip with sigma d' < 0 the one with the opposite sigma,
+    as d moves to that branch; else ``regime`` unchanged.
     """
     nodes = work.nodes
-    nodes[ROW_V], nodes[ROW_OMEGA_OR_D] = state.V, state.omega_or_d
+    nodes[ROW_V] = state.V
+    nodes[ROW_OMEGA_OR_D] = state.omega_or_d
     rates = current_rates(state, regime, step_state, work)
     store_rhs(0, rates, nodes)
     # At V = 0 d has its relaxed value and the rounding of d changes Q: V' then follows from p'.
     nodes[ROW_V_RATE] = rates.V_rate if state.V > 0.0 else rates.p_rate / rates.dp_dV
-    nodes[ROW_RELAXATION], nodes[ROW_P_DIAGONAL] = rates.drate_dd / rates.weight, rates.dp_rate_dV / rates.dp_dV
-    if not regime.full_slip and state.omega_or_d == 0.0 and regime.sigma * rates.weighted_rate < 0.0:
+    nodes[ROW_RELAXATION] = rates.drate_dd / rates.weight
+    nodes[ROW_P_DIAGONAL] = rates.dp_rate_dV / rates.dp_dV
+    if (
+        not regime.full_slip
+        and state.omega_or_d == 0.0
+        and regime.sigma * rates.weighted_rate < 0.0
+    ):
         # Both branches agree at d = 0.
         return change_slip(regime, False, -regime.sigma)
     return regime
@@ -122,8 +141,9 @@ def _end_at_V_zero(step, remaining, state, regime, work):
     state: State, at the left end; V is read.
     regime: Regime, at that state; full_slip, direction and locked are read.
     work: Workspace, with V' at node 0; the Drive and j are read too.
-    Returns (Step, whether it ends at the expected time of V = 0, a bool); the Step is unchanged where that time is
-    after its end, or inf, and then the second is False; at V = 0 with V' < 0 its length is 0.
+    Returns (Step, whether it ends at the expected time of V = 0, a bool); the Step is unchanged
+    where that time is after its end, or inf, and then the second is False; at V = 0 with V' < 0 its
+    length is 0.
     """
     time = time_to_V_zero(step, state, regime, work)
     if time > BEFORE_SEGMENT_END * remaining and work.drive.prescribed == PRESCRIBED_V:
@@ -135,13 +155,16 @@ def _end_at_V_zero(step, remaining, state, regime, work):
 def _find_crossed_event(step, remaining, regime, work):
     """Return the event whose function falls below 0 first on a solved step, and its position.
 
-    A prescribed V that is 0 at the end of its segment does not count: the next segment decides its direction.
+    A prescribed V that is 0 at the end of its segment does not count: the next segment decides its
+    direction.
 
     step: Step, the solved one; ``h`` and ``undriven`` are read.
     remaining: float, time in tau to the end of the segment.
     regime: Regime, that of the step; ``full_slip``, ``spin_sign`` and ``locked`` are read.
-    work: Workspace, with the event functions, ROW_SPEED, Drive and rest threshold; ROW_DENSE_EVENT is written.
-    Returns (event, v): code of the event and its position in [0, 2]; NO_EVENT for none, and v has no meaning then.
+    work: Workspace, with the event functions, ROW_SPEED, Drive and rest threshold; ROW_DENSE_EVENT
+    is written.
+    Returns (event, v): code of the event and its position in [0, 2]; NO_EVENT for none, and v has
+    no meaning then.
     """
     event, v = find_first_event(step, regime, work)
     at_segment_end = step.h == remaining and v > 2.0 * BEFORE_SEGMENT_END
@@ -154,8 +177,8 @@ def _find_crossed_event(step, remaining, regime, work):
 def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
 
-    A step with too large an error, on which the regime ends, contains a kink of the law; the shorter step that ends at
-    the kink may be accurate.
+    A step with too large an error, on which the regime ends, contains a kink of the law; the
+    shorter step that ends at the kink may be accurate.
 
     step: Step, the trial step; all fields are read.
     remaining: float, time in tau to the end of the segment.
@@ -168,17 +191,22 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     - event: code of the event that ends the regime, NO_EVENT for none;
     - v: position at which the regime ends: on the step, or 2, its right end;
     - Step: the last one tried, whose solution is at the nodes;
-    - error: its error divided by its tolerance; the caller rejects a step above 1, whatever the event.  It is inf where
-      Newton's iteration did not converge; at least 10, or NaN, where no trial ended at the event or the error of one
-      was above 1e6; at most 1 where the event was missed by the shortest step that time resolves;
-    - dense_step: the Step whose dense output is stored now: the last one whose iteration converged, or the one passed
-      if none did.
+    - error: its error divided by its tolerance; the caller rejects a step above 1, whatever the
+      event.  It is inf where Newton's iteration did not converge; at least 10, or NaN, where no
+      trial ended at the event or the error of one was above 1e6; at most 1 where the event was
+      missed by the shortest step that time resolves;
+    - dense_step: the Step whose dense output is stored now: the last one whose iteration converged,
+      or the one passed if none did.
     """
-    nodes, event, error, upper = work.nodes, NO_EVENT, np.inf, remaining
+    nodes = work.nodes
+    event = NO_EVENT
+    error = np.inf
+    upper = remaining
     for _ in range(_MAX_TRIALS):
         if not solve_step(step, nodes[ROW_RELAXATION], dense_step, regime, work):
             return NO_EVENT, 2.0, step, np.inf, dense_step
-        error, dense_step = estimate_error(step, regime, work), step
+        error = estimate_error(step, regime, work)
+        dense_step = step
         if not error <= _MAX_ERROR_FOR_EVENTS:
             break
         evaluate_event_functions(step, regime, work)
@@ -188,16 +216,27 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
         missed_event = find_missed_event(step, regime, work)
         if missed_event != NO_EVENT and step.h <= SHORTEST_STEP * (step.tau + remaining):
             return missed_event, 2.0, step, min(error, 1.0), dense_step
-        if missed_event != NO_EVENT or (first_event == NO_EVENT and V_negative and not regime.full_slip):
+        if missed_event != NO_EVENT or (
+            first_event == NO_EVENT and V_negative and not regime.full_slip
+        ):
             break
         if first_event != NO_EVENT:
             event = first_event
-        elif event == NO_EVENT and targets_V_zero and error <= 1.0 and nodes[ROW_V + N] < _V_ZERO_DROP * nodes[ROW_V]:
+        elif (
+            event == NO_EVENT
+            and targets_V_zero
+            and error <= 1.0
+            and nodes[ROW_V + N] < _V_ZERO_DROP * nodes[ROW_V]
+        ):
             event = V_ZERO
-        if event == NO_EVENT or (first_event == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)):
+        if event == NO_EVENT or (
+            first_event == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)
+        ):
             return event, 2.0, step, error, dense_step
         # Partial slip ends at V = 0, and |V| in two event functions of full slip has a kink there.
-        has_kink = V_negative and (not regime.full_slip or first_event == STICK_EDGE or first_event == BELOW_REST_SPEED)
+        has_kink = V_negative and (
+            not regime.full_slip or first_event == STICK_EDGE or first_event == BELOW_REST_SPEED
+        )
         if first_event != NO_EVENT and error <= 1.0 and not has_kink and first_event != V_ZERO:
             if v > _EARLY_EVENT or not regime.full_slip:
                 return event, refine_event(event, v, regime, work), step, error, dense_step
@@ -218,52 +257,77 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
 def integrate_regime(stick_formed, state, regime, step_state, work):
     """Integrate one regime, step after step, to an event or to the end of the segment.
 
-    A step whose error exceeds its tolerance is repeated shorter.  One that cannot be shortened is accepted with up to
-    ten times its tolerance.  At an equilibrium under a constant drive the rest of the segment is one step in closed
-    form; that is not tried where from this segment on no force, torque, brake or prescribed speed acts.
+    A step whose error exceeds its tolerance is repeated shorter.  One that cannot be shortened is
+    accepted with up to ten times its tolerance.  At an equilibrium under a constant drive the rest
+    of the segment is one step in closed form; that is not tried where from this segment on no
+    force, torque, brake or prescribed speed acts.
 
     stick_formed: bool, whether the stick zone has just formed; it matters to the first step alone.
     state: State, at the start.
     regime: Regime, to integrate.
-    step_state: StepState, at the start; h = 0: the length of the first step is chosen here; h > 0 is raised to 1e-14
-    tau (SHORTEST_STEP) where it is shorter.
-    work: Workspace, of the motion; nodes, Newton matrices, dense output, outputs, quadratures and ends of steps are
-    written.
-    Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start without one.  The
-    StepState counts the rejected steps too; its h is the length that follows from the error of the last trial step, as
-    passed if there was none, and 0 after an equilibrium.  The Regime is still the one that ends, but sigma may have
-    changed at d = 0.  The event is its code (:mod:`workspace`), or
+    step_state: StepState, at the start; h = 0: the length of the first step is chosen here; h > 0
+    is raised to 1e-14 tau (SHORTEST_STEP) where it is shorter.
+    work: Workspace, of the motion; nodes, Newton matrices, dense output, outputs, quadratures and
+    ends of steps are written.
+    Returns (event, State, Regime, StepState) at the end of the last accepted step, or at the start
+    without one.  The StepState counts the rejected steps too; its h is the length that follows from
+    the error of the last trial step, as passed if there was none, and 0 after an equilibrium.  The
+    Regime is still the one that ends, but sigma may have changed at d = 0.  The event is its code
+    (:mod:`collocation`), or
 
-    - NO_EVENT at the end of the segment, if the allowed steps are used up, or if the rest of the motion is exponential
-      (:func:`is_coasting`);
-    - STEP_FAILED if all trials of one step were rejected and the error of the last one, the 61st or one after which a
-      shorter step would not change tau, was above ten times its tolerance, or NaN.
+    - NO_EVENT at the end of the segment, if the allowed steps are used up, or if the rest of the
+      motion is exponential (:func:`is_coasting`);
+    - STEP_FAILED if all trials of one step were rejected and the error of the last one, the 61st or
+      one after which a shorter step would not change tau, was above ten times its tolerance, or
+      NaN.
     """
-    nodes, segment, drive = work.nodes, step_state.segment, work.drive
-    end, h, n_rejected, last_h, last_error = segment_end(segment, work), step_state.h, 0, 0.0, 1.0
+    nodes = work.nodes
+    segment = step_state.segment
+    drive = work.drive
+    end = segment_end(segment, work)
+    h = step_state.h
+    n_rejected = 0
+    last_h = 0.0
+    last_error = 1.0
     h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
     undriven = is_undriven(segment, drive)
     constant = is_constant(segment, drive) and not is_unloaded(segment, drive)
     # The rounding error of p' contains that of Q = mu in full slip.
     noise = drive_rounding(segment, drive) + (ROUNDING * work.scene.mu if regime.full_slip else 0.0)
-    dense_step = Step(step_state.tau, 0.0, segment, False, undriven)
+    dense_step = Step(
+        tau=step_state.tau, h=0.0, segment=segment, initial_slope_known=False, undriven=undriven
+    )
     while step_state.tau < end and step_state.n_steps < work.options.max_steps:
         if is_coasting(state, regime, step_state, work):
             break
         regime = _start_step(state, regime, step_state, work)
         if constant and may_be_at_equilibrium(noise, work):
-            steady, state, step_state = continue_at_equilibrium(end, noise, state, regime, step_state, work)
+            steady, state, step_state = continue_at_equilibrium(
+                end, noise, state, regime, step_state, work
+            )
             if steady:
                 return NO_EVENT, state, regime, step_state
         if h == 0.0:
-            h = max(first_step_length(stick_formed, step_state, regime, work), SHORTEST_STEP * step_state.tau)
+            h = max(
+                first_step_length(stick_formed, step_state, regime, work),
+                SHORTEST_STEP * step_state.tau,
+            )
         remaining = end - step_state.tau
         slope_known = regime.full_slip or state.V > ZERO_SPEED
-        step = Step(step_state.tau, min(h, remaining), segment, slope_known, undriven)
+        step = Step(
+            tau=step_state.tau,
+            h=min(h, remaining),
+            segment=segment,
+            initial_slope_known=slope_known,
+            undriven=undriven,
+        )
         step, targets_V_zero = _end_at_V_zero(step, remaining, state, regime, work)
         targets_V_zero = targets_V_zero and n_rejected == 0
-        event, v, step, error, dense_step = solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work)
-        h_tried, h = h, next_step_length(step, error, n_rejected, last_h, last_error)
+        event, v, step, error, dense_step = solve_trial_step(
+            step, remaining, targets_V_zero, dense_step, regime, work
+        )
+        h_tried = h
+        h = next_step_length(step, error, n_rejected, last_h, last_error)
         h = max(h, h_tried) if error <= 1.0 and step.h == remaining else h
         step_state = set_step_length(h, 1, step_state)
         n_rejected += 1
@@ -275,9 +339,13 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
             h = step.h
         tau = end if v == 2.0 and step.h == remaining else step.tau + step.h * 0.5 * v
         step_state = accept_step(tau, v, step, regime, step_state, work)
-        state = dense_state(v, nodes) if v < 2.0 else State(nodes[ROW_V + N], nodes[ROW_OMEGA_OR_D + N])
+        state = (
+            dense_state(v, nodes) if v < 2.0 else State(nodes[ROW_V + N], nodes[ROW_OMEGA_OR_D + N])
+        )
         if event != NO_EVENT:
             return event, state, regime, step_state
         h = max(h, step_length_after_relaxation(step, regime, work))
-        n_rejected, last_h, last_error = 0, step.h, error
+        n_rejected = 0
+        last_h = step.h
+        last_error = error
     return NO_EVENT, state, regime, step_state

@@ -1,30 +1,31 @@
-"""Regimes: the regime of a start, and the one that follows an event or begins with a segment of the drive.
+"""Regimes: the regime of a start, and the one that follows an event or begins with a segment of the
+drive.
 
 Terms of this file, dimensionless (fields of the records in :mod:`records`):
 
 - tau: time gamma t.
-- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
-  partial slip; both in the direction of the Regime, in which V is at least 0.
-- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
-  whether the brake holds omega at 0.
-- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
-  the next step.
-- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the feedback.
-- Event: int, its code, which is also the index in ``nodes`` of the row with the values of its function: STICK_EDGE,
-  DELTA_ZERO, V_ZERO, OMEGA_ZERO, BELOW_REST_SPEED or BRAKE_RELEASE (:mod:`workspace`).
-- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
-  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
+  delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
+  under a brake; whether the brake holds omega at 0.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of
+  steps, length of the next step.
+- Drive: force, torque, brake and prescribed speed, polynomials of tau on each segment; gains of the
+  feedback.
+- Event: int, its code, which is also the index in ``nodes`` of the row with the values of its
+  function: STICK_EDGE, DELTA_ZERO, V_ZERO, OMEGA_ZERO, BELOW_REST_SPEED or BRAKE_RELEASE
+  (:mod:`collocation`).
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
+  holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
+  Radau nodes.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
-from ..compile.jit import kernel
-from .collocation import row_range
-from .drive import current_load, has_brake, is_undriven, prescribed_speed
-from .law import critical_creepage, excess_slip, rest_limits
-from .records import (
+from ..numerics.jit import kernel
+from ..records import (
     AT_REST,
     FULL_SLIP,
     HELD_AT_REST,
@@ -35,36 +36,44 @@ from .records import (
     Regime,
     State,
 )
+from .collocation import DELTA_ZERO, OMEGA_ZERO, ROW_V, STICK_EDGE, V_ZERO, change_slip, row_range
+from .drive import current_load, has_brake, is_undriven, prescribed_speed
+from .motion_law import critical_creepage, excess_slip, rest_limits
 from .rhs import applied_forces, current_rates
-from .workspace import DELTA_ZERO, OMEGA_ZERO, ROW_V, STICK_EDGE, V_ZERO, change_slip
 
-#: V at the event divided by V at the left end of the step, below which V is 0, as rounding leaves it: the stick zone
-#: closes at rest.
+#: V at the event divided by V at the left end of the step, below which V is 0, as rounding leaves
+#: it: the stick zone closes at rest.
 _STICK_ZONE_CLOSED = 1e-14
-#: omega/V in partial slip above which V follows a prescribed omega at fixed d; below it, under strong friction, V
-#: stays.
+#: omega/V in partial slip above which V follows a prescribed omega at fixed d; below it, under
+#: strong friction, V stays.
 _OMEGA_FOLLOWED = 0.5
-#: Error of V at an event divided by rtol times the largest V of the step: with omega = 0, slip ends at V = 0 within it.
+#: Error of V at an event divided by rtol times the largest V of the step: with omega = 0, slip ends
+#: at V = 0 within it.
 _EVENT_ERROR = 10.0
-#: V divided by the larger speed, below which it counts as 0 at the start: its square is near the smallest double.
+#: V divided by the larger speed, below which it counts as 0 at the start: its square is near the
+#: smallest double.
 ZERO_V_RATIO = 1e-150
-#: Distance of a start from the edge of the stick zone, relative to the speeds, that is rounding: about a hundred units.
+#: Distance of a start from the edge of the stick zone, relative to the speeds, that is rounding:
+#: about a hundred units.
 _START_ON_EDGE = 2e-14
 
 
 @kernel
 def _torque_at_locked_wheel(state, regime, step_state, work):
-    """Return the torque that would accelerate a wheel with omega = 0, and the largest torque of the brake against it.
+    """Return the torque that would accelerate a wheel with omega = 0, and the largest torque of the
+    brake against it.
 
     state: State, with omega = 0.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
-    Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q and M_cylinder,
-    signed, in the direction of the regime; the largest torque of the brake at that time, at least 0, and 0 where no
-    brake acts.  In partial slip M_cylinder contains n V'/2 of the added mass, with V' of the present regime.
+    Returns (torque, limit), floats, dimensionless: the torque of the motor with its feedback less Q
+    and M_cylinder, signed, in the direction of the regime; the largest torque of the brake at that
+    time, at least 0, and 0 where no brake acts.  In partial slip M_cylinder contains n V'/2 of the
+    added mass, with V' of the present regime.
     """
-    load, rates = current_load(regime, step_state, work), current_rates(state, regime, step_state, work)
+    load = current_load(regime, step_state, work)
+    rates = current_rates(state, regime, step_state, work)
     _, torque, _ = applied_forces(state.V, 0.0, load, regime)
     return torque - rates.Q - rates.M_cylinder, load.brake
 
@@ -74,18 +83,26 @@ def change_brake(regime, spin_sign, locked):
     """Return the Regime with another state of its brake; full_slip, direction and sigma stay.
 
     regime: Regime, the present one.
-    spin_sign: float, 1 or -1, sign of omega where a brake acts, or of the torque where omega is 0; 0 where none acts.
+    spin_sign: float, 1 or -1, sign of omega where a brake acts, or of the torque where omega is 0;
+    0 where none acts.
     locked: bool, whether the brake holds omega at 0; spin_sign has no effect on the rates then.
     """
-    return Regime(regime.full_slip, regime.direction, regime.sigma, spin_sign, locked)
+    return Regime(
+        full_slip=regime.full_slip,
+        direction=regime.direction,
+        sigma=regime.sigma,
+        spin_sign=spin_sign,
+        locked=locked,
+    )
 
 
 @kernel
 def brake_holds_omega(state, regime, step_state, work):
-    """Return whether the brake can hold omega at 0 against the torque that would accelerate the wheel; a bool.
+    """Return whether the brake can hold omega at 0 against the torque that would accelerate the
+    wheel; a bool.
 
-    It can if the modulus of that torque (:func:`_torque_at_locked_wheel`) is at most the largest torque of the brake;
-    without a brake, only if it is exactly 0.
+    It can if the modulus of that torque (:func:`_torque_at_locked_wheel`) is at most the largest
+    torque of the brake; without a brake, only if it is exactly 0.
 
     state: State, with omega = 0.
     regime: Regime, at that state; all fields are read.
@@ -98,15 +115,16 @@ def brake_holds_omega(state, regime, step_state, work):
 
 @kernel
 def release_brake(state, regime, step_state, work):
-    """Return the Regime after a brake has released the cylinder, or after omega has changed its sign under it.
+    """Return the Regime after a brake has released the cylinder, or after omega has changed its
+    sign under it.
 
     state: State, with omega = 0.
     regime: Regime, the one before; all fields are read.
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
-    Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the torque of
-    :func:`_torque_at_locked_wheel` that accelerates the wheel from omega = 0 (1, -1, or 0 for no torque) where the
-    segment has a brake anywhere on it, to 0 where it has none.
+    Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the
+    torque of :func:`_torque_at_locked_wheel` that accelerates the wheel from omega = 0 (1, -1, or 0
+    for no torque) where the segment has a brake anywhere on it, to 0 where it has none.
     """
     torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
     spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
@@ -115,13 +133,16 @@ def release_brake(state, regime, step_state, work):
 
 @kernel
 def comes_to_rest(state, regime, step_state, work):
-    """Return whether full slip ends at rest: V is 0 where the stick zone would form, so that omega is 0 too.
+    """Return whether full slip ends at rest: V is 0 where the stick zone would form, so that omega
+    is 0 too.
 
     V counts as 0 by one of two thresholds:
 
-    - omega is 0, as the brake holds it or it is prescribed to be 0 at this time: V is at most max(1e-14, 10 rtol) times
-      the largest V at the nodes of the step, as the event is located with the error of the step.
-    - in all other cases: V is at most 1e-14 times V at the left end of the step, as rounding leaves it.
+    - omega is 0, as the brake holds it or it is prescribed to be 0 at this time: V is at most
+      max(1e-14, 10 rtol) times the largest V at the nodes of the step, as the event is located with
+      the error of the step.
+    - in all other cases: V is at most 1e-14 times V at the left end of the step, as rounding leaves
+      it.
 
     state: State, at the event.
     regime: Regime, of full slip; ``locked`` is read.
@@ -130,47 +151,65 @@ def comes_to_rest(state, regime, step_state, work):
     Returns a bool; True at equality with a threshold, and so where V is exactly 0.
     """
     prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
-    omega_zero = prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
+    omega_zero = (
+        prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
+    )
     if not (regime.locked or omega_zero):
         return state.V <= _STICK_ZONE_CLOSED * work.nodes[ROW_V]
     # With omega = 0 slip ends at V = 0, to the tolerance of the step.
-    return state.V <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol) * row_range(ROW_V, work.nodes)[1]
+    return (
+        state.V
+        <= max(_STICK_ZONE_CLOSED, _EVENT_ERROR * work.options.rtol)
+        * row_range(ROW_V, work.nodes)[1]
+    )
 
 
 @kernel
 def reverse_direction(regime):
-    """Return the Regime with the opposite direction, in which the signs of slip and omega are opposite too.
+    """Return the Regime with the opposite direction, in which the signs of slip and omega are
+    opposite too.
 
-    ``direction``, ``sigma`` and ``spin_sign`` change their signs, ``full_slip`` and ``locked`` stay.  The caller
-    changes the signs of V and omega; d of partial slip would keep its sign, but only full slip is reversed.
+    ``direction``, ``sigma`` and ``spin_sign`` change their signs, ``full_slip`` and ``locked``
+    stay.  The caller changes the signs of V and omega; d of partial slip would keep its sign, but
+    only full slip is reversed.
 
     regime: Regime, the present one, of full slip.
     """
-    return Regime(regime.full_slip, -regime.direction, -regime.sigma, -regime.spin_sign, regime.locked)
+    return Regime(
+        full_slip=regime.full_slip,
+        direction=-regime.direction,
+        sigma=-regime.sigma,
+        spin_sign=-regime.spin_sign,
+        locked=regime.locked,
+    )
 
 
 @kernel
 def impose_prescribed_speed(state, regime, step_state, work):
-    """Return state and regime with the prescribed speed at its given value, where a segment begins or the stick zone
-    forms.
+    """Return state and regime with the prescribed speed at its given value, where a segment begins
+    or the stick zone forms.
 
-    The error of the integration so far is small relative to the speeds so far, but may be large relative to the speed
-    prescribed from here on.  With s the prescribed speed in the direction of the regime:
+    The error of the integration so far is small relative to the speeds so far, but may be large
+    relative to the speed prescribed from here on.  With s the prescribed speed in the direction of
+    the regime:
 
     - no speed prescribed: both are returned unchanged;
     - omega in full slip: omega becomes s;
-    - omega in partial slip: V is multiplied by max(s/omega, 0) at fixed d; both are unchanged where omega is at most
-      V/2, as under strong friction omega may be far below V;
-    - V in full slip: V becomes s; where s < 0, V becomes -s, omega changes its sign, and the direction is reversed;
+    - omega in partial slip: V is multiplied by max(s/omega, 0) at fixed d; both are unchanged where
+      omega is at most V/2, as under strong friction omega may be far below V;
+    - V in full slip: V becomes s; where s < 0, V becomes -s, omega changes its sign, and the
+      direction is reversed;
     - V in partial slip: V becomes max(s, 0) at fixed d.
 
     state: State, as integrated, with V >= 0.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and its segment, whose prescribed speed is taken.
     work: Workspace, of which Scene and Drive are read.
-    Returns (State, Regime), with V >= 0; ``locked`` and, but for a reversal, all of the Regime stay.
+    Returns (State, Regime), with V >= 0; ``locked`` and, but for a reversal, all of the Regime
+    stay.
     """
-    drive, full_slip = work.drive, regime.full_slip
+    drive = work.drive
+    full_slip = regime.full_slip
     if drive.prescribed == NOT_PRESCRIBED:
         return state, regime
     speed = regime.direction * prescribed_speed(step_state.tau, step_state.segment, drive)
@@ -189,36 +228,44 @@ def impose_prescribed_speed(state, regime, step_state, work):
 def apply_event(event, state, regime, step_state, work):
     """Return state and regime after an event, in the unknowns of the new regime.
 
-    - STICK_EDGE in full slip: the cylinder comes to rest (:func:`comes_to_rest`), or partial slip begins with d =
-      sigma; a prescribed omega is then imposed (:func:`impose_prescribed_speed`) where V changes at least as fast as
-      omega.
-    - STICK_EDGE in partial slip: full slip begins with the same sigma and with the omega of the state.
+    - STICK_EDGE in full slip: the cylinder comes to rest (:func:`comes_to_rest`), or partial slip
+      begins with d = sigma; a prescribed omega is then imposed (:func:`impose_prescribed_speed`)
+      where V changes at least as fast as omega.
+    - STICK_EDGE in partial slip: full slip begins with the same sigma and with the omega of the
+      state.
     - DELTA_ZERO: sigma changes its sign, d stays.
-    - V_ZERO: the cylinder comes to rest in partial slip, or if omega is 0; else V becomes exactly 0, omega changes its
-      sign, and the direction is reversed.
-    - OMEGA_ZERO: omega is set to 0 in full slip, V and d stay in partial slip; then the brake holds omega, ``locked``
-      is True, or ``spin_sign`` becomes the sign of the torque that accelerates it (:func:`release_brake`).
+    - V_ZERO: the cylinder comes to rest in partial slip, or if omega is 0; else V becomes exactly
+      0, omega changes its sign, and the direction is reversed.
+    - OMEGA_ZERO: omega is set to 0 in full slip, V and d stay in partial slip; then the brake holds
+      omega, ``locked`` is True, or ``spin_sign`` becomes the sign of the torque that accelerates it
+      (:func:`release_brake`).
     - BRAKE_RELEASE: the brake lets go, :func:`release_brake`.
 
     BELOW_REST_SPEED does not occur here: it ends the motion.
 
-    event: int, its code, STICK_EDGE ... BRAKE_RELEASE of :mod:`workspace`.
+    event: int, its code, STICK_EDGE ... BRAKE_RELEASE of :mod:`collocation`.
     state: State, at the event.
     regime: Regime, the one that ends; all fields are read.
     step_state: StepState, at the event.
-    work: Workspace, with V at the nodes of the step that ends there; Scene, Drive and rtol are read too.
-    Returns (whether the cylinder moves, State, Regime): it does not move where it comes to rest, or where V is 0 in the
-    partial slip that begins; where it comes to rest by V_ZERO or by :func:`comes_to_rest`, State and Regime are those
-    that were passed.
+    work: Workspace, with V at the nodes of the step that ends there; Scene, Drive and rtol are read
+    too.
+    Returns (whether the cylinder moves, State, Regime): it does not move where it comes to rest, or
+    where V is 0 in the partial slip that begins; where it comes to rest by V_ZERO or by
+    :func:`comes_to_rest`, State and Regime are those that were passed.
     """
-    full_slip, sigma = regime.full_slip, regime.sigma
+    full_slip = regime.full_slip
+    sigma = regime.sigma
     if event == STICK_EDGE and full_slip:
         if comes_to_rest(state, regime, step_state, work):
             return False, state, regime
         rates = current_rates(state, regime, step_state, work)
-        state, regime = State(state.V, sigma), change_slip(regime, False, sigma)
-        if work.drive.prescribed == PRESCRIBED_OMEGA and abs(rates.V_rate) >= abs(rates.weighted_rate):
-            # The time of the event has an error, so that the speed that changes more slowly is more accurate.
+        state = State(state.V, sigma)
+        regime = change_slip(regime, False, sigma)
+        if work.drive.prescribed == PRESCRIBED_OMEGA and abs(rates.V_rate) >= abs(
+            rates.weighted_rate
+        ):
+            # The time of the event has an error, so that the speed that changes more slowly is more
+            # accurate.
             state, regime = impose_prescribed_speed(state, regime, step_state, work)
         return state.V > 0.0, state, regime
     if event == STICK_EDGE:
@@ -240,25 +287,32 @@ def apply_event(event, state, regime, step_state, work):
 
 @kernel
 def enter_segment(state, regime, step_state, work):
-    """Return state and regime at the start of a segment of the drive, where a brake may take hold or let go and V may
-    reverse.
+    """Return state and regime at the start of a segment of the drive, where a brake may take hold
+    or let go and V may reverse.
 
-    In this order: a prescribed speed is imposed (:func:`impose_prescribed_speed`), except at the start of the motion,
-    whose given speeds stay; full slip at V = 0 with V' < 0 gets the opposite direction, so that V grows in it; the
-    state of the brake is set.  On a segment with a brake it holds omega if omega is 0 and the brake is strong enough;
-    else it acts against the sign of omega or, where omega is 0, against the torque that accelerates the wheel.  On a
-    segment without a brake ``spin_sign`` is 0 and ``locked`` False.
+    In this order: a prescribed speed is imposed (:func:`impose_prescribed_speed`), except at the
+    start of the motion, whose given speeds stay; full slip at V = 0 with V' < 0 gets the opposite
+    direction, so that V grows in it; the state of the brake is set.  On a segment with a brake it
+    holds omega if omega is 0 and the brake is strong enough; else it acts against the sign of omega
+    or, where omega is 0, against the torque that accelerates the wheel.  On a segment without a
+    brake ``spin_sign`` is 0 and ``locked`` False.
 
     state: State, at the end of the segment before, or the start of the motion.
     regime: Regime, at that state; all fields are read.
     step_state: StepState, with the time and the index of the new segment.
     work: Workspace, of which Scene and Drive are read.
-    Returns (State, Regime): V is at least 0; where the brake takes hold, ``locked`` is True and ``spin_sign`` stays.
+    Returns (State, Regime): V is at least 0; where the brake takes hold, ``locked`` is True and
+    ``spin_sign`` stays.
     """
     if step_state.segment > 0:  # A start keeps its given speeds.
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
-    if regime.full_slip and state.V == 0.0 and current_rates(state, regime, step_state, work).V_rate < 0.0:
-        state, regime = State(0.0, -state.omega_or_d), reverse_direction(regime)
+    if (
+        regime.full_slip
+        and state.V == 0.0
+        and current_rates(state, regime, step_state, work).V_rate < 0.0
+    ):
+        state = State(0.0, -state.omega_or_d)
+        regime = reverse_direction(regime)
     braked = has_brake(step_state.segment, work.drive)
     omega = current_rates(state, regime, step_state, work).omega
     if regime.locked or omega == 0.0:
@@ -270,22 +324,26 @@ def enter_segment(state, regime, step_state, work):
 
 @kernel
 def initial_regime(V, omega, step_state, work):
-    """Return state and regime at the start of a motion from V or omega other than 0; a brake is considered later.
+    """Return state and regime at the start of a motion from V or omega other than 0; a brake is
+    considered later.
 
-    It is partial slip where the excess slip (:func:`.law.excess_slip`; omega - V for half-spaces) is below delta_star
-    |V| in modulus, Eq. (9), full slip where it is above.  Where both differ by rounding, up to 2e-14 of the larger
-    speed, it is partial slip with d = +-1 if |d| would fall from there, else full slip.  From V = 0 it is full slip.
+    It is partial slip where the excess slip (:func:`.motion_law.excess_slip`; omega - V for
+    half-spaces) is below delta_star
+    |V| in modulus, Eq. (9), full slip where it is above.  Where both differ by rounding, up to
+    2e-14 of the larger speed, it is partial slip with d = +-1 if |d| would fall from there, else
+    full slip.  From V = 0 it is full slip.
 
-    If nothing drives and both speeds are below 1e-150, both are first replaced by those of free rolling with the same V
+    If nothing drives and both speeds are below 1e-150, both are first replaced by those of free
+    rolling with the same V
     + j omega, to which sliding brings them at once.
 
     V, omega: float, initial speeds of either sign, dimensionless.
     step_state: StepState, at the start.
     work: Workspace, of which Scene and Drive are read.
-    Returns (State, Regime, stick_formed): the State in the direction of the Regime, which is that of V, or of omega
-    where V is 0, with omega in full slip and d = excess slip/(delta_star V) in partial slip; the Regime with the sign
-    of the excess slip as ``sigma`` (1 for 0) and without a brake; ``stick_formed``, a bool, True only for a start in
-    partial slip with d = +-1.
+    Returns (State, Regime, stick_formed): the State in the direction of the Regime, which is that
+    of V, or of omega where V is 0, with omega in full slip and d = excess slip/(delta_star V) in
+    partial slip; the Regime with the sign of the excess slip as ``sigma`` (1 for 0) and without a
+    brake; ``stick_formed``, a bool, True only for a start in partial slip with d = +-1.
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
         # Sliding ends within a time of that order, at constant V + j omega.
@@ -293,18 +351,24 @@ def initial_regime(V, omega, step_state, work):
         V = (V + work.scene.j * omega) / (1.0 + work.scene.j * omega_over_V)
         omega = V * omega_over_V
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
-    V, omega = direction * V, direction * omega
+    V = direction * V
+    omega = direction * omega
     slip = excess_slip(omega - V, V, work.scene)
     sigma = 1.0 if slip >= 0.0 else -1.0
     limit = critical_creepage(V, sigma, work.scene) * V
-    state, regime = State(V, omega), Regime(True, direction, sigma, 0.0, False)
+    state = State(V, omega)
+    regime = Regime(full_slip=True, direction=direction, sigma=sigma, spin_sign=0.0, locked=False)
     if V == 0.0:
         return state, regime, False
     on_edge = abs(abs(slip) - limit) <= _START_ON_EDGE * max(V, abs(omega))
     stick_state = State(V, sigma if on_edge else slip / limit)
-    stick_regime = Regime(False, direction, sigma, 0.0, False)
+    stick_regime = Regime(
+        full_slip=False, direction=direction, sigma=sigma, spin_sign=0.0, locked=False
+    )
     if on_edge:
-        on_edge = sigma * current_rates(stick_state, stick_regime, step_state, work).weighted_rate < 0.0
+        on_edge = (
+            sigma * current_rates(stick_state, stick_regime, step_state, work).weighted_rate < 0.0
+        )
     elif abs(slip) < limit:
         return stick_state, stick_regime, False
     return (stick_state, stick_regime, True) if on_edge else (state, regime, False)
@@ -314,7 +378,8 @@ def initial_regime(V, omega, step_state, work):
 def regime_code(regime):
     """Return the code of a moving cylinder's regime in the outputs, an int.
 
-    It is OMEGA_LOCKED (3), FULL_SLIP (0) or PARTIAL_SLIP (1); :func:`rest_code` gives that of a cylinder at rest.
+    It is OMEGA_LOCKED (3), FULL_SLIP (0) or PARTIAL_SLIP (1); :func:`rest_code` gives that of a
+    cylinder at rest.
 
     regime: Regime, the present one; ``locked`` comes first, then ``full_slip``.
     """
@@ -325,8 +390,8 @@ def regime_code(regime):
 def rest_code(step_state, work):
     """Return the code of V = omega = 0 in the outputs, an int.
 
-    It is HELD_AT_REST (4) if the segment has a brake anywhere on it, or if a speed is prescribed in the motion; else
-    AT_REST (2).
+    It is HELD_AT_REST (4) if the segment has a brake anywhere on it, or if a speed is prescribed in
+    the motion; else AT_REST (2).
 
     step_state: StepState, of which the segment is read.
     work: Workspace, of which the Drive is read.

@@ -1,87 +1,98 @@
 """Right-hand side of a motion in unknowns in which the law is explicit and that pass V = 0.
 
-All derivatives are exact, but that of p' in d in partial slip leaves out the feedback of omega (:class:`Rates`).
+All derivatives are exact, but that of p' in d in partial slip leaves out the feedback of omega
+(:class:`Rates`).
 
-In full slip they are V and omega; in partial slip V and d = delta/delta_star, in a direction with V >= 0.  On rows
-of the law (:mod:`..rows`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u), w = (1 - |d|) L, s = sign d and
-H(v) the function :func:`..rows.evaluate.H_over_F2`,
+In full slip they are V and omega; in partial slip V and d = delta/delta_star, in a direction with V
+>= 0.  On rows of the law (:mod:`.law`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u),
+w = (1 - |d|) L, s = sign d and H(v) the function :func:`.law_functions.H_over_F2`,
 
     omega = V (1 + k L d)      Q = s mu [1 - w^2 H(2 u/w)]      V d' = [(omega' - V')/k - d (L + u L') V']/L
 
-On a cover of finite thickness delta = delta_0(u) + k L d: delta_0 V is added to omega, and its slope to the factor
-of V' in the last equation (:mod:`..rows.cover`); half-spaces are compiled without it.
+On a cover of finite thickness delta = delta_0(u) + k L d: delta_0 V is added to omega, and its
+slope to the factor of V' in the last equation (:mod:`.cover_law`); half-spaces are compiled
+without it.
 
-Both sides of the last equation stay finite as V -> 0, where d is the root of its right side.  For |d| > 1 the law is
-continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V < 0 as odd functions.
+Both sides of the last equation stay finite as V -> 0, where d is the root of its right side.
+For |d| > 1 the law is continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V <
+0 as odd functions.
 
-In partial slip a law may add N V' to M, half of it in either body: with n = gamma N the equations are
+In partial slip a law may add N V' to M, half of it in either body: with n = gamma N the equations
+are
 
     (1 + n/2) V' = Q - M/2 + f      j omega' = -Q - M/2 - n V'/2 + q
 
 and the integral of n over V is added to p, so that p' stays the same.
 
-p = inverse_inertia V + inverse_mass omega, proportional to V + j omega, is collocated in place of V: p' does not depend
-on Q, and on d only by feedback.  dp/dd = inverse_mass V k L is small: Newton's matrix splits into one of p and one of d
-(:mod:`step`).  Where friction is so strong that dp/dV may vanish, p is V.
+p = inverse_inertia V + inverse_mass omega, proportional to V + j omega, is collocated in place of
+V: p' does not depend on Q, and on d only by feedback.  dp/dd = inverse_mass V k L is small:
+Newton's matrix splits into one of p and one of d (:mod:`step`).  Where friction is so strong that
+dp/dV may vanish, p is V.
 
 Terms of this file, dimensionless (fields of the records in :mod:`records`):
 
-- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d = delta/delta_star in
-  partial slip; both in the direction of the Regime, in which V is at least 0.
-- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega under a brake;
-  whether the brake holds omega at 0.
-- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of steps, length of
-  the next step.
-- Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed V or omega, largest
-  torque of the brake, inverse_mass (1, or 0 where V is prescribed), inverse_inertia (1/j, or 0 where omega is
-  prescribed or held by the brake) and the gains of the feedback.
-- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in full slip
-  (:mod:`rhs`).  p' is its slope in tau.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
+  delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
+  under a brake; whether the brake holds omega at 0.
+- StepState: progress of the integration: tau reached, index of the next output, segment, numbers of
+  steps, length of the next step.
+- Load: the drive at one time in the direction of the Regime: force, torque, slopes of a prescribed
+  V or omega, largest torque of the brake, inverse_mass (1, or 0 where V is prescribed),
+  inverse_inertia (1/j, or 0 where omega is prescribed or held by the brake) and the gains of the
+  feedback.
+- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in
+  full slip (:mod:`rhs`).  p' is its slope in tau.
 - Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
-- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X holds x at node i of a
-  step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the Radau nodes.
-"""
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
+  holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
+  Radau nodes.
+"""  # noqa: E501
 
 from __future__ import annotations
 
 import math
 from typing import NamedTuple
 
-from ..compile.by_reference import by_value
-from ..compile.intrinsics import unlikely
-from ..compile.jit import inline_kernel, kernel
-from ..rows.cover import free_kinematics
-from ..rows.evaluate import H_over_F2, H_over_F2_secants, locate_row
+from ..law.cover_law import free_kinematics
+from ..law.law_functions import H_over_F2, H_over_F2_secants, locate_row
+from ..numerics.intrinsics import by_value, unlikely
+from ..numerics.jit import inline_kernel, kernel
+from ..records import State
+from .collocation import ROW_OMEGA_OR_D, ROW_V
 from .drive import current_load, load_at_node
-from .law import added_inertia, evaluate_moments, loaded_moments
-from .records import State
+from .motion_law import added_inertia, evaluate_moments, loaded_moments
 from .table_law import Width, free_creep_of_table, loads_on_rows, table_state, width_at
-from .workspace import ROW_OMEGA_OR_D, ROW_V
 
-#: k relative to the smallest k at which dp/dV may vanish at d = -1, above which V is collocated, dimensionless: below
-#: it dp/dV at rest is at least a fifth of its value at d = 0.
+#: k relative to the smallest k at which dp/dV may vanish at d = -1, above which V is collocated,
+#: dimensionless: below it dp/dV at rest is at least a fifth of its value at d = 0.
 _STRONG_FRICTION = 0.8
-#: |d| below which Q is evaluated by mean slopes of the law: 1 - w^2 H, about 2 |d|, would have lost four digits there.
+#: |d| below which Q is evaluated by mean slopes of the law: 1 - w^2 H, about 2 |d|, would have lost
+#: four digits there.
 _SMALL_D = 1e-4
 
 
 class Rates(NamedTuple):
-    """The right-hand side at a state and its derivatives in V and the second unknown (_dd), dimensionless.
+    """The right-hand side at a state and its derivatives in V and the second unknown (_dd),
+    dimensionless.
 
-    Derivatives are partial ones: those in V at fixed omega or d, those in the second unknown at fixed V.
+    Derivatives are partial ones: those in V at fixed omega or d, those in the second unknown at
+    fixed V.
 
     omega : angular velocity
     Q : traction, Eq. (17); signed, |Q| <= mu
-    M_half_space, M_cylinder : the parts of the rolling moment, Eq. (18), that half-space and cylinder take; in partial
-        slip each contains n V'/2 of the added mass
+    M_half_space, M_cylinder : the parts of the rolling moment, Eq. (18), that half-space and
+        cylinder take; in partial slip each contains n V'/2 of the added mass
     V_rate : V'
     p : the collocated unknown; V in full slip and under strong friction
     p_rate : p'
-    weighted_rate : ``weight`` times the slope of the second unknown: V d' in partial slip, omega' in full slip
+    weighted_rate : ``weight`` times the slope of the second unknown: V d' in partial slip, omega'
+    in full slip
     weight : V in partial slip, 1 in full slip
     dp_dV, dp_dd : derivatives of p
-    dp_rate_dV, dp_rate_dd : derivatives of p'; in partial slip without strong friction dp_rate_dd is 0 but for the
-        moments of a cover, which depend on Q: it leaves out the feedback of omega through d
+    dp_rate_dV, dp_rate_dd : derivatives of p'; in partial slip without strong friction dp_rate_dd
+        is 0 but for the moments of a cover, which depend on Q: it leaves out the feedback of omega
+        through d
     drate_dV, drate_dd : derivatives of ``weighted_rate``
     dweight_dV : derivative of ``weight``: 1 in partial slip, 0 in full slip
     """
@@ -106,15 +117,16 @@ class Rates(NamedTuple):
 
 @inline_kernel
 def applied_forces(V, omega, load, regime):
-    """Return the applied force and torques, feedback included, in the direction of the regime, dimensionless.
+    """Return the applied force and torques, feedback included, in the direction of the regime,
+    dimensionless.
 
     V, omega: float, speeds in the direction of the regime, dimensionless.
     load: Load, the drive at the time; force, torque, brake and gains are read.
-    regime: Regime, of which ``spin_sign`` is read, the sign of omega against which a brake acts; 0: no torque of the
-    brake.
-    Returns (force, torque of the motor, torque of motor and brake together), floats, signed.  Where a speed is
-    prescribed or the brake holds omega at 0, these are not the force and torque that act: those are given by
-    :func:`required_forces`.
+    regime: Regime, of which ``spin_sign`` is read, the sign of omega against which a brake acts; 0:
+    no torque of the brake.
+    Returns (force, torque of the motor, torque of motor and brake together), floats, signed.  Where
+    a speed is prescribed or the brake holds omega at 0, these are not the force and torque that
+    act: those are given by :func:`required_forces`.
     """
     gains = load.gains
     force = load.force + gains.force_V * V + gains.force_omega * omega
@@ -124,22 +136,24 @@ def applied_forces(V, omega, load, regime):
 
 @inline_kernel
 def required_forces(V, omega, rates, load, regime, j):
-    """Return the forces and torques that act: the applied ones, or those that Eq. (22) requires of a prescribed speed.
+    """Return the forces and torques that act: the applied ones, or those that Eq. (22) requires of
+    a prescribed speed.
 
-    Eq. (22) is V' = force + Q - M_half_space and j omega' = torque + brake - Q - M_cylinder, with ' = d/dtau.
-    Force and torque are the applied ones with their feedback, and the brake acts with its largest torque against omega,
-    with three exceptions.  If the brake holds omega at 0 its torque is the one that makes omega' = 0.  Else, if omega
-    is prescribed, the torque of the motor is the one that gives omega' its prescribed slope.  If V is prescribed, the
-    force is the one that gives V' its prescribed slope.
+    Eq. (22) is V' = force + Q - M_half_space and j omega' = torque + brake - Q - M_cylinder, with
+    ' = d/dtau.  Force and torque are the applied ones with their feedback, and the brake acts with
+    its largest torque against omega, with three exceptions.  If the brake holds omega at 0 its
+    torque is the one that makes omega' = 0.  Else, if omega is prescribed, the torque of the motor
+    is the one that gives omega' its prescribed slope.  If V is prescribed, the force is the one
+    that gives V' its prescribed slope.
 
     V, omega: float, speeds in the direction of the regime, dimensionless.
     rates: Rates, at these speeds; Q and the moments are read.
-    load: Load, the drive at the time; inverse_mass = 0 tells that V is prescribed, inverse_inertia = 0 that omega is,
-    unless the brake holds it.
+    load: Load, the drive at the time; inverse_mass = 0 tells that V is prescribed,
+    inverse_inertia = 0 that omega is, unless the brake holds it.
     regime: Regime, at that state; ``locked`` and ``spin_sign`` are read.
     j: float, moment of inertia J/(m R^2), dimensionless, > 0.
-    Returns (force, torque of the motor, torque of the brake), floats, signed, in the direction of the regime,
-    dimensionless; the torque of the brake is 0 without one.
+    Returns (force, torque of the motor, torque of the brake), floats, signed, in the direction of
+    the regime, dimensionless; the torque of the brake is 0 without one.
     """
     force, torque, _ = applied_forces(V, omega, load, regime)
     brake = -load.brake * regime.spin_sign
@@ -154,158 +168,248 @@ def required_forces(V, omega, rates, load, regime, j):
 
 @inline_kernel
 def has_strong_friction(load, regime, scene):
-    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate; a bool.
+    """Return whether friction is so strong that V is collocated in place of p, with Q in its rate;
+    a bool.
 
-    With k = mu/(2 kappa) it is where k inverse_mass > 0.8 (inverse_mass + inverse_inertia), in partial slip with sigma
-    < 0: only there may dp/dV vanish.  0.8 is a fraction of the k at which dp/dV of half-spaces at rest is 0 at d = -1.
-    The result is False in full slip and where V is prescribed.
+    With k = mu/(2 kappa) it is where k inverse_mass > 0.8 (inverse_mass + inverse_inertia), in
+    partial slip with sigma < 0: only there may dp/dV vanish.  0.8 is a fraction of the k at which
+    dp/dV of half-spaces at rest is 0 at d = -1.  The result is False in full slip and where V is
+    prescribed.
 
     load: Load, whose ``inverse_mass`` and ``inverse_inertia`` are read.
     regime: Regime, that of the state; ``full_slip`` and ``sigma`` are read.
     scene: Scene, of which mu and kappa > 0 are read.
     """
-    inverse_mass, k = load.inverse_mass, 0.5 * scene.mu / scene.kappa
+    inverse_mass = load.inverse_mass
+    k = 0.5 * scene.mu / scene.kappa
     strong = k * inverse_mass > _STRONG_FRICTION * (inverse_mass + load.inverse_inertia)
     return strong and regime.sigma < 0.0 and not regime.full_slip
 
 
 @inline_kernel
 def partial_slip_rates(V, d, load, regime, scene):
-    """Evaluate the right-hand side in partial slip, with its derivatives, by the equations of the module.
+    """Evaluate the right-hand side in partial slip, with its derivatives, by the equations of the
+    module.
 
-    Trial states of Newton's iteration may lie outside the regime: where sigma d >= 1, Q is sigma mu; where sigma d < 0,
-    the branch of sigma is continued beyond d = 0; V may be below 0.  At V = 0 all values are finite.
+    Trial states of Newton's iteration may lie outside the regime: where sigma d >= 1, Q is sigma
+    mu; where sigma d < 0, the branch of sigma is continued beyond d = 0; V may be below 0.  At V =
+    0 all values are finite.
 
-    Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L, dVdelta_star = d(V
-    delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V and x_d: derivatives of x in V and d.
+    Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L,
+    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V
+    and x_d: derivatives of x in V and d.
 
     V: float, speed of the axis in the direction of the regime, dimensionless.
     d: float, delta/delta_star, of a cover that of the excess over free rolling; dimensionless.
     load: Load, the drive at the time; all fields are read.
-    regime: Regime, of partial slip; sigma is the sign of the branch, spin_sign that of omega under a brake.
-    scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`; law, moments_differ, kappa, mu > 0 and
-    gamma are read.
-    Returns Rates, dimensionless, with the derivatives of partial slip: the second unknown is d and the weight V.  Under
-    strong friction (:func:`has_strong_friction`) p is V, with the derivatives of V'.
+    regime: Regime, of partial slip; sigma is the sign of the branch, spin_sign that of omega under
+    a brake.
+    scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`; law, moments_differ,
+    kappa, mu > 0 and gamma are read.
+    Returns Rates, dimensionless, with the derivatives of partial slip: the second unknown is d and
+    the weight V.  Under strong friction (:func:`has_strong_friction`) p is V, with the derivatives
+    of V'.
     """
-    law, mu, sign, k = scene.law, scene.mu, regime.sigma, 0.5 * scene.mu / scene.kappa
-    u, du_dV = scene.kappa * abs(V), scene.kappa if V >= 0.0 else -scene.kappa
-    L, dL, ddL, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
+    law = scene.law
+    mu = scene.mu
+    sign = regime.sigma
+    k = 0.5 * scene.mu / scene.kappa
+    u = scene.kappa * abs(V)
+    du_dV = scene.kappa if V >= 0.0 else -scene.kappa
+    L, dL, ddL, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(
+        u, scene
+    )
     stick = max(1.0 - sign * d, 0.0)
     w = stick * L
-    Q, Q_V, Q_d = sign * mu, 0.0, 0.0
+    Q = sign * mu
+    dQ_dV = 0.0
+    dQ_dd = 0.0
     if w > 0.0:
         v = 2.0 * u / w
         index = locate_row(v, law)
         value, slope = H_over_F2(index, v, law)
-        A = value - 0.5 * v * slope
+        w_slope = value - 0.5 * v * slope
         Q *= 1.0 - w * w * value
         if unlikely(abs(d) < _SMALL_D):  # A mean slope of H gives Q without cancellation.
             D = abs(d) * L
-            value, _, secant, _ = H_over_F2_secants(index, locate_row(2.0 * u / L, law), v, D / w, law)
+            value, _, secant, _ = H_over_F2_secants(
+                index, locate_row(2.0 * u / L, law), v, D / w, law
+            )
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * secant)
-        Q_V, Q_d = -2.0 * sign * mu * w * (A * stick * dL + slope) * du_dV, 2.0 * mu * w * L * A
-    width = width_at(u, sign, mu, Width(L, dL, ddL, 0.0, 0.0, 0.0), law.table)
-    L, dL, ddL = width.L, width.dL, width.ddL
+        dQ_dV = -2.0 * sign * mu * w * (w_slope * stick * dL + slope) * du_dV
+        dQ_dd = 2.0 * mu * w * L * w_slope
+    width = width_at(
+        u, sign, mu, Width(L=L, dL=dL, ddL=ddL, middle=0.0, dmiddle=0.0, ddmiddle=0.0), law.table
+    )
+    L = width.L
+    dL = width.dL
+    ddL = width.ddL
     dVdelta_star = L + u * dL
     cover = free_kinematics(locate_row(u, law), u, scene.kappa, k, dVdelta_star, law.cover_rows)
     cover = free_creep_of_table(width, u, scene.kappa, k, cover, law.table)
     d_total = d + cover.aside
-    omega, omega_V, omega_d = V * (1.0 + k * L * d + cover.creep), 1.0 + k * d_total * dVdelta_star, k * V * L
+    omega = V * (1.0 + k * L * d + cover.creep)
+    domega_dV = 1.0 + k * d_total * dVdelta_star
+    domega_dd = k * V * L
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
-    on_rows = loads_on_rows(Q, Q_V, Q_d, loaded_moments(V, du_dV, Q, Q_V, Q_d, free, scene))
+    on_rows = loads_on_rows(Q, dQ_dV, dQ_dd, loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene))
     moments = table_state(V, d, sign, scene.kappa, mu, on_rows, law.table)
-    Q, Q_V, Q_d = moments.Q, moments.Q_dV, moments.Q_dd
+    Q = moments.Q
+    dQ_dV = moments.Q_dV
+    dQ_dd = moments.Q_dd
     M_half_space = moments.half_space
     M_cylinder = moments.cylinder
-    inverse_mass, inverse_inertia = load.inverse_mass, load.inverse_inertia
+    inverse_mass = load.inverse_mass
+    inverse_inertia = load.inverse_inertia
     inverse_product = inverse_mass * inverse_inertia
-    force_V, torque_V = gains.force_V + gains.force_omega * omega_V, gains.torque_V + gains.torque_omega * omega_V
-    p, p_V = inverse_inertia * V + inverse_mass * omega, inverse_inertia + inverse_mass * omega_V
-    p_d = inverse_mass * omega_d
-    p_rate_d = -inverse_product * (moments.half_space_dd + moments.cylinder_dd)
+    dforce_dV = gains.force_V + gains.force_omega * domega_dV
+    dtorque_dV = gains.torque_V + gains.torque_omega * domega_dV
+    p = inverse_inertia * V + inverse_mass * omega
+    dp_dV = inverse_inertia + inverse_mass * domega_dV
+    dp_dd = inverse_mass * domega_dd
+    dp_rate_dd = -inverse_product * (moments.half_space_dd + moments.cylinder_dd)
     p_rate = inverse_product * (force + torque - M_half_space - M_cylinder)
-    p_rate = p_rate + inverse_inertia * load.prescribed_V_rate + inverse_mass * load.prescribed_omega_rate
-    p_rate_V = inverse_product * (force_V + torque_V - moments.half_space_dV - moments.cylinder_dV)
+    p_rate = (
+        p_rate
+        + inverse_inertia * load.prescribed_V_rate
+        + inverse_mass * load.prescribed_omega_rate
+    )
+    dp_rate_dV = inverse_product * (
+        dforce_dV + dtorque_dV - moments.half_space_dV - moments.cylinder_dV
+    )
     V_rate = inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate
-    V_V = inverse_mass * (Q_V - moments.half_space_dV + force_V)
-    V_d = inverse_mass * (Q_d - moments.half_space_dd + gains.force_omega * omega_d)
-    torque_d = gains.torque_omega * omega_d
-    n, n_V, n_integral = added_inertia(V, scene)
+    dV_rate_dV = inverse_mass * (dQ_dV - moments.half_space_dV + dforce_dV)
+    dV_rate_dd = inverse_mass * (dQ_dd - moments.half_space_dd + gains.force_omega * domega_dd)
+    dtorque_dd = gains.torque_omega * domega_dd
+    n, dn_dV, n_integral = added_inertia(V, scene)
     if n != 0.0:
         mass_ratio = 1.0 / (1.0 + 0.5 * inverse_mass * n)
         V_rate *= mass_ratio
-        V_V, V_d, drag = mass_ratio * (V_V - 0.5 * inverse_mass * n_V * V_rate), mass_ratio * V_d, 0.5 * n * V_rate
-        M_half_space, M_cylinder = M_half_space + drag, M_cylinder + drag
-        torque_V, torque_d = torque_V - 0.5 * (n_V * V_rate + n * V_V), torque_d - 0.5 * n * V_d
-        p, p_V = p + inverse_product * n_integral, p_V + inverse_product * n
+        dV_rate_dV = mass_ratio * (dV_rate_dV - 0.5 * inverse_mass * dn_dV * V_rate)
+        dV_rate_dd = mass_ratio * dV_rate_dd
+        drag = 0.5 * n * V_rate
+        M_half_space = M_half_space + drag
+        M_cylinder = M_cylinder + drag
+        dtorque_dV = dtorque_dV - 0.5 * (dn_dV * V_rate + n * dV_rate_dV)
+        dtorque_dd = dtorque_dd - 0.5 * n * dV_rate_dd
+        p = p + inverse_product * n_integral
+        dp_dV = dp_dV + inverse_product * n
     omega_rate = inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
     # Reciprocals are formed once: the processor takes longer for a division than for five products.
-    inverse_k, inverse_L = 1.0 / k, 1.0 / L
+    inverse_k = 1.0 / k
+    inverse_L = 1.0 / L
     rate = inverse_L * (inverse_k * (omega_rate - V_rate) - d_total * dVdelta_star * V_rate)
-    omega_rate_V = inverse_inertia * (torque_V - Q_V - moments.cylinder_dV)
-    omega_rate_d = inverse_inertia * (torque_d - Q_d - moments.cylinder_dd)
-    curvature = du_dV * (((2.0 * dL + u * ddL) * d + cover.bend) * V_rate + dL * rate)
+    domega_rate_dV = inverse_inertia * (dtorque_dV - dQ_dV - moments.cylinder_dV)
+    domega_rate_dd = inverse_inertia * (dtorque_dd - dQ_dd - moments.cylinder_dd)
+    dL_term = du_dV * (((2.0 * dL + u * ddL) * d + cover.bend) * V_rate + dL * rate)
     if unlikely(has_strong_friction(load, regime, scene)):
-        p, p_rate, p_V, p_d, p_rate_V, p_rate_d = V, V_rate, 1.0, 0.0, V_V, V_d
+        p = V
+        p_rate = V_rate
+        dp_dV = 1.0
+        dp_dd = 0.0
+        dp_rate_dV = dV_rate_dV
+        dp_rate_dd = dV_rate_dd
     return Rates(
-        omega, Q, M_half_space, M_cylinder, V_rate, p, p_rate, rate, V, p_V, p_d, p_rate_V, p_rate_d,
-        inverse_L * (inverse_k * (omega_rate_V - V_V) - d_total * dVdelta_star * V_V - curvature),
-        inverse_L * (inverse_k * (omega_rate_d - V_d) - dVdelta_star * (V_rate + d_total * V_d)), 1.0,
-    )  # fmt: skip
+        omega=omega,
+        Q=Q,
+        M_half_space=M_half_space,
+        M_cylinder=M_cylinder,
+        V_rate=V_rate,
+        p=p,
+        p_rate=p_rate,
+        weighted_rate=rate,
+        weight=V,
+        dp_dV=dp_dV,
+        dp_dd=dp_dd,
+        dp_rate_dV=dp_rate_dV,
+        dp_rate_dd=dp_rate_dd,
+        drate_dV=inverse_L
+        * (
+            inverse_k * (domega_rate_dV - dV_rate_dV)
+            - d_total * dVdelta_star * dV_rate_dV
+            - dL_term
+        ),
+        drate_dd=inverse_L
+        * (
+            inverse_k * (domega_rate_dd - dV_rate_dd)
+            - dVdelta_star * (V_rate + d_total * dV_rate_dd)
+        ),
+        dweight_dV=1.0,
+    )
 
 
 @inline_kernel
 def full_slip_rates(V, omega, load, regime, scene):
-    """Evaluate the right-hand side of the equations of motion, Eq. (22), in full slip, where Q = sigma mu, Eq. (17).
+    """Evaluate the right-hand side of the equations of motion, Eq. (22), in full slip, where Q =
+    sigma mu, Eq. (17).
 
-    V may have either sign, as the moments are odd in V.  The added mass of slow speed changes does not act in full
-    slip.
+    V may have either sign, as the moments are odd in V.  The added mass of slow speed changes does
+    not act in full slip.
 
     V, omega: float, the speeds in the direction of the regime, dimensionless.
     load: Load, the drive at the time; all fields are read.
     regime: Regime, of full slip; sigma is the sign of Q, spin_sign that of omega under a brake.
-    scene: Scene, of which kappa, mu, moments_differ and ``law`` are read, the law of the pair of materials of this
-    motion (:class:`..rows.record.Law`).  It is a tuple of numbers and arrays, not a reference (:func:`by_value`): the
-    caller stores numbers in a loop, after each of which LLVM would read the fields of a reference again.
-    Returns Rates with all derivatives, dimensionless: the second unknown is omega, the weight is 1, p is V.  All are
-    finite, at V = 0 too.
+    scene: Scene, of which kappa, mu, moments_differ and ``law`` are read, the law of the pair of
+    materials of this motion (:class:`.law_record.Law`).  It is a tuple of numbers and arrays, not
+    a reference (:func:`by_value`): the caller stores numbers in a loop, after each of which LLVM
+    would read the fields of a reference again.
+    Returns Rates with all derivatives, dimensionless: the second unknown is omega, the weight is 1,
+    p is V.  All are finite, at V = 0 too.
     """
-    u, Q = scene.kappa * abs(V), regime.sigma * scene.mu
+    u = scene.kappa * abs(V)
+    Q = regime.sigma * scene.mu
     _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
     moments = loaded_moments(V, scene.kappa if V >= 0.0 else -scene.kappa, Q, 0.0, 0.0, free, scene)
     on_rows = loads_on_rows(Q, 0.0, 0.0, moments)
-    moments = table_state(V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table)
+    moments = table_state(
+        V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table
+    )
     M_half_space = moments.half_space
     M_cylinder = moments.cylinder
     V_rate = load.inverse_mass * (Q - M_half_space + force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
     return Rates(
-        omega, Q, M_half_space, M_cylinder, V_rate, V, V_rate, omega_rate, 1.0,
-        1.0, 0.0, load.inverse_mass * (gains.force_V - moments.half_space_dV), load.inverse_mass * gains.force_omega,
-        load.inverse_inertia * (gains.torque_V - moments.cylinder_dV), load.inverse_inertia * gains.torque_omega, 0.0,
-    )  # fmt: skip
+        omega=omega,
+        Q=Q,
+        M_half_space=M_half_space,
+        M_cylinder=M_cylinder,
+        V_rate=V_rate,
+        p=V,
+        p_rate=V_rate,
+        weighted_rate=omega_rate,
+        weight=1.0,
+        dp_dV=1.0,
+        dp_dd=0.0,
+        dp_rate_dV=load.inverse_mass * (gains.force_V - moments.half_space_dV),
+        dp_rate_dd=load.inverse_mass * gains.force_omega,
+        drate_dV=load.inverse_inertia * (gains.torque_V - moments.cylinder_dV),
+        drate_dd=load.inverse_inertia * gains.torque_omega,
+        dweight_dV=0.0,
+    )
 
 
 @inline_kernel
 def evaluate_rhs_inline(V, omega_or_d, load, regime, scene):
-    """Evaluate the right-hand side of the regime: :func:`full_slip_rates` or :func:`partial_slip_rates`.
+    """Evaluate the right-hand side of the regime: :func:`full_slip_rates` or
+    :func:`partial_slip_rates`.
 
-    It is inlined in Newton's iteration and in the quadratures, so that the compiler leaves out what they do not read.
+    It is inlined in Newton's iteration and in the quadratures, so that the compiler leaves out what
+    they do not read.
 
     V: float, speed of the axis in the direction of the regime, dimensionless.
     omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
     load: Load, the drive at the time; all fields are read.
     regime: Regime; ``full_slip`` selects the function, which also reads sigma and spin_sign.
     scene: Scene, a tuple and not a reference, as in :func:`full_slip_rates`.
-    Returns Rates, dimensionless.  In full slip p is V, the second unknown omega, the weight of its equation 1.  In
-    partial slip p is the unknown proportional to V + j omega (V itself under strong friction), the second unknown d,
-    the weight V.  The derivatives in V and in the second unknown are the fields dp_dV to dweight_dV of :class:`Rates`.
+    Returns Rates, dimensionless.  In full slip p is V, the second unknown omega, the weight of its
+    equation 1.  In partial slip p is the unknown proportional to V + j omega (V itself under strong
+    friction), the second unknown d, the weight V.  The derivatives in V and in the second unknown
+    are the fields dp_dV to dweight_dV of :class:`Rates`.
     """
     if regime.full_slip:
         return full_slip_rates(V, omega_or_d, load, regime, scene)
@@ -321,9 +425,10 @@ def evaluate_rhs(state, load, regime, scene):
     state: State, the unknowns, in the direction of the regime.
     load: Load, the drive at the time; all fields are read.
     regime: Regime; ``full_slip``, ``sigma`` and ``spin_sign`` are read.
-    scene: Scene, of which ``law``, moments_differ, kappa, mu and, in partial slip, gamma are read: a reference
-    (:mod:`..compile.by_reference`), one address to pass, or a tuple.
-    Returns Rates, dimensionless, as :func:`full_slip_rates` or :func:`partial_slip_rates` returns them.
+    scene: Scene, of which ``law``, moments_differ, kappa, mu and, in partial slip, gamma are read:
+    a reference (:mod:`.intrinsics`), one address to pass, or a tuple.
+    Returns Rates, dimensionless, as :func:`full_slip_rates` or :func:`partial_slip_rates` returns
+    them.
     """
     return evaluate_rhs_inline(state.V, state.omega_or_d, load, regime, by_value(scene))
 
@@ -332,7 +437,8 @@ def evaluate_rhs(state, load, regime, scene):
 def current_rates(state, regime, step_state, work):
     """Return the right-hand side at a state and the time reached, :class:`Rates`, dimensionless.
 
-    It is :func:`evaluate_rhs` with the Load evaluated at that time; nothing is stored in the workspace.
+    It is :func:`evaluate_rhs` with the Load evaluated at that time; nothing is stored in the
+    workspace.
 
     state: State, the unknowns, in the direction of the regime.
     regime: Regime, the present one; ``full_slip`` tells what the second unknown is.
@@ -348,11 +454,12 @@ def rhs_and_forces_at_node(i, regime, work):
 
     i: int, the node, 0 ... N.
     regime: Regime, that of the step; all fields are read.
-    work: Workspace, with V, the second unknown and the four functions of the drive (:func:`.drive.store_drive`) at the
-    node; Scene and Drive are read too.
-    Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless, in the direction of the regime,
-    as :func:`required_forces` returns them.
+    work: Workspace, with V, the second unknown and the four functions of the drive
+    (:func:`.drive.store_drive`) at the node; Scene and Drive are read too.
+    Returns (Rates, (force, torque of the motor, torque of the brake)), dimensionless, in the
+    direction of the regime, as :func:`required_forces` returns them.
     """
-    state, load = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i]), load_at_node(i, regime, work)
+    state = State(work.nodes[ROW_V + i], work.nodes[ROW_OMEGA_OR_D + i])
+    load = load_at_node(i, regime, work)
     rates = evaluate_rhs(state, load, regime, work.scene)
     return rates, required_forces(state.V, rates.omega, rates, load, regime, work.scene.j)

@@ -1,20 +1,20 @@
-"""The law of a motion as a table of one scene (:mod:`..splines.table`), in the unknowns of a motion.
+"""The law of a motion as a table of one scene (:mod:`.coupled_splines`), in the unknowns of a
+motion.
 
-The second unknown of partial slip is d = sigma w, with w the place of the table on the side sigma of its middle creep:
-2 kappa delta = D_0 + mu L d, where mu L is the distance of the onset of sigma from D_0.  So D_0 stands where the
-creepage of free rolling stands in the equations of a cover (:mod:`.rhs`), and L depends on sigma.
+The second unknown of partial slip is d = sigma w, with w the place of the table on the side sigma
+of its middle creep: 2 kappa delta = D_0 + mu L d, where mu L is the distance of the onset of sigma
+from D_0.  So D_0 stands where the creepage of free rolling stands in the equations of a cover
+(:mod:`.rhs`), and L depends on sigma.
 
-``table`` is None for a law without one: then functions return what their callers found on the rows, and nothing of a
-table is compiled.  All is dimensionless.
+``table`` is None for a law without one: then functions return what their callers found on the rows,
+and nothing of a table is compiled.  All is dimensionless.
 """
 
 from typing import NamedTuple
 
 import numpy as np
 
-from ..compile.jit import inline_kernel
-from ..rows.cover import FreeCreep
-from ..splines.table import (
+from ..law.coupled_splines import (
     CYLINDER,
     HALF_SPACE,
     MIDDLE,
@@ -27,6 +27,8 @@ from ..splines.table import (
     locate_speed,
     place_of,
 )
+from ..law.cover_law import FreeCreep
+from ..numerics.jit import inline_kernel
 
 #: Bisections of d in [-1, 1], to rounding.
 _HALVINGS = 54
@@ -37,7 +39,9 @@ _EDGE = 1e-12
 
 
 class Width(NamedTuple):
-    """Creeps at one speed: L of one side and the middle creep D_0, each with two derivatives over u."""
+    """Creeps at one speed: L of one side and the middle creep D_0, each with two derivatives over
+    u.
+    """
 
     L: float
     dL: float
@@ -49,9 +53,10 @@ class Width(NamedTuple):
 
 @inline_kernel
 def free_creep_of_table(width, u, kappa, k, rows, table):
-    """Return D_0 as :class:`..rows.cover.FreeCreep`.
+    """Return D_0 as :class:`.cover_law.FreeCreep`.
 
-    width: :class:`Width` at u = kappa |V|.  k: mu/(2 kappa).  rows: what :func:`..rows.cover.free_kinematics` gives.
+    width: :class:`Width` at u = kappa |V|.  k: mu/(2 kappa).  rows: what
+    :func:`.cover_law.free_kinematics` gives.
     """
     if table is None:
         return rows
@@ -64,7 +69,9 @@ def free_creep_of_table(width, u, kappa, k, rows, table):
 
 
 class TableState(NamedTuple):
-    """Loads of partial or full slip with their derivatives: in V at fixed d (_dV), in d at fixed V (_dd)."""
+    """Loads of partial or full slip with their derivatives: in V at fixed d (_dV), in d at fixed V
+    (_dd).
+    """
 
     Q: float
     Q_dV: float
@@ -79,7 +86,9 @@ class TableState(NamedTuple):
 
 @inline_kernel
 def width_at(u, sigma, mu, rows, table):
-    """Return the :class:`Width` at u = kappa |V| on the side sigma, 1.0 or -1.0; ``rows``: that of the rows."""
+    """Return the :class:`Width` at u = kappa |V| on the side sigma, 1.0 or -1.0; ``rows``: that of
+    the rows.
+    """
     if table is None:
         return rows
     speed = locate_speed(u, table)
@@ -87,7 +96,14 @@ def width_at(u, sigma, mu, rows, table):
     onset, donset, ddonset = _edge(ONSET + np.int64(sigma > 0.0), u, speed, table)
     factor = sigma / mu
     L = factor * (onset - middle)
-    return Width(L, factor * (donset - dmiddle), factor * (ddonset - ddmiddle), middle, dmiddle, ddmiddle)
+    return Width(
+        L=L,
+        dL=factor * (donset - dmiddle),
+        ddL=factor * (ddonset - ddmiddle),
+        middle=middle,
+        dmiddle=dmiddle,
+        ddmiddle=ddmiddle,
+    )
 
 
 @inline_kernel
@@ -99,16 +115,26 @@ def _edge(name, u, speed, table):
 
 @inline_kernel
 def loads_on_rows(Q, Q_dV, Q_dd, moments):
-    """Return traction with its derivatives and :class:`.law.LoadedMoments`, of the rows, as :class:`TableState`."""
+    """Return traction with its derivatives and :class:`.motion_law.LoadedMoments`, of the rows, as
+    :class:`TableState`.
+    """
     return TableState(
-        Q, Q_dV, Q_dd, moments.half_space, moments.half_space_dV, moments.half_space_dd,
-        moments.cylinder, moments.cylinder_dV, moments.cylinder_dd,
-    )  # fmt: skip
+        Q=Q,
+        Q_dV=Q_dV,
+        Q_dd=Q_dd,
+        half_space=moments.half_space,
+        half_space_dV=moments.half_space_dV,
+        half_space_dd=moments.half_space_dd,
+        cylinder=moments.cylinder,
+        cylinder_dV=moments.cylinder_dV,
+        cylinder_dd=moments.cylinder_dd,
+    )
 
 
 @inline_kernel
 def table_state(V, d, sigma, kappa, mu, rows, table):
-    """Return the :class:`TableState` at a speed V of either sign and d on the side sigma; full slip where sigma d >= 1.
+    """Return the :class:`TableState` at a speed V of either sign and d on the side sigma; full slip
+    where sigma d >= 1.
 
     rows: that of the rows.
 
@@ -131,35 +157,55 @@ def table_state(V, d, sigma, kappa, mu, rows, table):
     turned = mu * sign
     moment = sign / kappa
     return TableState(
-        turned * Q.value, turned * du_dV * Q.du, turned * sigma * Q.dw,
-        moment * half_space.value, moment * du_dV * half_space.du, moment * sigma * half_space.dw,
-        moment * cylinder.value, moment * du_dV * cylinder.du, moment * sigma * cylinder.dw,
-    )  # fmt: skip
+        Q=turned * Q.value,
+        Q_dV=turned * du_dV * Q.du,
+        Q_dd=turned * sigma * Q.dw,
+        half_space=moment * half_space.value,
+        half_space_dV=moment * du_dV * half_space.du,
+        half_space_dd=moment * sigma * half_space.dw,
+        cylinder=moment * cylinder.value,
+        cylinder_dV=moment * du_dV * cylinder.du,
+        cylinder_dd=moment * sigma * cylinder.dw,
+    )
 
 
 @inline_kernel
 def pull_of_table(d, kappa, mu, rows, table):
-    """Return what friction does at V = 0, in the direction of the regime: force on the axis, torque against the spin.
+    """Return what friction does at V = 0, in the direction of the regime: force on the axis, torque
+    against the spin.
 
     d: float, at most 1 in modulus.
     rows: what the rows give, (Q - M_half_space, Q + M_cylinder, their derivatives in d).
     """
     if table is None:
         return rows
-    none = TableState(0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    none = TableState(
+        Q=0.0,
+        Q_dV=0.0,
+        Q_dd=0.0,
+        half_space=0.0,
+        half_space_dV=0.0,
+        half_space_dd=0.0,
+        cylinder=0.0,
+        cylinder_dV=0.0,
+        cylinder_dd=0.0,
+    )
     found = table_state(0.0, d, np.copysign(1.0, d), kappa, mu, none, table)
     return (
-        found.Q - found.half_space, found.Q + found.cylinder,
-        found.Q_dd - found.half_space_dd, found.Q_dd + found.cylinder_dd,
-    )  # fmt: skip
+        found.Q - found.half_space,
+        found.Q + found.cylinder,
+        found.Q_dd - found.half_space_dd,
+        found.Q_dd + found.cylinder_dd,
+    )
 
 
 @inline_kernel
 def balance_of_table(load, kappa, mu, rows, table):
     """Return the margin by which a cylinder at rest keeps still under a load; below 0 it moves.
 
-    It begins to roll in a direction if, with friction in balance with the force, the torque is above what friction
-    takes in rolling: also where bodies are elastic some slip remains in free rolling of a cover.
+    It begins to roll in a direction if, with friction in balance with the force, the torque is
+    above what friction takes in rolling: also where bodies are elastic some slip remains in free
+    rolling of a cover.
     rows: float, the margin that the rows give.
     Returns the smaller margin of both directions, less than 0 where no friction balances the force.
     """
@@ -171,14 +217,20 @@ def balance_of_table(load, kappa, mu, rows, table):
         high = 1.0
         for _ in range(_HALVINGS):
             d = 0.5 * (low + high)
-            if pull_of_table(d, kappa, mu, (0.0, 0.0, 0.0, 0.0), table)[0] + direction * load.force < 0.0:
+            if (
+                pull_of_table(d, kappa, mu, (0.0, 0.0, 0.0, 0.0), table)[0] + direction * load.force
+                < 0.0
+            ):
                 low = d
             else:
                 high = d
         d = 0.5 * (low + high)
         if abs(d) >= 1.0 - _EDGE:
             return min(mu - abs(load.force), -_EDGE)
-        margin = min(margin, pull_of_table(d, kappa, mu, (0.0, 0.0, 0.0, 0.0), table)[1] - direction * load.torque)
+        margin = min(
+            margin,
+            pull_of_table(d, kappa, mu, (0.0, 0.0, 0.0, 0.0), table)[1] - direction * load.torque,
+        )
     if abs(margin) < _ROUNDING * mu:
         margin = 0.0
     return margin + load.brake
@@ -186,7 +238,9 @@ def balance_of_table(load, kappa, mu, rows, table):
 
 @inline_kernel
 def strain_power(V, omega, kappa, table):
-    """Return the power that the bodies take by the strain of their surfaces along the path, at V >= 0 and omega."""
+    """Return the power that the bodies take by the strain of their surfaces along the path, at V >=
+    0 and omega.
+    """
     if table is None:
         return 0.0
     u = kappa * abs(V)
@@ -195,5 +249,8 @@ def strain_power(V, omega, kappa, table):
     speed = locate_speed(u, table)
     state = place_of(D, u, speed, table)
     place = locate_creep(state.w, state.sigma, table)
-    work = field_at(WORK, state.w, speed, place, table).value + field_at(WORK + 1, state.w, speed, place, table).value
+    work = (
+        field_at(WORK, state.w, speed, place, table).value
+        + field_at(WORK + 1, state.w, speed, place, table).value
+    )
     return 0.5 * V * work / kappa

@@ -1,10 +1,13 @@
-"""Nodes, weights and matrices of polynomial interpolation and quadrature, computed in 40 digits and rounded once.
+"""Nodes, weights and matrices of polynomial interpolation and quadrature, computed in 40 digits and
+rounded once.
 
-No library of linear algebra takes part: its last digits differ from machine to machine, and so would all that is
-computed with them.  numpy's polynomials work on arrays of :class:`decimal.Decimal` as they do on floats.
+No library of linear algebra takes part: its last digits differ from machine to machine, and so
+would all that is computed with them.  numpy's polynomials work on arrays of
+:class:`decimal.Decimal` as they do on floats.
 
-The polynomial through values at nodes is the sum of the values times Lagrange's polynomials, each of which is 1 at one
-node and 0 at the others.  Its coefficients, values, slopes and integrals therefore are matrices times the values.
+The polynomial through values at nodes is the sum of the values times Lagrange's polynomials, each
+of which is 1 at one node and 0 at the others.  Its coefficients, values, slopes and integrals
+therefore are matrices times the values.
 """
 
 import math
@@ -22,7 +25,8 @@ from numpy.typing import NDArray
 _DIGITS = 40
 #: Digits in the search for zeros, where polynomials of degree 36 lose fourteen to cancellation.
 _DIGITS_OF_SEARCH = 60
-#: Digits after the point that zeros keep: the last ones would tell how this machine computes a cosine.
+#: Digits after the point that zeros keep: the last ones would tell how this machine computes a
+#: cosine.
 _DIGITS_OF_ZEROS = 36
 #: Newton steps from a start good to two digits: each doubles the digits.
 _NEWTON_STEPS = 5
@@ -30,12 +34,13 @@ _Floats = NDArray[np.float64]
 
 
 def in_40_digits(function: Callable) -> Callable:
-    """Decorate a function so that it computes with Decimals of 40 digits, whatever the decimal context of its caller.
+    """Decorate a function so that it computes with Decimals of 40 digits, whatever the decimal
+    context of its caller.
 
-    function : any function of positional arguments; it must finish its work, since a generator would run in the context
-        of its caller.
-    Returns the decorated function, which returns the same value, takes its arguments by position only, and leaves the
-    context of the caller as it was.
+    function : any function of positional arguments; it must finish its work, since a generator
+        would run in the context of its caller.
+    Returns the decorated function, which returns the same value, takes its arguments by position
+    only, and leaves the context of the caller as it was.
     """
 
     @wraps(function)
@@ -47,7 +52,8 @@ def in_40_digits(function: Callable) -> Callable:
 
 
 class Interpolation:
-    """Matrices from values at nodes to coefficients, values, slopes and integrals of the polynomial through them.
+    """Matrices from values at nodes to coefficients, values, slopes and integrals of the polynomial
+    through them.
 
     Arguments are given by position only (:func:`in_40_digits`).
 
@@ -65,8 +71,10 @@ class Interpolation:
     def __init__(self, nodes: Sequence[Decimal]) -> None:
         """Compute the coefficients of Lagrange's polynomials of the nodes, with 40 digits.
 
-        nodes : list of at least two distinct numbers, Decimals; kept as ``exact`` and, rounded, as ``nodes``.
-        Raises decimal.DivisionByZero where two nodes are equal, or decimal.InvalidOperation if 0 is a node besides.
+        nodes : list of at least two distinct numbers, Decimals; kept as ``exact`` and, rounded, as
+        ``nodes``.
+        Raises decimal.DivisionByZero where two nodes are equal, or decimal.InvalidOperation if 0 is
+        a node besides.
         """
         self.exact = tuple(nodes)
         self.nodes = to_doubles(nodes)
@@ -78,8 +86,8 @@ class Interpolation:
         self._basis = np.array(lagrange).T
 
     def powers(self) -> _Floats:
-        """Return the matrix from values at the nodes to the coefficients of the powers of x, the constant first:
-        doubles, (n, n), [power, node].
+        """Return the matrix from values at the nodes to the coefficients of the powers of x, the
+        constant first: doubles, (n, n), [power, node].
         """
         return to_doubles(self._basis)
 
@@ -103,7 +111,8 @@ class Interpolation:
 
     @in_40_digits
     def integrals(self, points: Iterable[Decimal]) -> _Floats:
-        """Return the matrix from values at the nodes to integrals over x from -1 to other points, for any nodes.
+        """Return the matrix from values at the nodes to integrals over x from -1 to other points,
+        for any nodes.
 
         points : m Decimals or integers; below -1 the integral has the opposite sign.
         Returns doubles, (m, n), [point, node].
@@ -112,7 +121,8 @@ class Interpolation:
 
     @in_40_digits
     def coefficients(self, values: Sequence[Decimal]) -> _Floats:
-        """Return the coefficients of the powers of x of the polynomial through given values, the constant first.
+        """Return the coefficients of the powers of x of the polynomial through given values, the
+        constant first.
 
         values : values at the nodes, n Decimals or integers.
         Returns doubles, (n,).
@@ -136,8 +146,8 @@ def radau(n: int, side: int) -> list[Decimal]:
 def gauss(n: int) -> tuple[_Floats, _Floats]:
     """Return nodes and weights of the Gauss-Legendre rule on [0, 1].
 
-    n : number of points, int, 1 to about 70, by position only: with more, cancellation takes more than the spare digits
-        of 40 (1e-13 is lost at 80).
+    n : number of points, int, 1 to about 70, by position only: with more, cancellation takes more
+        than the spare digits of 40 (1e-13 is lost at 80).
     Returns (nodes, ascending; weights in their order, which add up to 1), doubles, (n,) each.
     """
     legendre = leg2poly(_unit_series(n, 1))
@@ -158,7 +168,8 @@ def chebyshev(n: int) -> list[Decimal]:
 
 @in_40_digits
 def to_chebyshev(n: int) -> _Floats:
-    """Return the matrix from values at the zeros of T_n, ascending, to the coefficients of T_0 ... T_(n-1).
+    """Return the matrix from values at the zeros of T_n, ascending, to the coefficients of T_0 ...
+    T_(n-1).
 
     It gives the series of the polynomial of degree n - 1 through the values.
 
@@ -174,14 +185,16 @@ def to_chebyshev(n: int) -> _Floats:
 
 
 def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
-    """Return the powers of t in shifted Chebyshev polynomials T_m(scale t - shift), m < n, computed in doubles.
+    """Return the powers of t in shifted Chebyshev polynomials T_m(scale t - shift), m < n, computed
+    in doubles.
 
     n : number of polynomials, > 1.
     shift, scale : floats, shift and scale of the argument, dimensionless.
     Returns (n, n), [m, k]: the coefficient of t^k in T_m(scale t - shift), 0 for k > m.
     """
     matrix = np.zeros((n, n))
-    matrix[0, 0], matrix[1, :2] = 1.0, [-shift, scale]
+    matrix[0, 0] = 1.0
+    matrix[1, :2] = [-shift, scale]
     for m in range(2, n):
         matrix[m] = (0.0 - 2.0 * shift) * matrix[m - 1] - matrix[m - 2]
         matrix[m, 1:] += 2.0 * scale * matrix[m - 1, :-1]
@@ -189,12 +202,15 @@ def powers_of_chebyshev(n: int, shift: float, scale: float) -> _Floats:
 
 
 def to_doubles(values) -> _Floats:
-    """Return Decimals as the nearest doubles, of the same shape, in C order: einsum's sums depend on the order."""
+    """Return Decimals as the nearest doubles, of the same shape, in C order: einsum's sums depend
+    on the order.
+    """
     return np.array(values, dtype=np.float64, order="C")
 
 
 def _unit_series(degree: int, *last: int) -> list[Decimal]:
-    """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with ``degree`` zeros.
+    """Return the coefficients of a series of Legendre or Chebyshev polynomials that begins with
+    ``degree`` zeros.
 
     degree : int, how many polynomials, from that of degree 0 on, have the coefficient 0.
     last : integers, coefficients of the next ones.
@@ -208,8 +224,9 @@ def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
 
     polynomial : coefficients of the powers of x, the constant first, Decimals.
     half_turns : for each zero an angle whose cosine is near it, to two digits, divided by pi.
-    Returns one Decimal for each angle, in ascending order of the zeros, whatever the order of the angles, rounded to 36
-    digits after the point.  It is not checked that the iteration has converged.
+    Returns one Decimal for each angle, in ascending order of the zeros, whatever the order of the
+    angles, rounded to 36 digits after the point.  It is not checked that the iteration has
+    converged.
     """
     x = np.array([Decimal(math.cos(math.pi * turn)) for turn in half_turns])
     slope = polyder(polynomial)
@@ -220,5 +237,7 @@ def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
 
 
 def _values(polynomials: NDArray, points: Iterable[Decimal]) -> _Floats:
-    """Return values [point, polynomial] of polynomials whose coefficients are [power, polynomial]."""
+    """Return values [point, polynomial] of polynomials whose coefficients are [power,
+    polynomial].
+    """
     return to_doubles(polyval(np.array([*points]), polynomials).T)

@@ -1,1 +1,0 @@
-"""Commands, functional mock-up units, materials and parameters from measurements."""

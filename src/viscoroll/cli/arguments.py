@@ -1,0 +1,291 @@
+"""Arguments that commands have in common, and the output of results.
+
+The table of commands, and the types of their arguments: numbers, ranges, the scene, the output
+file.
+
+Output of results: their tables on standard output, or a complete file of a table or dataset.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from argparse import ArgumentTypeError, Namespace
+from collections.abc import Callable
+from operator import methodcaller
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import viscoroll as vr
+
+from ..core.files import write_dataset, write_text
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+# --- The table of commands, and the types of their arguments ---
+
+#: Suffixes of figures.
+FIGURES = (".png", ".pdf", ".svg")
+
+#: A command: takes the parsed arguments, returns an exit code other than 0, or None.
+CommandFunction = Callable[[Namespace], int | None]
+
+
+#: Argument of a command: a function that adds it to a parser of argparse, or to a group of one.
+Option = Callable[[Any], Any]
+#: Words of a command -> (function that runs it, its arguments; of a list of arguments a command
+#: line may have one only), in the order of ``--help``.
+COMMANDS: dict[str, tuple[CommandFunction, tuple[Option | list[Option], ...]]] = {}
+
+
+def command(
+    words: str, *options: Option | list[Option]
+) -> Callable[[CommandFunction], CommandFunction]:
+    """Return a decorator that adds a function to :data:`COMMANDS`, so that the program has it as a
+    command.
+
+    words: words of the command, as "tables law", a key of :data:`.program.HELP`.
+    options: options of the command, in the order of its help, each as :func:`option` or
+        :func:`arguments` returns it; a list of them is a group of which one at most may be given.
+    Returns a decorator that takes the function of the command and returns it unchanged.
+    """
+
+    def add(run: CommandFunction) -> CommandFunction:
+        COMMANDS[words] = run, options
+        return run
+
+    return add
+
+
+def option(*names: str, **settings: Any) -> Option:
+    """Return an argument of a command, in the form of :func:`command`.
+
+    names: positional name, or names of the option with dashes, as of
+    ``ArgumentParser.add_argument``.
+    settings: keywords of ``ArgumentParser.add_argument``, as type and help.
+    Returns an :class:`Option`, a function that takes a parser of argparse, or a group of one, and
+    adds the argument.
+    """
+    return methodcaller("add_argument", *names, **settings)
+
+
+def numbers(text: str) -> Any:
+    """Convert an argument to a float or an array: NUMBER, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or a
+    list of these.
+
+    text: the argument; the members of a list are separated by commas.
+    Returns a float for one NUMBER, else an array (n,) of the numbers of all members in their order;
+    ranges have both ends.  A single NUMBER may be infinite or NaN here: the library refuses it.
+    Raises ArgumentTypeError for any other form, and for a range that does not ascend.
+    """
+    import numpy as np
+
+    members = [_numbers_of_member(member) for member in text.split(",")]
+    return members[0] if len(members) == 1 else np.hstack(members)
+
+
+def _numbers_of_member(text: str) -> Any:
+    """Convert one member of the list of :func:`numbers`.
+
+    text: NUMBER, LOW:HIGH:COUNT or LOW:HIGH:COUNT:log.
+    Returns a float, or of a range an array (COUNT,) in equal steps or, with log, equal ratios.
+    Raises ArgumentTypeError for any other form, for a range that does not ascend or whose ends are
+    not finite, for a COUNT outside 2 ... 5e7 or no whole number, and with log for a LOW that is not
+    > 0.
+    """
+    try:
+        low, *rest = text.split(":")
+        if not rest:
+            return float(low)
+        high, count, *spacing = rest
+        return vr.tables.spread(float(low), float(high), int(count), *spacing)  # type: ignore[arg-type]
+    except vr.ParameterError as error:
+        raise ArgumentTypeError(f"{text!r}: {error}") from None
+    except (ValueError, TypeError):
+        allowed = (
+            "a number, LOW:HIGH:COUNT, LOW:HIGH:COUNT:log, or several of these, separated by commas"
+        )
+        raise ArgumentTypeError(f"{text!r} must be {allowed}") from None
+
+
+def roller_of_argument(text: str) -> Any:
+    """Return the roller of an argument: the scene or the cylinder of a TOML file, or the preset of
+    a name.
+
+    text: path of the file, which ends in .toml (in any case), or the name, as "paper-section-5".
+    Returns a :class:`viscoroll.Scene`, dimensionless, or a :class:`viscoroll.Cylinder`, in SI
+    units.
+    Raises ParameterError for an unknown preset; FileError for a .toml file that cannot be read or
+    describes no roller, and for an existing file whose name does not end in .toml.
+    """
+    from ..roller_toml import preset, read_roller
+
+    if text.lower().endswith(".toml"):
+        return read_roller(text)
+    if os.path.exists(text):
+        raise vr.FileError(text, "is not a scene file: its name must end in .toml")
+    return preset(text)
+
+
+def output(*suffixes: str, name: str = "-o", required: bool = True, more: str = "") -> Option:
+    """Return the option of an output file; a path that cannot be written is refused before any
+    work.
+
+    suffixes: allowed suffixes, with the dot and in lower case.
+    name: name of the option; without its dashes it names the argument, "output" for -o.
+    required: whether it must be given; if it need not and is not, the argument is None.
+    more: text after the suffixes in the help.
+    Returns an :class:`Option`, whose argument becomes a Path; nothing is written.
+    """
+
+    def path(text: str) -> Path:
+        """Convert an argument to the path of the output file, which is not created.
+
+        text: the argument; of a .zarr folder a "/" at its end is left out.
+        Returns the Path; a file that exists is allowed.
+        Raises ArgumentTypeError for another suffix, a folder that does not exist, and a directory
+        other than a .zarr.
+        """
+        text = (
+            text.rstrip("/") if text.endswith(".zarr/") else text
+        )  # as shells complete the name of a folder
+        if Path(text).suffix.lower() not in suffixes:
+            raise ArgumentTypeError(f"{text!r} must end in {' or '.join(suffixes)}")
+        if not os.path.isdir(os.path.dirname(text) or "."):
+            raise ArgumentTypeError(f"{text!r} cannot be written: its folder does not exist")
+        if os.path.isdir(text) and not text.endswith(".zarr"):
+            raise ArgumentTypeError(f"{text!r} cannot be written: it is a directory")
+        return Path(text)
+
+    text = f"{' or '.join(suffixes)}{more}"
+    return option(
+        name,
+        dest="output" if name == "-o" else name[2:],
+        metavar="FILE",
+        type=path,
+        required=required,
+        help=text,
+    )
+
+
+#: A file to read.
+FILE = option("file", metavar="FILE")
+#: A scene or cylinder.
+SCENE = option(
+    "scene",
+    metavar="SCENE",
+    help="TOML file with [cylinder] (all numbers are in SI units), or with [scene] or preset (all "
+    "numbers are "
+    "dimensionless); or the name of a preset (dimensionless)",
+)
+#: Output of a table of numbers: to a file, or to standard output in a format.
+TABLE = [
+    output(".txt", ".csv", ".nc", required=False, more="; default: standard output"),
+    option(
+        "--format",
+        choices=("text", "csv", "json"),
+        default="text",
+        help="format of standard output (default: text)",
+    ),
+]
+
+
+# --- Output of results ---
+
+
+def show(arguments: Namespace, result: Any, heading: str = "") -> None:
+    """Print or write a result by its ``to_xarray`` and ``to_pandas``.
+
+    In the table codes, as those of regimes, are replaced by their meanings, and rows of equilibria
+    that a load does not have (V is NaN) are left out; of a single row the column "state" is left
+    out.  The dataset, for a .nc file, stays as it is.
+
+    arguments: parsed command line with output and format, as of :func:`deliver`.
+    result: a result of the library that has both methods, as of ``contact``, ``roll`` or
+    ``steady``.
+    heading: first lines of the text, which csv and json do not have; "": the title of the data.
+    Raises FileError if the file cannot be written.
+    """
+    import numpy as np
+
+    data = result.to_xarray()
+    frame = result.to_pandas().reset_index()
+    for name, variable in data.items():
+        if "flag_meanings" in variable.attrs:  # codes and their meanings, by the CF conventions
+            meanings = variable.attrs["flag_meanings"].split()
+            frame[name] = frame[name].map(
+                dict(zip(np.ravel(variable.attrs["flag_values"]), meanings, strict=True))
+            )
+    if "equilibrium" in frame:  # a load with fewer equilibria than another has NaN in the rest
+        frame = frame[np.isfinite(frame.filter(regex=r"^V( |$)")).all(axis=1)]
+    if len(frame) == 1:
+        frame = frame.drop(columns="state", errors="ignore")
+    deliver(arguments, data, frame, heading or data.attrs["title"])
+
+
+def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading: str) -> None:
+    """Print a table in the required format, or write it or the dataset in the format of the suffix.
+
+    In json, an object of column -> list, numbers that are not finite are null.
+
+    arguments: parsed command line with
+        output, a path that ends in .txt, .csv or .nc and is written, or None: standard output;
+        format of standard output, "text", "csv" or "json"; not used with a path.
+    data: dataset for netCDF, whose ``long_name`` are the meanings of the variables in the text.
+    frame: pandas DataFrame, the same as a table, one row for each state.
+    heading: first lines of the text; csv and json have none.
+    Raises FileError if the file cannot be written.
+    """
+    path = arguments.output
+    suffix = arguments.format if path is None else path.suffix.lower()[1:]
+    if suffix == "nc":
+        write_dataset(data, path)
+        return
+    if suffix == "csv":
+        text = frame.to_csv(index=False, lineterminator="\n")
+    elif suffix == "json":
+        finite = frame.replace([float("inf"), -float("inf")], float("nan")).astype(object)
+        text = (
+            json.dumps(
+                finite.where(finite.notna(), None).to_dict("list"), indent=1, allow_nan=False
+            )
+            + "\n"
+        )
+    else:
+        meanings = {
+            str(name): variable.attrs.get("long_name", "") for name, variable in data.items()
+        }
+        text = as_text(frame, heading, meanings)
+    if path is None:
+        print(text, end="")
+    else:
+        write_text(path, text)
+
+
+def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
+    """Return a table as aligned columns below a heading, or a single row as one line for each
+    number.
+
+    frame: pandas DataFrame, the table, whose columns are called "NAME [UNIT]"; without rows the
+    heading stands alone.
+    heading: first lines.
+    meanings: name of a column without its unit -> meaning, which stands after its number where the
+        table has a single row; None: a single row is written as columns too.
+    Returns the text, which ends with a line break; numbers have ten digits, and missing ones of
+    columns are blank.
+    """
+    if frame.empty:
+        return f"{heading}\n"
+    if meanings is None or len(frame) != 1:
+        return f"{heading}\n\n{frame.to_string(index=False, float_format='{:.10g}'.format, na_rep='')}\n"  # noqa: E501
+    lines = []
+    for column, value in frame.iloc[0].items():
+        name, _, unit = str(column).partition(" ")
+        number = (
+            f"{value:.10g} {unit.strip('[]')}".rstrip() if isinstance(value, float) else str(value)
+        )
+        lines.append(f"{name:>11} = {number:<20} {meanings.get(name, '')}".rstrip())
+    return "\n".join([heading, "", *lines, ""])

@@ -1,0 +1,447 @@
+"""Commands of contact, motion and runs.
+
+Contact and motion of a scene: ``viscoroll contact``, ``stress``, ``roll``, ``steady`` and
+``validity``.
+
+Run files: ``viscoroll ensemble``, ``verify`` and ``sensitivity``.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+import warnings
+from argparse import Namespace
+from collections.abc import Callable
+from typing import Any
+
+import viscoroll as vr
+
+from .arguments import (
+    SCENE,
+    TABLE,
+    Option,
+    as_text,
+    command,
+    deliver,
+    numbers,
+    option,
+    output,
+    roller_of_argument,
+    show,
+)
+
+# --- Contact and motion of a scene ---
+
+#: Positions along the contact in the output of ``stress``.
+_POSITIONS = 101
+#: Largest number of loads without an equilibrium that ``steady`` lists.
+_MOST_LINES = 3
+#: Help of a speed.
+_V_HELP = (
+    "velocity of the axis, any sign; in m/s for [cylinder], divided by R/T_ref for [scene] "
+    "and presets"
+)
+
+
+def _speeds(kind: Callable[[str], Any]) -> tuple[Option, ...]:
+    """Return the options that commands on a contact have in common.
+
+    kind: function that converts the text of a speed or creepage: ``float``, for one number, or
+        :func:`.arguments.numbers`, for one or several.
+    Returns four options for :func:`.arguments.command`: (scene, --V, --delta, --omega).  Scene
+    and --V are required; delta and omega are None where they are not given.
+    """
+    return (
+        SCENE,
+        option("--V", type=kind, required=True, help=_V_HELP),
+        option("--delta", type=kind, help="creepage (omega R - V)/V"),
+        option("--omega", type=kind, help="angular velocity; give it or --delta"),
+    )
+
+
+@command("contact", *_speeds(numbers), TABLE)
+def contact(arguments: Namespace) -> None:
+    """Print or write the state of the contact for all pairs of speed and creepage (or angular
+    velocity).
+
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V, speeds, a number or (n,), in m/s of a cylinder, dimensionless of a scene;
+        delta, creepages, a number or (m,), dimensionless, or None;
+        omega, angular velocities, a number or (m,), in rad/s of a cylinder, dimensionless of a
+        scene, or None; output, path of a .txt, .csv or .nc file that is written, or None: standard
+        output;
+        format of standard output, "text", "csv" or "json".
+    Exactly one of delta and omega must be given.  A vector of speeds and one of creepages (or
+    angular velocities) give n x m states, those of the first speed first; a vector and a number one
+    state for each element; two numbers one.
+    Returns None; a state has V, delta or omega, and the default fields of
+    :func:`viscoroll.contact`; a .nc file has them as the dataset of the result's ``to_xarray``.  A
+    contact that the model does not describe gives a ModelWarning.
+    Raises ParameterError for both or none of delta and omega, and for values that are not allowed;
+    FileError for a file that cannot be read or written.
+    """
+    import numpy as np
+
+    V = arguments.V
+    creep = arguments.omega if arguments.delta is None else arguments.delta
+    V = V[:, np.newaxis] if np.ndim(V) and np.ndim(creep) else V
+    show(
+        arguments,
+        roller_of_argument(arguments.scene).contact(
+            V, delta=arguments.delta, omega=arguments.omega
+        ),
+    )
+
+
+@command("stress", *_speeds(float), TABLE)
+def stress(arguments: Namespace) -> None:
+    """Print or write pressure and shear stress at 101 positions from one end of the contact to the
+    other.
+
+    The positions are equidistant and ascend in x, so that they go from the trailing to the leading
+    end for V >= 0, and from the leading to the trailing end for V < 0.
+
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V, speed, a number, in m/s of a cylinder, dimensionless of a scene;
+        delta, creepage, a number, dimensionless, or None;
+        omega, angular velocity, a number, in rad/s of a cylinder, dimensionless of a scene, or
+        None; output, path of a .txt, .csv or .nc file that is written, or None: standard output;
+        format of standard output, "text", "csv" or "json".
+    Exactly one of delta and omega must be given.
+    Returns None; each position has x, V, delta or omega, the pressure p and the shear stress tau
+    (of a cover p alone), in SI units of a cylinder, as of :func:`viscoroll.stress`; a .nc file has
+    them as the dataset of the result's ``to_xarray``.  A contact that the model does not describe
+    gives a ModelWarning.
+    Raises ParameterError for both or none of delta and omega, and for values that are not allowed;
+    FileError for a file that cannot be read or written.
+    """
+    import numpy as np
+
+    roller = roller_of_argument(arguments.scene)
+    speeds = {name: getattr(arguments, name) for name in ("V", "delta", "omega")}
+    state = roller.contact(**speeds, fields=("length", "epsilon"))
+    # Eq. (8): the contact reaches from (epsilon - 1) lam/2 behind to (epsilon + 1) lam/2 ahead
+    ahead = np.linspace(state.epsilon - 1.0, state.epsilon + 1.0, _POSITIONS)
+    x = 0.5 * state.length * (ahead if arguments.V >= 0.0 else -ahead[::-1])
+    show(arguments, roller.stress(x, **speeds))
+
+
+@command(
+    "roll",
+    SCENE,
+    option("--V0", type=float, required=True, help="velocity of the axis at the start"),
+    option("--omega0", type=float, required=True, help="angular velocity at the start"),
+    option(
+        "--t",
+        type=numbers,
+        required=True,
+        help="output times, written as the numbers of `viscoroll contact`",
+    ),
+    TABLE,
+)
+def roll(arguments: Namespace) -> None:
+    """Integrate a motion without a drive, and print or write it.
+
+    The summary of the motion, which says how it ended, is the heading of a text; where a file is
+    written it is printed on standard output too.
+
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V0, speed of the axis at the start, a number, in m/s of a cylinder, dimensionless of a
+        scene; omega0, angular velocity at the start, a number, in rad/s of a cylinder,
+        dimensionless of a scene; t, output times, a number or (n,), in s of a cylinder,
+        dimensionless of a scene;
+        output, path of a .txt, .csv or .nc file that is written, or None: standard output;
+        format of standard output, "text", "csv" or "json".
+    Returns None.  The output has a row for each time with t, V, omega, x, angle, delta and the
+    regime in words; times that the motion did not reach have NaN, and the regime "not_reached".  A
+    .nc file has the dataset of :meth:`viscoroll.Motion.to_xarray`, with the regime as a code.  A
+    motion that the model does not describe gives a ModelWarning.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
+    or written.
+    """
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", RuntimeWarning)  # the text states how the motion ended
+        motion = roller_of_argument(arguments.scene).roll(
+            arguments.V0, arguments.omega0, arguments.t
+        )
+    show(arguments, motion, str(motion))
+    if arguments.output is not None:
+        print(motion)
+
+
+@command(
+    "steady",
+    SCENE,
+    option("--force", type=numbers, help="force on the axis along V (default: 0)"),
+    option("--torque", type=numbers, help="torque on the cylinder along omega (default: 0)"),
+    option(
+        "--slope",
+        type=numbers,
+        help="slope angle in rad, positive if +V points downhill; the normal load is P cos(slope)",
+    ),
+    option(
+        "--V",
+        type=numbers,
+        help="prescribed speed; it takes the place of --force or --torque, which is then computed",
+    ),
+    TABLE,
+)
+def steady(arguments: Namespace) -> None:
+    """Print or write the equilibria of rolling under each load, and why a load has none.
+
+    The reasons stand above the table, of at most three loads, and then the number of the others;
+    where the output is a file, csv or json they are warnings (ModelWarning), one for each.
+
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        force on the axis along V, in N/m of a cylinder, dimensionless of a scene;
+        torque along omega, in N m/m of a cylinder, dimensionless of a scene;
+        slope, angle in rad, positive if +V points downhill;
+        V, prescribed speed, in m/s of a cylinder, dimensionless of a scene;
+        output, path of a .txt, .csv or .nc file that is written, or None: standard output;
+        format of standard output, "text", "csv" or "json".
+    Each of force, torque, slope and V is a number, (n,) with one n for all vectors, or None where
+    it is not given: a force, torque or slope of 0, and a speed that is not prescribed.
+    Returns None.  The table has a row for each equilibrium of each load, with the quantities of
+    :func:`viscoroll.steady`, and none for a load without an equilibrium; a .nc file has the dataset
+    of :meth:`viscoroll.Steady.to_xarray`, with NaN in its place.  A contact that the model does not
+    describe gives a ModelWarning.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
+    or written.
+    """
+    import numpy as np
+
+    loads = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
+    loads = {name: np.atleast_1d(load) for name, load in loads.items() if load is not None}
+    equilibria = roller_of_argument(arguments.scene).steady(**loads)
+    lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
+    if len(lines) > _MOST_LINES:
+        lines[_MOST_LINES:] = [f"{len(lines) - _MOST_LINES} more loads have no steady speed"]
+    if (
+        arguments.output is not None or arguments.format != "text"
+    ):  # a table for programs has no heading
+        for line in lines:
+            warnings.warn(line, vr.ModelWarning, stacklevel=2)
+    show(arguments, equilibria, "\n".join(lines))
+
+
+@command(
+    "heat",
+    SCENE,
+    option("--V", type=numbers, help="speed in m/s; without it the speed follows from a load"),
+    option(
+        "--ambient",
+        type=numbers,
+        required=True,
+        help="temperature of the surroundings in degrees Celsius",
+    ),
+    option("--conductance", type=numbers, required=True, help="heat given off per kelvin, W/(m K)"),
+    option("--force", type=numbers, help="force on the axis along V, N/m"),
+    option("--torque", type=numbers, help="torque on the cylinder along omega, N m/m"),
+    option("--slope", type=numbers, help="slope angle in rad, positive if +V points downhill"),
+    TABLE,
+)
+def heat(arguments: Namespace) -> None:
+    """Print or write the temperatures at which a cylinder runs, and why a state has none.
+
+    arguments: parsed command line with scene, path of a TOML file with [cylinder] and a [material]
+        that has a shift; V, ambient, conductance, force, torque, slope, numbers or (n,), or None;
+        output and format as of ``steady``.
+    Returns None.  The table has a row for each equilibrium, with the fields of
+    :func:`viscoroll.temperature`.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
+    or written.
+    """
+    import numpy as np
+
+    names = ("V", "ambient", "conductance", "force", "torque", "slope")
+    given = {
+        name: np.atleast_1d(value)
+        for name in names
+        if (value := getattr(arguments, name)) is not None
+    }
+    found = roller_of_argument(arguments.scene).temperature(**given)
+    for n, reason in enumerate(found.reason[:_MOST_LINES]):
+        if reason:
+            warnings.warn(f"state {n}: {reason}", vr.ModelWarning, stacklevel=2)
+    show(arguments, found)
+
+
+@command(
+    "validity",
+    SCENE,
+    option("--V", type=float, required=True, help=_V_HELP),
+    option(
+        "--omega",
+        type=float,
+        help="angular velocity; without it the assumption on creepage is not checked",
+    ),
+)
+def validity(arguments: Namespace) -> None:
+    """Print which assumptions of the model hold, a line for each, on standard output.
+
+    arguments: parsed command line with
+        scene, path of a TOML file or name of a preset;
+        V, speed of the axis, a number, in m/s of a cylinder, dimensionless of a scene;
+        omega, angular velocity, a number, in rad/s of a cylinder, dimensionless of a scene, or
+        None: the assumption on creepage is then not checked.
+    Returns None, exit code 0, also where an assumption does not hold.
+    Raises ParameterError for values that are not allowed, FileError for a file that cannot be read.
+    """
+    print(roller_of_argument(arguments.scene).validity(arguments.V, omega=arguments.omega))
+
+
+# --- Run files ---
+
+#: The run file of a command.
+_RUN = option("run_file", metavar="RUN.toml", help="a run file")
+
+
+@command(
+    "ensemble",
+    _RUN,
+    output(
+        ".zarr",
+        required=False,
+        more=": the results store; without it: estimate of time and memory, by a trial",
+    ),
+    option(
+        "--cluster",
+        metavar="WHERE",
+        help="local (processes of this machine), or the address "
+        "tcp://host:port of a dask scheduler",
+    ),
+    option(
+        "--threads",
+        type=int,
+        help="number of threads, or of local processes (default: number of cores)",
+    ),
+)
+def ensemble(arguments: Namespace) -> None:
+    """Roll the motions of a run file and print the summary of all; without a store estimate time
+    and memory.
+
+    Blocks of motions that the store already has are not computed again; where there are any, their
+    number is printed.
+
+    arguments: parsed command line with
+        run_file, path of a TOML file;
+        output, folder of the results (.zarr), which is made or completed, or None: a few motions
+        are rolled as a trial, the estimate is printed, and nothing is written;
+        cluster, "local" for processes of this machine, "tcp://host:port" of a dask scheduler, or
+        None for threads of this process;
+        threads, number of threads or of local processes, >= 1, not used with a scheduler; None:
+        $VISCOROLL_THREADS, or where that is not set the cores available.
+    Motions beyond the model or the measured bands of the materials give a ModelWarning.
+    With output standard error has a progress bar if it is a terminal, else lines of progress unless
+    $VISCOROLL_QUIET is "1".
+    Returns None, exit code 0, also where motions ended early.
+    Raises ParameterError for values that are not allowed, as cluster without output; FileError for
+    a file that cannot be read or written, a store in use or a lost cluster; MissingDependencyError
+    without zarr, dask for a cluster, or pyarrow for a sample in .parquet; Interrupted at Ctrl-C,
+    finished blocks being kept.
+    """
+    run = vr.runs.read_run(arguments.run_file)
+    if arguments.output is None:
+        if arguments.cluster is not None:
+            raise vr.ParameterError(
+                "--cluster",
+                arguments.cluster,
+                "left out without -o: the trial runs on this machine",
+            )
+        print(vr.runs.estimate(run, arguments.threads))
+        return
+    evaluated = vr.runs.run_ensemble(
+        run,
+        arguments.output,
+        cluster=arguments.cluster,
+        threads=arguments.threads,
+        progress=sys.stderr.isatty()
+        or (False if os.environ.get("VISCOROLL_QUIET") == "1" else "lines"),
+    )
+    if evaluated < run.blocks:
+        print(f"{run.blocks - evaluated} of {run.blocks} blocks were complete already")
+    results = vr.runs.open_run(arguments.output)
+    print(as_text(results.to_pandas().reset_index(), str(results)), end="")
+
+
+@command("verify", option("store", metavar="STORE.zarr", help="results of viscoroll ensemble"))
+def verify(arguments: Namespace) -> int:
+    """Compare the files of a results store with their SHA-256 and print the verdict.
+
+    arguments: parsed command line with store, path of the folder of the results.
+    Returns True, exit code 1, if a file differs or is missing, else False, exit code 0, also for a
+    run that is not finished; the verdict is printed in both cases.
+    Raises FileError for a folder that is no store, or where the record of its start is damaged.
+    """
+    verdict = vr.runs.verify(arguments.store)
+    print(f"{arguments.store}: {verdict}")
+    return not verdict.ok
+
+
+@command(
+    "sensitivity",
+    _RUN,
+    option(
+        "-n",
+        type=int,
+        default=4096,
+        help="base points, rounded up to a power of two (default: 4096); a base point "
+        "takes a motion for every uncertain input and two more",
+    ),
+    TABLE,
+)
+def sensitivity(arguments: Namespace) -> None:
+    """Compute the Sobol indices of a run file, and print or write them.
+
+    A heading, of text alone, has the numbers of base points and motions, the seed, the number of
+    motions for each way in which they ended, and the reasons why a quantity has no indices.
+
+    arguments: parsed command line with
+        run_file, path of a TOML file;
+        n, number of base points in [16, 65536], 4096 if not given, which is rounded up to a power
+        of two; output, path of a .txt or .csv file to which the table, or of a .nc file to which
+        the dataset of :func:`.sensitivity.sobol_indices` is written; or None: standard output;
+        beside a file the table is printed as text too;
+        format of standard output without a file, "text", "csv" or "json".
+    Standard error has a progress bar if it is a terminal.  Motions beyond the model or the measured
+    bands of the materials give a ModelWarning.
+    Returns None.  The table has a row for each quantity, time and input that has indices, with the
+    columns quantity, t with its unit as "t [s]" (missing if every quantity is one number for each
+    motion), input, S1, S1_conf, ST and
+    ST_conf: first-order and total index, dimensionless, and the half-widths of their 95 %
+    confidence intervals.  Quantities are in the order of the run file, times ascending, and at each
+    time the largest ST is first.
+    Raises ParameterError for values that are not allowed, as correlated inputs, and where no
+    quantity has indices; FileError for a file that cannot be read or written;
+    MissingDependencyError for a sample in .parquet without pyarrow.
+    """
+    from ..runs.sensitivity import sobol_indices, table
+
+    indices = sobol_indices(
+        vr.runs.read_run(arguments.run_file), arguments.n, progress=sys.stderr.isatty()
+    )
+    frame = table(indices)
+    about = indices.attrs
+    n = about["asked_base_points"]
+    base = about["base_points"]
+    rounded = "" if base == n else f" ({n}, rounded up to a power of two)"
+    heading = "\n".join(
+        (
+            f"Sobol indices from {base} base points{rounded}, {about['motions']} motions, seed "
+            f"{about['seed']}",
+            *(
+                f"{about[key]} motions {key.removeprefix('ended: ')}"
+                for key in about
+                if key.startswith("ended: ")
+            ),
+            *(f"no indices for {reason}" for reason in about["refused"].splitlines()),
+        )
+    )
+    deliver(arguments, indices, frame, heading)
+    if arguments.output is not None:
+        print(as_text(frame, heading), end="")

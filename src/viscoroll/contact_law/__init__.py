@@ -1,1 +1,0 @@
-"""Eqs. (5)-(18) and steady rolling for arrays of states, and how far they hold."""

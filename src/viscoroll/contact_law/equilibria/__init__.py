@@ -1,1 +1,0 @@
-"""Steady rolling under load: all equilibria, and the rolling resistance over speed that determines them."""

@@ -1,0 +1,317 @@
+"""Data of the bodies of a cylinder in SI units, and the assumptions that need them:
+:class:`BodyData`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.checks import check_number
+from ..core.scale import SI
+from ..laws.law_table import law_table
+from ..materials.material import Material
+from ..materials.measured_data import Measured
+from ..materials.pair import Pair
+from .assumptions import (
+    LEAST_KAPPA,
+    MISFIT_LIMIT,
+    Assumption,
+    Validity,
+    assess_coupling,
+    assess_inertia,
+    assess_measured_band,
+    transit_frequency,
+    transit_speeds,
+)
+from .contact_table import pure_rolling_fields
+from .parameters import Parameters
+from .strain import assess_strain
+
+#: Acceleration by which a mass is compared with a load, m/s^2.
+_GRAVITY = 9.81
+#: Largest radius of a wheel or roller, m: none is larger, but those in mm are.
+_LARGEST_R = 10.0
+#: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness
+#: matter.
+_LEAST_SHARE = 0.01
+#: (Lowest, highest) speed, m/s, of data that hold at no speed.
+NO_SPEEDS = math.inf, 0.0
+#: log2 of kappa V at which the contact length of a cover is evaluated: interpolation between them
+#: has an error below 1 %.
+_OCTAVES_OF_SPEED = np.arange(-80.0, 80.0, 0.25)
+
+
+class WaveRatio(NamedTuple):
+    """A speed compared with the slowest shear wave.
+
+    ratio : speed divided by the shear wave speed, >= 0, in the shape to which speed and moduli
+        broadcast; None where no density is known.
+    unknown : names of the bodies whose density is not known, as "the cylinder"; without rigid
+        bodies.
+    decides : whether the density of the softest body, by its long-time shear modulus, is known.
+    """
+
+    ratio: Any
+    unknown: list[str]
+    decides: bool
+
+
+@dataclass(frozen=True, eq=False)
+class BodyData:
+    """Data of the bodies of one cylinder or of several that share their materials.
+
+    Attributes
+    ----------
+    pair : both bodies; None where both are of the paper's material, one of a single relaxation
+        time.
+    G : long-time shear modulus of the paper's material, Pa, a number or (n,); None with a pair.
+    R, l0 : radius and contact length at rest, m, numbers or (n,).
+    T_ref : unit of time of the scene, s.
+    plane : "strain" or "stress".
+    scene : the dimensionless scene.
+    nu : Poisson's ratio of the paper's material; None with a pair.
+    load : N/m, a number or (n,).
+    """
+
+    pair: Pair | None
+    G: Any
+    R: Any
+    l0: Any
+    T_ref: float
+    plane: str
+    scene: Parameters
+    nu: Any
+    load: Any
+
+    @cached_property
+    def records(self) -> dict[str, Measured]:
+        """Return what was measured of each different body whose share of the compliance counts.
+
+        Returns a dict from "the material" (of like bodies), or "the cylinder" and "the base", to
+        its :class:`Measured`; without bodies that have no record or a share of the compliance below
+        0.01, and empty without a pair.
+        """
+        pair = self.pair
+        bodies: dict[str, tuple[Material, float]] = {}
+        if pair is not None and pair.like:
+            bodies = {"the material": (pair.half_space, 1.0)}
+        elif pair is not None:
+            bodies = {
+                "the cylinder": (pair.cylinder, pair.share),
+                "the base": (pair.half_space, 1.0 - pair.share),
+            }
+        return {
+            name: body.measured
+            for name, (body, share) in bodies.items()
+            if share >= _LEAST_SHARE and body.measured is not None
+        }
+
+    @cached_property
+    def measured_rates(self) -> tuple[float, float] | None:
+        """Return (lowest, highest) |V|/l0, 1/s, at which the transit frequency is in
+        ``transit_band`` of all bodies.
+
+        |V|/l0 is used because it does not depend on load and radius for half-spaces.  For a cover
+        the ends have an error below 1 %.  None where nothing was measured, and for an array of
+        materials.  Bands that do not overlap give a lowest rate above the highest.  Raises
+        ParameterError for a layer too thin for its law.
+        """
+        records = self.records.values()
+        series = self.scene.series
+        if not records or series is None:
+            return None
+        lowest, highest = zip(*(data.transit_band for data in records), strict=True)
+        low = max(lowest) * self.T_ref
+        high = min(highest) * self.T_ref
+        if self.scene.cover is not None:
+            u = np.exp2(_OCTAVES_OF_SPEED)
+            (lam,) = pure_rolling_fields(law_table(self.scene.cover), u, "lam")
+            low, high = np.exp(np.interp(np.log([low, high]), np.log(u / lam), np.log(u))).tolist()
+        else:
+            low, high = transit_speeds(series, np.array([low, high])).tolist()
+        return low / self.T_ref, high / self.T_ref
+
+    @cached_property
+    def measured_speeds(self) -> tuple[float, float] | None:
+        """Return (lowest, highest) |V|, m/s, at which the transit frequency of each cylinder is in
+        ``transit_band``.
+
+        None without data.  A transit frequency at an end of a band is inside.  No speed is between
+        them (the lowest is above the highest) where the bands have no speed in common;
+        :data:`NO_SPEEDS` for a fit that misses its data by more than 5 %.
+        """
+        if self.measured_rates is None:
+            return None
+        if any(data.misfit > MISFIT_LIMIT for data in self.records.values()):
+            return NO_SPEEDS
+        return self.measured_rates[0] * float(np.max(self.l0)), self.measured_rates[1] * float(
+            np.min(self.l0)
+        )
+
+    @cached_property
+    def small_at_rest(self) -> bool:
+        """Whether no contact at rest is longer than the radius: whether every kappa is at least
+        1.
+        """
+        return float(np.min(self.scene.kappa, initial=math.inf)) >= LEAST_KAPPA
+
+    @cached_property
+    def in_metres(self) -> bool:
+        """Whether no radius is above 10 m, as one that was given in mm."""
+        return float(np.max(self.R, initial=0.0)) <= _LARGEST_R
+
+    @cached_property
+    def covered_speeds(self) -> tuple[float, float] | None:
+        """Return (lowest, highest) |V|, m/s, between which contacts do not warn; None where no
+        speed gives a warning.
+
+        :data:`NO_SPEEDS` (or a lowest speed above the highest) where every speed gives one, as of a
+        contact at rest that is longer than the radius, and of a radius as if in mm.
+        """
+        below_waves = None if self.wave_speed is None else (0.0, self.wave_speed)
+        bands = [
+            band
+            for band in (
+                self.measured_speeds,
+                None if self.small_at_rest and self.in_metres else NO_SPEEDS,
+                below_waves,
+            )
+            if band is not None
+        ]
+        return (max(low for low, _ in bands), min(high for _, high in bands)) if bands else None
+
+    @cached_property
+    def wave_speed(self) -> float | None:
+        """Speed of the slowest shear wave in any of the cylinders, m/s; None where no density is
+        known.
+        """
+        slowness = self.wave_ratio(np.ones(()), None).ratio
+        return None if slowness is None else 1.0 / float(np.max(slowness))
+
+    def relative_length(self, rate: Any) -> Any:
+        """Return the contact length divided by l0, for bodies of one material or pair, or one
+        cover.
+
+        rate: |V|/l0, 1/s, >= 0, a number or (n,).
+        Returns lam, the length at zero creepage, on which it does not depend, dimensionless, (n,);
+        (1,) for a number.
+        """
+        material, unit = self.scene.in_own_time()
+        (lam,) = pure_rolling_fields(
+            law_table(material), np.atleast_1d(rate) * unit * self.T_ref, "lam"
+        )
+        return lam
+
+    def wave_ratio(self, speed: Any, density: float | None) -> WaveRatio:
+        """Return the ratio of a speed to the slowest shear wave of both bodies, by their long-time
+        shear moduli.
+
+        speed: the speed, m/s, >= 0, any shape that broadcasts with G.
+        density: density of the cylinder, and of the base where they are alike or the cylinder is
+            rigid, kg/m^3; None: as the materials have it.
+        Returns a :class:`WaveRatio`: the largest ratio of the bodies whose density is known, in the
+        broadcast shape, None if there is none; the names of the other bodies; and whether the
+        softest body is among the known ones.  Rigid bodies do not count.  Like bodies of one
+        material count as one, "the material".
+        """
+        bodies: list[tuple[str, Any, float | None]] = [("the material", self.G, None)]
+        if self.pair is not None:
+            first = self.pair.cylinder
+            second = self.pair.half_space
+            bodies = [
+                ("the cylinder", first.G, first.density),
+                ("the base", second.G, second.density),
+            ]
+            if self.pair.like:
+                bodies = [
+                    (
+                        "the material",
+                        first.G,
+                        second.density if first.density is None else first.density,
+                    )
+                ]
+            bodies = [body for body in bodies if not np.all(np.isinf(body[1]))]
+        if density is not None:
+            bodies[0] = (*bodies[0][:2], density)
+        # In this order of factors V = 0 gives 0 for every density.
+        with np.errstate(over="ignore"):
+            ratios = [
+                speed * np.sqrt(1.0 / G) * math.sqrt(rho) for _, G, rho in bodies if rho is not None
+            ]
+        unknown = [name for name, _, rho in bodies if rho is None]
+        *_, decisive = min(bodies, key=lambda body: np.min(body[1], initial=np.inf))
+        largest = np.max(np.broadcast_arrays(*ratios), axis=0) if ratios else None
+        return WaveRatio(largest, unknown, decisive is not None)
+
+    def extend_validity(
+        self, report: Validity, lam: Any, V: Any, omega: Any, density: float | None
+    ) -> Validity:
+        """Add the assumptions that need quantities in SI units to the report of a state.
+
+        report: report of the dimensionless scene; it is not changed.
+        lam: contact length divided by l0, dimensionless, in the shape of the state.
+        V, omega: speeds, m/s and rad/s, any sign, arrays that broadcast with lam; omega may be
+            None.  Compared with the waves is the larger of |V| and |omega| R, without omega |V|.
+        density: density of the cylinder, and of the base where they are alike or the cylinder is
+            rigid, kg/m^3; None: as the materials have it.
+        Returns a copy of the report with ``quasistatic`` (undecided without the density that
+        decides), ``bodies``, ``measured`` (undecided without a measured material) and ``plane``,
+        which states the plane and the largest load over m g, and is always undecided.
+        Raises ParameterError for a density that is not one finite number > 0.
+        """
+        if density is not None:
+            density = check_number("density", density, unit=SI, above=0.0)
+        fastest = np.abs(V) if omega is None else np.maximum(np.abs(V), np.abs(omega) * self.R)
+        pair = self.pair
+        length = lam * self.l0
+        kind = (
+            "plane strain: a long cylinder, or one between walls"
+            if self.plane == "strain"
+            else "plane stress: a thin disc"
+        )
+        weights = extent_of(self.scene.gamma * self.R / (_GRAVITY * self.T_ref**2))
+        return report._replace(
+            quasistatic=assess_inertia(*self.wave_ratio(fastest, density)),
+            bodies=assess_coupling(
+                *(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like
+            ),
+            measured=assess_measured_band(transit_frequency(V, length), self.records),
+            plane=Assumption(
+                None,
+                None,
+                f"the state is taken as {kind}; the load is {weights[1]:.3g} times m g, g = 9.81 "
+                "m/s2",
+            ),
+            strain=assess_strain(self, V, length, self.load),
+        )
+
+
+def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
+    """Return whether a range of speeds leaves a band of |V|; a speed of 0 is allowed, since M = 0
+    there.
+
+    extent: (smallest, largest) of the speeds, signed.  A range that contains 0 or both signs leaves
+        a band at its upper end alone, because its small speeds are not known.
+    band: (lowest, highest) |V|, in the same unit, both inside; a range without 0 leaves every band
+        whose lowest is above its highest.
+    """
+    (low, high) = extent
+    (lowest, highest) = band
+    return high > highest or -low > highest or 0.0 < low < lowest or 0.0 < -high < lowest
+
+
+def extent_of(values: Any) -> tuple[float, float]:
+    """Return (smallest, largest) of numbers of any shape, without NaN, as floats; (0.0, 0.0) if
+    nothing is left.
+    """
+    low = float(np.fmin.reduce(values, axis=None, initial=np.nan))
+    return (
+        (0.0, 0.0)
+        if low != low
+        else (low, float(np.fmax.reduce(values, axis=None, initial=np.nan)))
+    )

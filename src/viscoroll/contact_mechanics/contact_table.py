@@ -1,0 +1,537 @@
+"""Fields of a contact state, and their computation at many states.
+
+The fields of a contact state: which exist, which a call returns, which of them the kernels
+compute.
+
+With lengths over l0 (the contact length at rest of half-spaces), forces over the load P and moments
+over P R: ``lam`` contact length, ``zeta`` half the transit time, ``epsilon`` shift of the contact
+over half its length, ``delta`` creepage, ``delta_0`` that at which Q = 0, ``full_slip``
+whether |delta - delta_0| >= ``delta_star``, ``beta`` stick zone over contact length, ``Q`` friction
+force, ``grip`` 1 - |Q|/mu, ``M`` rolling moment, ``M_half_space`` and ``M_cylinder`` its parts,
+``N`` its factor of dV/dt, ``dA_dB`` slopes.
+
+This module alone interprets names of fields.  A call resolves its names (:func:`field_names`), asks
+the kernels for :func:`computed_fields`, tells them the row of each (:func:`kernel_rows`), and
+completes the result (:func:`complete`).
+
+The law at many states, in blocks on threads: one law for all states, or an alpha or a material
+for each.
+
+All is dimensionless, with load P, radius R, unit of time T_ref, and l0, the contact length at rest
+of half-spaces: alpha is the instantaneous divided by the long-time modulus, kappa = R/l0, mu the
+coefficient of friction, V the speed over R/T_ref, omega the angular velocity times T_ref, delta =
+(omega - V)/V the creepage.  Of the fields lam is the contact length over l0, epsilon its shift
+ahead of the axis over half the length, zeta half the transit time, Q the friction force over P, M
+the rolling moment over P R, and N its factor of dV/dt, M = M(V) + N dV/dt.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.blocks import block_reader, run_blocks
+from ..core.checks import Floats, broadcast_shape, check_choice, extent
+from ..core.errors import ConvergenceError, OutOfTableError, ParameterError, check_names
+from ..laws.law_rows import evaluate_by_modes
+from ..laws.law_table import LawTable
+from ..laws.laws_per_element import record_of_materials, records_of_alphas, sort_by_octave
+from ..materials.bodies import Bodies
+from ..materials.prony import Prony
+from .parameters import Parameters
+
+# --- The fields of a contact state ---
+
+#: Fields of every call without ``fields=``.
+FIELDS = ("lam", "zeta", "epsilon", "delta_star", "delta", "full_slip", "beta", "Q", "M")
+#: Parts of M in the two bodies.
+OF_BODIES = ("M_half_space", "M_cylinder")
+#: Slopes of ``slopes=True``.
+SLOPES = ("dQ_dV", "dQ_ddelta", "dQ_domega", "dM_dV")
+#: Slopes of the parts of M.
+SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
+#: Slopes that are 0 of half-spaces, whose M depends on the speed alone; of a cover with
+#: ``slopes=True``.
+SLOPES_OF_COVERS = ("dM_ddelta", "dM_domega", "dM_half_space_domega", "dM_cylinder_domega")
+#: Added mass of slow speed changes.
+UNSTEADY = "N"
+#: Friction reserve 1 - |Q|/mu.
+GRIP = "grip"
+#: Creepage of free rolling of a cover, in which stick and the strain by the pressure balance; 0 for
+#: half-spaces.
+FREE_CREEP = "delta_0"
+#: Approach of the bodies, of layers on rigid ground.
+DEPTH = "depth"
+#: Fields that method "coupled" alone has, with the default ones first.
+OF_COUPLED = ("delta_minus", "delta_plus", "loss_slip", "loss_half_space", "loss_cylinder", DEPTH)
+#: Accuracy of M by the data of the materials, of a cylinder in SI units alone.
+ACCURACY = "M_error"
+#: Field -> the field of which it is a multiple, or from which it follows: the length is lam times
+#: l0, C_rr is M/(P R).
+_MULTIPLES = {"length": "lam", "C_rr": "M", ACCURACY: "lam"}
+#: Field of like bodies -> the field of which it is half.
+_HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), strict=True))
+_HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
+#: All fields.
+_KNOWN = (
+    *(*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, *SLOPES_OF_COVERS),
+    *(UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES, *OF_COUPLED),
+)
+
+
+def field_names(
+    fields: Iterable[str] | None, slopes: bool, method: str, *, like: bool, si: bool, cover: bool
+) -> tuple[str, ...]:
+    """Return the names of the fields that a call of :func:`.contact.contact` has to return, in
+    their order.
+
+    Parameters
+    ----------
+    fields : a name or names of fields; None: the default fields of such a roller.  A name may occur
+        twice; of no names there are no fields.
+    slopes : whether the slopes are added to these fields.
+    method : "table"; "direct" (the printed equations), which has no slopes, N, grip and delta_0; or
+        "coupled", which has no slopes and no N, and alone has :data:`OF_COUPLED`, of which all but
+        the depth are default fields.
+    like : whether both bodies are of one material; if not, the parts of M in either body are
+        default fields, and ``slopes`` adds their slopes.
+    si : whether the roller is a cylinder, in SI units; ``length``, ``C_rr`` and the parts of M are
+    then default fields.
+    cover : whether a body is a cover, a layer of finite thickness; ``delta_0`` is then a default
+        field, and N is not available.
+
+    Returns
+    -------
+    tuple of str
+        Those of ``fields`` in their order, or the default fields; then with ``slopes`` those slopes
+        that were not among them; then, of a cover with ``fields`` None, ``delta_0``.
+
+    Raises
+    ------
+    ParameterError
+        An unknown field or method; slopes, N, grip or delta_0 with method "direct"; slopes or N
+        with "coupled", and its own fields without it; N of a cover.
+    """
+    check_choice("method", method, "table", "direct", "coupled")
+    if fields is not None:
+        names = check_names(
+            "fields", fields, _KNOWN if si else [x for x in _KNOWN if x != ACCURACY], "a field"
+        )
+    elif si:
+        names = ("lam", "length", *FIELDS[1:], "C_rr", *OF_BODIES)
+    else:
+        names = FIELDS if like else (*FIELDS, *OF_BODIES)
+    if slopes:
+        more = SLOPES + (() if like else SLOPES_OF_BODIES) + (SLOPES_OF_COVERS if cover else ())
+        names += tuple(name for name in more if name not in names)
+    if method == "coupled":
+        return _coupled_names(names, fields is None)
+    only = next((name for name in names if name in OF_COUPLED), None)
+    if only is not None:
+        raise ParameterError("fields", repr(only), "left out, or computed with method='coupled'")
+    if method == "direct":
+        if set(names) & set(SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS):
+            raise ParameterError(
+                "method", "'direct'", "'table' for slopes: the equations of the paper give none"
+            )
+        for name in (UNSTEADY, GRIP, FREE_CREEP):
+            if name in names:
+                raise ParameterError(
+                    "fields", repr(name), "left out, or computed with method='table'"
+                )
+    if not cover:
+        return names
+    if UNSTEADY in names:
+        allowed = "left out for a cover: N of a layer of finite thickness is not available"
+        raise ParameterError("fields", repr(UNSTEADY), allowed)
+    return (*names, FREE_CREEP) if fields is None else names
+
+
+def _coupled_names(names: tuple[str, ...], default: bool) -> tuple[str, ...]:
+    """Return the fields of a call with method "coupled".
+
+    names: fields of the call; default: whether they are the default ones, to which those of the
+    method are added.
+    Raises ParameterError for slopes and N.
+    """
+    for name in names:
+        if name in SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS + (UNSTEADY,):
+            raise ParameterError(
+                "fields", repr(name), "left out: method 'coupled' has no slopes and no N"
+            )
+    if not default:
+        return names
+    extra = (*OF_BODIES, *OF_COUPLED[:-1])
+    return names + tuple(name for name in extra if name not in names)
+
+
+@lru_cache(maxsize=64)
+def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
+    """Return the fields that the kernels compute, a row each, from which :func:`complete` makes all
+    fields of a call.
+
+    names: fields of the call, as of :func:`field_names`.
+    unlike: whether the bodies are of two materials; if not, each part of M is half of M, and is not
+    computed.
+    Returns names without repetition, in the order of their first need: a field that is a multiple
+    of another (``length`` of ``lam``, ``C_rr`` of ``M``; of like bodies M_half_space, M_cylinder of
+    ``M`` and their slopes of ``dM_dV``) is replaced by that other one.
+    """
+    derived = _MULTIPLES if unlike else _MULTIPLES | _HALVES
+    return tuple(dict.fromkeys(derived.get(name, name) for name in names))
+
+
+@lru_cache(maxsize=64)
+def kernel_rows(names: tuple[str, ...]) -> Any:
+    """Return the index of the output row of each field as the record that kernels take.
+
+    names: fields that kernels compute, as of :func:`computed_fields`, each once; field k has row k
+    of the output.
+    Returns :class:`.law_record.Fields`: an int for each field, -1 for those that
+    are not in ``names``.  N is not among them, since a kernel of its own computes it; its row is
+    left free.
+    """
+    from ..kernels.law.law_record import Fields
+
+    return Fields(**{name: row for row, name in enumerate(names) if name != UNSTEADY})
+
+
+def complete(
+    names: tuple[str, ...], computed: tuple[str, ...], rows: np.ndarray, shape: tuple[int, ...]
+) -> dict[str, Any]:
+    """Return the fields of a call by name, from the rows that the kernels computed.
+
+    names: fields of the call, as of :func:`field_names`.
+    computed: name of the field in each row, as of :func:`computed_fields`.
+    rows: values, (rows, states), dimensionless; ``full_slip`` is 0 or 1.
+    shape: shape of the call, whose product is the number of states; () for one state.
+    Returns a dict from each of ``names``, in their order, to an array of ``shape``, for shape () a
+    float; ``full_slip`` is a boolean array, for shape () a bool.  Arrays that are a row of ``rows``
+    are views of it.  ``length`` and ``C_rr`` have the values of lam and M, which the caller of a
+    Cylinder multiplies by their units, as it makes ``M_error`` of lam; parts of M that
+    were not computed are half of M, their slopes half of dM_dV.
+    """
+    found: dict[str, Any] = dict(zip(computed, rows if shape else rows[:, 0].tolist(), strict=True))
+    if computed != names:
+        found |= {
+            name: 0.5 * found[of]
+            for name, of in _HALVES.items()
+            if name in names and name not in found
+        }
+        found |= {name: found[of] for name, of in _MULTIPLES.items() if name in names}
+    if "full_slip" in names:
+        found["full_slip"] = found["full_slip"] != 0.0
+    return {name: found[name].reshape(shape) if shape else found[name] for name in names}
+
+
+# --- The law at many states, in blocks on threads ---
+
+#: States of a block: some milliseconds of work.
+_BLOCK = 1 << 15
+#: States of a block in which each has a material of its own, which takes some kilobytes.
+_BLOCK_OF_MATERIALS = 1 << 8
+#: States of an alpha each that are evaluated together, in records of their own: one after the
+#: other, each would wait for its own numbers, which took half as long again; more than four gain
+#: nothing.
+_ALPHAS_TOGETHER = 4
+#: Order of states as they are.
+_NO_ORDER = np.empty(0, np.int64)
+#: Largest kappa |V|: beyond it zeta underflows.
+FASTEST = 1e300
+#: Largest kappa |V| for Q by the printed Eq. (15), in which the rounding error of a bracket grows
+#: with kappa |V|: beyond it Q has lost four digits of mu and more.
+_FASTEST_DIRECT = 1e12
+
+
+def evaluate_contact(
+    scene: Parameters,
+    V: NDArray,
+    creep: NDArray,
+    creep_is_omega: bool,
+    names: tuple[str, ...],
+    method: str = "table",
+) -> dict[str, Any]:
+    """Return dimensionless fields of the contact by name, at speeds and creepages that were checked
+    to be finite.
+
+    Parameters
+    ----------
+    scene : dimensionless parameters of the roller, numbers or arrays; its material, alpha, kappa
+    and mu are read.
+    V : velocities of the axis divided by R/T_ref, any sign, an array of any shape, () for a number.
+    creep : angular velocities times T_ref if ``creep_is_omega``, else creepages (omega - V)/V; any
+    shape.
+    creep_is_omega : whether ``creep`` is omega.
+    names : fields, as of :func:`field_names`.
+    method : "table", from the rows of the law, or "direct", by root solves of the printed
+    equations.
+
+    Returns
+    -------
+    dict of str to array
+        Name -> field, dimensionless, in the order of ``names`` (one that occurs twice is there
+        once), in the shape to which V, creep and alpha, kappa and mu of the scene broadcast; floats
+        (``full_slip``: a bool) if all of these are numbers.  At V = 0 zeta is infinite, and delta
+        is infinite where omega is not 0.
+
+    Raises
+    ------
+    ParameterError
+        kappa |V| above :data:`FASTEST` (for Q by method "direct" above :data:`_FASTEST_DIRECT`),
+        shapes that do not broadcast, a material with method "direct", N of an array of materials,
+        times of a material beyond 1e-100 to 1e100 T_ref, a layer too thin for its law;
+        ``$VISCOROLL_THREADS`` that is no whole number >= 1.
+    ConvergenceError
+        If an iteration of method "direct" reaches its limit.
+    """
+    arrays: dict[str, Any] = {"alpha": scene.alpha, "kappa": scene.kappa, "mu": scene.mu, "V": V}
+    arrays["omega" if creep_is_omega else "delta"] = creep
+    direct = method == "direct"
+    fastest = _FASTEST_DIRECT if direct and "Q" in names else FASTEST
+    shape: tuple[int, ...] = ()
+    if V.ndim or creep.ndim or scene.shape:
+        arrays = {name: np.asarray(value) for name, value in arrays.items()}
+        shape = broadcast_shape(**arrays)
+        refuse_overflow(arrays["kappa"], V, fastest)
+    elif not abs(scene.kappa * float(V)) <= fastest:
+        refuse_overflow(np.asarray(scene.kappa), V, fastest)
+    if scene.material is not None and direct:
+        raise ParameterError(
+            "method", "'direct'", "'table': the equations of the paper have one relaxation time"
+        )
+    material = None if direct else scene.rolling_law or scene.material_array
+    if isinstance(material, Prony | Bodies):
+        if UNSTEADY in names:
+            allowed = (
+                "left out for many materials in one call: compute it for one of them, material[i]"
+            )
+            raise ParameterError("fields", repr(UNSTEADY), allowed)
+        arrays["alpha"] = np.arange(len(material), dtype=np.float64)
+    if isinstance(material, LawTable) and material.coupled is not None:
+        refuse_beyond(material, scene.kappa * np.abs(V))
+        unknown = sorted({"lam", "length", "zeta", "epsilon", "beta"}.intersection(names))
+        if unknown and not material.coupled.graded:
+            raise ParameterError("fields", unknown[0], "left out: a grid states Q and M alone")
+    unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
+    computed = computed_fields(names, unlike)
+    rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)
+    return complete(names, computed, rows, shape)
+
+
+def evaluate_law(
+    material: LawTable | Prony | Bodies | None,
+    arrays: list[Any],
+    shape: tuple[int, ...],
+    creep_is_omega: bool,
+    names: tuple[str, ...],
+    direct: bool = False,
+) -> Floats:
+    """Evaluate fields of the contact, a row each, at states of one or many laws, on threads.
+
+    Parameters
+    ----------
+    material : a :class:`LawTable`, the law of all states; or an array of materials, of which each
+        state names one by its index; or None: each state has a law of one relaxation time, by its
+        alpha.
+    arrays : five numbers or arrays that broadcast to ``shape``, dimensionless: alpha (index of the
+        material, where there are many, as a float; not used with a LawTable), kappa, mu, V, and
+        delta or omega.
+    shape : shape of the states; () for one state.
+    creep_is_omega : whether the last of ``arrays`` is omega, else delta.
+    names : fields that kernels compute, as of :func:`computed_fields`, each once; N
+        not with an array of materials or ``direct``.
+    direct : whether to solve the printed equations; ``material`` is None then.
+
+    Returns
+    -------
+    array, (fields, states)
+        A row for each of ``names``, dimensionless; the states are those of ``shape``, flattened, of
+        which there may be none.  ``full_slip`` is 0 or 1; N of a cover, which is not known, is NaN.
+
+    Raises
+    ------
+    ParameterError
+        Of an array of materials as :func:`.record_of_materials`; ``$VISCOROLL_THREADS`` that is no
+        whole number >= 1.
+    ConvergenceError
+        If an iteration of the printed equations reaches its limit.
+    """
+    count = math.prod(shape)
+    loop, states = _kernel(direct)
+    rows = kernel_rows(names)
+    out = np.empty((len(names), count))
+    record: Any = material.record if isinstance(material, LawTable) else None
+    coupled = record is not None and record.table is not None
+
+    def evaluate_block(start: int, stop: int, alpha: Floats, *parts: Floats) -> None:
+        """Evaluate the states ``start`` to ``stop`` - 1 and write them into these columns of
+        ``out``.
+
+        The row of N is written by a kernel of its own, without a LawTable by the formulas of the
+        modes.
+        alpha: alphas, or indices of materials, of these states, (stop - start,) or (1,); not used
+        with a LawTable.
+        parts: kappa, mu, V and creep of these states, (stop - start,) or (1,) each, dimensionless,
+        read-only.
+        Raises ConvergenceError if an iteration of the printed equations reaches its limit, and
+        ParameterError as :func:`_laws_of_block`.
+        """
+        laws, order = (
+            ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
+        )
+        request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
+        scratch = np.empty(states.SCRATCH_SIZE)
+        if coupled:
+            from ..kernels.law.spline_law import table_loop
+
+            table_loop(record.table, request, stop - start)
+        elif direct:
+            if loop(laws, request, stop - start):
+                raise ConvergenceError(
+                    f"contact: method='direct' did not converge for a state of elements {start} to "
+                    f"{stop - 1}"
+                )
+        elif names != (UNSTEADY,):
+            loop(laws, request, scratch, stop - start)
+        if UNSTEADY not in names:
+            return
+        N = out[names.index(UNSTEADY), start:stop]
+        if isinstance(material, LawTable):
+            from ..kernels.motion.motion_law import unsteady_loop
+
+            unsteady_loop(material.unsteady_record, parts[0], parts[2], N)
+        else:
+            zeta = np.empty((1, stop - start))
+            loop(
+                laws,
+                request._replace(to=kernel_rows(("zeta",)), out=zeta, first=0),
+                scratch,
+                stop - start,
+            )
+            N[:] = evaluate_by_modes(alpha, zeta[0]).N
+
+    if count <= states.TOGETHER and record:
+        numbers = np.empty((len(arrays), *(shape or (1,))))
+        for row, array in zip(numbers, arrays, strict=True):
+            row[...] = array
+        numbers = numbers.reshape(len(arrays), count)
+        numbers.flags.writeable = False  # as all arrays that kernels read (block_reader)
+        evaluate_block(0, count, *numbers)
+        return out
+    readers = [block_reader(np.asarray(array), shape) for array in arrays]
+    block = _BLOCK_OF_MATERIALS if isinstance(material, Prony | Bodies) else _BLOCK
+    run_blocks(
+        lambda start, stop: evaluate_block(start, stop, *(read(start, stop) for read in readers)),
+        count,
+        block,
+    )
+    return out
+
+
+@lru_cache(maxsize=2)
+def _kernel(direct: bool) -> tuple[Any, Any]:
+    """Return the kernel that evaluates the law at many states.
+
+    direct: whether it solves the printed equations; else it reads the rows of the law.
+    Returns (the loop over states; the module :mod:`.law_record` with the types
+    of its arguments).  The loop of the printed equations is called as (alpha, request, count) and
+    returns a status, 0 if all states were solved; that of the rows as (laws, request, scratch,
+    count), and returns nothing.  The first call of a loop compiles it, unless this machine has done
+    so before.
+    """
+    from ..kernels.law import law_record as states
+
+    if direct:
+        from ..kernels.law.printed_law import direct_loop as loop
+    else:
+        from ..kernels.law.contact_kernel import contact_loop as loop
+    return loop, states
+
+
+def _laws_of_block(
+    material: Any, alpha: Floats, parts: tuple[Floats, ...], direct: bool
+) -> tuple[Any, NDArray]:
+    """Make the laws of the states of a block, and choose the order in which the states are
+    evaluated.
+
+    Called where the states have no law in common, which would be evaluated in the order given.
+    material: many materials, or None: a law of one relaxation time for each state.
+    alpha: alphas of the states, or indices of their materials as floats, (n,) or (1,).
+    parts: kappa, mu, V, creep, each (n,) or (1,), dimensionless.
+    direct: whether the printed equations are solved, which need alpha alone.
+    Returns (laws, order).  The laws are a tuple of records that kernels take: one for materials,
+    and :data:`_ALPHAS_TOGETHER` for alphas; each holds the law of one state at a time.  If
+    ``direct`` they are ``alpha`` itself.  The order is an array of the indices of the states in the
+    order of evaluation, (n,), or empty for the order given.  States are ordered by material, or of
+    alphas by octaves of alpha and speed, so that neighbours read the same numbers; if ``direct``,
+    of one state, and of one material for all, the order is empty.
+    Raises ParameterError for a material with times beyond 1e-100 to 1e100 T_ref, and for a layer
+    that is too thin.
+    """
+    if material is not None:
+        order = np.argsort(alpha, kind="stable") if alpha.size > 1 else _NO_ORDER
+        return (record_of_materials(material, alpha.astype(np.int64)),), order
+    if direct:
+        return alpha, _NO_ORDER
+    return records_of_alphas(alpha, _ALPHAS_TOGETHER), sort_by_octave(alpha, parts[0], parts[2])
+
+
+def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
+    """Return fields of the contact without traction, for kappa = mu = 1 and the speed V = u.
+
+    These are functions of u = kappa |V| alone, so that they serve every kappa: ``lam`` and
+    ``epsilon`` as they are, ``M`` as kappa M, ``dM_dV`` and ``N`` as they are.
+    law: table of the material.
+    u: kappa |V|, >= 0, at most 1e300, not checked, (n,).
+    names: fields that kernels compute, as "lam", "epsilon", "M", "dM_dV", "N"
+        (:func:`computed_fields`); all are those of kappa = mu = 1.
+    Returns a new array (names, n), dimensionless, rows in the order of ``names``; N of a cover is
+    NaN.
+    """
+    if law.cover is None:
+        return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
+    free = evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, ("delta_0",))[0]
+    state = [1.0, 1.0, 1.0, u, free]
+    found = evaluate_law(law, state, u.shape, False, names)
+    if "dM_dV" in names:  # along free rolling, whose creepage changes with the speed
+        of_M, of_V, of_Q = evaluate_law(
+            law, state, u.shape, False, ("dM_ddelta", "dQ_dV", "dQ_ddelta")
+        )
+        found[names.index("dM_dV")] -= of_M * of_V / of_Q
+    return found
+
+
+def refuse_beyond(law: LawTable, u: Any) -> None:
+    """Raise OutOfTableError where kappa |V| = ``u`` exceeds the last speed of a table ``law``, as
+    of a grid.
+    """
+    most = law.coupled.fastest if law.coupled is not None else np.inf
+    largest = float(np.max(u, initial=0.0))
+    if largest > most * (1.0 + 1e-12):
+        raise OutOfTableError("kappa |V|", largest, 0.0, most)
+
+
+def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
+    """Raise ParameterError where kappa |V| exceeds its largest allowed value; else do nothing, as
+    without elements.
+
+    kappa: slenderness R/l0, > 0, any shape.
+    V: velocities divided by R/T_ref, any sign, finite; broadcasts with kappa.  V may be in another
+        unit, as m/s, if kappa is divided by the size of one unit of the scene, R/T_ref, in it.
+    fastest: largest allowed kappa |V|.
+    The error states the largest kappa |V|.
+    """
+    if not (kappa.size and V.size):
+        return
+    low, high = extent(V)
+    if float(extent(kappa)[1]) * float(max(-low, high)) <= fastest:
+        return
+    with np.errstate(over="ignore"):
+        largest = (kappa * np.abs(V)).max(initial=0.0)
+    if largest > fastest:
+        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")

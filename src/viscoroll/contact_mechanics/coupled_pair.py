@@ -1,0 +1,544 @@
+"""Steady rolling with pressure and shear solved together, at one speed.
+
+Kernels of the boundary elements at one speed: second antiderivatives of the slopes that a point
+load causes.
+
+Lengths are divided by l0 and compliances by the summed long-time one; a relaxation time T is the
+length u T at the speed u = kappa |V|.  With J* the complex compliance at wave number k, a body has
+the transforms of :mod:`.cover_solve`: pressure -> slope -i sgn(k) L J*, shear ->
+strain -i sgn(k) T J*, coupling C J*.
+
+Steady rolling with pressure and shear solved together: :class:`CoupledPair` and its states at
+one speed.
+
+Everything is dimensionless.  Lengths are divided by l0, the contact length at rest of half-spaces,
+kappa = R/l0, u = kappa |V|, forces over the load P and moments over P R.  Creeps are 2 kappa delta,
+of the sign of omega R - V.
+
+Powers per unit of V, with M_b the part of M by the slope of body b and W_b = int q u'_b dx by its
+strain along x:
+
+    body b loses M_b + W_b      friction loses delta Q - W_base - W_cylinder      their sum is M + delta Q
+"""  # noqa: E501
+
+from __future__ import annotations
+
+import math
+from functools import cache
+from typing import Any, NamedTuple
+
+import numpy as np
+from scipy.optimize import brentq
+from scipy.special import exp1, expi
+
+from ..core.checks import Floats
+from ..core.errors import ParameterError
+from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
+from ..laws.cover_solve import layer_nodes
+from ..materials.bodies import Bodies
+from ..materials.prony import Prony, series_of_alpha
+
+# --- Kernels of the boundary elements at one speed ---
+
+#: smallest argument of the asymptotic series of the exponential integral, to rounding with its
+#: number of terms
+_FAR = 50.0
+_FAR_TERMS = 30
+#: terms of the power series of the entire exponential integral up to 1
+_NEAR_TERMS = 22
+#: k |x| below which the transforms of second antiderivatives are taken from two terms of their
+#: series
+_SMALL_PHASE = 0.02
+#: scales, over l0, at which the growth of the compliance is looked at; a part of the load of the
+#: root of a scale lies within it at most
+_SCALES = np.geomspace(1e-7, 1.0, 200)
+#: growth d ln J/d ln x of the compliance over distance x from the front edge from which on pressure
+#: gathers there; the pressure of half-spaces grows like the distance to the power of 1/2 less it
+_GROWTH = 0.4
+#: points of Gauss's rule in an element
+_GAUSS = 5
+#: first, last and step of s, with half length times wave number ln(1 + e^s): the transform of the
+#: pressure, squared, falls like the third power
+_WAVES = -25.0, 80.0, 0.12
+
+
+@cache
+def _fit() -> tuple[Floats, Floats]:
+    """Return (|x| of all bins, ascending in each, (BINS (DEGREE + 1),); values -> coefficients in
+    [-1, 1]).
+    """
+    nodes = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
+    logs = LOWEST + WIDTH * (np.arange(BINS)[:, np.newaxis] + 0.5 * (1.0 + nodes))
+    return np.exp(logs).ravel(), np.linalg.inv(np.vander(nodes, DEGREE + 1, increasing=True))
+
+
+def _memory(X: Floats) -> Floats:
+    """Return f(X) + ln|X| + gamma, with f the principal value of int_0^inf exp(-s)/(X + s) ds.
+
+    X: of any sign, not 0.  Returns an array of its shape, good to rounding relative to 1.
+    """
+    size = np.abs(X)
+    found = np.log(size) + np.euler_gamma
+    near = size < 1.0
+    far = size > _FAR
+    x = X[near]
+    entire = np.zeros_like(x)
+    term = np.ones_like(x)
+    for k in range(1, _NEAR_TERMS):
+        term = -term * x / k
+        entire -= term / k
+    found[near] = np.exp(x) * entire - np.expm1(x) * found[near]
+    middle = ~(near | far)
+    x = X[middle]
+    integral = np.where(x > 0.0, exp1(np.abs(x)), -expi(np.abs(x)))
+    found[middle] += np.exp(x) * integral
+    inverse = 1.0 / X[far]
+    term = inverse
+    tail = term.copy()
+    for k in range(1, _FAR_TERMS):
+        term = -term * k * inverse
+        tail += term
+    found[far] += tail
+    return found
+
+
+def _half_space(
+    instant: float, modes: list[tuple[float, float]], x: Floats
+) -> tuple[Floats, Floats]:
+    """Return (normal kernel less x ln|x|/pi of the instantaneous compliance; coupling of a unit
+    local constant).
+
+    instant: instantaneous compliance.  modes: (strength, length u T) of each.  x: of one sign,
+    (n,).
+    """
+    normal = -instant * x / np.pi
+    ramp = np.maximum(x, 0.0)
+    coupling = instant * ramp
+    for strength, length in modes:
+        X = x / length
+        normal += strength * length / np.pi * (_memory(X) + X * np.log(np.abs(X)) - X)
+        coupling += strength * (length * np.expm1(np.minimum(X, 0.0)) + ramp)
+    return normal, coupling
+
+
+def _layer(
+    nu: float, thickness: float, instant: float, modes: list[tuple[float, float]], size: Floats
+) -> Floats:
+    """Return what a bonded layer adds to the kernels of a half-space.
+
+    nu, thickness: of the layer.  instant, modes: as of :func:`_half_space`.  size: |x|, (n,).
+    Returns (2 signs of x, 3 kernels, n); what is linear in x is left out.
+    """
+    nodes = layer_nodes(nu)
+    k = nodes.u / thickness
+    compliance = np.full(k.size, complex(instant))
+    for strength, length in modes:
+        compliance += strength / (1.0 - 1j * k * length)
+    phase = size[:, np.newaxis] * k
+    small = phase < _SMALL_PHASE
+    safe = np.where(small, 1.0, phase)
+    even = np.where(small, 0.5 - phase**2 / 24.0, 2.0 * (np.sin(0.5 * safe) / safe) ** 2)
+    odd = np.where(small, phase / 6.0 - phase**3 / 120.0, (safe - np.sin(safe)) / safe**2)
+    excess = np.array([nodes.L, nodes.L + nodes.shear, nodes.C]) * nodes.u
+    weights = (excess * compliance / (np.pi * thickness)).T
+    e_real = even @ weights.real
+    e_imag = even @ weights.imag
+    o_real = odd @ weights.real
+    o_imag = odd @ weights.imag
+    found = np.empty((2, 3, size.size))
+    for row, sign in enumerate((1.0, -1.0)):
+        found[row, :2] = (e_imag[:, :2] + sign * o_real[:, :2]).T
+        found[row, 2] = e_real[:, 2] - sign * o_imag[:, 2]
+    return found * size**2
+
+
+class BodyKernels(NamedTuple):
+    """Kernels of one body at one speed, times its share of the compliance, the coupling with the
+    sign of the body.
+
+    table : second antiderivatives as polynomials, (BINS, 2 signs, 3 kernels, DEGREE + 1).
+    instant : instantaneous compliance.
+    local : (modes + 1, 2): strength and length of each part of the local coupling.
+    """
+
+    table: Floats
+    instant: float
+    local: Floats
+
+
+def body_kernels(body: Any, u: float) -> BodyKernels:
+    """Return the kernels of one body at one speed.
+
+    body: :class:`CoupledBody`.
+    u: kappa |V|, >= 0 or infinite: elastic at rest, and with the instantaneous compliance.
+    """
+    size, fit = _fit()
+    instant = 1.0 if u == 0.0 else max(1.0 - math.fsum(body.J), 0.0)
+    modes = (
+        []
+        if u == 0.0 or math.isinf(u)
+        else [(J, T * u) for J, T in zip(body.J, body.T, strict=True)]
+    )
+    local = (1.0 - 2.0 * body.nu) / (2.0 - 2.0 * body.nu)
+    values = np.zeros((2, 3, size.size))
+    for row, sign in enumerate((1.0, -1.0)):
+        normal, coupling = _half_space(instant, modes, sign * size)
+        values[row, 0] = values[row, 1] = normal
+        values[row, 2] = local * coupling
+    if math.isfinite(body.thickness):
+        values += _layer(body.nu, body.thickness, instant, modes, size)
+    values[:, 2] *= 1.0 if body.side == "base" else -1.0
+    table = values.reshape(2, 3, BINS, DEGREE + 1) @ fit.T
+    sign = body.share if body.side == "base" else -body.share
+    parts = [(sign * local * strength, length) for strength, length in [(instant, 0.0), *modes]]
+    return BodyKernels(
+        body.share * table.transpose(2, 0, 1, 3), body.share * instant, np.array(parts)
+    )
+
+
+def edge_layer(bodies: Any, u: float) -> float:
+    """Return the length of the layer at the front edge in which the material is stiff, over l0;
+    infinite without one.
+
+    bodies: :class:`CoupledBody` of each.  u: kappa |V|.
+    It is the least distance at which the compliance, of the time of the passage, grows faster than
+    like its root.
+    """
+    if u == 0.0 or math.isinf(u):
+        return math.inf
+    compliance = np.zeros_like(_SCALES)
+    growth = np.zeros_like(_SCALES)
+    for body in bodies:
+        compliance += body.share * max(1.0 - math.fsum(body.J), 0.0)
+        for strength, time in zip(body.J, body.T, strict=True):
+            x = _SCALES / (time * u)
+            compliance -= body.share * strength * np.expm1(-x)
+            growth += body.share * strength * x * np.exp(-x)
+    steep = _SCALES[growth > _GROWTH * compliance]
+    return float(steep[0]) if steep.size else math.inf
+
+
+def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
+    """Return the Fourier transform int f(x) exp(-i k x) dx of a function that is linear between
+    nodes.
+
+    nodes, values: (n,).  k: wave numbers, (m,).  Returns complex numbers (m,), by Gauss's rule in
+    each element.
+    """
+    points, weights = np.polynomial.legendre.leggauss(_GAUSS)
+    lengths = np.diff(nodes)
+    part = 0.5 * (1.0 + points)
+    x = nodes[:-1, np.newaxis] + lengths[:, np.newaxis] * part
+    f = values[:-1, np.newaxis] * (1.0 - part) + values[1:, np.newaxis] * part
+    f = f * (0.5 * weights) * lengths[:, np.newaxis]
+    return np.exp(-1j * np.multiply.outer(k, x.ravel())) @ f.ravel()
+
+
+def layer_transforms(nu: float, u: Floats) -> Floats:
+    """Return L, T and C of a bonded layer over those of a half-space, C as it is, at wave numbers
+    times the thickness.
+
+    nu: Poisson's ratio.  u: > 0, (n,).  Returns (3, n).
+    """
+    kap = 3.0 - 4.0 * nu
+    decay = np.exp(-2.0 * u)
+    denominator = kap * (1.0 + decay**2) + (4.0 * u**2 + 1.0 + kap**2) * decay
+    mean = kap * (1.0 - decay**2)
+    swing = 4.0 * u * decay
+    C = (kap * (kap - 1.0) * (1.0 - decay) ** 2 - 8.0 * u**2 * decay) / ((kap + 1.0) * denominator)
+    return np.array([(mean - swing) / denominator, (mean + swing) / denominator, C])
+
+
+def depth(bodies: Any, u: float, profile: Any) -> float:
+    """Return the approach of two bodies of which each is a layer on rigid ground or rigid, over
+    l0^2/R.
+
+    The mean of the displacement of both surfaces with the pressure as weight, by Parseval's
+    theorem, and that of the cylinder's profile x^2/2.
+
+    bodies: :class:`CoupledBody` of each that deforms, all of finite thickness.
+    u: kappa |V|.  profile: :class:`CoupledProfile`.
+    """
+    half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
+    s = np.arange(*_WAVES)
+    k = np.logaddexp(0.0, s) / half
+    weights = (_WAVES[2] / half) / (1.0 + np.exp(-s))
+    p = transforms(profile.nodes, profile.p, k)
+    q = transforms(profile.nodes, profile.q, k)
+    total = 0.0
+    for body in bodies:
+        compliance = np.full(k.size, complex(max(1.0 - math.fsum(body.J), 0.0)))
+        for strength, time in zip(body.J, body.T, strict=True):
+            with np.errstate(over="ignore", invalid="ignore"):
+                compliance += strength / (1.0 - 1j * k * (time * u)) if math.isfinite(u) else 0.0
+        L, _, C = layer_transforms(body.nu, k * body.thickness)
+        side = 1.0 if body.side == "base" else -1.0
+        work = compliance / k * (L * np.abs(p) ** 2 + 1j * side * C * q * np.conj(p))
+        total += body.share * float(weights @ work.real) / np.pi
+    middle = 0.5 * (profile.nodes[:-1] + profile.nodes[1:])
+    lengths = np.diff(profile.nodes)
+    ends = profile.p * (profile.nodes + profile.shift) ** 2
+    centre = 0.5 * (profile.p[:-1] + profile.p[1:]) * (middle + profile.shift) ** 2
+    square = float(lengths @ (ends[:-1] + 4.0 * centre + ends[1:])) / 6.0
+    load = float(np.trapezoid(profile.p, profile.nodes))
+    return (total + 0.5 * square) / load
+
+
+# --- Steady rolling with pressure and shear solved together ---
+
+#: Elements of a state.
+ELEMENTS = 72
+#: Error of the creep of free rolling, times 2 kappa.
+_FREE_CREEP_ERROR = 1e-9
+#: Length of an edge layer, over l0, from which on elements are added, as many as gather in it.
+_UNLAYERED = 1e-3
+#: Coupling over the largest kernel that counts as rounding.
+_ROUNDING = 1e-14
+
+
+class CoupledBody(NamedTuple):
+    """One deformable body of a pair.
+
+    side : "base" or "cylinder".
+    share : its part of the summed long-time compliance of both as half-spaces, in (0, 1].
+    nu : Poisson's ratio in plane strain.
+    thickness : of a layer, divided by l0; infinite of a half-space.
+    J, T : strengths of its creep modes over its long-time compliance, and their times in units of
+    T_ref.
+    """
+
+    side: str
+    share: float
+    nu: float
+    thickness: float
+    J: tuple[float, ...]
+    T: tuple[float, ...]
+
+
+class CoupledPair(NamedTuple):
+    """Both bodies of a roller, one record for each that deforms; equal pairs have one hash."""
+
+    bodies: tuple[CoupledBody, ...]
+
+    @classmethod
+    def of_scene(cls, scene: Any) -> CoupledPair:
+        """Return the pair of dimensionless parameters, :class:`.parameters.Parameters`, of one
+        material.
+
+        Raises ParameterError for several materials.
+        """
+        material = scene.material
+        if material is None:
+            material = series_of_alpha(float(np.asarray(scene.alpha).item()))
+        if material.shape:
+            raise ParameterError(
+                "material", f"{material!r:.60}", "one material, as material[i], by method 'coupled'"
+            )
+        if isinstance(material, Bodies):
+            shares = {"base": 1.0 - material.share, "cylinder": material.share}
+            made = [
+                _body(side, *material.body(side), share)
+                for side, share in shares.items()
+                if share > 0.0
+            ]
+        else:
+            made = [_body(side, material, 0.5, None, 0.5) for side in ("base", "cylinder")]
+        return cls(tuple(made))
+
+
+def _body(
+    side: str, series: Prony, nu: float, thickness: float | None, share: float
+) -> CoupledBody:
+    """Return one body; arguments as the fields of :class:`CoupledBody`, ``series`` for its modes,
+    None for infinite.
+    """
+    J, T = (tuple(each.tolist()) for each in (series.J, series.T))
+    return CoupledBody(
+        side=side,
+        share=float(share),
+        nu=float(nu),
+        thickness=math.inf if thickness is None else float(thickness),
+        J=J,
+        T=T,
+    )
+
+
+class CoupledStates(NamedTuple):
+    """Fields of states of one row, (n,) each, dimensionless.
+
+    lam, epsilon : contact length over l0, shift over half of it.
+    Q_over_mu : traction over mu P.
+    kM_base, kM_cylinder : kappa times the parts of M by the slope of each body.
+    work_base, work_cylinder : 2 kappa int q u'_b dx/P: strain of each body (module).
+    beta : length of the stick zone over the contact length.
+    status : 0 where solved (:mod:`.coupled_states`).
+    """
+
+    lam: Floats
+    epsilon: Floats
+    Q_over_mu: Floats
+    kM_base: Floats
+    kM_cylinder: Floats
+    work_base: Floats
+    work_cylinder: Floats
+    beta: Floats
+    status: Floats
+
+    @property
+    def converged(self) -> Any:
+        """Whether each state was solved, (n,), bool."""
+        return self.status == 0.0
+
+
+class CoupledProfile(NamedTuple):
+    """Tractions of one state, linear between the nodes of the elements.
+
+    nodes : places over l0 from the middle of the contact, ascending, (n,), of a motion along +x.
+    shift : place of the middle ahead of the axis, over l0.
+    p, q : pressure and shear stress on the cylinder along +x, over E'/(4 pi kappa), (n,).
+    status : 0 where solved.
+    """
+
+    nodes: Floats
+    shift: float
+    p: Floats
+    q: Floats
+    status: int
+
+
+class CoupledRow:
+    """States of a pair at one speed u = kappa |V|, over creep; its kernels are computed here, and
+    hold no GIL.
+    """
+
+    def __init__(self, pair: CoupledPair, u: float, mu: float, n: int = ELEMENTS) -> None:
+        """Compute the kernels of the row, and full slip of both signs.
+
+        pair: the bodies.
+        u: kappa |V|, >= 0, or infinite.
+        mu: coefficient of friction, > 0.
+        n: number of elements, to which those of an edge layer are added.
+        """
+        from ..kernels.law import coupled_states
+
+        self.pair = pair
+        self.u = u
+        self.mu = mu
+        layer = edge_layer(pair.bodies, u)
+        self.n = n + round(
+            0.5 * coupled_states.WEIGHT_OF_LAYER * math.log(max(_UNLAYERED / layer, 1.0))
+        )
+        kernels = {body.side: body_kernels(body, u) for body in pair.bodies}
+        table = np.ascontiguousarray(sum(each.table for each in kernels.values()))
+        instant = math.fsum(each.instant for each in kernels.values())
+        local = np.concatenate([each.local for each in kernels.values()])
+        own = kernels.get("cylinder", next(iter(kernels.values())))
+        coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
+        self._row = coupled_states.Row(
+            table,
+            np.ascontiguousarray(own.table),
+            instant,
+            own.instant,
+            coupled,
+            len(kernels) == 2,
+            "cylinder" in kernels,
+            local,
+            own.local,
+            layer,
+        )
+        self._full = np.zeros((2, coupled_states.COLUMNS))
+        length = 0.5 * math.sqrt(max(instant, 1e-3))
+        self._ends = [
+            coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
+            for sign, out in zip((-1.0, 1.0), self._full, strict=True)
+        ]
+
+        # a guess that is the same for bodies that are swapped
+        self._length = 0.5 * float(self._full[0, 9] + self._full[1, 9])
+
+    @property
+    def full_slip_status(self) -> Floats:
+        """Status of full slip of the negative and of the positive sign, (2,); 0 where solved."""
+        return self._full[:, 8]
+
+    def onsets(self) -> tuple[float, float]:
+        """Return the creeps 2 kappa delta at which full slip begins, (of the negative, of the
+        positive sign).
+        """
+        return 2.0 * self._ends[0], 2.0 * self._ends[1]
+
+    def touch(self) -> float:
+        """Return the creep 2 kappa delta at which slip of the other sign opens in the rear half of
+        the contact.
+        """
+        from ..kernels.law import coupled_states
+
+        return 2.0 * float(
+            coupled_states.touch_creep(self._row, self.mu, *self._ends, self.n, self._length)
+        )
+
+    def states(self, creeps: Any, apart: bool = False) -> CoupledStates:
+        """Return the states at creeps 2 kappa delta, in any order, (n,); beyond the onsets of full
+        slip.
+
+        apart: whether each is solved from nothing; else from its neighbour, in half the time and to
+        some 1e-5.
+        """
+        from ..kernels.law import coupled_states
+
+        given = np.asarray(creeps, dtype=np.float64)
+        found = np.empty((given.size, coupled_states.COLUMNS))
+        order = np.argsort(given)
+        low, high = self.onsets()
+        inside = order[(given[order] > low) & (given[order] < high)]
+        found[given <= low] = self._full[0]
+        found[given >= high] = self._full[1]
+        out = np.zeros((inside.size, coupled_states.COLUMNS))
+        coupled_states.states_loop(
+            self._row, self.mu, 0.5 * given[inside], self.n, self._length, apart, out
+        )
+        found[inside] = out
+        lam, epsilon, Q, moment, work, own_moment, own_work, beta, status = found.T[:9].copy()
+        np.clip(Q, -1.0, 1.0, out=Q)  # beyond by rounding
+        return CoupledStates(
+            lam=lam,
+            epsilon=epsilon,
+            Q_over_mu=Q,
+            kM_base=moment - own_moment,
+            kM_cylinder=own_moment,
+            work_base=work - own_work,
+            work_cylinder=own_work,
+            beta=beta,
+            status=status,
+        )
+
+    def free_creep(self) -> float:
+        """Return the creep 2 kappa delta of free rolling, at which there is no traction."""
+        return float(
+            brentq(
+                lambda creep: self.states([creep]).Q_over_mu[0],
+                *self.onsets(),
+                xtol=_FREE_CREEP_ERROR,
+            )
+        )
+
+    def profile(self, creep: float) -> CoupledProfile:
+        """Return the tractions at a creep 2 kappa delta of any size."""
+        from ..kernels.law import coupled_states
+
+        low, high = self.onsets()
+        slips = not low < creep < high
+        out = np.zeros(coupled_states.COLUMNS)
+        sign = 1.0 if creep >= high else -1.0
+        d = np.inf if slips else 0.5 * creep
+        found = coupled_states.solve_one(self._row, self.mu, d, self.n, self._length, sign, out)
+        p, q = (np.concatenate([[0.0], each, [0.0]]) for each in (found.p, found.q))
+        load = np.trapezoid(p, found.nodes)
+        shift = 0.5 * out[0] * out[1]
+        return CoupledProfile(
+            nodes=found.nodes,
+            shift=shift,
+            p=p * (coupled_states.LOAD / load),
+            q=q * (coupled_states.LOAD / load),
+            status=int(out[8]),
+        )

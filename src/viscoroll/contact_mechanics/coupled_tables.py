@@ -1,0 +1,392 @@
+"""Tables of states with pressure and shear solved together, and their files.
+
+Tables of the coupled solution: rows of states over speed and creep, at nodes where cubic splines
+hold them.
+
+Speeds run from a thousandth of the slowest rate of the bodies to ten times the fastest, in equal
+steps of ln u, with the elastic limits at both ends; creeps from one onset of full slip over the
+creep at which slip of the other sign opens to the other onset, in equal steps of the graded place t
+(:mod:`.coupled_splines`).
+
+Tables of the coupled solution that are made at first use, and their files beside the compiled
+kernels.
+
+A table depends on the bodies over l0 and on mu alone: kappa, gamma, j, load and radius change it by
+the thickness over l0 only.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import math
+import threading
+import warnings
+from contextlib import suppress
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..core.blocks import run_blocks
+from ..core.checks import Floats, check_integer
+from ..core.errors import ConvergenceError, ParameterError
+from ..core.files import seal, seal_matches
+from ..kernels.numerics.cache_folder import cache_root, is_quiet, read_private, write_private
+from ..kernels.numerics.jit import sources_digest
+from ..laws.coupled_rows import FIELDS, CoupledRows
+from ..laws.law_table import LawTable, coupled_table
+from ..materials.prony import lock_array
+from .coupled_pair import CoupledPair, CoupledRow, CoupledStates
+
+# --- Tables of the coupled solution ---
+
+#: Nodes over speed for five decades, and over creep.
+NODES = (32, 33)
+#: Decades of speed that the nodes of :data:`NODES` cover.
+_DECADES = 5.0
+#: First node of speed times the longest retardation time, and last node times the shortest
+#: relaxation time.
+_SPEED_RANGE = (1e-3, 10.0)
+#: Nodes of speed of elastic bodies, whose law does not depend on it.
+_ELASTIC = np.array([0.5, 1.0, 2.0])
+#: Points beside the nodes at which the error of a table is measured, and their seed.
+_CHECKED = 64
+_SEED = 20260103
+#: Rows among which the middle creep of a row must be, and its largest distance from their median
+#: over the distance of the onsets: it changes by a twentieth in half a decade.
+_NEIGHBOURS = 9
+_FAR = 0.06
+
+
+def coupled_law(
+    scene: Any, *, nodes: tuple[int, int] | None = None, progress: bool = False
+) -> LawTable:
+    """Compute the table of the coupled solution of one scene, as a law.
+
+    scene: dimensionless parameters of one material, alpha, kappa and mu, numbers.
+    nodes: numbers of nodes over speed and over creep, the second odd; None: 32 for each five
+        decades of speed between the rates of the bodies, and 33.
+    progress: whether a progress bar is drawn on standard error, after one second.
+    Returns the :class:`LawTable`, whose ``coupled`` rows state their errors.
+    Raises ConvergenceError for a state that is not solved, and ParameterError for too few nodes.
+    """
+    rows = tabulate(CoupledPair.of_scene(scene), scene.mu, nodes, progress)
+    return coupled_table(scene.alpha if scene.material is None else scene.material, rows)
+
+
+def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
+    """Return the nodes of u = kappa |V| of a table of a pair, (n,); ``count``: their number, None:
+    the default.
+    """
+    times = np.array([time for body in pair.bodies for time in body.T])
+    if not times.size:
+        return _ELASTIC
+    shortest = min(min(body.T) * (1.0 - math.fsum(body.J)) for body in pair.bodies if body.T)
+    low = _SPEED_RANGE[0] / times.max()
+    high = _SPEED_RANGE[1] / shortest
+    default = math.ceil(NODES[0] * max(math.log10(high / low) / _DECADES, 1.0))
+    return np.geomspace(low, high, default if count is None else count)
+
+
+def tabulate(
+    pair: CoupledPair, mu: float, nodes: tuple[int, int] | None = None, progress: bool = False
+) -> CoupledRows:
+    """Solve the rows of a table, on threads, and measure its errors.
+
+    pair: the bodies.
+    mu: coefficient of friction.
+    nodes, progress: as of :func:`coupled_law`.
+    Returns :class:`CoupledRows` with ``errors``.
+    Raises ConvergenceError for a state that is not solved, and ParameterError for ``nodes``.
+    """
+    count, across = (None, NODES[1]) if nodes is None else nodes
+    if count is not None:
+        check_integer("nodes", count, 4, 1000)
+    if check_integer("nodes", across, 9, 1001) % 2 == 0:
+        raise ParameterError("nodes", across, "odd over creep: the nodes are symmetric")
+    u = speed_nodes(pair, count)
+    t = np.linspace(-1.0, 1.0, across)
+    speeds = np.concatenate([[0.0], u, [math.inf]])
+    edges = np.empty((speeds.size, 4))
+    fields = np.empty((speeds.size, across, len(FIELDS)))
+    # the rows of elastic bodies are one
+    work = range(1) if u is _ELASTIC else range(speeds.size)
+
+    rows: list[Any] = [None] * len(work)
+
+    def begin(start: int, stop: int) -> None:
+        for n in range(start, stop):
+            rows[n] = CoupledRow(pair, float(speeds[n]), mu)
+            edges[n, :3] = rows[n].touch(), *rows[n].onsets()
+
+    def solve(start: int, stop: int) -> None:
+        for n in range(start, stop):
+            edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
+
+    run_blocks(begin, len(work), 1, progress="coupled table: kernels" if progress else None)
+    edges[: len(work), 0] = _without_outliers(edges[: len(work), :3])
+    run_blocks(solve, len(work), 1, progress="coupled table: states" if progress else None)
+    edges[len(work) :] = edges[0]
+    fields[len(work) :] = fields[0]
+    made = CoupledRows(
+        mu=mu, u=lock_array(u), t=lock_array(t), edges=lock_array(edges), fields=lock_array(fields)
+    )
+    made.errors.update(measure_errors(made, pair))
+    return made
+
+
+def grade(t: Any) -> Any:
+    """Return w = 1 - (1 - t^2)^(3/2), the place at t of a graded table."""
+    return 1.0 - (1.0 - np.square(t)) ** 1.5
+
+
+def _without_outliers(edges: Floats) -> Floats:
+    """Return the middle creeps of rows with those replaced that are far from their neighbours.
+
+    They are found by bisection of the zones of slip, which at single speeds takes another place;
+    any creep between the onsets serves, but splines over speed need neighbours.
+    edges: middle creep and both onsets, (rows, 3).
+    """
+    from scipy.ndimage import median_filter
+
+    middle, low, high = edges.T
+    rows = np.arange(middle.size)
+    good = np.abs(middle - median_filter(middle, _NEIGHBOURS, mode="nearest")) <= _FAR * (
+        high - low
+    )
+    return np.interp(rows, rows[good], middle[good])
+
+
+def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], Floats]:
+    """Solve one row of a table.
+
+    row: the row, with kernels and onsets.
+    middle: creep between the sides.
+    t: nodes, (m,).
+    Returns (its edges, its fields (m, 8)).
+    Raises ConvergenceError for a state that is not solved.
+    """
+    u = row.u
+    mu = row.mu
+    low, high = row.onsets()
+    creeps = middle + np.where(t < 0.0, low - middle, high - middle) * grade(t)
+    fields = _fields(row.states(creeps), creeps, u, mu)
+    place = _free_place(t, fields[:, 0])
+    free = middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
+    if not 0.0 < u < math.inf:
+        state = _fields(row.states([free]), np.array([free]), u, mu)[0]
+        friction = 0.5 * (mu * state[0] * free - state[6] - state[7])
+        _hold_friction(
+            t, fields, place, max(friction, 0.0), {body.side for body in row.pair.bodies}
+        )
+    return [middle, low, high, free], fields
+
+
+def _hold_friction(
+    t: Floats, fields: Floats, place: float, friction: float, sides: set[str]
+) -> None:
+    """Shift M of an elastic row by its error at free rolling, where all of M is the friction of
+    what still slips.
+
+    Without it a cylinder would be driven, or held, at rest by the error of the spline.
+    t: nodes, (m,).  fields: of the row, (m, 8), changed.
+    place: t of free rolling.  friction: kappa times its moment there, >= 0.
+    sides: bodies that deform, "base" and "cylinder", which share the shift.
+    """
+    columns = [1 + ("base", "cylinder").index(side) for side in sorted(sides)]
+    found = float(_spline(t, fields[:, columns].sum(axis=1), place)(place))
+    shift = (friction - found) / len(columns)
+    for column in columns:
+        fields[:, column] += shift
+        fields[:, column + 5] -= 2.0 * shift
+
+
+def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Floats:
+    """Return fields of states in the order of :data:`FIELDS`, (n, 8).
+
+    Raises ConvergenceError for the first state that is not solved, with its ``creeps``, ``u`` and
+    ``mu``.
+    """
+    if not states.converged.all():
+        n = int(np.argmin(states.converged))
+        where = f"kappa |V| = {u:.6g}, 2 kappa delta = {creeps[n]:.6g}, mu = {mu:g}"
+        raise ConvergenceError(
+            f"coupled solution: no state was found at {where} (status {int(states.status[n])})"
+        )
+    own = (
+        states.Q_over_mu,
+        states.kM_base,
+        states.kM_cylinder,
+        states.lam,
+        states.epsilon,
+        states.beta,
+    )
+    return np.stack([*own, states.work_base, states.work_cylinder], axis=-1)
+
+
+def _spline(t: Floats, values: Floats, place: float) -> Any:
+    """Return the clamped spline of one row on the side of a place in [-1, 1]; t, values: nodes,
+    (m,).
+    """
+    from scipy.interpolate import CubicSpline
+
+    half = t.size // 2
+    side = slice(0, half + 1) if place < 0.0 else slice(half, None)
+    return CubicSpline(t[side], values[side], bc_type="clamped")
+
+
+def _free_place(t: Floats, Q: Floats) -> float:
+    """Return the t of free rolling, at which Q = 0 by the spline of one row; t, Q: nodes, (m,)."""
+    from scipy.optimize import brentq
+
+    sign = -1.0 if Q[t.size // 2] > 0.0 else 1.0
+    return float(brentq(_spline(t, Q, sign), *sorted((0.0, sign)), xtol=1e-15))
+
+
+def measure_errors(
+    rows: CoupledRows, pair: CoupledPair, count: int = _CHECKED, seed: int = _SEED
+) -> dict[str, float]:
+    """Compare a table with states at random points that are no nodes: a third near the middle
+    creep, others anywhere.
+
+    rows: the table; ``errors`` are not read.
+    pair: its bodies.
+    count: number of points, in rows of eight at one speed.
+    seed: of the random points.
+    Returns field -> largest absolute error, with 2 kappa times that of the work.
+    """
+    from ..kernels.law.spline_law import look_up
+
+    random = np.random.default_rng(seed)
+    speeds = np.exp(random.uniform(np.log(rows.u[0]), np.log(rows.u[-1]), -(-count // 8)))
+    worst = np.zeros(len(FIELDS))
+
+    def compare(start: int, stop: int) -> None:
+        for u, draw in zip(speeds[start:stop], draws[start:stop], strict=True):
+            row = CoupledRow(pair, float(u), rows.mu)
+            low, high = row.onsets()
+            middle = row.touch()
+            near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
+            creeps = np.concatenate([near, low + (high - low) * draw[3:]])
+            exact = _fields(row.states(creeps), creeps, float(u), rows.mu)
+            found = look_up(rows.vector, np.full(creeps.size, u), creeps)
+            np.maximum(worst, np.abs(found - exact).max(axis=0), out=worst)
+
+    draws = random.random((speeds.size, 8))
+    run_blocks(compare, speeds.size, 1)
+    return dict(zip(FIELDS, worst.tolist(), strict=True))
+
+
+# --- Tables of the coupled solution that are made at first use ---
+
+#: files kept; the one that was used longest ago goes first
+_KEPT = 256
+#: Dundurs' constant above which half-spaces take the coupled solution
+_COUPLED = 0.05
+#: seconds that a table takes on two cores, for messages
+SECONDS = 3
+_lock = threading.Lock()
+
+
+def is_coupled(pair: CoupledPair) -> bool:
+    """Return whether shear acts on pressure so much that a pair needs the coupled solution.
+
+    pair: the bodies.
+    Returns True where one is a layer, or where Dundurs' constant of half-spaces exceeds 0.05 in
+    modulus, at long times or at once.
+    """
+    if any(math.isfinite(body.thickness) for body in pair.bodies):
+        return True
+    for parts in ([1.0 for _ in pair.bodies], [1.0 - math.fsum(body.J) for body in pair.bodies]):
+        shares = [part * body.share for part, body in zip(parts, pair.bodies, strict=True)]
+        local = (
+            (share if body.side == "base" else -share)
+            * (1.0 - 2.0 * body.nu)
+            / (2.0 - 2.0 * body.nu)
+            for share, body in zip(shares, pair.bodies, strict=True)
+        )
+        if abs(math.fsum(local)) > _COUPLED * math.fsum(shares):
+            return True
+    return False
+
+
+def stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
+    """Return the table of a pair at one mu, from this process, from its file, or made now and kept
+    in both.
+
+    A process that a user started shows a progress bar after one second, unless $VISCOROLL_QUIET is
+    1.
+    Raises ConvergenceError for a state that is not solved.
+    """
+    with _lock:
+        return _rows(pair, mu)
+
+
+@lru_cache(maxsize=32)
+def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
+    key = hashlib.sha256(f"{_digest()} {pair!r} {mu!r}".encode()).hexdigest()[:20]
+    path = cache_root() / "coupled" / f"{key}.npz"
+    if (found := _load(path)) is None:
+        found = tabulate(pair, mu, progress=not is_quiet())
+        with suppress(OSError):
+            _save(found, path)
+    return found
+
+
+@lru_cache(maxsize=1)
+def _digest() -> str:
+    """Return a digest of the sources on which the bits of a table depend."""
+    digest = hashlib.sha256(sources_digest().encode())
+    for path in sorted(Path(__file__).parent.glob("coupled*.py")):
+        digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _load(path: Path) -> CoupledRows | None:
+    """Return the table in a file; None without a private one, and with a RuntimeWarning for a
+    damaged one.
+    """
+    try:
+        content = read_private(path)
+    except OSError:
+        return None
+    try:
+        found = _read(content)
+    except Exception as error:
+        warnings.warn(
+            f"{path}: coupled table is damaged ({error}) and is made again",
+            RuntimeWarning,
+            stacklevel=2,
+        )
+        return None
+    with suppress(OSError):  # a folder that is read-only
+        path.touch()
+    return found
+
+
+def _read(content: bytes) -> CoupledRows:
+    """Return the table in the bytes of a file; raises ValueError and errors of numpy for what is
+    none.
+    """
+    if not seal_matches(content):
+        raise ValueError("its bytes differ from the SHA-256 at their end")
+    with np.load(io.BytesIO(content)) as data:
+        u, t, edges, fields = (lock_array(data[name]) for name in ("u", "t", "edges", "fields"))
+        errors = dict(zip(FIELDS, data["errors"].tolist(), strict=True))
+        return CoupledRows(
+            mu=float(data["mu"]), u=u, t=t, edges=edges, fields=fields, errors=errors
+        )
+
+
+def _save(rows: CoupledRows, path: Path) -> None:
+    """Write a table with a seal, and delete the oldest files beyond :data:`_KEPT`; OSError
+    passes.
+    """
+    content = io.BytesIO()
+    arrays = {name: getattr(rows, name) for name in ("mu", "u", "t", "edges", "fields")}
+    np.savez(content, errors=[rows.errors[name] for name in FIELDS], **arrays)
+    write_private(path, seal(content.getvalue()))
+    for file in sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)[:-_KEPT]:
+        file.unlink()

@@ -1,0 +1,392 @@
+"""Warnings of states and motions that the model does not describe: all :class:`ModelWarning` are
+given here.
+
+Worker processes never warn.  The texts of faults do not depend on the values of a call, though
+fixed limits may occur in them, so that Python shows the same one once for each line of a program.
+In a scene, which is dimensionless, kappa = R/l0 with the contact length at rest l0, mu is the
+coefficient of friction, gamma = P T_ref^2/(m R), j the moment of inertia over m R^2, M the rolling
+moment over P R.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from bisect import bisect
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import lru_cache
+from typing import Any
+
+import numpy as np
+
+from ..core.errors import ModelWarning, caller_level
+from ..kernels.numerics.cache_folder import is_worker
+from ..materials.bodies import Bodies, Cover
+from ..materials.measured_data import Measured
+from ..materials.prony import Prony
+from .assumptions import (
+    LEAST_KAPPA,
+    MISFIT_LIMIT,
+    NOT_SMALL,
+    WAVE_LIMIT,
+    assess_measured_band,
+    transit_frequency,
+)
+from .body_data import BodyData, extent_of, is_outside
+from .free_rolling import FreeRolling, curve_of
+from .parameters import PARAMETERS, Parameters, Roller
+from .validity import STEADY_LIMIT
+
+#: Creepage from which on a start in full slip has M in doubt, dimensionless: the surface speeds
+#: then differ by V.
+_CREEP = 1.0
+#: Smallest M divided by mu, dimensionless, at which an M in doubt matters for a motion in full
+#: slip.
+_LEAST_M_OVER_MU = 0.1
+#: Largest kappa M divided by 1 - 1/alpha at any speed, dimensionless, of one relaxation time, to a
+#: fifth (docs/theory.md).
+_LARGEST_M = 0.25
+#: Part of the distance of free rolling, dimensionless, that may lie at speeds where the error of V
+#: exceeds 10 %.  It is the whole distance where the motion starts below that speed.
+_SLOW_PART = 0.1
+#: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, from which on that part is
+#: below _SLOW_PART for every material: (kappa V)^2 |N| is at most 1.35/16 of 1 - 1/alpha
+#: (docs/validity.md), and the distance grows at least in proportion to V.
+_FAST = 1.35 / 16.0 / STEADY_LIMIT / _SLOW_PART**2
+#: kappa V, dimensionless, from which on (kappa V)^2 N of one relaxation time is at least 0.6/16 of
+#: 1 - 1/alpha; at lower speeds N passes 0.  The least found is 0.64/16, at this speed and alpha
+#: near 1.
+_LEAST_FAST_ROLLING = 1.0
+#: (kappa V)^2 divided by gamma (1 - 1/alpha)/(1 + j), dimensionless, below which the error of V
+#: exceeds 10 % at the start already, for one relaxation time and kappa V above that speed.
+_SLOW = 0.6 / 16.0 / STEADY_LIMIT
+#: Fault of a motion or contact, where a density is known; M is doubtful from :data:`WAVE_LIMIT` on
+#: already.
+_FASTER_THAN_WAVES = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
+#: Fault of a motion or contact whose lengths were given in mm.
+_MILLIMETRES = "R is above 10 m, where lengths are in m: divide those in mm by 1000"
+#: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
+_EXAMINED = 256
+#: Data of materials for which this process has warned already.
+_warned_records: set[Measured] = set()
+
+
+def _warn(text: str) -> None:
+    """Give a :class:`ModelWarning` at the caller's line outside the package; in worker processes do
+    nothing.
+
+    text: the message.
+    Returns None.
+    """
+    if not is_worker():
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+
+
+def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:
+    """Give one :class:`ModelWarning` of several faults, at the caller's line outside the package;
+    none in worker processes.
+
+    faults: sentences without a full stop, whose text does not depend on the values of the call
+        (fixed limits may occur); [] gives no warning.
+    subject: "motion" or "contact".
+    report: the call that reports each assumption, as "validity(V).small_contact", for the message.
+    Returns None.
+    """
+    if faults:
+        _warn(
+            f"the model does not hold for this {subject}: {'; '.join(faults)}.  {report} reports "
+            "each assumption"
+        )
+
+
+def warn_of_contact(
+    roller: Roller, V: Any, extent: tuple[float, float] | None = None, *, motion: bool = False
+) -> None:
+    """Warn of contacts at rest longer than the radius, speeds above the shear wave speed, and
+    unmeasured frequencies.
+
+    These are at most two warnings, of :func:`_warn_of_faults` and :func:`_warn_of_band`.  Only the
+    extreme speeds are examined; rest is passed over, since M = 0 there, and speeds on both sides of
+    0 are compared with the upper end of the band alone.
+    roller: scene or cylinder; a scene has no data to compare with, and never warns.
+    V: speeds, m/s, any sign and shape, NaN where they are not known; None, for prescribed ones that
+        are not known, gives no warning.
+    extent: (smallest, largest) of the speeds, m/s, signed, where the caller knows them; None: they
+        are found.
+    motion: whether the speeds are of a motion, which :func:`warn_of_start` has examined, so that
+        neither the length at rest nor the shear wave speed gives a warning here.
+    """
+    data = roller.body_data
+    if data is None or data.covered_speeds is None or V is None:
+        return
+    ends = extent or extent_of(V)
+    if not is_outside(ends, data.covered_speeds):
+        return
+    if not motion:
+        waves = data.wave_speed
+        too_fast = waves is not None and (ends[1] > waves or -ends[0] > waves)
+        _warn_of_faults(
+            [NOT_SMALL] * (not data.small_at_rest)
+            + [_MILLIMETRES] * (not data.in_metres)
+            + [_FASTER_THAN_WAVES] * too_fast,
+            "contact",
+            "validity(V)",
+        )
+    if data.measured_speeds is not None and is_outside(ends, data.measured_speeds):
+        _warn_of_band(data, V)
+
+
+def _warn_of_band(data: BodyData, V: Any) -> None:
+    """Warn of transit frequencies outside the measured band, once for each material in a process;
+    workers do not warn.
+
+    The warning may still be left out: each speed is compared with the band of its own cylinder,
+    while the caller compares the extremes of all of them.  A fit that misses its data gives it at
+    every speed, with that cause.
+    data: data of the bodies of a cylinder, of which at least one was measured.
+    V: speeds, m/s, any sign; a number, or (n, ...) where ``data`` has n cylinders.
+    With a warning the measurements of the bodies are entered into :data:`_warned_records`.
+    """
+    records = data.records.values()
+    if is_worker() or _warned_records.issuperset(records):
+        return
+    assert data.measured_rates is not None
+    # The extreme speeds and the extreme l0 may belong to different cylinders.
+    l0 = np.reshape(data.l0, np.shape(data.l0) + (1,) * (np.ndim(V) - np.ndim(data.l0)))
+    rates = extent_of(np.abs(V) / l0)
+    causes = [
+        f"the fit of {body} misses its data by more than {MISFIT_LIMIT:.0%}, so M is uncertain at "
+        f"every speed: {record}"
+        for body, record in data.records.items()
+        if record.misfit > MISFIT_LIMIT
+    ]
+    if is_outside(rates, data.measured_rates):
+        ends = np.array(rates)
+        sentence = assess_measured_band(
+            transit_frequency(ends, data.relative_length(ends)), data.records
+        ).sentence
+        causes.append(
+            f"M and the contact length are extrapolated beyond the measurements: {sentence}; "
+            "validity(V).measured "
+            "reports which speeds are inside"
+        )
+    if causes:
+        _warned_records.update(records)
+        _warn("; ".join(causes))
+
+
+def warn_of_unmeasured_starts(share: float, records: Iterable[Measured]) -> bool:
+    """Warn of motions of a run that start outside the measured band of a material, once for each
+    material in a process; workers do not warn.
+
+    share: fraction of all motions that start outside, 0 to 1; 0 gives no warning.
+    records: what was measured of the bodies, :class:`Measured` each; contacts do not warn of them
+        again.  If all of them have given a warning before, also if there are none, there is no
+        warning.
+    Returns whether a warning was given, a bool.
+    """
+    data = list(records)
+    if share <= 0.0 or is_worker() or _warned_records.issuperset(data):
+        return False
+    _warned_records.update(data)
+    _warn(
+        f"{share:.1%} of the motions start outside the frequencies at which the material was "
+        "measured (at the medians "
+        f"of the inputs it was measured from {'; '.join(map(str, data))}): M is extrapolated there"
+    )
+    return True
+
+
+def warn_of_speeds(roller: Roller, V0: Any, V: Any) -> None:
+    """Warn where the fastest speed of a motion, or of each of several, is outside the measured band
+    of a material.
+
+    Slow speeds are not compared: a motion that ends at rest passes them.  The material has one
+    warning in a process.
+    roller: scene or cylinder; a scene has no data, and never warns.
+    V0: start speeds, m/s, any sign, a number or (n,); None, for prescribed ones, counts as 0.
+    V: speeds at the output times, m/s, (times,) or (n, times), NaN where a motion ended before;
+        None where they were not computed: then the start speeds are compared alone.
+    """
+    data = roller.body_data
+    if data is None or data.covered_speeds is None:
+        return
+    fastest = np.abs(0.0 if V0 is None else V0)
+    if V is not None:
+        fastest = np.fmax(fastest, np.fmax.reduce(np.abs(V), axis=-1))
+    warn_of_contact(roller, fastest, motion=True)
+
+
+def warn_of_start(
+    roller: Roller, scene: Parameters, start: tuple[Any, Any], V0: Any, omega0: Any, driven: bool
+) -> None:
+    """Warn of motions for which the model fails grossly, judged by their start.
+
+    There is one warning of speeds above the shear wave speed, where a density is known, and one of
+    all other faults: a contact longer than the radius, a creepage of order 1 in full slip, a free
+    motion too slow for the quasi-steady assumption.  One motion from two floats costs one or two
+    microseconds; of an ensemble at most three are examined (:func:`_worst_start_faults`).
+    roller: scene or cylinder, on its slope.
+    scene: dimensionless parameters of the roller, with gamma.
+    start: (V, omega) at the start as the caller gave them, m/s and rad/s for a cylinder, numbers or
+        (n,); None for a prescribed one, which counts as 0; of a scene not used.
+    V0, omega0: the start speeds, dimensionless; floats or arrays (n,).
+    driven: whether something drives the motions, or they are rolled with the added mass N; slowness
+        is not a fault then.
+    """
+    wave_speed = None if roller.body_data is None else roller.body_data.wave_speed
+    if wave_speed is not None:
+        V, omega = (0.0 if speed is None else np.abs(speed) for speed in start)
+        if float(np.max(np.maximum(V, omega * roller.body_data.R), initial=0.0)) > wave_speed:
+            _warn_of_faults([_FASTER_THAN_WAVES], "motion", "validity() of cylinder or result")
+    if type(V0) is type(omega0) is float and not scene.shape:
+        material = scene.alpha if scene.material is None else scene.material
+        faults = _start_faults(
+            material, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, driven
+        )
+    else:
+        faults = _worst_start_faults(scene, V0, omega0, driven)
+    if roller.body_data is not None and not roller.body_data.in_metres:
+        faults.append(_MILLIMETRES)
+    _warn_of_faults(faults, "motion", "validity() of scene or result")
+
+
+def _start_faults(
+    material: Any,
+    kappa: float,
+    mu: float,
+    gamma: float,
+    j: float,
+    V0: float,
+    omega0: float,
+    driven: bool,
+) -> list[str]:
+    """Return sentences on what the model does not describe in one motion, judged by its start.
+
+    The faults are kappa below 1; full slip with |omega0 - V0| >= |V0| where M is not small beside
+    the friction; and a free motion whose error of V exceeds 10 % on more than a tenth of its
+    distance, judged at the start speed or at that at which it begins to roll, whichever is larger.
+    material: alpha (a float), Prony series, bodies or cover of the roller; a cover is never too
+        slow, since its N is not known.
+    kappa, mu, gamma, j: parameters of the scene, dimensionless.
+    V0, omega0: start speeds, dimensionless, any sign; rest is no fault.
+    driven: whether something drives the motion, or it is rolled with the added mass N; it may be
+        slow then.
+    Returns the sentences, without full stops, three at most, whose text does not depend on the
+    arguments; an empty list where there is no fault.
+    """
+    faults: list[str] = []
+    one_time = type(material) is float
+    part = 1.0 - 1.0 / (material if one_time else material.alpha)
+    if kappa < LEAST_KAPPA:
+        faults.append(NOT_SMALL)
+    if abs(omega0 - V0) >= _CREEP * abs(V0) and _LARGEST_M * part > _LEAST_M_OVER_MU * mu * kappa:
+        fastest = max(abs(V0), abs(omega0))
+        if fastest > 0.0 and (not one_time or part * fastest > _LEAST_M_OVER_MU * mu):
+            faults.append(
+                "it starts in full slip at a creepage of order 1, where the surface speeds of "
+                "cylinder and half-space "
+                "differ and the rolling moment is computed with one speed for both"
+            )
+    # the speed at the start, or that at which it begins to roll
+    u = kappa * max(abs(V0), abs(V0 + j * omega0) / (1.0 + j))
+    if (
+        not driven
+        and type(material) is not Cover
+        and u > 0.0
+        and _is_too_slow(material, u, gamma, j)
+    ):
+        faults.append(
+            "it is too slow for the quasi-steady assumption: the error of V exceeds 10 % on more "
+            "than a tenth of "
+            "the distance"
+        )
+    return faults
+
+
+def _is_too_slow(material: Any, u: float, gamma: float, j: float) -> bool:
+    """Return whether a free motion from a speed is too slow for the law of steady rolling.
+
+    It is where the error of V exceeds 10 % on more than a tenth of its distance.  Bounds of N
+    decide most motions: the table of :func:`_slow_starts` takes a second where its kernels are not
+    compiled yet.
+    material: alpha (a float), Prony series or bodies, no cover; an elastic one is never too slow.
+    u: kappa |V| at the start, dimensionless, > 0.
+    gamma, j: parameters of the scene, dimensionless.
+    Returns a bool; where the bounds do not decide, that of the next lower speed of the table, 16 to
+    an octave.
+    """
+    one_time = type(material) is float
+    ratio = u * u * (1.0 + j)
+    scale = gamma * (1.0 - 1.0 / (material if one_time else material.alpha))
+    if ratio >= _FAST * scale:
+        return False
+    if one_time and u >= _LEAST_FAST_ROLLING and ratio < _SLOW * scale:
+        return True
+    lower_ends, slow = _slow_starts(material, gamma, j)
+    return slow[max(bisect(lower_ends, u) - 1, 0)]
+
+
+def _worst_start_faults(scene: Parameters, V0: Any, omega0: Any, driven: bool) -> list[str]:
+    """Return the faults of the model in those motions of an ensemble, three at most, that are worst
+    by simple bounds: of the smallest kappa, of the largest loss in full slip, and of the largest
+    unsteadiness.
+
+    scene: dimensionless parameters of the roller, of which material (or alpha), kappa, mu, gamma
+        (not None) and j are read, numbers or arrays (n,).
+    V0, omega0: start speeds, dimensionless, any sign, numbers or arrays (n,); n may be 0.
+    driven: whether something drives the motions, or they are rolled with the added mass N; slowness
+        is not a fault then.
+    Returns the sentences of :func:`_start_faults`, each once; an empty list where these motions
+    have no fault, or there are none.  Of more than :data:`_EXAMINED` motions that many, evenly
+    spaced, are compared by the bounds.
+    """
+    arrays = [
+        np.asarray(value) for value in (*(getattr(scene, name) for name in PARAMETERS), V0, omega0)
+    ]
+    count = math.prod(np.broadcast_shapes(*(array.shape for array in arrays)))
+    examined = np.linspace(0, count - 1, min(count, _EXAMINED)).astype(np.int64)
+    columns = np.array([np.broadcast_to(array, (count,))[examined] for array in arrays])
+    if not examined.size:
+        return []
+    alpha, kappa, mu, gamma, j, V0, omega0 = columns
+    part = 1.0 - 1.0 / alpha
+    with np.errstate(over="ignore", divide="ignore", invalid="ignore"):
+        u = kappa * np.maximum(np.abs(V0), np.abs(V0 + j * omega0) / (1.0 + j))
+        unsteady = np.where(u > 0.0, gamma * part / (1.0 + j) / u**2, 0.0)
+        slips = np.where(np.abs(omega0 - V0) >= _CREEP * np.abs(V0), part / (mu * kappa), 0.0)
+    faults: list[str] = []
+    for worst in {int(np.argmax(measure)) for measure in (-kappa, slips, unsteady)}:
+        material: Any = (
+            scene.material
+            if scene.material_array is None
+            else scene.material_array[examined[worst]]
+        )
+        alpha, *others = columns[:, worst].tolist()
+        arguments: list[Any] = [alpha if material is None else material, *others, driven]
+        faults += _start_faults(*arguments)
+    return list(dict.fromkeys(faults))
+
+
+@lru_cache(maxsize=64)
+def _slow_starts(
+    material: float | Prony | Bodies, gamma: float, j: float
+) -> tuple[list[float], list[bool]]:
+    """Tabulate whether a free motion that starts at kappa V is too slow for the law of steady
+    rolling.
+
+    The table is kept for the next call.
+    material: alpha, Prony series or bodies, not elastic, no cover.
+    gamma, j: parameters of the scene, dimensionless, > 0.
+    Returns (kappa V, ascending, floats, dimensionless, 16 to an octave over all speeds at which the
+    material relaxes; whether more than a tenth of the distance from there to rest has an error of V
+    above 10 %, bools), two lists of one length.
+    """
+    given = {"alpha": material} if isinstance(material, float) else {"material": material}
+    free = FreeRolling.of_scene(Parameters(kappa=1.0, mu=1.0, gamma=gamma, j=j, **given), 0.0)
+    curve = curve_of(free.materials[0])
+    assert curve is not None  # an elastic one is never slow
+    free = replace(free, u=np.exp(curve.ln_u))
+    slow = free.reach(STEADY_LIMIT).left > _SLOW_PART * free.distance()
+    return (free.u * free.speed).tolist(), slow.tolist()

@@ -1,0 +1,596 @@
+"""The models that the functions of the package take: :class:`Roller`, and its dimensionless
+:class:`Parameters`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, fields, replace
+from functools import cached_property
+from typing import Any, ClassVar, Self
+
+import numpy as np
+
+from ..core.checks import (
+    Floats,
+    Integers,
+    broadcast_shape,
+    check_array,
+    check_array_extent,
+    check_bool,
+    check_number,
+    read_only,
+)
+from ..core.drive_arguments import slope_tan_cos
+from ..core.errors import ParameterError, check_one_given, described_error, shape_error
+from ..core.results import format_value
+from ..core.scale import DIMENSIONLESS, Scale
+from ..laws.law_grid import LawGrid
+from ..laws.law_table import LawTable, coupled_table, law_table
+from ..materials.bodies import Bodies, Cover
+from ..materials.prony import Prony
+from ..materials.prony_forms import HIGHEST_ALPHA
+from .coupled_pair import CoupledPair
+
+#: Names of the dimensionless numbers of a scene.
+PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+#: Relative difference of two coefficients of friction that count as one, as mu P/P.
+_SAME_MU = 1e-12
+#: Smallest and largest mu/kappa, dimensionless, the unit of delta_star: beyond them it leaves the
+#: range of doubles.
+RATIO_RANGE = (1e-290, 1e290)
+
+
+class Roller:
+    """Base of a scene and a cylinder: data by which functions compute, and the scale of their
+    arguments and results.
+
+    Its subclasses are dataclasses, whose fields may be arrays.  Two rollers are equal, and have one
+    hash, if they are of one class and all fields are equal.
+
+    Attributes
+    ----------
+    scale : :class:`.Scale`, which gives the unit of each quantity by name, of a cylinder in SI
+    units; 1 of a scene.
+    material : the material, None where numbers stand for it.
+    body_data : data of the bodies in SI units; None of a scene.
+    about : attributes that datasets of results get, by name; empty of a scene.
+    """
+
+    scale: Scale
+    material: Any
+    #: data of the bodies for assessments, a :class:`.body_data.BodyData`; None of a scene
+    body_data: Any = None
+    about: ClassVar[dict[str, Any]] = {}
+
+    def scene(self) -> Parameters:
+        """Return the dimensionless parameters."""
+        raise NotImplementedError
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """Parameters that are numbers or arrays, by name."""
+        raise NotImplementedError
+
+    def on_slope(self, slope: Any) -> Self:
+        """Return the same roller on a slope, under the load P cos(slope), as a new object;
+        subclasses implement it.
+
+        slope: angle, rad, a number or an array, which broadcasts with the parameters.
+        Raises ParameterError for a slope outside (-pi/2, pi/2), and for shapes that do not
+        broadcast.
+        """
+        raise NotImplementedError
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a copy with some parameters changed; ``changes``: new values by name."""
+        raise NotImplementedError
+
+    def take(self, index: Integers, count: int) -> Self:
+        """Select some of the ``count`` rollers that this object with array parameters stands for.
+
+        Parameters
+        ----------
+        index : index of numpy into an array (count,): an integer for one roller, a slice, a mask,
+        or integers (k,).
+        count : number of rollers; numbers and materials of shape (count,) are indexed, all others
+        stay as they are.
+
+        Returns
+        -------
+        Scene or Cylinder
+            A roller of the same class whose indexed parameters are numbers, or arrays (k,), in the
+            order of the index; this object itself if no parameter has that shape.
+
+        Raises
+        ------
+        IndexError
+            An index beyond ``count``, if a parameter has that shape.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> rollers = vr.presets.RUBBER_CYLINDER.replace(mu=[0.2, 0.3, 0.4])
+        >>> rollers.take(slice(0, 2), 3).mu
+        array([0.2, 0.3])
+        """
+        parts = {
+            name: value[index]
+            for name, value in self._arrays.items()
+            if getattr(value, "shape", ()) == (count,)
+        }
+        return self.replace(**parts) if parts else self
+
+    @property
+    def _arrays(self) -> dict[str, Any]:
+        """Parameters that may be arrays of several rollers, by name."""
+        return self.numbers
+
+    def _key(self) -> tuple[Any, ...]:
+        """All fields in a form that compares and hashes."""
+        values = (getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+        # + 0.0: -0 and 0 are equal
+        return tuple(
+            (x.shape, (x + 0.0).tobytes()) if isinstance(x, np.ndarray) else x for x in values
+        )
+
+    def __eq__(self, other: object) -> bool:
+        same_type = isinstance(other, Roller) and type(other) is type(self)
+        return self._key() == other._key() if same_type else NotImplemented  # type: ignore[attr-defined]
+
+    def __hash__(self) -> int:
+        return hash(self._key())
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Parameters(Roller):
+    """Dimensionless parameters, as a :class:`viscoroll.Scene` takes them; each a number or an
+    array, and they broadcast.
+
+    The unit of time, T_ref, is T_epsilon where alpha is given, else the time in units of which the
+    material counts.
+
+    alpha : T_epsilon/T_sigma, in [1, :data:`HIGHEST_ALPHA`]; of a material its alpha, which the
+    class sets.
+    kappa : slenderness R/l0, > 0.
+    mu : coefficient of friction, > 0.
+    gamma : P T_ref^2/(m R), > 0; None where the roller does not move.
+    j : moment of inertia divided by m R^2, > 0.
+    material : in place of alpha: a series, two bodies, or the rows of a law, whose material it
+    becomes; None of an alpha. ``shape`` is what the parameters broadcast to; () for one scene.
+    coupled : whether states with traction are those of the coupled solution (:attr:`rolling_law`).
+    """
+
+    alpha: Any = None
+    kappa: Any = None
+    mu: Any = None
+    gamma: Any = None
+    j: Any = 0.5
+    material: Prony | Bodies | LawTable | None = None
+    coupled: bool = True
+    _law: ClassVar[LawTable | None] = None
+    shape: ClassVar[tuple[int, ...]] = ()
+    scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
+
+    def __post_init__(self) -> None:
+        """Check the parameters, and replace them by floats or read-only arrays; set ``shape``,
+        their broadcast shape.
+
+        A gamma of None stays None.  With a material ``alpha`` becomes that of the material, a float
+        or an array (n,).  A :class:`LawTable` is replaced by its material (or by its alpha, with
+        None for the material), and kept as ``_law`` for :attr:`table`.
+        Raises ParameterError: both or neither of alpha and material, a material of another type,
+        kappa, mu or j that is None, values out of range, NaN or infinite, shapes that do not
+        broadcast, mu/kappa outside :data:`RATIO_RANGE`.
+        """
+        values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
+        material: Any = self.material
+        check_one_given(alpha=values["alpha"], material=material)
+        check_bool("coupled", self.coupled)
+        if isinstance(material, LawGrid):
+            material = material.table(check_number("kappa", values["kappa"], above=0.0))
+        if isinstance(material, LawTable):
+            object.__setattr__(self, "_law", material)
+            refuse_other_friction(material, values["mu"])
+            material = material.material
+            if not isinstance(material, Prony | Bodies):
+                values["alpha"] = material
+                material = None
+        if material is not None:
+            if not isinstance(material, Prony | Bodies):
+                allowed = (
+                    "a Prony, a Bodies, or a law of load_law (in SI units: a Material of a "
+                    "Cylinder)"
+                )
+                raise ParameterError("material", f"{material!r:.60}", allowed)
+            values["alpha"] = material.alpha
+        arrays = {"alpha": check_array("alpha", values.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
+        extents = {}
+        for name, value in values.items():
+            if name != "gamma" or value is not None:
+                arrays[name], extents[name] = check_array_extent(name, value, above=0.0)
+        object.__setattr__(self, "shape", broadcast_shape(**arrays))
+        object.__setattr__(self, "material", material)
+        if arrays["mu"].size and arrays["kappa"].size:
+            low, high = RATIO_RANGE
+            (least_mu, most_mu) = extents["mu"]
+            (least_kappa, most_kappa) = extents["kappa"]
+            if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
+                _refuse_ratio(arrays["mu"], arrays["kappa"])
+        for name, array in arrays.items():
+            object.__setattr__(self, name, read_only(array))
+
+    @property
+    def table(self) -> LawTable | None:
+        """Return the :class:`LawTable` of the scene, from which all its contact states are
+        computed.
+
+        It is the one that was given as ``material``, else it is computed at first use and kept for
+        later calls (the last 32 laws).  None for several materials (also of shape (1,)) and for an
+        array of alphas, unless that has a single element.
+        Raises ParameterError for a material with times outside 1e-100 to 1e100 of their unit, or a
+        layer too thin.
+        """
+        if self._law is not None:
+            return self._law
+        if self.material is not None:
+            return law_table(self.material) if self.material_array is None else None
+        if type(self.alpha) is float:
+            return law_table(self.alpha)
+        return law_table(self.alpha.item()) if self.alpha.size == 1 else None
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """alpha (also that of a material), kappa, mu, gamma and j by name; gamma is missing where
+        it was not given.
+        """
+        values = {name: getattr(self, name) for name in PARAMETERS}
+        return {name: value for name, value in values.items() if value is not None}
+
+    def scene(self) -> Self:
+        """Return the scene itself, so that functions may call it for a scene as for a cylinder.
+
+        Returns
+        -------
+        Scene
+            This object.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.presets.RUBBER_ROLLER.scene() is vr.presets.RUBBER_ROLLER
+        True
+        """
+        return self
+
+    def replace(self, **changes: Any) -> Self:
+        """Return a copy of the same class with some parameters changed.
+
+        Parameters
+        ----------
+        changes : new values of alpha, kappa, mu, gamma, j and material by name; an alpha takes the
+            place of a material, and the reverse.  Without both the material stays, with its
+            :class:`LawTable` if it was given as one.
+
+        Returns
+        -------
+        Scene
+            A new one.
+
+        Raises
+        ------
+        ParameterError
+            As the class does: for values out of range, and for alpha and material together.
+        TypeError
+            For an unknown name.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.presets.RUBBER_ROLLER.replace(alpha=11.0, mu=0.4).alpha
+        11.0
+        """
+        material: dict[str, Any] = {}
+        if changes.keys() & {"alpha", "material"}:
+            material = {"alpha": None, "material": None}
+        elif self._law is not None or self.material is not None:
+            material = {"alpha": None, "material": self._law or self.material}
+        return replace(self, **(material | changes))
+
+    @property
+    def series(self) -> Prony | None:
+        """The :class:`Prony` series of the one material, of both bodies together where they differ
+        (also of a cover); None where alpha was given, and of several materials.
+        """
+        one: Any = None if self.material_array is not None else self.material
+        return one.total if isinstance(one, Bodies) else one
+
+    @property
+    def material_array(self) -> Prony | Bodies | None:
+        """The n materials, if the parameter ``material`` holds several; None of one material and of
+        alpha.
+
+        A :class:`Prony` of n series is returned as it is.  Of n pairs of bodies whose two bodies
+        are alike in each pair, the series of the cylinders, a Prony of n; else the pairs or covers,
+        a :class:`Bodies`.  An array of a single material, of shape (1,), counts as several.
+        """
+        several: Any = self.material
+        if several is None or not several.shape:
+            return None
+        return several.cylinder if isinstance(several, Bodies) and several.like else several
+
+    def in_own_time(self) -> tuple[Any, float]:
+        """Return the one material of the scene in its own unit of time, a power of two near its
+        slow time.
+
+        The slow time (:attr:`viscoroll.Prony.slow_time`) is that below whose inverse kappa V counts
+        as slow.  Curves of a material are kept in that time, so that scenes with one material in
+        two units share them.
+
+        Returns
+        -------
+        material, unit : the series, with times divided by the unit, and the unit divided by T_ref.
+            For alpha (alpha, 1.0), where alpha may be an array; for an elastic series (1.0, 1.0);
+            for a cover (the cover, 1.0), since its law is not that of the series alone.  Not for
+            several materials, of which (their alphas, 1.0) is returned.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Scene(material=vr.Prony([2.0], [8.0]), kappa=10.0, mu=0.3).in_own_time()[1]
+        32.0
+        """
+        if self.cover is not None:
+            return self.cover, 1.0
+        return (self.alpha, 1.0) if self.series is None else series_in_own_time(self.series)
+
+    @property
+    def cover(self) -> Cover | None:
+        """The layer of finite thickness on either body; None of half-spaces."""
+        return self.material if isinstance(self.material, Cover) else None
+
+    @cached_property
+    def tabulated(self) -> bool:
+        """Whether the law with traction is a table of the coupled solution: one was given, or shear
+        acts on pressure.
+
+        False where ``coupled`` is False, and no table was given.  Of several materials it is that
+        of the first one.
+        """
+        if self._law is not None:
+            return self._law.coupled is not None
+        if not self.coupled or not isinstance(self.material, Bodies):
+            return False
+        from .coupled_tables import is_coupled
+
+        several = bool(self.material.shape)
+        if several and not len(self.material):
+            return False
+        return is_coupled(
+            CoupledPair.of_scene(self.replace(material=self.material[0]) if several else self)
+        )
+
+    @property
+    def rolling_law(self) -> LawTable | None:
+        """Return the law of states with traction: :attr:`table`, or where :attr:`tabulated` a table
+        of the coupled solution, which is made at first use and kept (:mod:`.coupled_tables`).
+
+        Raises ParameterError where there would be a table for each of several bodies or mu, and as
+        :attr:`table`.
+        """
+        if not self.tabulated or self._law is not None:
+            return self.table
+        from .coupled_tables import SECONDS, stored_rows
+
+        mus = np.unique(self.mu)
+        several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
+        if several * mus.size != 1:
+            found = (
+                f"would need {several * mus.size} tables of the coupled solution, of some "
+                f"{SECONDS} s on two cores each"
+            )
+            allowed = (
+                "one body and one mu in a call; or coupled=False, for the law that takes "
+                "coupling to first order"
+            )
+            raise described_error("material" if several > 1 else "mu", found, allowed)
+        mu = float(mus[0])
+        made = getattr(self, "_made", None)
+        if made is None:
+            made = coupled_table(self.material, stored_rows(CoupledPair.of_scene(self), mu))
+            object.__setattr__(self, "_made", made)
+        return made
+
+    @property
+    def like_bodies(self) -> bool:
+        """Whether cylinder and half-space deform alike, each taking half of M."""
+        return not isinstance(self.material, Bodies) or self.material.like
+
+    def on_slope(self, slope: Any) -> Self:
+        """Return the scene under the load P cos(slope), the normal part of the weight on a slope.
+
+        Parameters
+        ----------
+        slope : angle, rad, in (-pi/2, pi/2), a number or an array, which broadcasts with the
+        parameters; None: level.
+
+        Returns
+        -------
+        Scene
+            A new one, whose kappa is divided by sqrt(cos(slope)) and whose gamma, if there is one,
+            is multiplied by cos(slope).  The thickness of a cover, which is divided by l0, is
+            divided by sqrt(cos(slope)) too; an array of slopes gives as many covers.
+
+        Raises
+        ------
+        ParameterError
+            A slope out of this range, not numeric or with a unit that is no angle; shapes that do
+            not broadcast; parameters that the class refuses, as mu/kappa out of its range.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> level = vr.presets.RUBBER_ROLLER
+        >>> bool(level.on_slope(0.1).gamma < level.gamma)
+        True
+        """
+        cosine = slope_tan_cos(slope)[1]
+        sizes = self.numbers | ({} if self.cover is None else {"thickness": self.cover.thickness})
+        broadcast_shape(
+            slope=np.asarray(cosine), **{name: np.asarray(value) for name, value in sizes.items()}
+        )
+        changes = {
+            "kappa": self.kappa / np.sqrt(cosine),
+            "gamma": None if self.gamma is None else self.gamma * cosine,
+        }
+        if self.cover is not None:  # its thickness is divided by the l0 of that load
+            changes["material"] = self.cover.of_thickness(self.cover.thickness / np.sqrt(cosine))
+        return self.replace(**changes)
+
+    @property
+    def _arrays(self) -> dict[str, Any]:
+        """The parameters by name, as they were given: the material in place of its alpha."""
+        if self.material is None:
+            return self.numbers
+        return {"material": self.material} | {
+            name: x for name, x in self.numbers.items() if name != "alpha"
+        }
+
+    def __repr__(self) -> str:
+        return f"Scene({', '.join(f'{name}={format_value(value)}' for name, value in self._arrays.items())})"  # noqa: E501
+
+
+def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
+    """Return a series in its own unit of time, in which its slow time is near 1.
+
+    series: one series, with times in units of T_ref.
+    Returns (the series with times divided by the unit; the unit in T_ref, a power of two); (1.0,
+    1.0), an alpha and a unit, of an elastic series, which has no modes.
+    """
+    return series.in_own_time() if series.E.size else (1.0, 1.0)
+
+
+def refuse_other_friction(law: LawTable, mu: Any) -> None:
+    """Raise ParameterError where ``mu`` is not that of a coupled table ``law``, which holds for one
+    alone.
+    """
+    if (
+        law.coupled is not None
+        and np.abs(np.asarray(mu) / law.coupled.mu - 1.0).max(initial=0.0) > _SAME_MU
+    ):
+        raise ParameterError(
+            "mu", format_value(mu), f"{law.coupled.mu!r}, for which the table was computed"
+        )
+
+
+def scale_of(roller: Any) -> Scale:
+    """Return the scale of a roller; for other objects, which are refused elsewhere, that of a
+    scene.
+    """
+    return roller.scale if isinstance(roller, Roller) else DIMENSIONLESS
+
+
+def resolve_model(
+    roller: Any, call: str, *, moves: bool = False, slope: Any = None
+) -> tuple[Roller, Parameters, Scale]:
+    """Check the first argument of a call, and return the roller on its slope with its parameters
+    and its scale.
+
+    roller: the first argument of the call, of any type.
+    call: name of the function that is called, for errors.
+    moves: whether the function needs gamma, which a scene may lack.
+    slope: angle, rad, in (-pi/2, pi/2), a number or an array that broadcasts with the parameters;
+    None: level.
+    Returns (the Scene or Cylinder under the load on the slope, the argument itself if ``slope`` is
+    None; its dimensionless parameters; its :class:`Scale`: the factor by which each dimensionless
+    quantity is multiplied to get the units of the roller, 1 for a Scene).
+    Raises ParameterError for what is no scene and no cylinder (for a LawGrid with a message of its
+    own), a slope out of range, a scene without gamma where ``moves``, a slope of a shape that does
+    not broadcast, and what the scene of a Cylinder does not allow.
+    """
+    if not isinstance(roller, Roller):
+        sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
+        if isinstance(roller, LawGrid):
+            sentence = (
+                f"{call} reads the rows of a law, or a grid as the material of a Scene, no "
+                "grid by itself: "
+            )
+            sentence += "vr.law(grid) gives its splines to your own integrator (docs/howto/law.md)"
+        raise ParameterError("roller", type(roller).__name__, "a Scene or a Cylinder", sentence)
+    if slope is not None:
+        roller = roller.on_slope(slope)
+    scene = roller.scene()
+    if moves and scene.gamma is None:
+        sentence = (
+            f"{call} needs the scene's gamma = P T_epsilon^2/(m R), which sets the time "
+            "scale, but gamma is not given"
+        )
+        raise ParameterError("gamma", None, "a number > 0", sentence)
+    return roller, scene, roller.scale
+
+
+def refuse_cover(scene: Parameters, why: str) -> None:
+    """Raise ParameterError where a body of ``scene`` is a layer of finite thickness; of half-spaces
+    do nothing.
+
+    ``why``: end of the message, the reason why the function does not take one.
+    """
+    if scene.cover is not None:
+        sentence = (
+            f"thickness = {format_value(scene.cover.thickness)} (divided by l0): for a "
+            f"layer of finite thickness {why}"
+        )
+        raise ParameterError("thickness", scene.cover.thickness, "left out", sentence)
+    if scene.tabulated:
+        raise ParameterError(
+            "coupled",
+            True,
+            "False",
+            f"coupled = True: must be False: by the coupled solution {why}",
+        )
+
+
+#: Arguments from which alpha and kappa may have their shape, each before those that it makes
+#: superfluous.
+_CAUSES = ("material", "T_epsilon", "T_sigma", "slope", "R", "E", "nu", "load", "m", "g")
+
+
+def refuse_arrays(
+    roller: Roller,
+    scene: Parameters,
+    names: Iterable[str],
+    allowed: str = "a single number",
+    slope: Any = None,
+) -> None:
+    """Raise ParameterError for the first of some parameters that is an array, also of shape (1,).
+
+    roller: as the caller gave it, on no slope.
+    scene: its dimensionless parameters, on the slope.
+    names: names of the parameters that must be numbers, "alpha", "kappa" or "mu".
+    allowed: words of the message that follow "must be", for numbers.
+    slope: angle, rad, a number or an array; None: level.
+    Returns nothing.  The message names what the caller gave: the load, say, of a cylinder whose
+    kappa is an array.
+    """
+    given = roller._arrays | {"slope": slope}
+    for name in names:
+        if np.shape(getattr(scene, name)):
+            cause = next(each for each in (name, *_CAUSES) if np.shape(given.get(each, 0.0)))
+            if cause == "material":
+                raise ParameterError(cause, repr(given[cause]), "one material, as material[i]")
+            raise shape_error(cause, np.shape(given[cause]), allowed)
+
+
+def _refuse_ratio(mu: Floats, kappa: Floats) -> None:
+    """Raise ParameterError for the first mu/kappa outside :data:`RATIO_RANGE`; if there is none, do
+    nothing.
+
+    mu/kappa is the unit of delta_star, which would leave the range of doubles.
+    mu, kappa: coefficient of friction and slenderness, > 0, arrays that broadcast.
+    """
+    low, high = RATIO_RANGE
+    with np.errstate(over="ignore", under="ignore"):
+        ratio = np.asarray(mu / kappa)
+    wrong = ratio[~((low <= ratio) & (ratio <= high))]
+    if wrong.size:
+        raise ParameterError("mu/kappa", f"{wrong.flat[0]:g}", f"in [{low:g}, {high:g}]")

@@ -1,0 +1,542 @@
+"""All states of steady rolling under given loads, with their stability.
+
+Steady rolling with feedback on omega: a scan over V.
+
+With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two equations, M(V) -
+(fV + qV) V - (fw + qw) omega = f0 + q0, determines omega for every V.  The other equation has one
+unknown, V:
+
+    R = Q(V, omega) - M_half_space + f = 0          Q = +-mu in full slip
+
+R is smooth between the speeds at which omega - V is that of free rolling (0 of half-spaces, V
+delta_0 of covers) or at a limit of stick, which are found first.  If fw + qw = 0, the sum
+determines V, and R = 0 is an equation for omega.
+
+In this file all is dimensionless, and states are in a frame where V > 0; ``slip`` is omega - V, x
+is log2(kappa V) with kappa = R/l0, mu is the coefficient of friction, delta_0 the creepage (omega -
+V)/V at which Q = 0, delta_star the distance from it at which full slip begins, and a law is a
+:class:`LawTable`, the rows of one material.  Rows of :class:`.steady_states.Field` are V, delta, Q,
+M_half_space, M_cylinder, beta and six slopes of the law, dQ_dV at fixed omega, dQ_domega,
+dM_half_space_dV and dM_cylinder_dV; :class:`.steady_states.States` have omega and the eigenvalues
+in place of the slopes.
+
+Steady rolling under force, torque or slope: :func:`steady`, all equilibria with their stability.
+
+The equations are V' = Q - M_half_space + force = 0 and j omega' = -Q - M_cylinder + torque = 0
+(over gamma t).  Their sum M(V) = force + torque determines V; Q = torque - M_cylinder then
+determines the creepage.  They are Eq. (22) of Zobova and Goryacheva, Acta Mechanica (2020), with a
+force and a torque, divided by P and P R, and with the moment M split between the two bodies.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import partial
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.checks import Integers, Numbers
+from ..core.drive_arguments import Feedback, make_dimensionless
+from ..core.errors import ParameterError, described_error
+from ..core.labels import strip_labels
+from ..laws.law_table import LawTable
+from .model_warnings import warn_of_contact
+from .parameters import Roller, refuse_arrays, refuse_cover, resolve_model, scale_of
+from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
+from .steady_loads import (
+    Loads,
+    find_speeds_of_cover,
+    find_speeds_on_table,
+    is_balanced_at_rest,
+    loads_of,
+    rests_on_table,
+)
+from .steady_result import Diagnosis, Steady, pack_result
+from .steady_states import (
+    Field,
+    States,
+    contact_fields_at,
+    find_crossings,
+    free_creep,
+    state_rows,
+    states_at,
+)
+
+# --- Steady rolling with feedback on omega ---
+
+#: nodes into which an interval of V with partial slip is divided
+_STICK_NODES = 16
+#: nodes of the slip between its limits
+_SLIP_NODES = 129
+#: Newton steps in V and slip
+_NEWTON_STEPS = 4
+#: residual of an equation divided by its terms above which a zero is no state
+_RESIDUAL = 1e-6
+#: relative difference of V and of delta below which two states are one
+_SAME_STATE = 1e-10
+#: rounding error of R divided by the sum of its terms; nodes with a smaller R have no sign
+_ROUNDING = 2e-15
+
+
+class _FreeRolling(NamedTuple):
+    """The contact at several speeds, in the frame of the motion, each (n,).
+
+    V : speeds, > 0.
+    M, M_half_space : moment of both bodies and of the half-space.
+    limit : V delta_star, > 0: full slip begins at omega - V = ``slip`` + limit and ``slip`` -
+    limit.
+    slip : omega - V of free rolling, V delta_0, at which Q = 0; the number 0.0 times V for
+    half-spaces.
+    """
+
+    V: NDArray
+    M: NDArray
+    M_half_space: NDArray
+    limit: NDArray
+    slip: NDArray
+
+
+class _ScanProblem(NamedTuple):
+    """One load in the frame of the motion, in which V > 0; all is dimensionless.
+
+    law : table of the material.
+    load_rows : (2, 3): the row of the force and the row of the torque, each (value at rest, gain on
+    V, gain on omega); the values at rest are those of the load, with the other sign for a motion
+    with V < 0.
+    kappa, mu : slenderness R/l0 and coefficient of friction.
+    """
+
+    law: LawTable
+    load_rows: NDArray
+    kappa: float
+    mu: float
+
+    def free_rolling(self, x: NDArray) -> _FreeRolling:
+        """Return the contact at given speeds as :class:`_FreeRolling`: V, M, M_half_space, limit V
+        delta_star of stick, and slip V delta_0 of free rolling, (n,) each, dimensionless.
+
+        x: log2(kappa V), (n,).
+        """
+        V = np.exp2(x) / self.kappa
+        M, M_half_space, star = contact_fields_at(
+            self.law, self.kappa, self.mu, V, 0.0, "M", "M_half_space", "delta_star"
+        )
+        return _FreeRolling(
+            V=V,
+            M=M,
+            M_half_space=M_half_space,
+            limit=star * V,
+            slip=free_creep(self.law, self.kappa, self.mu, V) * V,
+        )
+
+    def loads_at(self, V: Any, omega: Any) -> NDArray:
+        """Return force and torque at the speeds V and omega, numbers or (n,), as two rows: (2,) or
+        (2, n).
+        """
+        return self.load_rows @ np.array([np.ones_like(V), V, omega])
+
+    def slip(self, V: NDArray, M: NDArray) -> NDArray:
+        """Return omega - V at which force + torque equal M at V, (n,); the gains on omega must not
+        add to 0.
+        """
+        return (M - self.loads_at(V, V).sum(axis=0)) / self.load_rows[:, 2].sum()
+
+    def residual(self, x: NDArray, slip: NDArray) -> NDArray:
+        """Return R = Q - M_half_space + force, 0 in equilibrium, at x = log2(kappa V) and slip =
+        omega - V, (n,).
+        """
+        V = np.exp2(x) / self.kappa
+        Q, M_half_space = contact_fields_at(
+            self.law, self.kappa, self.mu, V, slip / V, "Q", "M_half_space"
+        )
+        return Q - M_half_space + self.loads_at(V, V + slip)[0]
+
+    def rows(self, V: NDArray, slip: NDArray) -> tuple[NDArray, NDArray]:
+        """Evaluate the law and the residuals of the equations of equilibrium, full slip included.
+
+        V, slip : speed and omega - V, (n,), dimensionless, in the frame where V > 0.
+        Returns (rows of :class:`Field` with the slopes of the law from row 6 on, (12, n);
+        residuals, (2, n): M less force and torque, and Q - M_half_space + force), dimensionless; a
+        state is one of equilibrium if both residuals are 0.
+        """
+        rows = state_rows(self.law, self.kappa, self.mu, V, slip / V)
+        force, torque = self.loads_at(V, V + slip)
+        M_half_space = rows[Field.M_HALF_SPACE]
+        sums = M_half_space + rows[Field.M_CYLINDER] - force - torque
+        return rows, np.array([sums, rows[Field.Q] - M_half_space + force])
+
+
+def scan_states(law: LawTable, loads: Loads) -> States:
+    """Find all states of rolling under loads with a gain on omega, by a scan over the speed.
+
+    law : table of the material.
+    loads : the loads, of which at least one of force and torque has a gain on omega; V is not
+    given.
+    Returns the :class:`States` of both directions of motion, with the signs of the motion, and
+    those that spin at V = 0 and omega other than 0; load by load, else unsorted.  States of full
+    slip, with Q = +-mu, are among them; rest, V = omega = 0, is not.  omega of all of them is
+    finite.
+    Raises ParameterError where the gains on omega add to 0, for a gain on V that
+    :func:`.rolling_resistance.branches` refuses.
+    """
+    gains = loads.gains
+    gained = np.array([[gains.force_V, gains.force_omega], [gains.torque_V, gains.torque_omega]])
+    parts = [States.none()]
+    for n in range(loads.mu.size):
+        at_rest = np.array([[loads.force[n]], [loads.torque[n]]])
+        for sign in (1.0, -1.0):
+            problem = _ScanProblem(
+                law, np.hstack([sign * at_rest, gained]), loads.kappa[n], loads.mu[n]
+            )
+            x, slip = _scan_speed(problem) if problem.load_rows[:, 2].sum() else _scan_slip(problem)
+            rows = _polish(problem, np.exp2(x) / problem.kappa, slip)
+            count = rows.shape[1]
+            parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows))
+        parts += _spinning_at_rest(law, loads, n)
+    return States.joined(*parts)
+
+
+def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
+    """Return the equilibrium with V = 0 and omega other than 0 under the n-th load, if there is
+    one.
+
+    At V = 0 and omega other than 0 the whole contact slips: Q is all of the friction, and must
+    balance the force to the bit.  As M = 0 there, omega follows from force + torque = 0.
+
+    law: table of the material.
+    loads: the loads with their gains, dimensionless.
+    n: index of the load.
+    Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is infinite
+    with the sign of omega, as of :func:`.contact.contact` at V = 0, and whose eigenvalues are
+    those of the slowest speed of the nodes; or an empty list: also where the gains on omega add to
+    0, and where force + torque are 0 at rest.
+    """
+    gains = loads.gains
+    total = loads.force[n] + loads.torque[n]
+    gain = gains.force_omega + gains.torque_omega
+    if not (gain and total):
+        return []
+    omega = -total / gain
+    side = math.copysign(1.0, omega)
+    if side * loads.mu[n] + loads.force[n] + gains.force_omega * omega != 0.0:
+        return []
+    slowest = np.exp2(speed_nodes(law)[:1]) / loads.kappa[n]
+    rows = state_rows(law, loads.kappa[n], loads.mu[n], slowest, 1.0 / slowest)
+    spinning = States.of(loads, np.array([n]), np.array([side]), rows)
+    spinning.rows[[Field.V, Field.DELTA, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.OMEGA], 0] = (
+        0.0,
+        side * math.inf,
+        0.0,
+        0.0,
+        omega,
+    )
+    return [spinning]
+
+
+def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
+    """Find the states of a load by a scan over V, where the sum of the equations gives omega at
+    each V.
+
+    Used where the gains on omega of force and torque have a sum other than 0.
+    problem : :class:`_ScanProblem`, the load and the table of its material.
+    Returns (x = log2(kappa V), ascending; slip = omega - V), (states,) each, dimensionless, in the
+    frame where V > 0; empty arrays if there is no state.  The states are approximate;
+    :func:`_polish` refines them and drops those that are none.
+    """
+
+    def beyond(x: NDArray, part: float) -> NDArray:
+        free = problem.free_rolling(x)
+        return problem.slip(free.V, free.M) - free.slip - part * free.limit
+
+    nodes = speed_nodes(problem.law)
+    nodes = np.unique(
+        np.concatenate(
+            [nodes, *(find_zeros(partial(beyond, part=part), nodes) for part in (-1.0, 0.0, 1.0))]
+        )
+    )
+    free = problem.free_rolling(nodes)
+    stuck = np.abs(problem.slip(free.V, free.M) - free.slip) <= free.limit * (1.0 + 1e-9)
+    within = np.flatnonzero(stuck[1:] | stuck[:-1])
+    fine = (
+        nodes[within, None]
+        + np.linspace(0.0, 1.0, _STICK_NODES)[1:-1] * np.diff(nodes)[within, None]
+    )
+    nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
+    V, M, M_half_space, *_ = problem.free_rolling(nodes)
+    terms = (
+        problem.mu
+        + M_half_space
+        + np.abs(problem.load_rows[0]) @ np.abs([np.ones_like(V), V, V + problem.slip(V, M)])
+    )
+    found = find_zeros(
+        lambda x: problem.residual(x, problem.slip(*problem.free_rolling(x)[:2])),
+        nodes,
+        _ROUNDING * terms,
+    )
+    return found, problem.slip(*problem.free_rolling(found)[:2])
+
+
+def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
+    """Find the states of a load by a scan over the slip, where the sum of the equations gives V
+    alone.
+
+    Used where the gains on omega of force and torque have the sum 0, but are not 0.
+    problem : :class:`_ScanProblem`, the load and the table of its material.
+    Returns (x = log2(kappa V), slip = omega - V), (states,) each, dimensionless, in the frame where
+    V > 0, unsorted; empty arrays if there is no state.  States of partial slip are zeros over the
+    slip, those of full slip follow from Q = mu or -mu.
+    Raises ParameterError for a gain on V out of range.
+    """
+    at_rest, of_V, _ = problem.load_rows.sum(axis=0)
+    _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))
+    positions = [np.empty(0)]
+    slips = [np.empty(0)]
+    for x in np.log2(u[sign > 0.0]):
+        V, _, M_half_space, (limit,), (free_slip,) = problem.free_rolling(np.array([x]))
+        rest = M_half_space - problem.loads_at(V, V)[0]  # Q + gain slip
+
+        def residual(
+            part: NDArray, x: float = x, limit: float = limit, free_slip: float = free_slip
+        ) -> NDArray:
+            return problem.residual(np.full(part.size, x), free_slip + limit * part)
+
+        sides = np.array([1.0, -1.0])
+        full = (rest - sides * problem.mu) / problem.load_rows[0, 2]
+        partial_slip = free_slip + limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
+        slips += [partial_slip, full[sides * (full - free_slip) > limit]]
+        positions += [np.full(each.size, x) for each in slips[-2:]]
+    return np.concatenate(positions), np.concatenate(slips)
+
+
+def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
+    """Refine approximate states, and drop those that are no states or occur twice.
+
+    It makes four Newton steps in V and slip on M = force + torque and R = 0, since the scans find V
+    to the rounding of its logarithm alone.
+    problem : :class:`_ScanProblem`, the load and the table of its material.
+    V, slip : speed and omega - V of the approximate states, (n,), dimensionless, in the frame where
+    V > 0; n may be 0.
+    Returns rows of :class:`Field` with the slopes of the law from row 6 on at the refined states,
+    (12, states), sorted by V and creepage.  A step that does not reduce the sum of the moduli of
+    both residuals, or changes V by a thousandth or more, is rejected.  A state of which a residual
+    stays above :data:`_RESIDUAL` times (mu +
+    |M_half_space| + |M_cylinder|) is dropped, and of neighbours in this order whose V and delta
+    agree to :data:`_SAME_STATE`, relative, all but the first.  A jump from full slip to full slip
+    of the other sign, within the rounding of V, may be found as two zeros of R: these are refined
+    to one state, or dropped.
+    """
+    rows, residuals = problem.rows(V, slip)
+    gains = problem.load_rows[:, 1:]
+    (of_V, of_omega) = gains.sum(axis=0)
+    (force_V, force_omega) = gains[0]
+    for _ in range(_NEWTON_STEPS if V.size else 0):
+        a, b, one, other = rows[Field.DQ_DV : Field.DM_HALF_SPACE_DOMEGA]
+        sum_V = one + other - of_V - of_omega
+        sum_slip = -of_omega
+        rest_V = a + b - one + force_V + force_omega
+        rest_slip = b + force_omega
+        det = sum_V * rest_slip - sum_slip * rest_V
+        with np.errstate(divide="ignore", invalid="ignore"):
+            dV = (residuals[0] * rest_slip - residuals[1] * sum_slip) / det
+            dslip = (residuals[1] * sum_V - residuals[0] * rest_V) / det
+        good = np.isfinite(dslip) & (np.abs(dV) < 1e-3 * V)
+        new = np.where(good, [V - dV, slip - dslip], [V, slip])
+        new_rows, new_residuals = problem.rows(*new)
+        better = good & (np.abs(new_residuals).sum(axis=0) < np.abs(residuals).sum(axis=0))
+        V, slip = np.where(better, new, [V, slip])
+        rows = np.where(better, new_rows, rows)
+        residuals = np.where(better, new_residuals, residuals)
+    V = rows[Field.V]
+    delta = rows[Field.DELTA]
+    size = problem.mu + np.abs(rows[Field.M_HALF_SPACE]) + np.abs(rows[Field.M_CYLINDER])
+    left = np.abs(residuals).max(axis=0) <= _RESIDUAL * size
+    order = np.flatnonzero(left)
+    order = order[np.lexsort((delta[order], V[order]))]
+    V = V[order]
+    delta = delta[order]
+    new = (np.abs(np.diff(V)) > _SAME_STATE * V[1:]) | (
+        np.abs(np.diff(delta)) > _SAME_STATE * np.abs(delta[1:])
+    )
+    return rows[:, order[np.concatenate([[True], new]).astype(bool)[: order.size]]]
+
+
+# --- Steady rolling under force, torque or slope ---
+
+
+def steady(
+    roller: Roller,
+    *,
+    force: Numbers | Feedback | None = None,
+    torque: Numbers | Feedback | None = None,
+    slope: Numbers | None = None,
+    V: Numbers | None = None,
+) -> Steady:
+    """Find steady rolling of a cylinder on its base: every pair of V and omega at which force and
+    torque balance.
+
+    For each equilibrium the result says whether it is stable.  The arguments broadcast against each
+    other and against array parameters of the roller.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, of which alpha or material, kappa, mu and j are used; or a
+        :class:`Cylinder`, in SI units per m of its length: V in m/s, omega in rad/s, force and Q in
+        N/m, torque and M in N m/m, ``eigenvalues`` in 1/s, powers of ``loss`` in W/m.
+    force : along V, of a Scene divided by P; default 0.  It may be a :class:`Feedback` that is
+        constant in time, with numbers for its gains.
+    torque : along omega, of a Scene divided by P R; default 0.  It may be such a :class:`Feedback`
+        too.
+    slope : theta, rad, in (-pi/2, pi/2), > 0 pushes along +V.  The load is then P cos(theta), and P
+        sin(theta) adds to ``force``.  Of a Scene kappa becomes kappa/sqrt(cos(theta)), and the
+        divisors of forces and torques have P cos(theta) in place of P.
+    V : the speed, any sign, in place of one of force and torque, which is found (a slope alone
+        counts as the force given, and the torque is found); of a Scene divided by R/T_ref, where
+        T_ref is its unit of time.
+
+    Returns
+    -------
+    Steady
+        Of one load ``V``, ``omega``, ``delta``, ``Q``, ``M``, ``stable`` and the other fields as
+        arrays of exactly its equilibria by rising |V|, none to many.  Arrays of loads have that
+        axis after their own, padded with NaN (``stable``: False), and the ``count`` of equilibria
+        for each load; arrays of xarray and series of pandas give their labels (series: data frames,
+        a column an equilibrium).  ``reason`` says why there is none.
+
+    Raises
+    ------
+    ParameterError
+        NaN or infinite input, a slope out of range, V together with both or neither of force and
+        torque (a slope alone counts as the force) or with a feedback, an array of alphas or
+        materials, a layer too thin for its law, times of a material beyond 1e-100 to 1e100 T_ref,
+        shapes that do not broadcast, labelled arrays beside plain ones or with other coordinates, a
+        unit of another dimension, kappa |V| above 1e100; without a gain on omega also kappa |force
+        + torque| in (0, 1e-120) or above 1e80; a gain on V, divided by the longest retardation
+          time, of a size outside
+        1e-40 to 1e8; a feedback that changes with time or has arrays of gains; what is no scene and
+        no cylinder.
+
+    Warns
+    -----
+    ModelWarning
+        Of a Cylinder: its contact at rest is longer than its radius, or the transit frequency at an
+        equilibrium is outside the band in which its material was measured.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.steady(vr.presets.RUBBER_CYLINDER, force=1.0)  # N/m
+    >>> found.stable.tolist()
+    [True, False]
+
+    Notes
+    -----
+    For |force + torque| below the largest M(V) there are two equilibria for each maximum of M(V),
+    on its rising and its falling branch; they need |Q| < mu.  For force + torque = 0 without
+    feedback there is V = 0 alone, where ``delta`` and ``eigenvalues`` are those of V -> 0 (that of
+    slip is -inf).  Where equilibria are a continuum (elastic bodies without a drive; Q = mu
+    exactly) none is listed and ``reason`` says so.  A feedback on omega is solved by a scan of V,
+    some 0.02 s a load.
+
+    Stability is that of (V, omega) under force and torque as named, also where V was given.
+    Without feedback det = (dQ/domega) M'(V)/j, so that equilibria on a falling branch of M(V) are
+    saddles.
+
+    The relative error of speeds is below 1e-12/sqrt(1 - |force + torque|/M_top), where M_top is the
+    extremum of M nearby; that of fields which follow from Q is this bound divided by ``grip``
+    (``tests/test_steady.py``).
+    """
+    units = scale_of(roller)
+    plain, labels = strip_labels({"force": force, "torque": torque, "slope": slope, "V": V}, units)
+    slope = plain["slope"]
+    level = roller
+    (roller, scene, scale) = resolve_model(roller, "steady", slope=slope)
+    if type(scene.alpha) is not float:
+        refuse_arrays(level, scene, ("alpha",), slope=slope)
+    force = make_dimensionless("force", plain["force"], scale)
+    torque = make_dimensionless("torque", plain["torque"], scale)
+    V = make_dimensionless("V", plain["V"], scale)
+    loads = loads_of(scene, force, torque, slope, V)
+    law = scene.rolling_law
+    assert law is not None  # arrays of materials are refused
+    elastic = law.alpha == 1.0
+    gained = bool(loads.gains.V or loads.gains.omega)
+    if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
+        moving = np.flatnonzero(loads.V)
+        speed = loads.V[moving]
+        rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
+    elif loads.gains.omega:
+        if law.coupled is not None:
+            raise described_error(
+                "a gain on omega", "is given", "left out for a table of the coupled solution"
+            )
+        refuse_cover(scene, "a feedback on omega is not examined: give one on V alone")
+        rolling = scan_states(law, loads)
+    else:
+        rolling = _states_under_load(law, loads)
+    neutral = elastic and loads.given is None and not gained
+    resting = _loads_at_rest(law, loads, neutral)
+    if resting.size:
+        rolling = States.joined(rolling, States.at_rest(loads, resting, law))
+    existing = rolling.existing()
+    count = np.bincount(existing.load, minlength=loads.mu.size)
+    maximum = (
+        (math.nan, math.nan)
+        if gained or elastic or law.coupled is not None
+        else branches(law, 0.0).maximum
+    )
+    states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
+    reasons = Diagnosis(loads=loads, states=states, number=count, maximum=maximum, elastic=neutral)
+    found = pack_result(loads, existing, reasons, scale, labels)
+    warn_of_contact(roller, found.V if labels is None else np.asarray(found.V))
+    return found
+
+
+def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
+    """Return the indices of the loads under which the cylinder is examined at rest, V = omega = 0,
+    (m,).
+
+    law : table of the material.
+    loads : the loads, dimensionless.  Chosen are those with V = 0 where V was given, else those
+        with force + torque = 0 at rest, whether or not the friction suffices.
+    neutral : whether every speed is steady without a load, as of elastic bodies; without a given V
+        rest is then chosen only where |torque| exceeds mu, so that the friction does not suffice,
+        which the result has to say.
+    """
+    if loads.V is not None:
+        return (loads.V == 0.0).nonzero()[0]
+    rests = (
+        rests_on_table(law, loads) if law.coupled is not None else is_balanced_at_rest(law, loads)
+    )
+    return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
+
+
+def _states_under_load(law: LawTable, loads: Loads) -> States:
+    """Find all states of rolling under loads without a gain on omega; rest is not among them.
+
+    law : table of the material.
+    loads : the loads, dimensionless; V is not given.
+    Returns the :class:`States`, unsorted, whether or not the friction suffices; none for elastic
+    bodies without a gain on V, and none where force + torque equal M at no speed.
+    Raises ParameterError for kappa |force + torque| other than 0 that is below :data:`LEAST_LOAD`
+    or above :data:`MOST_LOAD`, and for a gain out of range.
+    """
+    with np.errstate(over="ignore"):  # what is infinite is refused
+        gain = loads.gains.V
+        total = loads.kappa * (loads.force + loads.torque)
+    size = np.abs(total)
+    wrong = (size > MOST_LOAD) | ((size > 0.0) & (size < LEAST_LOAD))
+    if wrong.any():
+        allowed = f"0, or {LEAST_LOAD:g} to {MOST_LOAD:g} in magnitude"
+        raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
+    if not gain and law.alpha == 1.0:
+        return States.none()
+    if law.coupled is not None:
+        load, sign, V = find_speeds_on_table(law, loads)
+        return states_at(law, loads, load, sign, V)
+    if law.cover is not None:
+        load, sign, V = find_speeds_of_cover(law, loads)
+        return states_at(law, loads, load, sign, V)
+    load, sign, u = find_crossings(law, gain, total)
+    return states_at(law, loads, load, sign, u / loads.kappa[load])

@@ -1,0 +1,526 @@
+"""Loads of steady rolling, and their balance with the moments of the law.
+
+Loads of steady rolling, checked and flattened: :class:`Loads`.
+
+P is the load that presses the cylinder on its base, R its radius, kappa = R/l0 with the contact
+length at rest l0, mu the coefficient of friction, and j the moment of inertia divided by m R^2.
+
+How shear acts back on the rolling moments of a cover, for steady states: the traction of a load,
+and the speeds.
+
+With the factors a and excesses e of base (b) and cylinder (c) of
+:class:`.cover_law.Reaction`, the moments are M_half_space = M_b - Q (a_b + e_b |Q|/mu)
+and M_cylinder = M_c - Q (a_c + e_c |Q|/mu), with M_b and M_c those without
+traction.  Equilibrium at V > 0 under a force f and a torque q is
+
+    Q (1 + a_b + e_b |Q|/mu) = M_b - f        Q (1 - a_c - e_c |Q|/mu) = q - M_c
+
+All is dimensionless; a law is a :class:`LawTable`, the rows of one material.
+
+Steady states on a table of the coupled solution: the balance of axis and cylinder, at speeds and
+at rest.
+
+At V > 0 the axis is in balance where Q - M_half_space = -f, the cylinder where Q + M_cylinder = q,
+with force f and torque q.  The left sides rise with the creep, so that one of the two gives the
+creep at each speed, and the other one the speeds.  Where friction does not suffice the rest of a
+balance is kept, and the state does not exist.
+
+All is dimensionless; a law is a :class:`LawTable` with ``coupled`` rows.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.checks import Booleans, Floats, Integers, broadcast_shape, check_array
+from ..core.drive_arguments import Feedback, slope_tan_cos
+from ..core.errors import ParameterError, described_error
+from ..laws.coupled_rows import FIELDS
+from ..laws.law_table import LawTable
+from .contact_table import evaluate_law, refuse_overflow
+from .parameters import Parameters
+from .rolling_resistance import find_zeros, speed_nodes
+
+# --- Loads of steady rolling, checked and flattened ---
+
+#: largest kappa |V| of a given speed
+FASTEST = 1e100
+
+
+class Gains(NamedTuple):
+    """Gains of force and torque on V and omega, dimensionless: force = value + force_V V +
+    force_omega omega, and torque likewise.
+    """
+
+    force_V: float = 0.0
+    force_omega: float = 0.0
+    torque_V: float = 0.0
+    torque_omega: float = 0.0
+
+    @property
+    def V(self) -> float:
+        """Gain of force + torque on V."""
+        return self.force_V + self.torque_V
+
+    @property
+    def omega(self) -> bool:
+        """Whether any gain acts on omega."""
+        return self.force_omega != 0.0 or self.torque_omega != 0.0
+
+
+class Loads(NamedTuple):
+    """Loads of one material as vectors of one length, dimensionless.
+
+    shape : shape to which the loads and the parameters of the scene broadcast, () for one load;
+    vectors are (n,), with n the product of the shape.
+    gains : gains of a feedback, one set for all loads; 0 without feedback.
+    given : where V is given, the name of the load that is given with it ("force" or "torque"), else
+    None.
+    force, torque : values at V = omega = 0, divided by P and P R, (n,); a slope is in the force.
+    Of the load that is to be found beside a given V the number here has no meaning.
+    kappa, mu, j : parameters, (n,), kappa with the load on the slope.
+    V : given speeds, (n,), or None.
+    """
+
+    shape: tuple[int, ...]
+    gains: Gains
+    given: str | None
+    force: Floats
+    torque: Floats
+    kappa: Floats
+    mu: Floats
+    j: Floats
+    V: Floats | None = None
+
+
+def loads_of(
+    scene: Parameters,
+    force: ArrayLike | Feedback | None,
+    torque: ArrayLike | Feedback | None,
+    slope: ArrayLike | None,
+    V: ArrayLike | None,
+) -> Loads:
+    """Check the loads of a call of :func:`.steady.steady`, and broadcast them with the parameters
+    of the scene.
+
+    scene : dimensionless parameters of the roller, on the slope, of which alpha, kappa, mu and j
+        are read; one alpha or one material, the others numbers or arrays.
+    force, torque : numbers, arrays or :class:`Feedback`, divided by P and by P R, where P is the
+        load that presses the cylinder on the slope, its weight times cos(slope); None: 0.
+    slope : angle, rad, a number or an array; tan(slope), the part of the weight along the slope
+        divided by P, is added to the force.  None: level.
+    V : given speeds, dimensionless, any sign, a number or an array; None where the speed is to be
+    found.
+    Returns the :class:`Loads`: the broadcast ``shape``; ``gains``; ``given``, the name of the load
+    beside V or None; and force, torque, kappa, mu, j and V (None where it is to be found),
+    flattened to (n,), (1,) where all are numbers.
+    Raises ParameterError: NaN or infinite input; a slope outside (-pi/2, pi/2); shapes
+    that do not broadcast; kappa |V| above :data:`FASTEST`; a feedback that changes with time or has
+    arrays of gains; with V both or neither of force and torque (a slope alone counts as the force),
+    or a feedback.
+    """
+    given = None if V is None else _given_load(slope, force=force, torque=torque)
+    tangent = slope_tan_cos(slope)[0]
+    push, *of_force = _split_feedback("force", force)
+    turn, *of_torque = _split_feedback("torque", torque)
+    arrays = {
+        "force": push,
+        "torque": turn,
+        "kappa": scene.kappa,
+        "mu": scene.mu,
+        "j": scene.j,
+        "slope": tangent,
+    }
+    if V is not None:
+        arrays["V"] = check_array("V", V)
+        refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
+    shape = broadcast_shape(**{name: np.asarray(each) for name, each in arrays.items()})
+    arrays["force"] = push + arrays.pop("slope")
+    rows = np.empty((len(arrays), *(shape or (1,))))
+    for row, array in zip(rows, arrays.values(), strict=True):
+        row[...] = array
+    return Loads(
+        shape, Gains(*of_force, *of_torque), given, *rows.reshape(len(arrays), math.prod(shape))
+    )
+
+
+def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:
+    """Split a load into its value at rest and the gains of its feedback.
+
+    name: name of the load, "force" or "torque", for errors.
+    value: a number, an array or a :class:`Feedback`, whose value may be an array too; None: no
+    load.
+    Returns (value at V = omega = 0, a number or an array; gain on V; gain on omega, floats), in the
+    unit of ``value``; (0, 0.0, 0.0) for None, gains of 0.0 without feedback.
+    Raises ParameterError for NaN or infinite values, a feedback that changes with time, or arrays
+    of gains.
+    """
+    if not isinstance(value, Feedback):
+        return check_array(name, 0.0 if value is None else value), 0.0, 0.0
+    if not isinstance(value.value, float | np.ndarray):
+        raise described_error(name, "is a Feedback of a Schedule or function", "constant in time")
+    if value.shape:
+        raise described_error(
+            name, f"is a Feedback with gains of shape {value.shape}", "one whose gains are numbers"
+        )
+    return value.value, value.V, value.omega
+
+
+def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -> str:
+    """Return the name of the load that is given beside V, "force" or "torque"; the other one is to
+    be found.
+
+    slope: angle, rad, or None; without force and torque a slope counts as the force given, and the
+    result is "force".
+    loads: ``force`` and ``torque``, each a number or an array, None where it is not given.
+    Raises ParameterError for a feedback, where both are given, and where neither of the two and no
+    slope is given.
+    """
+    names = [name for name, value in loads.items() if value is not None]
+    for name in names:
+        if isinstance(loads[name], Feedback):
+            raise described_error(name, "is a Feedback", "a number or an array where V is given")
+    if len(names) == 2:
+        sentence = "V, force and torque are all given: give two of them, the third is computed"
+        raise ParameterError("V, force, torque", "all", "two of them", sentence)
+    if not names and slope is None:
+        sentence = "V is given without force, torque or slope: give one of them too"
+        raise ParameterError("V", "alone", "with one of force, torque, slope", sentence)
+    return names[0] if names else "force"
+
+
+# --- How shear acts back on the rolling moments of a cover, for steady states ---
+
+#: rounding of a balance of force and torque at rest, relative to the larger: some units of rounding
+#: of both products
+_BALANCE_ROUNDING = 4e-15
+#: fields of the kernels that :class:`Shear` holds
+_REACTION = "reaction_half_space", "reaction_cylinder", "excess_half_space", "excess_cylinder"
+
+
+class Shear(NamedTuple):
+    """How shear acts back on the moments at some speeds; all 0 of half-spaces.
+
+    half_space, cylinder : factors a of base and cylinder, (n,) each, dimensionless.
+    half_space_excess, cylinder_excess : excesses e, (n,) each, dimensionless.
+    kappa, mu : slenderness R/l0 and coefficient of friction, (n,) each.
+    """
+
+    half_space: Floats
+    cylinder: Floats
+    half_space_excess: Floats
+    cylinder_excess: Floats
+    kappa: Any
+    mu: Any
+
+    def moments(self, Q: Floats) -> Floats:
+        """Return what a traction Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
+        used = np.abs(Q) / self.mu
+        by_base = self.half_space + self.half_space_excess * used
+        by_cylinder = self.cylinder + self.cylinder_excess * used
+        return np.stack([-Q * by_base, -Q * by_cylinder])
+
+    def traction_of_force(self, rest: Floats) -> Floats:
+        """Return the Q with Q (1 + a_b + e_b |Q|/mu) = ``rest``, (n,)."""
+        return _solve_quadratic(1.0 + self.half_space, self.half_space_excess / self.mu, rest)
+
+    def traction_of_torque(self, rest: Floats) -> Floats:
+        """Return the Q with Q (1 - a_c - e_c |Q|/mu) = ``rest``, (n,)."""
+        return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.mu, rest)
+
+    def slopes_at_rest(self, law: LawTable, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+        """Return how a small speed changes the balance of a cylinder at rest under a traction.
+
+        law : table of the material.
+        Q : traction at rest, |Q| < mu, (n,).
+        Returns (1 + d(Q (a_b + ...))/dQ, factor of a change of Q on the axis; the same on the
+        cylinder; dM_half_space/dV
+        and dM_cylinder/dV at fixed Q), (n,) each.
+        """
+        used = np.abs(Q) / self.mu
+        on_axis = 1.0 + self.half_space + 2.0 * self.half_space_excess * used
+        on_spin = 1.0 - self.cylinder - 2.0 * self.cylinder_excess * used
+        if law.cover is None:
+            half_space, cylinder = law.coefficients[0, 0, 2:4, None] * np.ones(Q.size)
+            return on_axis, on_spin, half_space, cylinder
+        limit, free = creep_at_rest(law)
+        part = np.where(used < 1.0, used, 0.0)
+        delta = (
+            0.5 * (limit * self.mu * np.sign(Q) * (1.0 - np.sqrt(1.0 - part)) + free) / self.kappa
+        )
+        names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
+        state = [1.0, self.kappa, self.mu, np.zeros(Q.size), delta]
+        half_space, cylinder, over_V = evaluate_law(law, state, Q.shape, False, names)
+        return (
+            on_axis,
+            on_spin,
+            half_space + (on_axis - 1.0) * over_V,
+            cylinder + (1.0 - on_spin) * over_V,
+        )
+
+
+def _solve_quadratic(factor: Floats, excess: Floats, rest: Floats) -> Floats:
+    """Return the y with y (factor + excess |y|) = rest that is 0 where ``rest`` is; (n,),
+    dimensionless, factor > 0.
+
+    Where |rest| is above what the left side reaches the y of its maximum is returned, which is
+    beyond mu.
+    """
+    root = np.sqrt(np.maximum(factor * factor + 4.0 * excess * np.abs(rest), 0.0))
+    return 2.0 * rest / (factor + root)
+
+
+def creep_at_rest(law: LawTable) -> tuple[float, float]:
+    """Return 2 kappa delta_star/mu and 2 kappa delta_0 in the limit V -> 0, dimensionless; 1 and 0
+    of half-spaces.
+
+    law : table of the material.
+    """
+    if law.cover is None:
+        return 1.0, 0.0
+    limit, half_space, cylinder = law.cover.creep[:3, 0, 0]
+    return float(limit), float(half_space + cylinder)
+
+
+def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:
+    """Return how shear acts back on the moments at speeds V >= 0, (n,), as :class:`Shear`.
+
+    law : table of the material; of half-spaces all is 0.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    """
+    if law.cover is None:
+        nothing = np.zeros(V.size)
+        return Shear(
+            half_space=nothing,
+            cylinder=nothing,
+            half_space_excess=nothing,
+            cylinder_excess=nothing,
+            kappa=kappa,
+            mu=mu,
+        )
+    fields = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, _REACTION)
+    return Shear(
+        half_space=fields[0],
+        cylinder=fields[1],
+        half_space_excess=fields[2],
+        cylinder_excess=fields[3],
+        kappa=kappa,
+        mu=mu,
+    )
+
+
+def find_speeds_of_cover(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
+    """Find the speeds at which a cover rolls steadily under loads without a gain on omega, in both
+    directions.
+
+    At each speed the balance of the axis gives Q, and that of the cylinder is a function of the
+    speed alone, of which the zeros are found between the nodes of
+    :func:`.rolling_resistance.speed_nodes`.  M without traction is read at Q = 0.
+
+    law : table of the material, of a cover.
+    loads : the loads, dimensionless, without a gain on omega; V is not given.
+    Returns (index of the load; sign of V, 1.0 or -1.0; |V|, > 0), one entry for each crossing,
+    (crossings,) each.
+    """
+    nodes = speed_nodes(law)
+    gains = loads.gains
+    found: list[tuple[int, float, Floats]] = []
+    for n in range(loads.mu.size):
+        kappa = loads.kappa[n]
+        mu = loads.mu[n]
+        for sign in (1.0, -1.0):
+
+            def unbalanced(
+                x: Floats, n: int = n, sign: float = sign, kappa: Any = kappa, mu: Any = mu
+            ) -> Floats:
+                """Return torque less M_cylinder and Q at speeds exp2(x)/kappa at which the axis is
+                in balance.
+                """
+                V = np.exp2(x) / kappa
+                shear = shear_at(law, kappa, mu, V)
+                delta_0 = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, ("delta_0",))[
+                    0
+                ]
+                state = [1.0, kappa, mu, V, delta_0]
+                half_space, cylinder = evaluate_law(
+                    law, state, V.shape, False, ("M_half_space", "M_cylinder")
+                )
+                Q = shear.traction_of_force(half_space - sign * loads.force[n] - gains.force_V * V)
+                moments = shear.moments(Q)
+                return sign * loads.torque[n] + gains.torque_V * V - cylinder - moments[1] - Q
+
+            noise = _BALANCE_ROUNDING * (abs(loads.force[n]) + abs(loads.torque[n]))
+            found.append((n, sign, np.exp2(find_zeros(unbalanced, nodes, noise)) / kappa))
+    load = np.concatenate([np.full(V.size, n) for n, _, V in found])
+    signs = np.concatenate([np.full(V.size, sign) for _, sign, V in found])
+    return load, signs, np.concatenate([V for _, _, V in found])
+
+
+def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
+    """Return under which loads V = omega = 0 is a state of equilibrium, (n,); the friction is not
+    considered.
+
+    law : table of the material.
+    loads : the loads, dimensionless; force and torque are read.  Of half-spaces force + torque must
+        be 0, of a cover what the traction of the torque leaves on the axis, to rounding.
+    """
+    if law.cover is None:
+        return loads.force + loads.torque == 0.0
+    shear = shear_at(law, loads.kappa, loads.mu, np.zeros(loads.mu.size))
+    Q = shear.traction_of_torque(loads.torque)
+    rest = Q - shear.moments(Q)[0] + loads.force
+    return np.abs(rest) <= _BALANCE_ROUNDING * (np.abs(loads.force) + np.abs(loads.torque))
+
+
+# --- Steady states on a table of the coupled solution ---
+
+#: octaves of speed beyond the nodes of a table in which steady speeds are sought: there the law is
+#: its limit
+_FAR_OCTAVES = 40
+#: speeds of an octave at which the balance is evaluated
+_DENSITY = 6
+#: rounding of the balance
+_NOISE = 1e-14
+#: speed over the first node at which slopes at rest are taken: there the law is linear in u
+_SLOW = 1e-3
+
+
+def balance(
+    law: LawTable, kappa: Any, mu: Any, V: Floats, load: Floats, spin: bool = False
+) -> tuple[Floats, Floats]:
+    """Return the creepages at which friction is in balance with a load, and what is left of the
+    load; (n,) each.
+
+    kappa, mu : of the scene, numbers or (n,).  V : speeds >= 0, (n,).
+    load : Q - M_half_space, or with ``spin`` Q + M_cylinder, (n,).
+    """
+    from ..kernels.law.spline_law import balance_loop
+
+    kappa, mu = (
+        np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=np.float64)
+        for each in (kappa, mu)
+    )
+    out = np.empty((V.size, 2))
+    balance_loop(law.record.table, kappa, mu, kappa * V, np.ascontiguousarray(load), spin, out)
+    return out[:, 0] / (2.0 * kappa), out[:, 1].copy()
+
+
+def fields_at(law: LawTable, kappa: Any, V: Floats, delta: Floats) -> dict[str, Floats]:
+    """Return the fields of a table at V >= 0 and creepages, (n,) each, by name (:data:`FIELDS`)."""
+    from ..kernels.law.spline_law import look_up
+
+    return dict(
+        zip(FIELDS, look_up(law.record.table, kappa * V, 2.0 * kappa * delta).T, strict=True)
+    )
+
+
+def moments_of_losses(law: LawTable, kappa: Any, V: Floats, delta: Floats) -> Floats:
+    """Return the moments by which the losses in base and cylinder are V and omega times these, (2,
+    n).
+    """
+    found = fields_at(law, kappa, V, delta)
+    half_space = found["M_half_space"] + 0.5 * found["work_half_space"]
+    cylinder = found["M_cylinder"] + 0.5 * found["work_cylinder"] / (1.0 + delta)
+    return np.stack([half_space, cylinder]) / kappa
+
+
+def _torque_left(
+    law: LawTable, kappa: Any, mu: Any, V: Floats, force: Floats, torque: Any
+) -> Floats:
+    """Return the torque less what friction and cylinder take, where the axis is in balance with
+    ``force``; (n,).
+    """
+    delta, rest = balance(law, kappa, mu, V, -force)
+    found = fields_at(law, kappa, V, delta)
+    return torque - mu * found["Q_over_mu"] - found["M_cylinder"] / kappa - rest
+
+
+def find_speeds_on_table(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
+    """Find the speeds at which a table rolls steadily under loads without a gain on omega, in both
+    directions.
+
+    law : table of the material.
+    loads : the loads, dimensionless, without a gain on omega; V is not given.
+    Returns (index of the load; sign of V, 1.0 or -1.0; |V|, > 0), one entry for each crossing,
+    (crossings,) each.
+    """
+    rows: Any = law.coupled
+    low = np.log2(rows.u[0]) - _FAR_OCTAVES
+    high = np.log2(rows.u[-1]) + _FAR_OCTAVES
+    nodes = np.linspace(low, high, int(_DENSITY * (high - low)))
+    gains = loads.gains
+    found: list[tuple[int, float, Floats]] = []
+    for n in range(loads.mu.size):
+        kappa = float(loads.kappa[n])
+        mu = float(loads.mu[n])
+        for sign in (1.0, -1.0):
+
+            def unbalanced(
+                x: Floats, n: int = n, sign: float = sign, kappa: float = kappa, mu: float = mu
+            ) -> Floats:
+                """Return the torque that is left at speeds exp2(x)/kappa."""
+                V = np.exp2(x) / kappa
+                force = sign * loads.force[n] + gains.force_V * V
+                return _torque_left(
+                    law, kappa, mu, V, force, sign * loads.torque[n] + gains.torque_V * V
+                )
+
+            found.append((n, sign, np.exp2(find_zeros(unbalanced, nodes, _NOISE)) / kappa))
+    load = np.concatenate([np.full(V.size, n) for n, _, V in found])
+    signs = np.concatenate([np.full(V.size, sign) for _, sign, V in found])
+    return load, signs, np.concatenate([V for _, _, V in found])
+
+
+def rests_on_table(law: LawTable, loads: Loads) -> Booleans:
+    """Return under which loads a cylinder on a table stays at V = omega = 0, (n,), by the slip of
+    slow rolling.
+    """
+    still = np.zeros(loads.mu.size)
+    left = [
+        _torque_left(law, loads.kappa, loads.mu, still, sign * loads.force, sign * loads.torque)
+        for sign in (1.0, -1.0)
+    ]
+    return (left[0] <= _NOISE) & (left[1] <= _NOISE)
+
+
+def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, Floats, Floats]:
+    """Return creepage, fields and decay rate of states at rest, as limits of slow rolling with V >
+    0.
+
+    law, loads : as of :func:`find_speeds_on_table`; ``load``: index of the load of each state,
+    (n,).
+    Returns (creepage, (n,), NaN where the friction does not suffice; Q, M_half_space, M_cylinder,
+    beta, (4, n); rate by which V decays, (n,), without the slip that remains).
+    """
+    kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
+    force = loads.force[load]
+    torque = loads.torque[load]
+    still = np.zeros(load.size)
+    spin = loads.given != "force"
+    delta, rest = balance(law, kappa, mu, still, torque if spin else -force, spin)
+    found = fields_at(law, kappa, still, delta)
+    Q = mu * found["Q_over_mu"]
+    half_space = found["M_half_space"] / kappa
+    cylinder = found["M_cylinder"] / kappa
+    V = _SLOW * law.coupled.u[0] / kappa  # type: ignore[union-attr]
+    gains = loads.gains
+    # the loads in balance at this creepage
+    f = half_space - Q
+    q = Q + cylinder
+    push = gains.force_V + gains.force_omega * (1.0 + delta)
+    turn = gains.torque_V + gains.torque_omega * (1.0 + delta)
+    change = _torque_left(law, kappa, mu, V, f + push * V, q + turn * V) / V
+    step = 1e-6 * mu
+    lever = (
+        _torque_left(law, kappa, mu, still, f - step, q) - _torque_left(law, kappa, mu, still, f, q)
+    ) / -step
+    rate = -change / (j * (1.0 + delta) + np.maximum(lever, 0.0))
+    return (
+        np.where(rest == 0.0, delta, np.nan),
+        np.stack([Q, half_space, cylinder, found["beta"]]),
+        rate,
+    )

@@ -1,0 +1,473 @@
+"""Results of steady rolling: :class:`Steady`, with the reason where a load has no equilibrium.
+
+P is the load that presses the cylinder on its base, R its radius, T_ref the unit of time, kappa =
+R/l0 with the contact length at rest l0, and mu the coefficient of friction.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.checks import Floats, Integers
+from ..core.labels import Labels, dataset_axes
+from ..core.results import SummaryRow, Values, format_value, unit_of
+from ..core.scale import DIMENSIONS, Scale
+from .steady_loads import Loads
+from .steady_states import Field, States
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Fields of the result in the order of the rows.
+_FIELDS = (
+    "V",
+    "delta",
+    "Q",
+    "M_half_space",
+    "M_cylinder",
+    "beta",
+    "omega",
+    "M",
+    "grip",
+    "force",
+    "torque",
+)
+#: Names of the fields of :class:`Loss` in datasets.
+_LOSSES = "loss_slip", "loss_half_space", "loss_cylinder", "coefficient", "efficiency"
+
+
+@dataclass(frozen=True, eq=False)
+class Loss:
+    """Power balance of steady rolling, in the shape of the equilibria, with NaN where the
+    equilibria are padded.
+
+    Powers are divided by P R/T_ref, of a Cylinder in W per m of length.
+
+    Attributes
+    ----------
+    slip : power that friction takes, at least 0: (omega - V) Q of a scene, (omega R - V) Q of a
+    Cylinder; on a cover less
+        the power that the stretch of its surface takes from it, V Q delta_0 and more.
+    half_space, cylinder : power that either body dissipates, at least 0: V M_half_space and omega
+        M_cylinder (of a Cylinder the first divided by R), of a cover with its moments without
+        traction.  The sum of all three is the power of force and torque.
+    coefficient : coefficient of rolling resistance, dimensionless: all losses divided by P |V|; at
+        rest the limit V -> 0, |Q delta|/P; infinite for a cylinder that spins at V = 0.
+    efficiency : output power divided by input power, dimensionless.  Force V and torque omega are
+        input where they are positive, output where they are negative.  0 without output; NaN
+        without input, as at rest.
+    """
+
+    slip: Floats
+    half_space: Floats
+    cylinder: Floats
+    coefficient: Floats
+    efficiency: Floats
+
+
+class Diagnosis(NamedTuple):
+    """Data for the explanation why a load has no equilibrium.
+
+    loads : the loads, n of them, dimensionless.
+    states : (index of the load, V, Q) of all states, whether or not the friction suffices,
+        (states,) each, dimensionless.
+    number : equilibria of each load, (n,).
+    maximum : (largest kappa M, kappa V there), dimensionless; (NaN, NaN) with feedback, and for
+        elastic bodies.
+    elastic : whether the bodies are elastic and no gain and no given V determines the speed, so
+        that M = 0 at every speed.
+    """
+
+    loads: Loads
+    states: tuple[NDArray, NDArray, NDArray]
+    number: Integers
+    maximum: tuple[float, float]
+    elastic: bool
+
+    def text(self, scale: Scale) -> Any:
+        """Return for each load the reason why it has no equilibrium, "" where it has one.
+
+        scale: units of the roller, in which the sentences state their numbers.
+        Returns a str for one load, else an array of str (dtype object) in the shape of the loads.
+        """
+        shape = self.loads.shape
+        found = [
+            self._reason(n, scale) if self.number[n] == 0 else "" for n in range(self.number.size)
+        ]
+        return np.array(found, dtype=object).reshape(shape) if shape else found[0]
+
+    def _reason(self, n: int, scale: Scale) -> str:
+        """Return why a load has no equilibrium, as a sentence without a full stop.
+
+        It is the first of these that applies: friction (the balance needs more than mu, or mu
+        exactly; of several states that with the smallest |Q| is named); elastic bodies, which roll
+        without resistance; a feedback that balances the moment at no speed; a load above the
+        largest moment.
+        n : index of a load without equilibrium in the flattened loads.
+        scale : units of the roller, in which the sentence states its numbers but Q and mu, which
+            are dimensionless; of a scene all are.
+        """
+        name = "force + torque"
+        moment = "rolling moment"
+        of_load = ""
+        of_speed = ""
+        if scale.si:
+            name = "force + torque/R"
+            moment = "rolling moment over R"
+            of_load = " N/m"
+            of_speed = " m/s"
+        loads = self.loads
+        load, speed = (np.broadcast_to(scale[of], loads.shape).ravel()[n] for of in ("force", "V"))
+        at_rest = loads.force[n] + loads.torque[n]
+        mu = loads.mu[n]
+        kappa = loads.kappa[n]
+        total = at_rest * load
+        (own, V, Q) = self.states
+        if (own == n).any():  # the state that asks for the least friction
+            V, Q = min(zip(V[own == n], Q[own == n], strict=True), key=lambda each: abs(each[1]))
+            at = f"at V = {V * speed:.6g}{of_speed}"
+            if abs(Q) == mu:
+                beyond = f"{at} any omega beyond the stick limit is steady"
+                return (
+                    f"no isolated steady speed: Q = {Q:.6g} equals the friction limit, and {beyond}"
+                )
+            return f"Q = {Q:.6g} is needed {at}, which exceeds the friction mu = {mu:.6g}"
+        if self.elastic:
+            if at_rest == 0.0:
+                return (
+                    "no isolated steady speed: elastic bodies roll without resistance, so "
+                    "every V is steady"
+                )
+            return (
+                f"{name} = {total:.6g}{of_load} is not 0, and elastic bodies roll without "
+                "resistance"
+            )
+        M, V = (value / kappa for value in self.maximum)
+        if np.isnan(M):
+            return (
+                f"{name} with its feedback, {total:.6g}{of_load} at rest, balances the rolling "
+                "moment at no speed"
+            )
+        return (
+            f"{name} = {total:.6g}{of_load} exceeds the largest {moment} {M * load:.6g}{of_load}"
+            f" (at V = {V * speed:.6g}{of_speed})"
+        )
+
+
+class Equilibria(Values):
+    """Base of results whose last axis counts the equilibria of a state, padded with NaN, with their
+    ``count``, ``stable`` and ``reason``.
+
+    A subclass has ``_heading``, the title; ``_rows``, names of the fields that the report of one
+    state has, and ``_ranges``, of those of which the report of several states has the ranges.
+    """
+
+    _heading: str
+    _rows: tuple[str, ...]
+    _ranges: tuple[str, ...]
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return the title and the rows of the printed report.
+
+        Returns (title; list of :class:`SummaryRow`).  Of one state the rows are its equilibria one
+        after another, each with "stable" or "unstable" and fields to six digits, after the reason
+        why there is none; of several states the number of all equilibria and of the stable ones,
+        and the ranges of fields.
+        """
+        units = {name: unit_of(self._attributes(name)) for name in self._rows}
+        if np.ndim(self.count):
+            found = (
+                f"{int(np.sum(self.count))}, {int(np.asarray(self.stable).sum())} of them stable"
+            )
+            ranges = [
+                SummaryRow(name, format_value(np.asarray(self[name])), units[name])
+                for name in self._ranges
+            ]
+            return f"{self._heading}, {np.size(self.count)} states", [
+                SummaryRow("equilibria", found),
+                *ranges,
+            ]
+        rows = [SummaryRow("reason", str(self.reason))] if self.reason else []
+        for n in range(int(self.count)):
+            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "unstable"))
+            rows += [
+                SummaryRow(f"  {name}", f"{float(self[name][n]):.6g}", units[name])
+                for name in self._rows
+            ]
+        return self._heading + ("" if self.count else ": no equilibrium"), rows
+
+    def _dataset(self, fields: dict[str, Any]) -> xr.Dataset:
+        """Return a dataset of fields over states and equilibria, truth values as 0 or 1, and of
+        ``count``.
+
+        fields: name -> array (states..., equilibria).
+        """
+        import xarray as xr
+
+        dims, coords = dataset_axes(
+            self._labels, np.shape(self.count), (*fields, "count", "equilibrium")
+        )
+        data: dict[str, Any] = {}
+        for name, each in fields.items():
+            array = np.asarray(each)
+            numbers = array.astype(np.int8) if array.dtype == bool else array
+            data[name] = (*dims, "equilibrium"), numbers, self._attributes(name)
+        data["count"] = dims, np.asarray(self.count), self._attributes("count")
+        return xr.Dataset(
+            data, coords, attrs={"title": f"{self._heading} of a viscoelastic cylinder"}
+        )
+
+
+class Steady(Equilibria):
+    """Equilibria of rolling under load, the result of :func:`viscoroll.steady`.
+
+    The last axis counts the equilibria of a load by rising |V| (of one speed: V > 0 first); shorter
+    lists are padded with NaN (``stable``: False).  The axes before it are those of the loads; of
+    one load there are none.  Without an equilibrium that axis has length 0.  Quantities of a Scene
+    are dimensionless; those of a Cylinder are in SI units, per m of its length: m/s, rad/s, N/m, N
+    m/m, 1/s, W/m.
+
+    Attributes
+    ----------
+    V, omega, delta : speeds, divided by R/T_ref and multiplied by T_ref, and creepage (omega R -
+        V)/V, +infinite for a cylinder that spins at V = 0 in either sense; at rest, V = omega = 0,
+        its limit V -> 0+.
+    Q, M : creep force and rolling resistance moment, divided by P and P R.
+    M_half_space, M_cylinder : the parts of M by the losses in either body.
+    beta : stick zone divided by contact length, 0 in full slip.
+    grip : friction reserve 1 - |Q|/(mu P), 0 in full slip.
+    stable : whether (V, omega) returns after any small disturbance: both eigenvalues have a real
+        part < 0.
+    eigenvalues : complex, on a last axis of two, the one of the smaller real part first: growth
+        rates of small disturbances of (V, omega), in units of gamma/T_ref.  At rest the first
+        is -infinite.
+    force, torque : the loads of the equilibrium, with slope and feedback; where V was given one of
+        them is found.
+    loss : powers, coefficient of rolling resistance, efficiency (:class:`Loss`).
+    count : number of equilibria of each load, an int for one load.
+    success, status : whether there is an equilibrium, and 0 or 1 if there is one or none, for each
+        load.
+    reason, message : why there is none, "" where there is one, for each load.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.steady(vr.presets.RUBBER_CYLINDER, slope=[0.005, 0.01])
+    >>> (
+    ...     bool(found.V[0, 0] > 0.0),
+    ...     [bool(reason) for reason in found.reason],
+    ... )  # the second slope is too steep
+    (True, [False, True])
+    """
+
+    _heading = "Steady rolling"
+    _rows = "V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"
+    _ranges = ("V",)
+
+    def __init__(
+        self,
+        values: dict[str, Any],
+        free: Floats,
+        reasons: Diagnosis,
+        scale: Scale,
+        labels: Labels | None,
+    ) -> None:
+        """Keep the fields, and M_half_space and M_cylinder without traction, ``free``, (2,
+        loads..., equilibria).
+        """
+        super().__init__(values, title="Steady rolling", si=scale.si)
+        self._free = free
+        self.reasons = reasons
+        self.scale = scale
+        self._labels = labels
+
+    def keys(self) -> Iterable[str]:
+        """Return the names of the fields, which are attributes and are read by ``result[name]``
+        too.
+
+        Returns
+        -------
+        list of str
+            The names of the arrays, then "loss" and "reason".
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> list(vr.steady(vr.presets.RUBBER_CYLINDER, slope=0.005).keys())[-2:]
+        ['loss', 'reason']
+        """
+        return [*self._values, "loss", "reason"]
+
+    @cached_property
+    def loss(self) -> Loss:
+        """Return the powers of each equilibrium, its coefficient of rolling resistance and its
+        efficiency.
+
+        Returns a :class:`Loss` (powers slip, half_space and cylinder; coefficient; efficiency),
+        whose fields have the shape of ``V``, (loads..., equilibria), with the labels of the
+        arguments where they fit the loads; powers divided by P R/T_ref, of a Cylinder in W per m of
+        its length.  Padding is NaN; at V = 0 the coefficient is the limit V -> 0, infinite for a
+        cylinder that spins; without input the efficiency is NaN.
+        """
+        V, delta, Q, M_half_space, M_cylinder, _, omega, _, _, force, torque = (
+            np.asarray(self[name]) for name in _FIELDS
+        )
+        R, P = (append_axis(self.scale[name]) for name in ("R", "P"))
+        moving = V != 0.0
+        slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
+        half_space = V * self._free[0] / R
+        cylinder = omega * self._free[1]
+        # what shear changes in the moments is taken from friction
+        slip = slip + (
+            V * (M_half_space - self._free[0]) / R + omega * (M_cylinder - self._free[1])
+        )
+        whole = slip + half_space + cylinder
+        speed = np.where(moving, np.abs(V), 1.0)
+        with np.errstate(invalid="ignore"):
+            coefficient = np.where(moving, whole / speed, np.abs(Q * delta)) / P
+        powers = np.stack([force * V, torque * omega])
+        output, input_ = (np.maximum(signed, 0.0).sum(axis=0) for signed in (-powers, powers))
+        efficiency = np.divide(output, input_, out=np.full(V.shape, np.nan), where=input_ > 0.0)
+        found: Any = slip, half_space, cylinder, coefficient, efficiency
+        if self._labels is not None:
+            found = map(self._labels.apply, _LOSSES, found, ("equilibrium",) * len(_LOSSES))
+        return Loss(*found)
+
+    @property
+    def success(self) -> Any:  # type: ignore[override]
+        """Whether there is an equilibrium, of each load."""
+        return np.asarray(self.count)[()] > 0
+
+    @property
+    def status(self) -> Any:  # type: ignore[override]
+        """0 where there is an equilibrium, else 1; an int, or an array in the shape of the
+        loads.
+        """
+        return np.where(self.success, 0, 1)[()]
+
+    @property
+    def reason(self) -> Any:
+        """Why there is no equilibrium; "" where there is one.  Of arrays of loads an array of
+        strings.
+        """
+        return self.reasons.text(self.scale)
+
+    #: as :attr:`reason`
+    message = reason
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the equilibria as a dataset of xarray, with names and units as attributes.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over the axes of the loads (of one load there are none; named as in labelled arguments,
+            else ``state``, of several axes ``state_0``, ``state_1`` ...) and ``equilibrium``.  An
+            axis or a coordinate of the labels that has the name NAME of a variable, or
+            "equilibrium", is called given_NAME.  Variables are V, delta, Q, M_half_space,
+            M_cylinder, beta, omega, M, grip, force and torque of this result; ``stable``, int8, 0
+            or 1; ``rate_fast`` and ``rate_slow``, the real parts of the eigenvalues, whose
+            imaginary parts are left out; ``loss_slip``, ``loss_half_space``, ``loss_cylinder``,
+            ``coefficient`` and ``efficiency``, the fields of :class:`Loss`; and ``count``, over the
+            axes of the loads alone.  Padding is NaN, of ``stable`` 0.  Units are those of the
+            result; ``reason`` is left out.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.steady(vr.presets.RUBBER_CYLINDER, slope=0.005).to_xarray()["V"].attrs["units"]
+        'm s-1'
+        """
+        rates = np.moveaxis(np.asarray(self.eigenvalues).real, -1, 0)
+        found = {name: self[name] for name in (*_FIELDS, "stable")} | {
+            "rate_fast": rates[0],
+            "rate_slow": rates[1],
+        }
+        return self._dataset(found | dict(zip(_LOSSES, vars(self.loss).values(), strict=True)))
+
+
+def append_axis(unit: Any) -> Any:
+    """Return the ``unit`` of each load, (loads...), with a last axis of length 1 for its
+    equilibria; a number as it is.
+    """
+    return unit[..., np.newaxis] if isinstance(unit, np.ndarray) else unit
+
+
+def pad(rows: Floats, number: Integers, count: Integers, shape: tuple[int, ...]) -> Floats:
+    """Arrange equilibria, one after another, as arrays over states and equilibria, padded with NaN.
+
+    rows: fields of the equilibria, sorted by state, (fields, m).
+    number: index of the state of each, (m,).
+    count: number of equilibria of each state, (n,).
+    shape: shape of the n states.
+    Returns the fields, (fields, states..., equilibria).
+    """
+    most = int(count.max(initial=0))
+    if most * count.size > number.size:  # some have fewer
+        place = np.arange(number.size) - (np.cumsum(count) - count)[number]
+        padded = np.full((len(rows), count.size * most), np.nan)
+        padded[:, number * most + place] = rows
+        rows = padded
+    return rows.reshape(len(rows), *shape, most)
+
+
+def pack_result(
+    loads: Loads, states: States, reasons: Diagnosis, scale: Scale, labels: Labels | None
+) -> Steady:
+    """Pack steady states, one after another, into arrays over loads and equilibria, in the units of
+    the roller.
+
+    loads : the loads, n of them, dimensionless.
+    states : :class:`.steady_states.States` that exist, sorted by load and |V|, dimensionless.
+    reasons : :class:`Diagnosis`, data of the loads without equilibrium; its ``number`` is the
+        number of states of each load.
+    scale : units of the roller, which the result has.
+    labels : labels of the arguments of the call, or None; arrays of the scene may add axes in front
+        of them.
+    Returns the :class:`Steady`, whose fields V, delta, Q, M_half_space, M_cylinder, beta, omega, M,
+    grip, force, torque and ``stable`` have the shape (loads..., equilibria), of one load
+    (equilibria,), padded with NaN (``stable``: False) where loads have fewer equilibria than
+    others; ``eigenvalues`` have a further axis of two, ``count`` has the axes of the loads alone,
+    an int for one load.  With V given, force or torque is what the balance needs.
+    """
+    number = states.load
+    count = reasons.number
+    gains = loads.gains
+    V, _, Q, M_half_space, M_cylinder, _, omega, fast, slow, imaginary, *free = states.rows
+    force = loads.force[number] + gains.force_V * V + gains.force_omega * omega
+    torque = loads.torque[number] + gains.torque_V * V + gains.torque_omega * omega
+    if loads.given == "torque":
+        force = M_half_space - Q
+    elif loads.given == "force":
+        torque = M_cylinder + Q
+    grip = 1.0 - np.abs(Q) / loads.mu[number]
+    more = np.array([M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary])
+    rows = np.concatenate([states.rows[: Field.FAST], more])
+    rows = pad(rows, number, count, loads.shape)
+    found: dict[str, Any] = dict(zip(_FIELDS, rows, strict=False))
+    if scale.si:
+        found |= {
+            name: found[name] * append_axis(scale[name]) for name in found if name in DIMENSIONS
+        }
+    fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
+    eigenvalues = np.empty((*fast.shape, 2), np.complex128)
+    eigenvalues.real[..., 0] = fast
+    eigenvalues.real[..., 1] = slow
+    eigenvalues.imag[..., 0] = -imaginary
+    eigenvalues.imag[..., 1] = imaginary
+    found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
+    found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
+    if labels is not None:
+        axes_after = {"count": (), "eigenvalues": ("equilibrium", "rate")}
+        found = {
+            name: labels.apply(name, each, *axes_after.get(name, ("equilibrium",)))
+            for name, each in found.items()
+        }
+    free_moments = rows[len(_FIELDS) : len(_FIELDS) + 2] * append_axis(scale["M"])
+    return Steady(found, free_moments, reasons, scale, labels)

@@ -1,0 +1,445 @@
+"""Steady states (:class:`States`), and their computation from the rows of the law, on threads.
+
+For given V and Q the creepage follows without a root: by Eq. (15) H(eta) = (1 - |Q|/mu) H(zeta),
+which is Eq. (6) at the speed V/root with root^2 = 1 - |Q|/mu.  So delta = delta_star(V) - root
+delta_star(V/root) and beta = root lam(V/root)/lam(V).
+
+In this file all is dimensionless, and a law is a :class:`LawTable`, the rows of one material.  Here
+zeta and eta are half the transit times of the contact and of its stick zone, H a function of the
+material, Q the friction force over the load P, M the rolling moment over P R, mu the coefficient of
+friction, kappa = R/l0 with the contact length at rest l0, delta = (omega - V)/V the creepage,
+delta_star the size of it from which on the contact slips fully (of a cover: of its difference from
+delta_0, at which Q = 0), lam the contact length over l0, and beta the part of it that sticks.  Rows
+of :class:`Field` are V, delta, Q, M_half_space, M_cylinder, beta, and then either six slopes of the
+law, dQ_dV at fixed omega, dQ_domega, dM_half_space_dV, dM_cylinder_dV and both slopes of M over
+omega, or omega, the eigenvalues and the moments without traction.
+"""
+
+from __future__ import annotations
+
+from enum import IntEnum
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.blocks import run_blocks
+from ..core.checks import Floats, Integers
+from ..laws.law_table import LawTable
+from .contact_table import evaluate_law
+from .rolling_resistance import branches
+from .steady_loads import (
+    Gains,
+    Loads,
+    balance,
+    creep_at_rest,
+    moments_of_losses,
+    rest_on_table,
+    shear_at,
+)
+
+#: loads of one block of work: some milliseconds
+_BLOCK = 1 << 12
+#: |Q|/mu below which delta is computed from its slope at Q = 0
+_SMALL_TRACTION = 1e-8
+#: |Q|/mu below which a Newton step corrects delta, which is a difference there
+_CORRECTED_TRACTION = 0.2
+#: fields of ``contact`` that make the rows of :class:`Field` from Q on
+_ROWS = (
+    "Q",
+    "M_half_space",
+    "M_cylinder",
+    "beta",
+    "dQ_dV",
+    "dQ_domega",
+    "dM_half_space_dV",
+    "dM_cylinder_dV",
+    "dM_half_space_domega",
+    "dM_cylinder_domega",
+)
+
+
+class Field(IntEnum):
+    """Index of the row of a quantity in an array of states, (12, n).
+
+    From row 6 on the array has the slopes of the law while states are computed, in a frame where V
+    > 0: dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega,
+    dM_half_space/domega, dM_cylinder/domega.  In :class:`States` the same rows have omega, the real
+    parts of the faster and of the slower eigenvalue, the imaginary part of the slower one, and the
+    moments that the bodies would have without traction, by which their losses are found.
+    """
+
+    V = 0
+    DELTA = 1
+    Q = 2
+    M_HALF_SPACE = 3
+    M_CYLINDER = 4
+    BETA = 5
+    DQ_DV = 6
+    DQ_DOMEGA = 7
+    DM_HALF_SPACE = 8
+    DM_CYLINDER = 9
+    OMEGA = 6
+    FAST = 7
+    SLOW = 8
+    IMAGINARY = 9
+    DM_HALF_SPACE_DOMEGA = 10
+    DM_CYLINDER_DOMEGA = 11
+    FREE_HALF_SPACE = 10
+    FREE_CYLINDER = 11
+
+
+#: slopes over V, each with that over omega: at fixed omega the first lacks (1 + delta) times the
+#: second
+_SLOPES = (
+    (Field.DQ_DV, Field.DQ_DOMEGA),
+    (Field.DM_HALF_SPACE, Field.DM_HALF_SPACE_DOMEGA),
+    (Field.DM_CYLINDER, Field.DM_CYLINDER_DOMEGA),
+)
+
+
+class States(NamedTuple):
+    """Steady states one after another, dimensionless; speeds in R/T_ref.
+
+    load : index of the load of each state, (n,).
+    rows : quantities of the states, (12, n), in the order of :class:`Field`, with omega, the
+    eigenvalues and the moments
+        without traction from row 6 on; V, Q, M and omega have the signs of the motion.  delta and
+        omega are NaN where the friction does not
+        suffice; Q is what the balance needs there, and the other rows mean nothing.
+    """
+
+    load: Integers
+    rows: Floats
+
+    @classmethod
+    def of(
+        cls,
+        loads: Loads,
+        load: NDArray,
+        sign: NDArray,
+        answers: NDArray,
+        free: NDArray | None = None,
+    ) -> States:
+        """Make the states from the law at them: give V, Q and M their signs, and add omega and the
+        eigenvalues.
+
+        loads : :class:`Loads`, the loads, of which the gains and j are used.
+        load : index of the load of each state, (n,).
+        sign : sign of V, 1.0 or -1.0, (n,).
+        answers : rows of :class:`Field` with the slopes of the law from row 6 on, (12, n), in a
+            frame where V > 0; not changed.
+        free : M_half_space and M_cylinder without traction, (2, n), in that frame; None: those of
+            ``answers``, as of half-spaces.
+        Returns the :class:`States`, (n,); omega is NaN where delta is.
+        """
+        rows = answers.copy()
+        rows[Field.FREE_HALF_SPACE :] = (
+            answers[[Field.M_HALF_SPACE, Field.M_CYLINDER]] if free is None else free
+        )
+        signed = (
+            Field.V,
+            Field.Q,
+            Field.M_HALF_SPACE,
+            Field.M_CYLINDER,
+            Field.FREE_HALF_SPACE,
+            Field.FREE_CYLINDER,
+        )
+        rows[list(signed)] *= sign
+        rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
+        rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(
+            answers[Field.DQ_DV :], loads.gains, loads.j[load]
+        )
+        return cls(load, rows)
+
+    @classmethod
+    def at_rest(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
+        """Return the states of V = omega = 0, the limit of slow rolling.
+
+        The contact is that of Carter (of two elastic bodies); of a cover its creep limit and its
+        creepage of free rolling are used.  A disturbance decays as V' = -rate V, with omega in
+        proportion to V.
+
+        loads : the loads, dimensionless; all but V and ``shape`` is read.  Q balances the torque,
+            or where V and the force were given the force.
+        load : index of the load of each state, (n,).
+        law : table of the material, of which T_mean and, of a cover, the rows of creep at rest are
+            read.
+        Returns the :class:`States`, (n,), with V = omega = M = 0: the eigenvalue of slip is -inf,
+        the slow one is that of the less stable direction, 0 for elastic bodies without gains; delta
+        and omega are NaN where the friction does not suffice, |Q| >= mu.
+        """
+        if law.coupled is not None:
+            return cls._at_rest_on_table(loads, load, law)
+        # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
+        limit, free = creep_at_rest(law)
+        kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
+        shear = shear_at(law, kappa, mu, np.zeros(load.size))
+        Q = shear.traction_of_torque(loads.torque[load])
+        if loads.given == "force":
+            Q = shear.traction_of_force(-loads.force[load])
+        part = np.abs(Q) / mu
+        rows = np.zeros((2 + len(_ROWS), load.size))
+        rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
+        delta = 0.5 * limit * mu / kappa * part / (1.0 + beta)
+        free = 0.5 * free / kappa
+        rows[Field.OMEGA] = 0.0 * beta
+        rows[Field.DELTA] = np.sign(Q) * delta + free
+        rows[Field.Q] = Q
+        rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = shear.moments(Q)
+        rows[Field.FAST] = rows[Field.SLOW] = -np.inf
+        on_axis, on_spin, half_space, cylinder = shear.slopes_at_rest(law, Q)
+        gains = loads.gains
+        for creep in (
+            free + delta,
+            free - delta,
+        ):  # to either side omega = V (1 + delta) or V (1 - delta)
+            push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
+            turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
+            rate = on_spin * push + on_axis * turn
+            rows[Field.SLOW] = np.maximum(
+                rows[Field.SLOW], -rate / (on_spin + j * on_axis * (1.0 + creep))
+            )
+        return cls(load, rows)
+
+    @classmethod
+    def _at_rest_on_table(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
+        """Return the states of rest on a table; arguments as of :meth:`at_rest`."""
+        rows = np.zeros((2 + len(_ROWS), load.size))
+        rows[Field.DELTA], found, rate = rest_on_table(law, loads, load)
+        rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.BETA]] = found
+        rows[Field.OMEGA] = 0.0 * rows[Field.DELTA]
+        rows[Field.FAST] = -np.inf
+        rows[Field.SLOW] = -rate
+        return cls(load, rows)
+
+    @classmethod
+    def none(cls) -> States:
+        """No state."""
+        return cls(np.empty(0, np.int64), np.empty((len(_ROWS) + 2, 0)))
+
+    @classmethod
+    def joined(cls, *parts: States) -> States:
+        """States of all parts, one after another."""
+        return cls(
+            np.concatenate([each.load for each in parts]),
+            np.concatenate([each.rows for each in parts], axis=1),
+        )
+
+    def existing(self) -> States:
+        """Return the states for which the friction suffices (omega is finite) as new
+        :class:`States`, maybe none, sorted by load, then by rising |V|; of equal |V| in their
+        order.
+        """
+        chosen = np.isfinite(self.rows[Field.OMEGA]).nonzero()[0]
+        chosen = chosen[np.lexsort((np.abs(self.rows[Field.V, chosen]), self.load[chosen]))]
+        return States(self.load[chosen], self.rows[:, chosen])
+
+
+def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
+    """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
+
+    slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega,
+        dM_half_space/domega, dM_cylinder/domega, (6, n), dimensionless, finite.
+    gains : :class:`Gains`, gains of force and torque on V and omega.
+    j : moments of inertia divided by m R^2, (n,).
+    Returns rows, (3, n): real part of the faster eigenvalue (the smaller number) and of the slower
+    one, imaginary part of the slower (>= 0; the faster has its negative).  Of a complex pair both
+    real parts are equal, of real eigenvalues the imaginary part is 0.  The determinant is b
+    (M'(V) - gain)/j without a gain on omega, where b = dQ/domega; it is computed without the
+    cancellation of the large slopes of Q.  Where M depends on Q too, as of a cover, M' is that at
+    fixed Q, and Q acts on the axis and on the cylinder with the factors ``on_axis`` and
+    ``on_spin``.  The equation is that of min(j, 1) times an eigenvalue, in units of a power of 2,
+    so that no square overflows; an eigenvalue beyond the doubles is infinite.
+    """
+    a, b, d_half_space, d_cylinder, half_space_b, cylinder_b = slopes
+    unit = np.minimum(j, 1.0)
+    with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
+        on_axis = 1.0 - np.where(half_space_b == 0.0, 0.0, half_space_b / b)
+        on_spin = 1.0 + np.where(cylinder_b == 0.0, 0.0, cylinder_b / b)
+        d_half_space = d_half_space - (1.0 - on_axis) * a
+        d_cylinder = d_cylinder - (on_spin - 1.0) * a
+        det = on_spin * d_half_space + on_axis * d_cylinder
+        det = b * (det - (on_spin * gains.force_V + on_axis * gains.torque_V))
+        det += gains.torque_omega * (on_axis * a - d_half_space + gains.force_V)
+        det = (det + gains.force_omega * (on_spin * a + d_cylinder - gains.torque_V)) / (j / unit)
+        half = unit * (on_axis * a - d_half_space + gains.force_V)
+        half = 0.5 * (half + (gains.torque_omega - on_spin * b) / (j / unit))
+        power = np.frexp(np.maximum(np.abs(half), np.sqrt(np.abs(det))))[1]
+        spread = np.ldexp(half, -power) ** 2 - np.ldexp(det * unit, -2 * power)
+        root = np.ldexp(np.sqrt(np.abs(spread)), power)
+        larger = half + np.copysign(root, half)
+        other = np.divide(det, larger, out=0.0 * det, where=larger != 0.0)
+        real = spread >= 0.0
+        larger = larger / unit
+        half = half / unit
+        root = root / unit
+        return np.array(
+            [
+                np.where(real, np.minimum(larger, other), half),
+                np.where(real, np.maximum(larger, other), half),
+                np.where(real, 0.0, root),
+            ]
+        )
+
+
+def contact_fields_at(
+    law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str
+) -> Floats:
+    """Return fields of the contact at V > 0 and a creepage, one row for each of ``names``.
+
+    law : table of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    V : speeds, dimensionless, > 0, which is not checked, (n,).
+    delta : creepage, dimensionless, any sign, a number or (n,).
+    names : fields that kernels compute, as ``Q`` or ``dQ_dV``; ``full_slip`` is 0 or 1, ``dQ_dV``
+        is at fixed delta.
+    Returns the fields, (names, n), dimensionless.
+    """
+    return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
+
+
+def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
+    """Return delta_0 at V > 0, the creepage of free rolling, at which Q = 0.
+
+    law : table of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,); mu is only passed on,
+        delta_0 does not depend on it.
+    V : speeds, dimensionless, > 0, which is not checked, (n,).
+    Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float 0.0
+    of half-spaces.
+    """
+    return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
+
+
+def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
+    """Return the law at V > 0 and a creepage, as the rows from which :meth:`States.of` makes
+    states.
+
+    law : table of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    V, delta : speeds, > 0, which is not checked, and creepages, (n,), dimensionless.
+    Returns rows of :class:`Field` with slopes, (12, n); row 6 is dQ/dV at fixed omega.  In full
+    slip Q is mu or -mu, and beta and the slopes of Q are 0.
+    """
+    rows = np.empty((2 + len(_ROWS), V.size))
+    rows[Field.V] = V
+    rows[Field.DELTA] = delta
+    rows[2:] = contact_fields_at(law, kappa, mu, V, delta, *_ROWS)
+    for over_V, over_omega in _SLOPES:
+        rows[over_V] -= rows[over_omega] * (1.0 + delta)
+    return rows
+
+
+def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
+    """Find the speeds at which kappa (M - gain V) equals a given total, in both directions of
+    motion.
+
+    law : table of the material.
+    gain : slope of the load in V, dimensionless; 0 for a load that does not depend on V.
+    total : kappa (force + torque), dimensionless, any sign, (n,); not checked: where it is not
+        within the values of the curve at the nodes, no crossing is found.
+    Returns (index of the load; sign of V, 1.0 or -1.0; kappa |V|, > 0), one entry for each
+    crossing, (crossings,) each; first those with V > 0, then those with V < 0, of every branch.  A
+    load has none to many; V = 0 is not among them.
+    Raises ParameterError for a gain out of range.
+    """
+    from ..kernels.law.law_functions import crossing_loop
+
+    found = branches(law, gain)
+    signed = np.concatenate([total, -total])
+    which, node = found.locate_loads(signed)
+    totals = signed[which]
+    curve = found.curve
+    u = np.empty(which.size)
+
+    def work(start: int, stop: int) -> None:
+        crossing_loop(law.record, curve, totals, node, u, start, stop)
+
+    run_blocks(work, which.size, _BLOCK)
+    return which % total.size, np.where(which < total.size, 1.0, -1.0), u
+
+
+def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
+    """Return the steady states at given V > 0, whether or not the friction suffices.
+
+    law : table of the material.
+    loads : the loads, dimensionless, without a gain on omega, of which gains, given, force, torque,
+        kappa, mu and j are read.  Where V was given, that of force and torque which was given too
+        determines Q, and M is that of the law; else V must be such that force + torque, with the
+        gains on V, equal M.
+    load : index of the load of each state, (n,).
+    sign : sign of the motion, in whose frame V > 0, 1.0 or -1.0, (n,).
+    V : speeds, > 0, dimensionless, (n,).
+    Returns the :class:`States`, (n,), with the signs of the motion; delta and omega are NaN and
+    beta is 0 where |Q| >= mu, so that the friction does not suffice.
+    """
+    gains = loads.gains
+    kappa = loads.kappa[load]
+    mu = loads.mu[load]
+    force = sign * loads.force[load] + gains.force_V * V
+    torque = sign * loads.torque[load] + gains.torque_V * V
+    if law.coupled is not None:
+        spin = loads.given == "torque"
+        delta, rest = balance(law, kappa, mu, V, torque if spin else -force, spin)
+        rows = state_rows(law, kappa, mu, V, delta)
+        losses = moments_of_losses(law, kappa, V, delta)
+        rows[Field.DELTA, rest != 0.0] = np.nan
+        rows[Field.Q] += rest
+        return States.of(loads, load, sign, rows, losses)
+    delta_0 = free_creep(law, kappa, mu, V)
+    free = contact_fields_at(
+        law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
+    )
+    if law.cover is None:
+        Q, moments = _tractions_of_half_spaces(loads.given, force, torque, free[:2])
+    else:
+        shear = shear_at(law, kappa, mu, V)
+        if loads.given == "torque":
+            Q = shear.traction_of_torque(torque - free[1])
+        else:
+            Q = shear.traction_of_force(free[0] - force)
+        moments = free[:2] + shear.moments(Q)
+    part = np.abs(Q) / mu
+    exists = part < 1.0
+    root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
+    (star, lam, rise) = free[2:]
+    faster = V / root
+    rolling = free_creep(law, kappa, mu, faster)
+    less_star, less_lam = contact_fields_at(law, kappa, mu, faster, rolling, "delta_star", "lam")
+    size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
+    rows = state_rows(law, kappa, mu, V, np.copysign(size, Q) + delta_0)
+    # one Newton step for delta alone, which is a difference where |Q|/mu is small: the other rows
+    # do not change by it
+    rows[Field.DELTA] -= np.divide(
+        rows[Field.Q] - Q, V * rows[Field.DQ_DOMEGA], out=0.0 * V, where=part < _CORRECTED_TRACTION
+    )
+    rows[Field.Q] = Q
+    rows[[Field.M_HALF_SPACE, Field.M_CYLINDER]] = moments
+    rows[Field.BETA] = root * less_lam / lam
+    if not exists.all():
+        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], (~exists).nonzero()[0]] = 0.0
+        rows[Field.DELTA, ~exists] = np.nan
+    return States.of(loads, load, sign, rows, None if law.cover is None else free[:2])
+
+
+def _tractions_of_half_spaces(
+    given: str | None, force: Floats, torque: Floats, free: Floats
+) -> tuple[Floats, Floats]:
+    """Return the traction that balances the loads on half-spaces at given speeds, and the moments
+    of both bodies.
+
+    given : name of the load that was given beside V, "force" or "torque"; None: V is such that both
+        balance M.
+    force, torque : loads in the frame where V > 0, (n,); the one that is not given has no meaning.
+    free : M_half_space and M_cylinder of the law, (2, n).
+    Returns (Q, (n,); M_half_space and M_cylinder, (2, n)), dimensionless.
+    """
+    M = free[0] + free[1]
+    share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
+    if given is None:
+        M = force + torque
+        Q = share * torque - (1.0 - share) * force
+    else:
+        Q = torque - (1.0 - share) * M if given == "torque" else share * M - force
+    return Q, np.stack([share * M, (1.0 - share) * M])

@@ -1,0 +1,524 @@
+"""Whether a state satisfies the assumptions of the model.
+
+Whether the law of steady rolling may drive a motion, and down to which speed:
+:class:`Steadiness`.
+
+The assumptions of the law of a layer of finite thickness, and its stated errors:
+:func:`assess_cover`, :func:`assess_traction`.
+
+l0 is the contact length at rest that the same bodies would have as half-spaces.
+
+Which assumptions of the model a state violates: :func:`validity`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ..core.checks import Numbers, broadcast_shape, check_array, divide_by_unit
+from ..core.errors import ParameterError
+from .assumptions import (
+    UNKNOWN,
+    UNKNOWN_OF_COVERS,
+    Assumption,
+    Validity,
+    assess_creep,
+    assess_position,
+    assess_small_contact,
+)
+from .contact_table import evaluate_contact
+from .free_rolling import ContactLengths, FreeRolling, Reach, Start
+from .parameters import Parameters, Roller, resolve_model
+
+# --- Whether the law of steady rolling may drive a motion, and down to which speed ---
+
+#: Largest unsteadiness, dimensionless, at which the error of V is below some 10 %: measured with a
+#: transient solver of many modes (docs/validity.md).
+STEADY_LIMIT = 0.1
+#: Largest part of its speed that a start from rest may lose, dimensionless (seven tenths of its
+#: energy): a cylinder that loses more stays in its indentation.
+LARGEST_LOSS = 0.45
+#: Speed in units of u that stands for rest where a motion ended, dimensionless: the lower end of
+#: the start speeds.
+_REST = 1e-300
+
+
+class Steadiness(Assumption):
+    """Whether the law of steady rolling may drive a motion, and how far; all quantities in the
+    units of the call.
+
+    ``value`` is the unsteadiness gamma |N(V)|/(1 + j), dimensionless, for a motion the largest so
+    far; up to 0.1 is allowed, where the error of V is below some 10 %.  The attributes describe
+    free rolling from each V by the law of steady rolling, of motions from the fastest speed of
+    each; they have the shape of V, or one value for each motion.  Without a gamma, at rest and for
+    a layer of finite thickness the entry ``steady`` of a report is a plain :class:`Assumption`
+    without them.
+
+    Attributes
+    ----------
+    one_percent, ten_percent : the :class:`Reach` within which the error of V is below about 1 % and
+    10 %.
+    start : the losses of a :class:`Start` after a long standstill.
+    whole : the distance to rest, infinite for elastic bodies.
+    share : part of that distance, or of the distance of a motion, at which the error of V exceeds
+        10 %, 0 to 1; NaN for a motion whose x is not known.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> steady = vr.presets.RUBBER_CYLINDER.validity(2.0).steady
+    >>> bool(steady.holds), float(steady.whole) > 50.0  # m
+    (True, True)
+    """
+
+    #: the states, in the units of the call
+    free: FreeRolling
+    #: ``share`` of a motion; None for single states
+    motion_share: Any = None
+
+    @classmethod
+    def of(cls, free: FreeRolling) -> Assumption:
+        """Return the assumption ``steady`` of states from which the cylinder rolls freely.
+
+        Parameters
+        ----------
+        free : the states, a :class:`.free_rolling.FreeRolling`, in the units of the call; gamma
+        must be known.
+
+        Returns
+        -------
+        Assumption
+            A :class:`Steadiness` whose value is the unsteadiness of each state; a plain
+            :class:`Assumption`, which is undecided, if all states (one at least) are at rest.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> from viscoroll.contact_mechanics.validity import Steadiness
+        >>> states = vr.presets.RUBBER_CYLINDER.validity([1.0, 2.0]).steady.free
+        >>> Steadiness.of(states).holds
+        array([ True,  True])
+        """
+        if free.u.size and not free.u.any():
+            return Assumption(None, None, "the assumption is not checked at rest: give a speed")
+        return cls._create(free.unsteadiness, free)
+
+    @classmethod
+    def along(cls, free: FreeRolling, rolls: Any, x: Any, *, ends: bool) -> Steadiness:
+        """Return the assumption ``steady`` of one motion, or of several.
+
+        Parameters
+        ----------
+        free : states at the output times, (times,) or (times, motions), with gamma; each gives the
+            distance and the speeds of free rolling from there.  A state at rest after a motion has
+            begun counts as the limit V -> 0.
+        rolls : mask of the times at which motions are not in full slip, in the shape of u.  In full
+            slip friction rules the motion, and the unsteadiness counts as 0.
+        x : distances travelled in the unit of the caller, in the shape of u; NaN where they are not
+        known.
+        ends : whether ``value`` is that of each motion as a whole, () or (motions,); else, for one
+            motion only, it is the largest so far at each time, (times,).
+
+        Returns
+        -------
+        Steadiness
+            The assumption, whose value is dimensionless; its ``share``, () or (motions,), is the
+            part of each motion's distance with an error of V above 10 %, 0 for a motion that stays
+            where it is, NaN where x is not known.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> from viscoroll.contact_mechanics.validity import Steadiness
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> states = motion.roller.validity(motion.V).steady.free
+        >>> float(Steadiness.along(states, motion.regime > 0, motion.x, ends=True).share)
+        0.0
+        """
+        free = replace(
+            free,
+            u=np.where(np.maximum.accumulate(free.u > 0.0, axis=0), np.maximum(free.u, _REST), 0.0),
+        )
+        value = np.maximum.accumulate(np.where(rolls, free.unsteadiness, 0.0), axis=0)
+        fastest = free.take((np.argmax(free.u, axis=0), *np.indices(free.u.shape[1:])))
+        to_rest = free.distance()
+        steps = np.abs(np.diff(x, axis=0))
+        slow = np.where(
+            fastest.unsteadiness > STEADY_LIMIT, np.inf, fastest.reach(STEADY_LIMIT).left
+        )
+        # the part of each step that lies below that speed, as in free rolling
+        with np.errstate(invalid="ignore"):
+            below, whole = (
+                np.abs(np.diff(left, axis=0)) for left in (np.minimum(to_rest, slow), to_rest)
+            )
+        part = np.divide(
+            below, whole, out=1.0 * (to_rest[1:] < slow), where=(0.0 < whole) & (whole < np.inf)
+        )
+        share = (steps * rolls[1:] * part).sum(axis=0) / np.maximum(steps.sum(axis=0), _REST)
+        return cls._create(value[-1] if ends else value, fastest, share)
+
+    @classmethod
+    def _create(cls, value: Any, free: FreeRolling, motion_share: Any = None) -> Steadiness:
+        """Return the assumption with its sentence, which describes the state of the largest
+        unsteadiness.
+
+        value: unsteadiness, dimensionless, any shape; of several motions (motions,), of one () or
+        (times,).
+        free: the states in the shape of ``value``; of motions the fastest one of each, (motions,)
+        or ().
+        motion_share: the share of motions, (motions,) or (), maybe NaN; None for single states.
+        Returns the assumption, which holds, in the shape of ``value``, where that is at most 0.1;
+        of an empty value the sentence says that there is no motion.
+        """
+        sentence = "there is no motion"
+        if np.size(value):
+            most = float(np.max(value))
+            worst = (
+                free.take(np.unravel_index(np.argmax(value), free.u.shape)) if free.u.ndim else free
+            )
+            described = motion_share is not None
+            sentence = (
+                _describe_motion(worst, most, float(np.mean(motion_share)))
+                if described
+                else _describe_free(worst)
+            )
+        created = cls(value <= STEADY_LIMIT, value, sentence)
+        created.free = free
+        created.motion_share = motion_share
+        return created
+
+    def worst_of_parts(self, last: Any) -> Steadiness:
+        """Return the assumption of a motion with one value for each part of it: the largest up to
+        the end of the part.
+
+        Parameters
+        ----------
+        last : index of the last state of each part, an array (parts,), ascending.
+
+        Returns
+        -------
+        Steadiness
+            With holds and value of shape (parts,); its attributes are those of the motion.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> steady = (
+        ...     vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0, 3.0]).validity().steady
+        ... )
+        >>> steady.worst_of_parts(np.array([1, 2])).value.shape
+        (2,)
+        """
+        chosen: Any = self._replace(holds=self.holds[last], value=self.value[last])
+        chosen.free = self.free
+        chosen.motion_share = self.motion_share
+        return chosen
+
+    @cached_property
+    def one_percent(self) -> Reach:
+        """Part of free rolling with an error of V below 1 %, a :class:`Reach` (unsteadiness up to
+        0.01).
+        """
+        return self.free.reach(0.1 * STEADY_LIMIT)
+
+    @cached_property
+    def ten_percent(self) -> Reach:
+        """Part of free rolling with an error of V below 10 %, a :class:`Reach` (unsteadiness up to
+        0.1).
+        """
+        return self.free.reach(STEADY_LIMIT)
+
+    @cached_property
+    def start(self) -> Start:
+        """Losses of a start after a long standstill, a :class:`Start`."""
+        return self.free.start()
+
+    @cached_property
+    def whole(self) -> Any:
+        """Distance to rest by the law of steady rolling; infinite for elastic bodies, also at V =
+        0.
+        """
+        return self.free.distance()
+
+    @cached_property
+    def share(self) -> Any:
+        """Part of a distance on which the error of V exceeds 10 %, dimensionless, 0 to 1.
+
+        Of motions it is the part of the distance of each motion, one value for each, NaN where x is
+        not known.  Else it is the part of the distance to rest in free rolling, in the shape of the
+        states: 1 where V is too slow at the start already, 0 at rest and for elastic bodies.
+        """
+        if self.motion_share is not None:
+            return self.motion_share
+        left = np.asarray(self.ten_percent.left)
+        whole = np.asarray(self.whole)
+        return np.divide(
+            left, whole, out=np.asarray(self.value > STEADY_LIMIT, np.float64), where=left < whole
+        )[()]
+
+
+def _describe_free(free: FreeRolling) -> str:
+    """Return sentences on free rolling from one state: distance, speeds at which errors are
+    reached, loss of a start.
+
+    free: a single state (u without axes), whose units the sentences use; dimensionless without
+    names of units.
+    Returns a str without a full stop.  Where the unsteadiness is above 0.1 it states alone from
+    which speed on it is not; for an elastic cylinder alone that it never stops.
+    """
+    speed, time, length = (f" {unit}".rstrip() for unit in free.units)
+    value = float(free.unsteadiness)
+    most = free.reach(STEADY_LIMIT)
+    whole = free.distance()
+    text = f"unsteadiness {value:.2g} (up to {STEADY_LIMIT} is allowed): "
+    if value > STEADY_LIMIT:
+        return text + (
+            "too slow for the quasi-steady assumption of a motion (contact states and constant "
+            "speeds are valid, their "
+            "stability is not); "
+            f"the error of V is below 10 % above {most.speed:.2g}{speed}"
+        )
+    if not np.isfinite(whole):
+        return text + "an elastic cylinder never stops"
+    fine = free.reach(0.1 * STEADY_LIMIT)
+    start = free.start()
+    text += f"the coasting distance is {whole:.4g}{length}; the error of V is below "
+    if fine.time:
+        text += f"1 % down to {fine.speed:.2g}{speed}, below " if fine.speed else "1 % to the end"
+    if fine.speed:
+        reached = (
+            f"which is reached after {most.time:.3g}{time}, {most.left:.2g}{length} before the end"
+        )
+        end = f"down to {most.speed:.2g}{speed}, {reached}"
+        text += f"10 % {end if most.speed else 'to the end'}"
+    if start.speed > LARGEST_LOSS * float(free.u * free.speed):
+        return text + "; after a long standstill the cylinder would not leave its indentation"
+    loss = f"{start.speed:.2g}{speed} of speed and {start.distance:.2g}{length} of distance"
+    return f"{text}; a start after a long standstill costs {loss}"
+
+
+def _describe_motion(free: FreeRolling, most: float, share: float) -> str:
+    """Return sentences on the error of a motion, or of the worst of several.
+
+    free: fastest state of the motion, u without axes.
+    most: largest unsteadiness of the motion, dimensionless; up to 0.1 the speed and the share are
+    not stated.
+    share: fraction of its distance with an error above 10 %, of several motions the mean; NaN where
+        it is not known, which the sentence then leaves out.
+    Returns a str without a full stop.
+    """
+    text = f"unsteadiness up to {most:.2g} (up to {STEADY_LIMIT} is allowed): "
+    text += "the error of V is below 10 % "
+    if most <= STEADY_LIMIT:
+        return text + "throughout"
+    speed = f"{free.reach(STEADY_LIMIT).speed:.2g} {free.units[0]}".rstrip()
+    below = (
+        "" if np.isnan(share) else f"; {100.0 * share:.2g} % of the distance is below that speed"
+    )
+    return f"{text}down to {speed}{below}"
+
+
+# --- The assumptions of the law of a layer of finite thickness, and its stated errors ---
+
+#: Poisson's ratios at which the largest half contact length is known, dimensionless.
+_NU = (0.0, 0.3, 0.45, 0.5)
+#: Half contact length divided by the thickness, at those Poisson's ratios, up to which one stick
+#: zone in front with slip behind is right at all creepages; beyond it the front slips too near full
+#: slip.
+_MOST_THETA = (3.0, 2.0, 1.5, 1.25)
+#: Thicknesses divided by l0 at which the error of Q is known, dimensionless.
+_THICKNESS = (0.2, 0.3, 0.5, 1.0, 2.0, 5.0)
+#: Largest error of Q divided by mu P at those thicknesses, compared with the exact solution without
+#: coupling, for every nu, material, speed and creepage (held by
+#: ``pipeline/evidence/prove/cover.py``).
+_ERROR = (0.064, 0.058, 0.046, 0.029, 0.018, 0.011)
+#: Error of Q divided by mu P, divided by |delta_0|/delta_star, by which shear acts back on the
+#: pressure more than the law has it: of coupled boundary elements at seven scenes 0.29 where the
+#: assumption ``traction`` holds, 0.36 else.
+_SHEAR_ERROR = 0.3
+#: The same of kappa M, dimensionless.
+_SHEAR_ERROR_OF_M = 0.01
+#: Creepage far above any delta_star, for full slip.
+_FULL_SLIP = 1e6
+
+
+def stated_error(thickness: float) -> float:
+    """Return the largest error of Q divided by mu P, compared with the exact solution without
+    coupling.
+
+    thickness: thickness of the layer divided by l0, > 0.
+    Returns the error, dimensionless, interpolated between the thicknesses 0.2 to 5 at which it was
+    measured; the value of the nearest end outside of them.
+    """
+    return float(np.interp(thickness, _THICKNESS, _ERROR))
+
+
+def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]:
+    """Return the lengths of the contact on a cover, and the assumption ``thick``.
+
+    scene: dimensionless parameters of a roller with a cover, or with an array of covers; material
+    and kappa are used.
+    V: speeds, dimensionless, any sign, an array of any shape; broadcasts with the scene.
+    Returns (:class:`ContactLengths`: reach over R, epsilon, lam; the assumption, whose value is
+    half the contact length divided by the thickness of the thinner layer; it holds where that of
+    each layer is at most the limit for its Poisson's ratio, from 3 at nu = 0 to 1.25 at nu = 1/2,
+    up to which one stick zone in front with slip behind is right at every creepage).  Both have the
+    broadcast shape.  The sentence states the errors of the thinnest cover, and the limit for the
+    cover whose limit is lowest.
+    Raises ParameterError for kappa |V| above 1e300, shapes that do not broadcast, and a layer too
+    thin for its law.
+    """
+    cover = scene.cover
+    assert cover is not None
+    state = evaluate_contact(scene, np.abs(V), np.zeros(()), False, ("lam", "epsilon"))
+    half = 0.5 * state["lam"]
+    thickness = float(np.min(cover.thinnest))
+    layers = [(nu, h) for _, nu, h in map(cover.body, ("cylinder", "base")) if h is not None]
+    limits = [np.interp(nu, _NU, _MOST_THETA) for nu, _ in layers]
+    holds = np.all(
+        [half / h <= limit for (_, h), limit in zip(layers, limits, strict=True)], axis=0
+    )
+    theta = half / cover.thinnest
+    sentence = (
+        f"h/l0 = {thickness:.3g}: half the contact length is up to "
+        f"{float(np.max(theta, initial=0.0)):.2g} times the "
+        f"thickness; up to {np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is "
+        "allowed, where the contact "
+        "sticks in front and slips behind; the error of Q is up to "
+        f"{100.0 * stated_error(thickness):.1f} % of mu P"
+    )
+    return ContactLengths.of(state["lam"], state["epsilon"], scene.kappa), Assumption(
+        holds, theta, sentence
+    )
+
+
+def assess_traction(scene: Parameters, V: Any) -> Assumption:
+    """Return the assumption ``traction`` of a cover: shear acts back on the pressure as the law has
+    it.
+
+    With delta_0* the mean strain mirrored about the middle of the contact (docs/theory_covers.md),
+    it holds where
+    |delta_0* - delta_0| is at most delta_star/2; beyond, both ends of the contact slip.
+
+    scene: dimensionless parameters of a roller with a cover, or with an array of covers.
+    V: speeds, dimensionless, any sign, an array of any shape; broadcasts with the scene.
+    Returns the assumption, whose value is 2 |delta_0* - delta_0|/delta_star, in the broadcast
+    shape.
+    Raises ParameterError as :func:`assess_cover`.
+    """
+    names = ("delta_0", "delta_star", "M_half_space", "M_cylinder")
+    forth, back = (
+        evaluate_contact(scene, np.abs(V), np.full((), slip), False, names)
+        for slip in (_FULL_SLIP, -_FULL_SLIP)
+    )
+    change = {name: 0.5 * (back[name] - forth[name]) / scene.mu for name in names[2:]}
+    free = forth["delta_0"]
+    star = forth["delta_star"]
+    # the law limits the excess x in units of delta_star/2 to x/(1 + x^4)^(1/4)
+    excess = change["M_half_space"] + (1.0 + free) * change["M_cylinder"] - free
+    limited = np.minimum(2.0 * np.abs(excess) / star, 1.0)
+    with np.errstate(divide="ignore"):
+        value = limited / (1.0 - limited**4) ** 0.25
+    part = float(np.max(np.abs(free) / star, initial=0.0))
+    sentence = (
+        f"shear acts back on the pressure: delta_0 is up to {part:.2g} delta_star, and the error "
+        "of Q some "
+        f"{100.0 * _SHEAR_ERROR * part:.2g} % of mu P, that of M {_SHEAR_ERROR_OF_M * part:.1g} P "
+        "l0; "
+        f"both ends slip where this value, up to {float(np.max(value, initial=0.0)):.2g}, is above "
+        "1: "
+        "use method='coupled' there"
+    )
+    return Assumption(value <= 1.0, value, sentence)
+
+
+# --- Which assumptions of the model a state violates ---
+
+
+def validity(
+    roller: Roller, V: Numbers, *, omega: Numbers | None = None, density: float | None = None
+) -> Validity:
+    """Report which assumptions of the model the contact of a rolling cylinder at speed V violates.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, or a :class:`Cylinder` with V in m/s and omega in rad/s.
+    V : speed of the axis, any sign, a number or an array that broadcasts with array parameters; of
+        a Scene divided by R/T_ref, where T_ref is its unit of time.
+    omega : angular velocity, any sign, broadcasts with V; of a Scene multiplied by T_ref; None: the
+        creepage is not known, and ``creep`` is not decided.
+    density : density of a Cylinder, and of the base where they are alike or the cylinder is rigid,
+        kg/m^3; default: as the materials have it; without that of the softer body the slowest shear
+        wave is not known.
+
+    Returns
+    -------
+    Validity
+        For each assumption a number, whether it holds (both in the broadcast shape, None where
+        nothing decides), and a sentence; ``print`` shows them, and ``failed`` names those that
+        fail.  A Scene decides ``small_contact`` and ``under_axis``; ``steady`` if it has a gamma, a
+        V other than 0 and no layer of finite thickness; ``creep`` with omega; of a layer ``thick``,
+        with half the contact length divided by its thickness, and ``traction``.  For a Cylinder
+        ``quasistatic`` compares the speed of the axis, and that of the circumference where omega is
+        given, with the slowest shear wave, sqrt(G/density), G = E/(2 (1 + nu)) of long times, of
+        the bodies whose density is known, and is undecided without that of the softer one;
+        ``bodies`` has Dundurs' constant, ``measured`` the transit frequency in 1/s if a material
+        has measured data.  ``plane`` is not decided.
+
+    Raises
+    ------
+    ParameterError
+        NaN or infinite speeds, a density that is not one positive number, a density for a Scene,
+        shapes that do not broadcast, what is no scene and no cylinder, a layer too thin for its
+        law, of a layer also kappa |V| above 1e300; times of a material beyond 1e-100 to 1e100
+        T_ref.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> report = vr.validity(vr.presets.RUBBER_CYLINDER, 2.0, omega=20.0)
+    >>> bool(report.small_contact.holds)
+    True
+    """
+    _, scene, scale = resolve_model(roller, "validity")
+    speeds = {"V": V} if omega is None else {"V": V, "omega": omega}
+    given = {name: check_array(name, value, unit=scale) for name, value in speeds.items()}
+    with np.errstate(over="ignore"):
+        scaled = {name: divide_by_unit(name, array, scale[name]) for name, array in given.items()}
+    speed = scaled["V"]
+    spin = scaled.get("omega")
+    broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
+    if scene.cover is None:
+        free = FreeRolling.of_scene(scene, speed)
+        lengths = free.contact_lengths(scene.kappa)
+        steady = UNKNOWN.steady if scene.gamma is None else Steadiness.of(free.scaled(scale))
+        report = UNKNOWN._replace(steady=steady)
+    else:
+        lengths, thick = assess_cover(scene, speed)
+        report = UNKNOWN._replace(
+            steady=UNKNOWN_OF_COVERS, thick=thick, traction=assess_traction(scene, speed)
+        )
+    report = report._replace(
+        small_contact=assess_small_contact(lengths.reach),
+        under_axis=assess_position(lengths.epsilon),
+    )
+    if spin is not None:
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
+        full: Any = np.abs(delta) >= scene.mu * np.asarray(lengths.reach)
+        if scene.cover is not None:
+            full = evaluate_contact(scene, speed, spin, True, ("full_slip",))["full_slip"]
+        report = report._replace(creep=assess_creep(delta, full))
+    if roller.body_data is not None:
+        return roller.body_data.extend_validity(
+            report, lengths.lam, given["V"], given.get("omega"), density
+        )
+    if density is not None:
+        sentence = "density needs a Cylinder: a Scene has no wave speed"
+        raise ParameterError("density", density, "None", sentence)
+    return report

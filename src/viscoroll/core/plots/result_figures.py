@@ -1,0 +1,368 @@
+"""Figures of measurements and of many motions.
+
+Figures of measurements: a material, the fit of a series, and an identification.
+
+Figures of many motions: quantiles and final distribution of each quantity, and Sobol indices as
+bars.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..errors import ParameterError
+from . import (
+    LINES,
+    axis_label,
+    new_figure,
+    new_panels,
+    plot_measured_range,
+    quantile_bands,
+    small_legend,
+    spaced_by_factors,
+    variable_label,
+    with_unit,
+    zero_line,
+)
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+# --- Figures of measurements ---
+
+#: Decades that are shown beyond the shortest and the longest time of a material.
+_MARGIN = 2.0
+#: Points of a curve.
+_POINTS = 400
+
+
+def master_curve(material: Any) -> Figure:
+    """Draw E', E'' and tan delta over angular frequency on the left, E(t) on the right, in Pa,
+    rad/s and s.
+
+    The axis reaches two decades beyond the shortest and the longest time of the material.
+
+    material: a :class:`Material`, whose name, series, T_ref and ``measured`` are read.  If it has a
+        record of its measurement, curves are solid in the measured band, for E(t) the inverse of
+        its frequencies, and dashed outside; else each curve has a style of its own.
+    Returns the :class:`matplotlib.figure.Figure`; of an elastic material it has no E'' and tan
+    delta.
+    Raises ParameterError for a rigid body, which has no curves.
+    """
+    if material.is_rigid:
+        raise ParameterError("material", "rigid", "a material with a finite modulus")
+    times = material.T_ref * np.concatenate(
+        [material.prony.T, material.prony.tau, [1.0][: not material.prony.E.size]]
+    )
+    ends = np.log10(times.min()) - _MARGIN, np.log10(times.max()) + _MARGIN
+    t = np.logspace(*ends, _POINTS)
+    omega = 1.0 / t[::-1]
+    title = (material.name or "Material") + (
+        "; dashed: outside the measured band" if material.measured else ""
+    )
+    figure, (left, right) = new_figure(title, 1, 2, 3.4)
+    band = material.measured and (material.measured.low, material.measured.high)
+    lines = plot_measured_range(left, omega, material.storage(omega), band, **LINES[0], label="E'")[
+        :1
+    ]
+    left.set(xscale="log", yscale="log")
+    if (
+        material.prony.E.size
+    ):  # the loss modulus of an elastic material is 0, which has no logarithm
+        lines += plot_measured_range(
+            left, omega, material.loss(omega), band, **LINES[1], label="E''"
+        )[:1]
+        factor = left.twinx()
+        lines += plot_measured_range(
+            factor, omega, material.tan_delta(omega), band, **LINES[2], label="tan delta"
+        )[:1]
+        factor.set(ylabel="loss factor tan delta", ylim=(0.0, None))
+    left.set(xlabel="angular frequency, rad/s", ylabel="storage and loss modulus, Pa")
+    small_legend(left, handles=lines, loc="lower center", bbox_to_anchor=(0.5, 1.0), ncols=3)
+    plot_measured_range(
+        right, t, material.relaxation(t), band and (1.0 / band[1], 1.0 / band[0]), **LINES[0]
+    )
+    right.set(xlabel="time, s", ylabel="relaxation modulus E(t), Pa", xscale="log", yscale="log")
+    return figure
+
+
+def series_fit(fit: Any) -> Figure:
+    """Draw measured moduli as points and the series that was fitted to them as curves, on
+    logarithmic axes.
+
+    fit: a :class:`viscoroll.Fit` (E' and E'' over angular frequency, rad/s) or a
+        :class:`viscoroll.RelaxationFit` (the relaxation modulus over time, s), in the unit of its
+        data; its ``data``, sorted by frequency or time, > 0, ``symbols``, ``prony`` and misfit are
+        read.
+    Returns the :class:`matplotlib.figure.Figure`; its title states the number of modes and the
+    misfit.
+    """
+    x, *columns = fit.data
+    fine = np.geomspace(x[0], x[-1], _POINTS)
+    figure, axes = new_figure(
+        f"Prony series of {fit.prony.E.size} modes: misfit {fit.misfit_text(1)}"
+    )
+    for symbol, values, curve, line in zip(
+        fit.symbols, columns, fit._moduli(fine), LINES, strict=False
+    ):
+        axes.loglog(
+            x, values, "o", color=line["color"], markerfacecolor="none", markersize=4, label=symbol
+        )
+        axes.loglog(fine, curve, **line, label=f"{symbol} of the fit")
+    label = "time, s" if fit.data._fields[0] == "t" else "angular frequency, rad/s"
+    axes.set(xlabel=label, ylabel="modulus, unit of the data")
+    small_legend(axes, ncols=2)
+    return figure
+
+
+def identification(fit: Any) -> Figure:
+    """Draw a column for each quantity of a record: data and prediction band on top, residuals
+    below.
+
+    Residuals are (fit - data)/sigma, dimensionless.  A record over several coordinates is drawn
+    over its last one, with a vertical line for each point's prediction band.
+
+    fit: a :class:`viscoroll.measurements.identification_result.Identification`, whose ``values``
+        (for their names), ``records``, ``predicted`` bands (value, low, high), ``sigma`` (in the
+        unit of the quantity), ``planned`` and columns of the problem are read.  Of a planned one,
+        which has no data, neither data nor residuals are drawn.
+    Returns the :class:`matplotlib.figure.Figure`, whose axis of a coordinate that is spaced by
+    factors is logarithmic.
+    """
+    shown = fit._problem.columns
+    figure, grid = new_figure(
+        f"Identification of {', '.join(fit.values)}",
+        2,
+        len(shown),
+        4.4,
+        squeeze=False,
+        sharex="col",
+        height_ratios=(2.5, 1.0),
+    )
+    for column, (top, bottom) in zip(shown, grid.T, strict=True):
+        record = fit.records[column.record]
+        band = getattr(fit.predicted[column.record], column.quantity)
+        *others, variable = record.COORDINATES
+        curves = bool(others)  # of several speeds, which one line cannot connect
+        order = np.argsort(np.ravel(getattr(record, variable)), kind="stable")
+        arrays = getattr(record, variable), fit.sigma[str(column)], *band
+        x, sigma, value, low, high = (np.ravel(array)[order] for array in arrays)
+        (top.vlines if curves else top.fill_between)(
+            x, low, high, color="0.7" if curves else "0.85"
+        )
+        top.plot(x, value, "_" if curves else "-", color=LINES[1]["color"], label="fit")
+        if not fit.planned:
+            y = np.ravel(getattr(record, column.quantity))[order]
+            top.plot(x, y, ".", color="black", markersize=3, label="data")
+            bottom.plot(x, (value - y) / sigma, ".", color="black", markersize=3)
+        zero_line(bottom)
+        if spaced_by_factors(x):
+            bottom.set_xscale("log")
+        top.set(
+            ylabel=axis_label(column.quantity, record.unit(column.quantity)), title=column.record
+        )
+        small_legend(top)
+        bottom.set(xlabel=axis_label(variable, record.unit(variable)), ylabel="residual/sigma")
+    return figure
+
+
+# --- Figures of many motions ---
+
+#: Largest number of bars of a histogram; fewer motions have two times the root of their number.
+_MOST_BARS = 80
+#: Fraction of the motions in one bar above which a histogram has a logarithmic axis of counts.
+_ONE_BAR = 0.9
+#: Fraction of the motions at each end that a histogram leaves out.
+_TAIL = 1e-3
+#: Smallest width of an axis that matplotlib draws.
+_MIN_WIDTH = 1e-280
+#: Largest number that matplotlib draws.
+_MAX_NUMBER = 1e300
+#: Width of a bar of a Sobol index.
+_BAR_WIDTH = 0.38
+#: Sobol index -> its name, the grey of its bar, the shift of its bar in widths.
+_SOBOL = {"S1": ("first-order", "0.35", -0.5), "ST": ("total", "0.8", 0.5)}
+#: Names of results for titles, where the name in files is too short.
+_RESULT_NAMES = {"lost": "share of energy lost", "onset_time": "onset time $t^*$"}
+#: Symbols of initial values.
+_INITIAL_SYMBOLS = {"V0": "$V_0$", "omega0": r"$\omega_0$"}
+
+
+def distributions(data: xr.Dataset) -> Figure:
+    """Draw a row for each quantity: its quantiles over time on the left, its histogram at the last
+    time on the right.
+
+    Of a quantity that is one number per motion, or where there is a single output time, the left
+    panel shows the fraction of motions below each quantile.
+
+    data: :class:`xr.Dataset`, the summaries of a run or of an ensemble: coordinates quantile, the
+        levels, and t, output times; NAME_quantiles over (quantile, t) or over quantile, with the
+        attribute units and perhaps symbol; NAME_histogram, NAME_bin_low and NAME_bin_high;
+        attribute motions, and of a run design and seed, for the title.  If no quantity has a
+        histogram there is no right column; if any has, all must have one (else KeyError).
+    Returns the :class:`matplotlib.figure.Figure`; without quantities it has one empty row.
+    """
+    data = data.sortby("quantile")
+    about = data.attrs
+    levels = data["quantile"].values
+    names = [
+        str(name).removesuffix("_quantiles") for name in data if str(name).endswith("_quantiles")
+    ]
+    design = f", {about['design']}, seed {about['seed']}" if "design" in about else ""
+    columns = 2 if any(f"{name}_histogram" in data for name in names) else 1
+    rows = max(len(names), 1)
+    figure, grid = new_figure(
+        f"{about['motions']:,} motions{design}", rows, columns, 2.4 * rows, squeeze=False
+    )
+    for name, (left, *right) in zip(names, grid, strict=False):
+        variable = data[f"{name}_quantiles"]
+        label = axis_label(name, variable.attrs["units"], variable.attrs.get("symbol", ""))
+        if "t" in variable.dims and data.sizes["t"] > 1:
+            quantile_bands(left, t := data["t"].values, levels, variable.values)
+            left.set(xlabel=variable_label(data["t"]), ylabel=label, xlim=(t[0], t[-1]))
+        else:
+            left.plot(variable.values.ravel(), levels, "o-", color="black")
+            left.set(xlabel=label, ylabel="fraction of motions below", ylim=(0.0, 1.0))
+        for axes in right:
+            axes.set_xlabel(f"{label} at the end" if "t" in variable.dims else label)
+            _draw_histogram(axes, data, name)
+        for axes in (left, *right):
+            linear = "x" if axes.get_yscale() == "log" else "both"
+            axes.locator_params(nbins=6, axis=linear)
+            axes.ticklabel_format(style="sci", scilimits=(-2, 5), axis=linear)
+    return figure
+
+
+def _draw_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
+    """Draw the histogram of a quantity at the last time.
+
+    The tails, a thousandth of the motions at either end, are left out; the title states how many
+    motions that are, if any.  Where one of several bars has more than 90 % of the motions that are
+    shown, the axis of counts is logarithmic.  If no motion has a value the panel is empty and its
+    title is "no values".
+
+    axes: axes of matplotlib, drawn into.
+    data: summaries of motions, with NAME_histogram (bins,) or (bins, times), NAME_bin_low and
+    NAME_bin_high (bins,).
+    name: name of the quantity, NAME.
+    """
+    counts = data[f"{name}_histogram"].values
+    counts = counts[:, -1] if counts.ndim == 2 else counts
+    axes.set_ylabel(f"motions, of {counts.sum():,}")
+    if not counts.any():
+        axes.set_title("no values", fontsize="small")
+        return
+    edges, bars = _even_bars(
+        data[f"{name}_bin_low"].values, data[f"{name}_bin_high"].values, counts
+    )
+    axes.stairs(bars, edges, fill=True, color="0.6")
+    if (
+        bars.size > 1 and bars.max() > _ONE_BAR * bars.sum()
+    ):  # as at rest: the other bars would not be visible
+        axes.set_yscale("log")
+    if outside := int(counts.sum() - round(bars.sum())):
+        axes.set_title(f"{outside} more beyond the ends", fontsize="small")
+
+
+def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
+    """Combine bins to bars of equal width, without a thousandth of the motions at either end.
+
+    low, high: ends of the bins, ascending, (bins,), in the unit of the quantity.
+    counts: motions in each bin, (bins,), at least one in all; a bar gets the fraction of a bin that
+    it overlaps.
+    Returns (edges of the bars, (bars + 1,); numbers of motions, (bars,), which need not be whole).
+    There are 80 bars, or two times the root of the number of motions, rounded down, if that is
+    less.  Ends are clipped to -1e300 and 1e300.  If the bins together are narrower than 1e-280,
+    which matplotlib does not draw, there is one bar, about the value, as wide as its magnitude but
+    at least 1, with all motions of these bins.
+    """
+    reached = np.cumsum(counts) / max(counts.sum(), 1)
+    first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
+    last = min(last, counts.size - 1)
+    start, end = np.clip([low[first], high[last]], -_MAX_NUMBER, _MAX_NUMBER)
+    if end - start < _MIN_WIDTH:
+        return start + max(1.0, abs(start)) * np.array([-0.5, 0.5]), counts[first : last + 1].sum(
+            keepdims=True
+        )
+    edges = np.linspace(start, end, min(_MOST_BARS, 2 * math.isqrt(counts.sum())) + 1)
+    below = np.append(0, np.repeat(np.cumsum(counts), 2))[:-1]
+    return edges, np.diff(np.interp(edges, np.ravel([low, high], "F"), below))
+
+
+def sobol_bars(indices: xr.Dataset) -> Figure:
+    """Draw first-order and total index of every input with its confidence interval, a panel for
+    each quantity.
+
+    Quantities over time are shown at the last time with indices.  All panels have the inputs in one
+    order: the input with the largest total index of any quantity first.
+
+    indices: dataset of :func:`viscoroll.runs.sensitivity.sobol_indices`, or read from its netCDF
+        file: of each quantity NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf over (t, input) or
+        (input,), dimensionless; at least one quantity (else ValueError); coordinates input, names,
+        and t; attributes confidence, in (0, 1), and motions, their number, for the title.
+    Returns the :class:`matplotlib.figure.Figure`.
+    """
+    names = [str(name).removesuffix("_S1") for name in indices if str(name).endswith("_S1")]
+    shown = [_last_indices(indices, name) for name in names]
+    order = np.argsort(-np.max([values["ST"] for _, values in shown], axis=0), kind="stable")
+    inputs = [
+        _INITIAL_SYMBOLS.get(name) or axis_label(name) for name in indices["input"].values[order]
+    ]
+    percent = f"{indices.attrs['confidence']:.0%}".replace("%", " %")
+    title = (
+        f"Sobol indices of {indices.attrs['motions']:,} motions, with {percent} confidence "
+        "intervals"
+    )
+    figure, panels = new_panels(title, len(shown), 2.1, sharey=True)
+    x = np.arange(order.size)
+    for axes, (text, values) in zip(panels, shown, strict=True):
+        for key, (kind, grey, shift) in _SOBOL.items():
+            axes.bar(
+                x + shift * _BAR_WIDTH,
+                values[key][order],
+                _BAR_WIDTH,
+                yerr=values[f"{key}_conf"][order],
+                label=kind,
+                color=grey,
+                edgecolor="black",
+                linewidth=0.5,
+                capsize=2.5,
+                error_kw={"linewidth": 0.9},
+            )
+        zero_line(axes)
+        axes.set_xticks(x, inputs)
+        axes.set_title(text, fontsize="small")
+    panels[0].set_ylabel("Sobol index")
+    small_legend(panels[0])
+    return figure
+
+
+def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
+    """Return the Sobol indices of a quantity at the last time that has them for the first input.
+
+    Of a quantity without times they are its indices.
+
+    indices: Sobol indices of a run, a dataset with NAME_S1, NAME_S1_conf, NAME_ST and NAME_ST_conf
+        over (t, input) or (input,), finite at one time at least (else IndexError), and t with the
+        attribute units.
+    name: name of the quantity, NAME.
+    Returns (title of the panel; dict from "S1", "S1_conf", "ST" and "ST_conf" to values over the
+    inputs, (inputs,)).
+    """
+    values = {
+        key: indices[f"{name}_{key}"].values for index in _SOBOL for key in (index, f"{index}_conf")
+    }
+    text = _RESULT_NAMES.get(name) or axis_label(name)
+    if values["S1"].ndim == 1:
+        return text, values
+    last = np.flatnonzero(np.isfinite(values["S1"][:, 0]))[-1]
+    time = with_unit(
+        f"{axis_label('t')} = {indices['t'].values[last]:g}", indices["t"].attrs["units"]
+    )
+    return f"{text} at {time}", {key: v[last] for key, v in values.items()}

@@ -1,0 +1,582 @@
+"""Functional mock-up units: variables, description, archive.
+
+The variables of both models, read from variables.csv in the order of their value references,
+which start with 1.
+
+modelDescription.xml of FMI 2.0 and 3.0, and buildDescription.xml of 3.0.
+
+Sources, description and compiled library of an FMU, packed into one archive: :func:`fmu_build`.
+"""
+
+from __future__ import annotations
+
+import csv
+import hashlib
+import re
+import shutil
+import subprocess
+import zipfile
+from importlib.resources import files
+from os import PathLike
+from pathlib import Path
+from tempfile import TemporaryDirectory
+from typing import Any, NamedTuple
+from xml.etree.ElementTree import Element, SubElement, indent, tostring
+
+import msgspec
+import numpy as np
+
+from .. import __version__, tables
+from ..core.checks import check_choice, check_integer
+from ..core.errors import FileError, MissingDependencyError, import_extra, shape_error
+from ..core.files import replace_file
+from ..core.scale import dimension_powers
+from ..laws.law_netcdf import parse_law
+from ..laws.law_table import LawTable
+from ..materials.checked_netcdf import dataset_content
+from ..rollers import Cylinder
+
+# --- The variables of both models ---
+
+
+class Variable(NamedTuple):
+    """A variable of an FMU, a row of variables.csv.
+
+    Attributes
+    ----------
+    model : name of the model that has it, or "both".
+    name : as the tool shows it.
+    causality : "input", "output", "parameter" or "local", as in the standard.
+    unit : unit of its values, one of :data:`UNITS`.
+    start : default start value of what can be set, where no Cylinder gives one: R is that of the
+        examples of the documentation; None, in the file null, of what is computed.
+    positive : whether values that are not above 0 are refused.
+    text : description.
+    """
+
+    model: str
+    name: str
+    causality: str
+    unit: str
+    start: float | None
+    positive: bool
+    text: str
+
+
+class Model(NamedTuple):
+    """A model of an FMU.
+
+    Attributes
+    ----------
+    text : description.
+    variables : all variables but time.
+    states : names of the continuous states; the rate of each is the variable der_NAME.
+    """
+
+    text: str
+    variables: tuple[Variable, ...]
+    states: tuple[str, ...]
+
+
+def _read_model(name: str, text: str, *states: str) -> Model:
+    """Return a model with its variables, which are read from variables.csv.
+
+    name: "Roller" or "ContactElement".
+    text, states: as fields of :class:`Model`; without states the model is one for model exchange
+    alone.
+    Returns the :class:`Model`, with the rows of its name and those of "both", in the order of the
+    file.
+    """
+    with (files(__package__) / "variables.csv").open(encoding="utf-8") as file:
+        variables = msgspec.convert([*csv.reader(file)][1:], list[Variable], strict=False)
+    return Model(
+        text, tuple(variable for variable in variables if variable.model in ("both", name)), states
+    )
+
+
+#: Name of a model -> the model.
+MODELS = {
+    "Roller": _read_model(
+        "Roller", "A viscoelastic cylinder that rolls on a half-space", "v", "slip", "x"
+    ),
+    "ContactElement": _read_model(
+        "ContactElement", "Force element: a viscoelastic cylinder on a half-space"
+    ),
+}
+#: Unit -> the same in base units, as :func:`.scale.dimension_powers` reads it.
+UNITS = {
+    "m": "m",
+    "s": "s",
+    "kg": "kg",
+    "m/s": "m s-1",
+    "m/s2": "m s-2",
+    "rad/s": "rad s-1",
+    "N": "kg m s-2",
+    "N.m": "kg m2 s-2",
+    "Pa": "kg m-1 s-2",
+    "1": "",
+}
+
+
+# --- modelDescription.xml of FMI 2.0 and 3.0, and buildDescription.xml of 3.0 ---
+
+#: Capabilities of both models by version of the standard: attributes of ModelExchange and of
+#: CoSimulation.
+_CAPABILITIES = {
+    2: {
+        "providesDirectionalDerivative": "true",
+        "canGetAndSetFMUstate": "true",
+        "canSerializeFMUstate": "true",
+    },
+    3: {
+        "providesDirectionalDerivatives": "true",
+        "providesAdjointDerivatives": "true",
+        "canGetAndSetFMUState": "true",
+        "canSerializeFMUState": "true",
+    },
+}
+#: Relative tolerance of a tool's solver if its user gives none.  The tests pass through rest with
+#: it.
+_TOLERANCE = "1e-5"
+
+
+def model_description(
+    version: int, name: str, starts: dict[str, float], token: str, title: str
+) -> str:
+    """Return the text of modelDescription.xml, in which a tool finds the variables and capabilities
+    of an FMU.
+
+    version: version of the FMI standard, the int 2 or 3.
+    name: name of the model, a key of MODELS: "Roller" or "ContactElement".
+    starts: name -> start value of the variables that can be set, in their units; others get no
+    start.
+    token: GUID (FMI 2) or instantiation token (FMI 3), which the library compares.
+    title: title of the law, which the description of the model ends with.
+    Returns the text of the XML file, with its declaration.
+    """
+    model = MODELS[name]
+    root = Element(
+        "fmiModelDescription",
+        {
+            "fmiVersion": f"{version}.0",
+            "modelName": f"viscoroll.{name}",
+            "description": f"{model.text}: {title}",
+            "generationTool": f"viscoroll {__version__}",
+            "license": "BSD-3-Clause",
+            **(
+                {"guid": token, "numberOfEventIndicators": "0"}
+                if version == 2
+                else {"instantiationToken": token}
+            ),
+        },
+    )
+    _add_interfaces(root, version, name, model)
+    units = SubElement(root, "UnitDefinitions")
+    for unit, base in UNITS.items():
+        element = SubElement(units, "Unit", name=unit)
+        SubElement(
+            element,
+            "BaseUnit",
+            {base_unit: str(power) for base_unit, power in dimension_powers(base).items()},
+        )
+    SubElement(
+        root,
+        "DefaultExperiment",
+        startTime="0",
+        stopTime="1",
+        tolerance=_TOLERANCE,
+        stepSize="0.01",
+    )
+    variables = SubElement(root, "ModelVariables")
+    references = {variable.name: str(n) for n, variable in enumerate(model.variables, start=1)}
+    if version == 3:
+        time = {"causality": "independent", "variability": "continuous", "unit": "s"}
+        SubElement(variables, "Float64", {"name": "time", "valueReference": "0"} | time)
+    for variable in model.variables:
+        _add_variable(variables, version, variable, references, starts)
+    _add_structure(SubElement(root, "ModelStructure"), version, model, references)
+    return _as_text(root)
+
+
+def _as_text(root: Element) -> str:
+    """Return an element and its children as indented XML with a declaration."""
+    indent(root)
+    return '<?xml version="1.0" encoding="UTF-8"?>\n' + tostring(root, encoding="unicode") + "\n"
+
+
+def _add_interfaces(root: Element, version: int, name: str, model: Model) -> None:
+    """Add the interfaces that the FMU has: ModelExchange and, of a model with states, CoSimulation.
+
+    root: :class:`Element`, element fmiModelDescription, to which they are added.
+    version: version of the standard, 2 or 3; of 2 the source file is added too.
+    name: name of the model and of its library.
+    model: :class:`Model`, the model, of which only ``states`` is used.
+    """
+    steps = {
+        2: {"completedIntegratorStepNotNeeded": "true"},
+        3: {"needsCompletedIntegratorStep": "false"},
+    }
+    interfaces = {"ModelExchange": steps[version]}
+    if model.states:
+        interfaces["CoSimulation"] = {"canHandleVariableCommunicationStepSize": "true"}
+    for interface, more in interfaces.items():
+        element = SubElement(
+            root, interface, {"modelIdentifier": name} | _CAPABILITIES[version] | more
+        )
+        if version == 2:
+            SubElement(SubElement(element, "SourceFiles"), "File", name="fmu.c")
+
+
+def _add_variable(
+    parent: Element,
+    version: int,
+    variable: Variable,
+    references: dict[str, str],
+    starts: dict[str, float],
+) -> None:
+    """Add a variable to modelDescription.xml.
+
+    A parameter is "tunable", if it must be above 0, else "fixed" (the speeds at the start); all
+    others are continuous.
+
+    parent: :class:`Element`, element ModelVariables, to which a Float64 (FMI 3) or a ScalarVariable
+        with a Real (FMI 2) is added.
+    version: version of the FMI standard, the int 2 or 3.
+    variable: :class:`Variable` to add, of which name, causality, unit, positive and text
+        are read; a name der_NAME makes it the rate of the variable NAME.
+    references: name -> value reference, a number as text, of all variables of the model.
+    starts: name -> start value, in the unit of the variable, of those that can be set; others get
+    no start.
+    """
+    varies = (
+        "continuous"
+        if variable.causality != "parameter"
+        else "tunable"
+        if variable.positive
+        else "fixed"
+    )
+    about = {
+        "name": variable.name,
+        "valueReference": references[variable.name],
+        "causality": variable.causality,
+        "variability": varies,
+        "description": variable.text,
+    }
+    value = {"unit": variable.unit}
+    if variable.name in starts:
+        value["start"] = repr(starts[variable.name])
+    if variable.name.startswith("der_"):
+        value["derivative"] = references[variable.name.removeprefix("der_")]
+    if version == 3:
+        SubElement(parent, "Float64", about | value)
+    else:
+        SubElement(SubElement(parent, "ScalarVariable", about), "Real", value)
+
+
+def _add_structure(parent: Element, version: int, model: Model, references: dict[str, str]) -> None:
+    """Add the lists of outputs, of rates of the states, and of initial unknowns, which are the two
+    together.
+
+    A model without states has no list of rates.  In FMI 2 a list is an element with an Unknown for
+    each member; in FMI 3 the members stand in ModelStructure themselves.  Outputs are in the order
+    of the variables, rates in that of the states, initial unknowns in ascending order of their
+    references.
+
+    parent: :class:`Element`, element ModelStructure, to which they are added.
+    version: version of the FMI standard, the int 2 or 3.
+    model: :class:`Model`, of which the states and the name and causality of the variables are read.
+    references: name -> value reference, a number as text, of all variables.
+    """
+    outputs = [
+        references[variable.name] for variable in model.variables if variable.causality == "output"
+    ]
+    rates = [references[f"der_{state}"] for state in model.states]
+    unknowns = sorted((*outputs, *rates), key=int)
+    kinds = {"Outputs": outputs, "Derivatives": rates, "InitialUnknowns": unknowns}
+    if version == 3:
+        kinds = {"Output": outputs, "ContinuousStateDerivative": rates, "InitialUnknown": unknowns}
+    for kind, members in kinds.items():
+        group = SubElement(parent, kind) if version == 2 and members else parent
+        for reference in members:
+            if version == 2:
+                SubElement(group, "Unknown", index=reference)
+            else:
+                SubElement(group, kind, valueReference=reference)
+
+
+def build_description(name: str) -> str:
+    """Return the text of sources/buildDescription.xml of FMI 3.0, by which a tool compiles the
+    sources itself.
+
+    name: name of the model and of its library, "Roller" or "ContactElement".
+    Returns the text of the XML file, with its declaration.
+    """
+    root = Element("fmiBuildDescription", fmiVersion="3.0")
+    configuration = SubElement(root, "BuildConfiguration", modelIdentifier=name)
+    SubElement(
+        SubElement(configuration, "SourceFileSet", language="C99"), "SourceFile", name="fmu.c"
+    )
+    return _as_text(root)
+
+
+# --- Sources, description and compiled library of an FMU, packed into one archive ---
+
+#: Options of the C compiler.  -ffp-contract=off keeps the bits independent of the machine's fused
+#: multiply-add.
+_FLAGS = ("-std=c99", "-O2", "-ffp-contract=off", "-shared", "-fPIC")
+
+
+def build(given: Any, path: str | PathLike[str], model: str = "Roller", version: int = 2) -> None:
+    """Write an FMU of a cylinder, with its sources and a library for this machine, whole or not at
+    all.
+
+    Parameters
+    ----------
+    given : a :class:`viscoroll.Cylinder`, whose numbers become the start values; or a material,
+        pair, cover, law of :func:`viscoroll.load_law` or alpha (a number >= 1), for which radius,
+        load, mass and friction are set in the tool.
+    path : file to write, with the suffix .fmu by custom; a file of that name is replaced.
+    model : "Roller", from drive force and torque to v, omega and x: co-simulation with its own
+        step-size control, and model exchange; or "ContactElement", from v, omega and load to force,
+        torque and moments: model exchange.
+    version : version of the FMI standard, the int 2 or 3.
+
+    Raises
+    ------
+    ParameterError
+        Another model or version, a material without a law, arrays in the cylinder.
+    MissingDependencyError
+        No fmpy, which brings the headers of the standard, or no C compiler ``cc``.
+    FileError
+        If the file cannot be written, the compiler fails, or a law that is given is incomplete or
+        that of every alpha.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> from viscoroll import fmu
+    >>> fmu.build(vr.presets.RUBBER_CYLINDER, "roller.fmu")  # doctest: +SKIP
+
+    Notes
+    -----
+    Both models give exact slopes as directional derivatives, and in FMI 3 as adjoint derivatives.
+    As co-simulation a roller that starts with slip follows :func:`viscoroll.roll` to 1e-9 of its
+    speed (``tests/fmu/test_fmu.py``).  The law of a cover holds at one contact length at rest: the
+    FMU refuses values of R, load, width and E_prime that make another one; the slopes of a
+    ContactElement over the load are those at that length.
+    """
+    check_choice("model", model, *MODELS)
+    version = check_integer("version", version, 2, 3)
+    law = tables.law(given)
+    table = parse_law(dataset_content(law), path)
+    l0 = _contact_length_of_cover(table)
+    starts = _start_values(MODELS[model].variables, given, table, l0)
+    fmpy = import_extra("fmpy", "fmu")
+    compiler = shutil.which("cc")
+    if compiler is None:
+        raise MissingDependencyError("cc, a compiler of C,", None)
+    with TemporaryDirectory() as name:
+        folder = Path(name)
+        tables.export(law, folder / "law.h")
+        constants = _model_header(MODELS[model].variables, starts) + (
+            f"#define FMI_VERSION {version}\n#define ROLLER "
+            f"{int(bool(MODELS[model].states))}\n#define L0 {l0!r}\n"
+        )
+        token = _write_sources(
+            folder, Path(fmpy.__file__).parent / "c-code", model, version, constants
+        )
+        library = folder / f"{model}{fmpy.sharedLibraryExtension}"
+        _compile(compiler, folder / "fmu.c", library)
+        content = {
+            "modelDescription.xml": model_description(
+                version, model, starts, token, law.attrs["title"]
+            ).encode()
+        }
+        if version == 3:
+            content["sources/buildDescription.xml"] = build_description(model).encode()
+        sources = sorted(source for source in folder.iterdir() if source.suffix in (".c", ".h"))
+        content |= {f"sources/{source.name}": source.read_bytes() for source in sources}
+        machine = fmpy.platform if version == 2 else fmpy.platform_tuple
+        content[f"binaries/{machine}/{library.name}"] = library.read_bytes()
+    with (
+        replace_file(path) as temporary,
+        zipfile.ZipFile(temporary, "w", zipfile.ZIP_DEFLATED) as archive,
+    ):
+        for name, data in content.items():
+            archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
+
+
+def _contact_length_of_cover(table: LawTable) -> float:
+    """Return the contact length at rest for which the law of a cover holds, so that the FMU can
+    refuse any other.
+
+    It need not be checked for half-spaces, nor for a dimensionless cover, whose thickness in m is
+    free.  The length is the thickness of the cover in m, divided by that in units of the contact
+    length at rest.
+
+    table: :class:`LawTable`, a law, with ``cover`` and ``pair`` (in SI units), each None where it
+        has none, and ``material``, which of a cover has the ``thickness`` in units of the contact
+        length at rest.
+    Returns the length in m; 0.0 if the FMU need not check it.
+    """
+    if table.cover is None or table.pair is None:
+        return 0.0
+    cover: Any = table.material
+    return float(table.pair.cover(1.0).thickness / cover.thickness)
+
+
+def _start_values(
+    variables: tuple[Variable, ...], given: Any, table: LawTable, l0: float
+) -> dict[str, float]:
+    """Return the start value of each variable that can be set, for the description and the library
+    of the FMU.
+
+    A value comes from the Cylinder if there is one, else from the law (T_ref, E_prime), else from
+    variables.csv.
+
+    variables: variables of the model.
+    given: argument ``given`` of :func:`fmu_build`; the numbers of a Cylinder become start values,
+    for 1 m of its width.
+    table: :class:`LawTable`, law of ``given``, which has T_ref (s) and, of SI materials, a ``pair``
+    with E_prime (Pa).
+    l0: contact length at rest of a cover in m, or 0.0; without a Cylinder the load at the start is
+        the one that makes it, at the default radius.
+    Returns name -> value in the unit of the variable, of all variables whose ``start`` is not None,
+    in their order.
+    Raises ParameterError for a Cylinder with arrays, whose message has the first such name.
+    """
+    starts = {variable.name: variable.start for variable in variables if variable.start is not None}
+    values: dict[str, Any] = {"T_ref": table.T_ref}
+    if table.pair is not None:
+        values["E_prime"] = table.pair.E_prime
+        if l0:
+            values["load"] = l0**2 * table.pair.E_prime / (32.0 * starts["R"])
+    if isinstance(given, Cylinder):
+        values |= {name: getattr(given, name) for name in ("R", "E_prime", "mu", "load")}
+        values |= {"mass": given.m, "inertia": given.j}
+    for name, value in values.items():
+        if np.ndim(value):
+            raise shape_error(name, np.shape(value), "one number: an FMU contains one cylinder")
+    return {name: float(values.get(name, start)) for name, start in starts.items()}
+
+
+def _write_sources(folder: Path, headers: Path, model: str, version: int, constants: str) -> str:
+    """Write all that ``cc fmu.c`` needs beside law.h, and return the token.
+
+    folder: where law.h is, and fmu.c, vr_roll.h, the headers of the standard, stubs.h and model.h
+    are written.
+    headers: folder with the headers of the standard, of both versions, as fmpy brings them.
+    model: "Roller" or "ContactElement".
+    version: version of the FMI standard, the int 2 or 3.
+    constants: C text of model.h, to which the token is added.
+    Returns the GUID or instantiation token that the description and the library share: a digest of
+    all sources, as "{8-4-4-4-12}" hexadecimal digits.
+    """
+    package = files("viscoroll")
+    source = (package / "fmu/fmu.c").read_text(encoding="utf-8")
+    texts = {
+        "fmu.c": source,
+        "vr_roll.h": (package / "tables/c/vr_roll.h").read_text(encoding="utf-8"),
+    }
+    texts |= {
+        path.name: path.read_text(encoding="utf-8") for path in headers.glob(f"fmi{version}*.h")
+    }
+    texts["stubs.h"] = _stubs(source, texts[f"fmi{version}FunctionTypes.h"], version)
+    texts["model.h"] = constants
+    law = (folder / "law.h").read_text(encoding="utf-8")
+    token = hashlib.sha256(
+        "".join((model, law, *(texts[name] for name in sorted(texts)))).encode()
+    ).hexdigest()
+    token = f"{{{token[:8]}-{token[8:12]}-{token[12:16]}-{token[16:20]}-{token[20:32]}}}"
+    texts["model.h"] += f'#define TOKEN "{token}"\n'
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    return token
+
+
+def _model_header(variables: tuple[Variable, ...], starts: dict[str, float]) -> str:
+    """Return the C text of the variables: their references, names, kinds and start values;
+    reference 0 is time.
+
+    A kind is 0 (the variable cannot be set) of time and where ``start`` is None; else 1 of an
+    input, 2 of a parameter above 0, which is tunable, and 3 of another parameter, which is fixed.
+
+    variables: :class:`Variable` of the model, in the order of their references, which
+        start with 1; only name, start and positive are read.
+    starts: name -> start value in the unit of the variable; 0.0 stands for those that it does not
+    have.
+    Returns an enum of n_NAME, the references, and COUNT, their number with time; and the arrays
+    NAMES, KINDS and START, of COUNT elements each, in the order of the references, the first for
+    time.
+    """
+    rows = [("time", 0, 0.0)]
+    rows += [
+        (
+            v.name,
+            0 if v.start is None else 1 if v.causality == "input" else 3 - v.positive,
+            starts.get(v.name, 0.0),
+        )
+        for v in variables
+    ]
+    names, kinds, values = zip(*rows, strict=True)
+    quoted = ", ".join(f'"{name}"' for name in names)
+    return (
+        f"enum {{ {', '.join(f'n_{name}' for name in names)}, COUNT }};\n"
+        f"static const char *const NAMES[COUNT] = {{{quoted}}};\n"
+        f"static const char KINDS[COUNT] = {{{', '.join(map(str, kinds))}}};\n"
+        f"static const double START[COUNT] = {{{', '.join(map(repr, values))}}};\n"
+    )
+
+
+def _stubs(source: str, header: str, version: int) -> str:
+    """Return C definitions of the functions of the standard that fmu.c leaves out, which an FMU
+    must have all the same.
+
+    A function that gets or sets values returns OK for none and an error for some; every
+    other one returns an error, or NULL where it returns no status; void functions do nothing.
+
+    source: text of fmu.c.
+    header: text of the standard's header of function types.
+    version: version of the FMI standard, the int 2 or 3.
+    Returns the C text, a line a function.
+    """
+    lines = []
+    plain = re.sub(r"/\*.*?\*/", "", header, flags=re.DOTALL)
+    for kind, name, arguments in re.findall(
+        rf"typedef\s+([\w\s*]+?)\s*\b(fmi{version}\w+)TYPE\s*\(([^)]*)\)", plain
+    ):
+        if re.search(rf"^[\w *]+\b{name}\(", source, flags=re.MULTILINE):
+            continue
+        parameters = " ".join(arguments.replace("Byte[]", "Byte bytes[]").split())
+        ok = f"fmi{version}OK"
+        error = f"fmi{version}Error"
+        count = re.search(r"size_t (n\w+)", parameters)
+        status = f"{count[1]} ? {error} : {ok}" if count else error
+        body = (
+            "" if kind == "void" else f" return {status if kind.endswith('Status') else 'NULL'}; "
+        )
+        lines.append(f"{kind} {name}({parameters}) {{{body}}}\n")
+    return "".join(lines)
+
+
+def _compile(compiler: str, source: Path, library: Path) -> None:
+    """Compile fmu.c to a shared library.
+
+    compiler: path of cc.
+    source: path of fmu.c, beside the headers.
+    library: file to write.
+    Returns nothing; the library is written, linked with the mathematical library.
+    Raises FileError, with the first 200 characters of the compiler's message, if the compiler ends
+    with another code than 0.
+    """
+    result = subprocess.run(
+        [compiler, *_FLAGS, str(source), "-lm", "-o", str(library)],
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    if result.returncode:
+        raise FileError(
+            library.name,
+            f"cannot be compiled by {compiler} ({' '.join(result.stderr.split()):.200})",
+        )

@@ -1,1 +1,0 @@
-"""Files: tables of the law, run files and their stores."""

@@ -1,1 +1,0 @@
-"""The three Bessel ratios that carry the whole contact law."""

@@ -1,0 +1,522 @@
+"""Boundary elements of a contact, and its zones of stick and slip.
+
+Boundary elements of a contact: mesh, matrices of slopes by piecewise linear tractions, moments.
+
+Lengths are divided by l0, the contact length at rest of half-spaces; slopes by l0/R; tractions so
+that an elastic half-space of the summed long-time compliance has the slope (1/pi) int p(y)/(x - y)
+dy.  Nodes ascend from the rear edge to the front edge; both tractions are 0 at the two outer nodes.
+Slopes are collocated at one place in each element.
+
+The linear system of one contact, and the zones of stick and slip that satisfy Coulomb's law.
+
+With pressure p and shear q at inner nodes, g the place of the middle of the contact ahead of the
+axis, and x the places of collocation,
+
+    H p + C q = x + g        u' = T q - C p        d - u' = 0 in stick, q = mu z p in slip with z = 1 or -1
+
+Pressure and g are eliminated once for a mesh, so that the system of each choice of zones has the
+size of q alone.
+"""  # noqa: E501
+
+import math
+
+import numpy as np
+
+from ..numerics.intrinsics import fma
+from ..numerics.jit import inline_kernel, kernel
+
+# --- Boundary elements of a contact ---
+
+#: degree of the polynomials of a table in ln|x|
+DEGREE = 8
+#: smallest ln|x| of a table
+LOWEST = -24.5
+#: width of a bin in ln|x|
+WIDTH = 0.35
+#: number of bins: up to |x| = exp(1.4), four contact lengths at rest
+BINS = 74
+#: largest part of the elements that gather at spots
+_SPOTS_PART = 0.7
+#: element over twice the length of a mode below and above which its local part is taken from a
+#: series
+_SMALL_RATIO = 1e-4
+_LARGE_RATIO = 40.0
+#: error of a node in units of elements, and largest number of steps that find it
+_MESH_ERROR = 1e-9
+_MOST_STEPS = 60
+
+
+@inline_kernel
+def graded(t):
+    """Return the place in [0, 1] of the parameter t of a mesh: dense at both ends, as tractions
+    fall like roots.
+    """
+    return math.sin(0.5 * math.pi * t) ** 2
+
+
+@inline_kernel
+def _gathered(t, spots, used):
+    """Return (sum over spots of weight sgn(t - place) ln(1 + |t - place|/width); its
+    derivative).
+    """
+    total = 0.0
+    rate = 0.0
+    for k in range(used):
+        distance = t - spots[k, 0]
+        width = spots[k, 1]
+        weight = spots[k, 2]
+        total += math.copysign(weight * math.log(1.0 + abs(distance) / width), distance)
+        rate += weight / (abs(distance) + width)
+    return total, rate
+
+
+@kernel
+def make_mesh(c, spots, used, nodes, at, place):
+    """Write the nodes of a mesh and the places of collocation, one in each element.
+
+    The elements are equal in s(t) = a t + sum of weight ln(1 + |t - spot|/width): geometric towards
+    each spot.
+
+    c : half length of the contact, > 0.
+    spots : (most, 3): parameter in [0, 1], width > 0 in the parameter, and number of elements in a
+        factor of e of the distance from it; changed in place: weights are reduced where spots would
+        take more than :data:`_SPOTS_PART`.
+    used : number of spots.
+    nodes, at, place : (N + 1,), (N,) and (N + 1,), written: from -c to c; the parameter of each
+    node.
+    """
+    count = at.size
+    low, _ = _gathered(0.0, spots, used)
+    high, _ = _gathered(1.0, spots, used)
+    if high - low > _SPOTS_PART * count:
+        reduced = _SPOTS_PART * count / (high - low)
+        for k in range(used):
+            spots[k, 2] *= reduced
+        low *= reduced
+        high *= reduced
+    plain = count - (high - low)
+    t = 0.0
+    for n in range(2 * count + 1):
+        wanted = 0.5 * n + low
+        left = t
+        right = 1.0
+        t = min(t + 0.5 / count, 1.0)
+        for _ in range(_MOST_STEPS):
+            total, rate = _gathered(t, spots, used)
+            error = plain * t + total - wanted
+            if abs(error) < _MESH_ERROR:
+                break
+            if error > 0.0:
+                right = t
+            else:
+                left = t
+            t -= error / (plain + rate)
+            if not left < t < right:
+                t = 0.5 * (left + right)
+        if n == 0:
+            t = 0.0
+        if n == 2 * count:
+            t = 1.0
+        x = -c + 2.0 * c * graded(t)
+        if n % 2:
+            at[n // 2] = x
+        else:
+            nodes[n // 2] = x
+            place[n // 2] = t
+
+
+@kernel
+def scale_mesh(c, nodes, at):
+    """Scale a mesh to another half length, c.  nodes, at : (N + 1,) and (N,), changed."""
+    factor = 2.0 * c / (nodes[at.size] - nodes[0])
+    for n in range(at.size):
+        nodes[n] *= factor
+        at[n] *= factor
+    nodes[at.size] *= factor
+
+
+@inline_kernel
+def _local_part(local, h):
+    """Return the part of the coupling that acts at the middle of an element of length h as if at
+    once.
+
+    local : (modes, 2), strength and length of each, with 0 for the length of the instantaneous one.
+    It is the integral of the memory times what linear tractions leave out: the parabola that is 1
+    there and 0 at the ends of the element, less its mean 2/3, which the values at the nodes make up
+    for.
+    """
+    found = 0.0
+    for k in range(local.shape[0]):
+        length = local[k, 1]
+        r = 0.5 * h / length if length > 0.0 else np.inf
+        if r < _SMALL_RATIO:
+            found += local[k, 0] * r * r / 12.0
+        elif r > _LARGE_RATIO:
+            found += local[k, 0] * (1.0 / 3.0 - (2.0 / r) / r)
+        else:
+            decay = math.exp(-r)
+            found += local[k, 0] * (
+                (1.0 - decay) / 3.0 - (2.0 - decay * (r * (r + 2.0) + 2.0)) / (r * r)
+            )
+    return found
+
+
+@kernel
+def add_local(local, nodes, at, C):
+    """Add to the local part of the coupling what linear tractions leave out, by the values at four
+    nodes.
+
+    local : as of :func:`_local_part`; nodes, at : mesh; C : matrix of :func:`assemble`, changed.
+    The tractions are odd about the two outer nodes, in the parameter of the mesh.
+    """
+    last = at.size - 1
+    for e in range(last + 1):
+        h = nodes[e + 1] - nodes[e]
+        part = _local_part(local, h)
+        ahead = (at[e] - nodes[e]) / h
+        if e > 0:
+            C[e, e - 1] += part * (0.5625 - (1.0 - ahead))
+        if e < last:
+            C[e, e] += part * (0.5625 - ahead)
+        if e > 1:
+            C[e, e - 2] -= part * 0.0625
+        elif e == 0:
+            C[e, 0] += part * 0.0625
+        if e < last - 1:
+            C[e, e + 1] -= part * 0.0625
+        elif e == last:
+            C[e, last - 1] += part * 0.0625
+
+
+@kernel(allocates=True)
+def assemble(table, instant, nodes, at, H, T, C):
+    """Write the matrices of slopes: second differences of the second antiderivatives of the
+    kernels.
+
+    table : polynomials in ln|x|, (BINS, 2 signs of x, 3 kernels, DEGREE + 1), of the slope by
+        pressure, of the strain by shear, and of the coupling; without ``instant`` x ln|x|/pi of the
+        first two.
+    instant : instantaneous compliance over the summed long-time compliance.
+    nodes, at : mesh, (N + 1,) and (N,), of at most exp(1.4) in all.
+    H, T, C : (N, N - 1) each, written: slope at places by the traction at inner nodes.
+    """
+    N = at.size
+    first = np.empty(N + 1)
+    second = np.empty(N + 1)
+    third = np.empty(N + 1)
+    for i in range(N):
+        for j in range(N + 1):
+            x = at[i] - nodes[j]
+            log = math.log(abs(x))
+            y = (log - LOWEST) / WIDTH
+            b = min(max(int(y), 0), BINS - 1)
+            y = 2.0 * (y - b) - 1.0
+            p = table[b, 0 if x > 0.0 else 1]
+            a0 = p[0, DEGREE]
+            a1 = p[1, DEGREE]
+            a2 = p[2, DEGREE]
+            for d in range(DEGREE - 1, -1, -1):
+                a0 = fma(a0, y, p[0, d])
+                a1 = fma(a1, y, p[1, d])
+                a2 = fma(a2, y, p[2, d])
+            own = instant * x * log / math.pi
+            first[j] = a0 + own
+            second[j] = a1 + own
+            third[j] = a2
+        for n in range(N - 1):
+            behind = 1.0 / (nodes[n + 1] - nodes[n])
+            ahead = 1.0 / (nodes[n + 2] - nodes[n + 1])
+            H[i, n] = behind * (first[n] - first[n + 1]) + ahead * (first[n + 2] - first[n + 1])
+            T[i, n] = behind * (second[n] - second[n + 1]) + ahead * (second[n + 2] - second[n + 1])
+            C[i, n] = behind * (third[n] - third[n + 1]) + ahead * (third[n + 2] - third[n + 1])
+
+
+@inline_kernel
+def node_value(values, e):
+    """Return the traction at node e of a mesh, 0 at the two outer ones; ``values``: those at inner
+    nodes.
+    """
+    return values[e - 1] if 0 < e <= values.size else 0.0
+
+
+@kernel
+def moments(nodes, values):
+    """Return (integral, first moment) of a traction.  nodes: (N + 1,); values: at inner nodes, (N -
+    1,).
+    """
+    total = 0.0
+    moment = 0.0
+    for e in range(nodes.size - 1):
+        a = node_value(values, e)
+        b = node_value(values, e + 1)
+        h = nodes[e + 1] - nodes[e]
+        total += 0.5 * h * (a + b)
+        moment += h * (0.5 * nodes[e] * (a + b) + h * (a + 2.0 * b) / 6.0)
+    return total, moment
+
+
+@kernel
+def product(nodes, at, values, slope):
+    """Return the integral of a traction times a slope that is linear in each element.
+
+    The gradient in an element is that between the places of its neighbours, so that a linear slope
+    is exact.
+    nodes, at : mesh, (N + 1,) and (N,).
+    values : traction at inner nodes, (N - 1,).
+    slope : at ``at``, (N,).
+    """
+    found = 0.0
+    last = at.size - 1
+    for e in range(last + 1):
+        a = node_value(values, e)
+        b = node_value(values, e + 1)
+        h = nodes[e + 1] - nodes[e]
+        low = max(e - 1, 0)
+        high = min(e + 1, last)
+        gradient = (slope[high] - slope[low]) / (at[high] - at[low])
+        middle = slope[e] + gradient * (0.5 * (nodes[e] + nodes[e + 1]) - at[e])
+        found += h * (0.5 * (a + b) * middle + gradient * h * (b - a) / 12.0)
+    return found
+
+
+# --- The linear system of one contact ---
+
+#: choices of zones after which one node changes at a time
+_TOGETHER = 12
+#: largest number of choices of zones, beside one for each node
+_MOST_CHOICES = 40
+#: relative excess of |q| over mu p, and of slip in the wrong direction over the largest slip, that
+#: count as rounding
+_ROUNDING = 1e-10
+
+
+@kernel(allocates=True)
+def factor(matrix, order):
+    """Replace a square matrix by its factors L and U, with row exchanges; return whether no pivot
+    is 0.
+
+    matrix : (n, n), overwritten.
+    order : (n,), int, written: the row that was exchanged with each.
+    """
+    n = matrix.shape[0]
+    for k in range(n):
+        best = k
+        for i in range(k + 1, n):
+            if abs(matrix[i, k]) > abs(matrix[best, k]):
+                best = i
+        order[k] = best
+        if not abs(matrix[best, k]) > 0.0:
+            return False
+        if best != k:
+            for j in range(n):
+                kept = matrix[k, j]
+                matrix[k, j] = matrix[best, j]
+                matrix[best, j] = kept
+        scale = 1.0 / matrix[k, k]
+        top = matrix[k]
+        for i in range(k + 1, n):
+            row = matrix[i]
+            part = row[k] * scale
+            row[k] = part
+            if part != 0.0:
+                for j in range(k + 1, n):
+                    row[j] -= part * top[j]
+    return True
+
+
+@kernel(allocates=True)
+def substitute(matrix, order, right):
+    """Solve for many right sides with the factors of :func:`factor`.
+
+    matrix, order : factors and row exchanges, (n, n) and (n,).
+    right : (n, m), replaced by the solutions.
+    """
+    n, m = right.shape
+    for k in range(n):
+        best = order[k]
+        if best != k:
+            for j in range(m):
+                kept = right[k, j]
+                right[k, j] = right[best, j]
+                right[best, j] = kept
+    for i in range(n):
+        row = right[i]
+        for k in range(i):
+            part = matrix[i, k]
+            other = right[k]
+            for j in range(m):
+                row[j] -= part * other[j]
+    for i in range(n - 1, -1, -1):
+        row = right[i]
+        for k in range(i + 1, n):
+            part = matrix[i, k]
+            other = right[k]
+            for j in range(m):
+                row[j] -= part * other[j]
+        scale = 1.0 / matrix[i, i]
+        for j in range(m):
+            row[j] *= scale
+
+
+@kernel(allocates=True)
+def eliminate(H, C, at, coupled):
+    """Eliminate pressure and g: p = a - B q.
+
+    H, C : matrices of slopes, (N, N - 1).
+    at : places of collocation, (N,).
+    coupled : whether C is not 0.
+    Returns (whether the matrix has an inverse; (N, N): B in its first N - 1 columns, a in the last;
+    the last row belongs to g).  Without ``coupled`` B is 0.
+    """
+    N = at.size
+    matrix = np.empty((N, N))
+    matrix[:, : N - 1] = H
+    matrix[:, N - 1] = -1.0
+    order = np.empty(N, np.int64)
+    good = factor(matrix, order)
+    found = np.zeros((N, N))
+    if not good:
+        return good, found
+    if coupled:
+        found[:, : N - 1] = C
+        found[:, N - 1] = at
+        substitute(matrix, order, found)
+    else:
+        one = at.reshape(N, 1).copy()
+        substitute(matrix, order, one)
+        found[:, N - 1] = one[:, 0]
+    return good, found
+
+
+@kernel(allocates=True)
+def strain_by_shear(T, C, B, coupled):
+    """Return (N, N): columns of the strain u' by q, and in the last column what u' is without q,
+    both with p free.
+
+    T, C : matrices of slopes, (N, N - 1).
+    B : elimination of p, of :func:`eliminate`.
+    coupled : whether C is not 0.
+    """
+    N = B.shape[0]
+    S = np.zeros((N, N))
+    S[:, : N - 1] = T
+    if coupled:
+        for i in range(N):
+            row = S[i]
+            for k in range(N - 1):
+                part = C[i, k]
+                other = B[k]
+                for j in range(N - 1):
+                    row[j] += part * other[j]
+                row[N - 1] -= part * other[N - 1]
+    return S
+
+
+@kernel(allocates=True)
+def solve_zones(S, B, mu, zone, d, q):
+    """Solve for the shear with given zones; return whether it has a solution.
+
+    S, B : of :func:`strain_by_shear` and :func:`eliminate`.
+    mu : coefficient of friction.
+    zone : 0 for stick, 1 or -1 for slip at each inner node, (N - 1,).
+    d : creep.
+    q : (N - 1,), written.
+    A node that sticks demands no slip in the element ahead of it.
+    """
+    n = zone.size
+    matrix = np.empty((n, n))
+    right = np.empty((n, 1))
+    for j in range(n):
+        row = matrix[j]
+        z = mu * zone[j]
+        if z == 0.0:
+            other = S[j + 1]
+            for k in range(n):
+                row[k] = other[k]
+            right[j, 0] = d - other[n]
+        else:
+            other = B[j]
+            for k in range(n):
+                row[k] = z * other[k]
+            row[j] += 1.0
+            right[j, 0] = z * other[n]
+    order = np.empty(n, np.int64)
+    if not factor(matrix, order):
+        return False
+    substitute(matrix, order, right)
+    q[:] = right[:, 0]
+    return True
+
+
+@kernel(allocates=True)
+def pressure_and_strain(S, B, q, p, strain):
+    """Write pressure and strain of a shear; return g.
+
+    S, B : of :func:`strain_by_shear` and :func:`eliminate`.
+    q : (N - 1,).
+    p, strain : (N - 1,) and (N,), written.
+    """
+    n = q.size
+    g = 0.0
+    for i in range(n + 1):
+        own = B[i]
+        row = S[i]
+        value = own[n]
+        slope = row[n]
+        for j in range(n):
+            value -= own[j] * q[j]
+            slope += row[j] * q[j]
+        strain[i] = slope
+        if i < n:
+            p[i] = value
+        else:
+            g = value
+    return g
+
+
+@kernel(allocates=True)
+def find_zones(S, B, mu, d, zone, kept, p, q, strain):
+    """Find the zones of stick and slip of one contact by exchange of nodes.
+
+    S, B : of :func:`strain_by_shear` and :func:`eliminate`.
+    mu, d : coefficient of friction, creep.
+    zone : (N - 1,), changed in place, from a first guess.
+    kept : number of inner nodes from the rear whose zone is not changed.
+    p, q, strain : (N - 1,), (N - 1,) and (N,), written.
+    Returns (whether zones were found; g).
+    """
+    n = zone.size
+    new = np.empty(n)
+    g = 0.0
+    for choice in range(_MOST_CHOICES + n):
+        if not solve_zones(S, B, mu, zone, d, q):
+            return False, g
+        g = pressure_and_strain(S, B, q, p, strain)
+        scale = 0.0
+        for e in range(n + 1):
+            scale = max(scale, abs(d - strain[e]))
+        worst = 0.0
+        which = -1
+        for i in range(kept, n):
+            new[i] = zone[i]
+            slip = d - strain[i + 1]
+            wrong = 0.0
+            if zone[i] == 0.0:
+                over = abs(q[i]) - mu * p[i] * (1.0 + _ROUNDING)
+                if over > 0.0:
+                    new[i] = 1.0 if q[i] > 0.0 else -1.0
+                    wrong = over / max(mu * abs(p[i]), 1e-300)
+            elif slip * zone[i] < -_ROUNDING * scale:
+                new[i] = 0.0
+                wrong = abs(slip) / scale
+            if wrong > worst:
+                worst = wrong
+                which = i
+        if which < 0:
+            return True, g
+        if choice > _TOGETHER:
+            zone[which] = new[which]
+        else:
+            for i in range(kept, n):
+                zone[i] = new[i]
+    return False, g

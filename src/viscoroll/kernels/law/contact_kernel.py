@@ -1,0 +1,714 @@
+"""States of the contact from the rows of their law: no root, no iteration, and nothing that is not
+requested.
+
+With D = 2 kappa |delta|/mu and w = L - D, |Q|/mu = 1 - w^2 (H/F^2)(2 u/w), where 1 = L^2 (H/F^2)(2
+u/L) is close to it at small creepage.  There their difference is exact with the mean slope S of
+H/F^2 between v1 = 2 u/L and v2 = 2 u/w:
+
+    |Q|/mu = D [(2 L - D) (H/F^2)(v2) - v2 L S]
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
+
+Terms of this file:
+
+- Law: polynomials of the functions of one material, a row for each octave of u or v
+  (:mod:`.law_record`); of many materials a part of a row is computed, and written into the law,
+  when it is first read (:mod:`.law_functions`).  Beyond the last row the head of the rows, with the
+  numbers of the fast limit, is read in place of a polynomial.
+- RowPosition: where u or v lies in them: number of the row, argument t of its polynomials, slope
+  dt/dx.
+- u = kappa |V|: dimensionless speed.  L = 2 kappa delta_star/mu: critical creepage, a function of
+  u.
+- D = 2 kappa |delta - delta_0|/mu: creepage less delta_0, that of free rolling, which is 0 for
+  half-spaces; D < L in partial slip, and infinite stands for full slip.
+- v = 2 u/(L - D) = 1/F(eta), with eta half the transit time of the stick zone; H and F are
+  functions of the material (:mod:`.law`), of which only H/F^2 and eta/F occur, as functions of v.
+  A NaN of u or v where L and D are finite has no meaning and is not checked.
+- State: kappa, mu, V, and ``creep``, which is delta, or omega where ``creep_is_omega``.
+- Request: states, and the quantities of them that are written into rows of ``out``.
+- Block: up to TOGETHER = 64 states that are evaluated together.  Column c: place of a state in its
+  block.
+- Scratch: for each number of a state (kappa, mu, V and so on) TOGETHER doubles in a row, of which
+  that at c belongs to the state in column c.
+"""
+
+import numpy as np
+
+from ..numerics.intrinsics import bits_to_float, float_to_bits
+from ..numerics.jit import inline_kernel, kernel
+from .cover_law import (
+    MomentChange,
+    free_creep_at,
+    length_change,
+    moment_change,
+    shear_reaction,
+    sliding_creep,
+    slope_over_speed,
+)
+from .law_functions import (
+    H_over_F2,
+    H_over_F2_secants,
+    RowPosition,
+    body_moments,
+    eta_over_F,
+    free_creep_and_slopes,
+    lam_and_epsilon,
+    length_and_moment,
+    locate_row,
+    moment_factor,
+)
+from .law_record import TOGETHER, State, read_state, select_material, slip_and_creepage, write_field
+
+#: Fraction of L below which D is small: |Q|/mu as a difference would lose three bits and more.  A
+#: larger one would send states with creep of 0.1 delta_star to the mean slopes, which take half as
+#: long again.
+SMALL_CREEP = 0.0625
+
+#: Place in the scratch of :func:`contact_loop` of kappa of the states.
+_KAPPA = np.uint64(0)
+#: Place in the scratch of :func:`contact_loop` of mu.
+_MU = np.uint64(TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of V, dimensionless.
+_V = np.uint64(2 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of the creepage or omega, whichever is given.
+_CREEP = np.uint64(3 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of u = kappa |V|.
+_U = np.uint64(4 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of L = 2 kappa delta_star/mu.
+_L = np.uint64(5 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of 2 kappa delta_0, from the creepage of free
+#: rolling.
+_FREE_CREEP = np.uint64(6 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of D with a sign (:func:`signed_creep`).
+_D = np.uint64(7 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of v (:func:`stick_argument`).
+_STICK = np.uint64(8 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of rows of the positions of u; t and dt/dx follow.
+_POSITION = np.uint64(9 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of rows of the positions of v; t and dt/dx follow.
+_STICK_POSITION = np.uint64(12 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of Q, where it is needed.
+_Q = np.uint64(15 * TOGETHER)
+#: Distance of t from the row of a position in the scratch.
+_T = np.uint64(TOGETHER)
+#: Distance of dt/dx from that row.
+_DT_DX = np.uint64(2 * TOGETHER)
+
+
+@inline_kernel
+def stick_argument(u, L, D):
+    """Return v = 2 u/(L - D), the argument of the functions of the stick zone.
+
+    u : float, kappa |V|, dimensionless, >= 0.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    Returns a float, dimensionless, >= 0 in partial slip, and 0 at u = 0.  In full slip it is -0.0,
+    which has no meaning but may be located in the rows like any other v.  Where rounding makes D
+    equal to L it is infinite (NaN at u = 0), and where rounding makes D larger it is negative:
+    neither has a meaning.
+    """
+    return 2.0 * u / (L - D)
+
+
+@inline_kernel
+def traction_over_mu(position, v, u, L, D, law):
+    """Return |Q|/mu, the fraction of the friction that is used; the fraction keeps its digits at
+    small creepage too.
+
+    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
+    u : float, kappa |V|, dimensionless, >= 0; read where the form with the mean slope is used.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+
+    Returns a float in [0, 1], dimensionless: 0.0 at D = 0; 1.0 in full slip, where D is rounded to
+    L or above, and where L or D is NaN.  From D = L/16 on it is 1 - w^2 (H/F^2)(v) with w = L - D,
+    unless that difference is small (:func:`_cancels`); else it is D [(2 L - D) (H/F^2)(v) - v L S]
+    with the mean slope S of H/F^2 between 2 u/L and v.
+    """
+    w = L - D
+    if not w > 0.0:  # also in partial slip so close to its end that D is rounded to L
+        return 1.0
+    if D >= SMALL_CREEP * L:
+        value, _ = H_over_F2(position, v, law)
+        traction = 1.0 - w * w * value
+        if not _cancels(traction, D, L):
+            return min(traction, 1.0)
+    value, _, secant, _ = H_over_F2_secants(position, locate_row(2.0 * u / L, law), v, D / w, law)
+    return D * ((2.0 * L - D) * value - v * L * secant)
+
+
+@inline_kernel
+def _cancels(traction, D, L):
+    """Return whether 1 - w^2 H/F^2 has lost so many digits that the form with the mean slope must
+    be used instead.
+
+    That is so where the difference is below 0.1 and D is below L/2.  From D = L/2 on the arguments
+    2 u/L and v may be more than one row apart, for which the mean slope is not made, and the
+    difference is used in spite of its rounding.
+
+    traction : float, the difference 1 - w^2 H/F^2, which is |Q|/mu with rounding, dimensionless.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0, finite.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    Returns a bool.
+    """
+    return traction < 0.1 and D < 0.5 * L
+
+
+@inline_kernel
+def friction_reserve(position, v, L, D, law):
+    """Return the friction reserve 1 - |Q|/mu, which keeps all its digits where it is small.
+
+    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    Returns a float in [0, 1], dimensionless: (L - D)^2 (H/F^2)(v), which is 1 to rounding at D = 0;
+    0.0 in full slip (L <= D), and where L or D is NaN.
+    """
+    w = L - D
+    return min(w * w * H_over_F2(position, v, law)[0], 1.0) if w > 0.0 else 0.0
+
+
+@inline_kernel
+def stick_fraction(position, v, lam, L, D, law):
+    """Return beta, the length of the stick zone divided by the contact length.
+
+    position : :class:`RowPosition` of v; like v it is not read in full slip and at D = 0.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
+    lam : float, length of the contact divided by l0, dimensionless, > 0; not read in full slip and
+    at D = 0.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    law : :class:`Law` of the material, of which the polynomials of eta/F are read.
+    Returns a float in [0, 1], dimensionless: exactly 1.0 at D = 0, else (eta/F)(v) (L - D)/lam; 0.0
+    in full slip (L <= D), and where L or D is NaN.
+    """
+    w = L - D
+    if not w > 0.0:
+        return 0.0
+    return min(eta_over_F(position, v, law) * w / lam, 1.0) if D > 0.0 else 1.0
+
+
+@inline_kernel
+def traction_slopes(u, L, dL, D, law):
+    """Return the slopes of |Q|/mu: over u at fixed D, and over D at fixed u.
+
+    u : float, kappa |V|, dimensionless, >= 0.
+    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is read only
+        where the plain formula below is used: neither with the mean slopes nor in full slip.
+    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) in full slip (L <= D),
+    and where L or D is NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they
+    are -2 w (A dL + d(H/F^2)/dv) and 2 w A.
+
+    As in :func:`traction_over_mu`, mean slopes of H/F^2 and of its slope are used where D is below
+    L/16 or a difference would lose digits.  With them the slope over u is 0 at D = 0 and at u = 0;
+    from D = L/16 on the plain formula holds at u = 0 too, unless a difference would lose digits.
+    """
+    w = L - D
+    if not w > 0.0:
+        return 0.0, 0.0
+    v = 2.0 * u / w
+    position = locate_row(v, law)
+    value, slope = H_over_F2(position, v, law)
+    w_slope = value - 0.5 * v * slope
+    if D < SMALL_CREEP * L or _cancels(1.0 - w * w * value, D, L):
+        x = D / w
+        v1 = 2.0 * u / L
+        _, _, secant, slope_secant = H_over_F2_secants(position, locate_row(v1, law), v, x, law)
+        # with f = H/F^2 and A = f - v f'/2, dL/du = -f'/A at v1, and the two terms below are close
+        step = v1 * x
+        slope_1 = slope - slope_secant * step
+        A_1 = value - secant * step - 0.5 * v1 * slope_1
+        over_u = step * (
+            (secant - 0.5 * (v * slope_secant + slope_1)) * slope_1 / A_1 - slope_secant
+        )
+    else:
+        over_u = -(w_slope * dL + slope)
+    return 2.0 * w * over_u, 2.0 * w * w_slope
+
+
+@inline_kernel
+def signed_creep(L, free_creep, state, law):
+    """Return D = 2 kappa |delta - delta_0|/mu with the sign of the traction, and infinite in full
+    slip.
+
+    The state is in full slip where |delta - delta_0| >= delta_star, which includes omega other than
+    0 at V = 0 if omega is given.
+
+    L : float, 2 kappa delta_star/mu at the speed of the state, dimensionless, > 0.
+    free_creep : float, 2 kappa delta_0, with delta_0 the creepage of free rolling, dimensionless; 0
+    for half-spaces.
+    state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
+    law : :class:`Law`, of which only ``cover_rows`` is read: whether the material is a cover (not
+    None).
+    Returns a float, dimensionless: its sign is that of omega - V for half-spaces, that of (delta -
+    delta_0) V for a cover, where V = 0.0 counts as V > 0; free rolling gives 0.0 or -0.0; full slip
+    gives inf or -inf; NaN where the creepage is NaN, or ``free_creep`` of a cover.
+    """
+    slip, delta = slip_and_creepage(state)
+    slip, delta = sliding_creep(slip, delta, free_creep, state, law.cover_rows)
+    full_slip = abs(delta) >= 0.5 * state.mu / state.kappa * L
+    return np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
+
+
+@inline_kernel
+def signed_traction(position, v, u, L, D, mu, law):
+    """Return the traction Q, Eq. (15), divided by the load P.
+
+    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
+    u : float, kappa |V|, dimensionless, >= 0.
+    L : float, 2 kappa delta_star/mu, dimensionless, > 0.
+    D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`,
+        dimensionless; inf or -inf in full slip.
+    mu : float, coefficient of friction, dimensionless, > 0.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    Returns a float in [-mu, mu], dimensionless, with the sign of D, which may be that of -0.0; mu
+    or -mu in full slip, and also where D or L is NaN.
+    """
+    return np.copysign(mu * traction_over_mu(position, v, u, L, abs(D), law), D)
+
+
+@inline_kernel
+def Q_slopes(u, L, dL, D, state, law):
+    """Return the slopes of the traction Q, divided by the load P, over speed, creepage and angular
+    velocity.
+
+    u : float, kappa |V|, dimensionless, >= 0.
+    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless.
+    D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`,
+        dimensionless; inf or -inf in full slip, where nothing else is read.
+    state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
+    law : :class:`Law` of the material, of which the polynomials of H/F^2 and, of a cover,
+    ``cover_rows`` are read.
+
+    Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta
+    or at fixed omega, whichever ``state`` has, the others at fixed V.  All are 0 in full slip,
+    where |D| >= L; a state of partial slip whose D is rounded to L counts as one of full slip.  In
+    partial slip at V = 0 the last is infinite, since omega = V (1 + delta) then changes delta
+    without bound, and so is the first if omega is given.
+    """
+    if abs(D) >= L:
+        return 0.0, 0.0, 0.0
+    over_u, over_D = traction_slopes(u, L, dL, abs(D), law)
+    over_delta = 2.0 * state.kappa * over_D
+    over_omega = over_delta / abs(state.V)
+    over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
+    over_V = slope_over_speed(over_V, over_delta, free_creep_and_slopes(u, law)[1], law.cover_rows)
+    if state.creep_is_omega:
+        over_V -= over_omega * (1.0 + slip_and_creepage(state)[1])
+    return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
+
+
+@inline_kernel
+def traction_on_moments(position, u, functions, Q, state, cover_rows):
+    """Return what the traction changes in the rolling moments of a state, as
+    :class:`.cover_law.MomentChange`.
+
+    position : :class:`RowPosition` of u.
+    u : float, kappa |V|, dimensionless, >= 0.
+    functions : :class:`LengthAndMoment` at u, of which L and dL are read.
+    Q : float, traction of the state, dimensionless.
+    state : :class:`State` of numbers, of which kappa and mu are read.
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
+    half-spaces: all changes are 0.
+    """
+    if cover_rows is None:
+        return MomentChange(
+            half_space=0.0,
+            cylinder=0.0,
+            half_space_dQ=0.0,
+            cylinder_dQ=0.0,
+            half_space_du=0.0,
+            cylinder_du=0.0,
+        )
+    reaction = shear_reaction(
+        position, u, state.kappa, state.mu, functions.L, functions.dL, cover_rows
+    )
+    return moment_change(Q, state.mu, reaction)
+
+
+@inline_kernel
+def moment_slope(change_dQ, slope):
+    """Return the slope of a moment over creepage or omega at fixed speed, dimensionless; 0 where it
+    does not depend on Q.
+
+    change_dQ : float, derivative of :class:`.cover_law.MomentChange` in Q; 0 of half-spaces.
+    slope : float, slope of Q over the same variable; it may be infinite at rest.
+    """
+    return change_dQ * slope if change_dQ != 0.0 else 0.0
+
+
+@inline_kernel
+def moment_slope_over_V(change_du, change_dQ, dQ_dV, state):
+    """Return what the traction adds to dM/dV of a body, dimensionless.
+
+    change_du, change_dQ : floats, derivatives of :class:`.cover_law.MomentChange` of the body over
+    u and in Q.
+    dQ_dV : float, slope of the traction, at fixed creepage or omega.
+    state : :class:`State` of numbers, of which kappa and the sign of V are read.
+    """
+    return np.copysign(state.kappa, state.V) * change_du + moment_slope(change_dQ, dQ_dV)
+
+
+@inline_kernel
+def _index(k, request):
+    """Return the index of the state at a position in the order of evaluation, an int.
+
+    k : int, the position, from 0 to ``count`` - 1 of :func:`contact_loop`; not checked.
+    request : :class:`Request`, of which ``order`` is read: the index is ``order[k]``, or k itself
+    if it is empty.
+    """
+    return request.order[np.uint64(k)] if request.order.size > 0 else k
+
+
+@inline_kernel
+def _state(c, scratch, request):
+    """Return the :class:`State` of numbers of a state of the block, from the copy in the scratch.
+
+    c : unsigned int, column of the state in the scratch, its place in the block, from 0 to
+    TOGETHER - 1.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`, of which kappa, mu, V and the creep
+    are read.
+    request : :class:`Request`, of whose states ``creep_is_omega`` is read.
+    """
+    return State(
+        kappa=scratch[_KAPPA + c],
+        mu=scratch[_MU + c],
+        V=scratch[_V + c],
+        creep=scratch[_CREEP + c],
+        creep_is_omega=request.states.creep_is_omega,
+    )
+
+
+@inline_kernel
+def _write_positions(arguments, positions, begin, end, laws, scratch):
+    """Locate the arguments u or v of some states of a block in the rows of their laws, and write
+    the positions into the scratch.
+
+    arguments : unsigned int, index in ``scratch`` of the arguments of column 0: _U or _STICK.
+    positions : unsigned int, index in ``scratch`` of the positions: _POSITION for u,
+    _STICK_POSITION for v.
+    begin, end : int, first column, which is the place of a state in its block, and the one after
+        the last; 0 <= begin <= end <= TOGETHER = 64, the states in a block.
+    laws : tuple of :class:`Law`; the state in column k belongs to law k modulo their number, which
+        must have its material selected.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.  Three numbers a state are written:
+        at ``positions`` the number of its row, an int (-1 beyond the last row) whose bits are
+        stored as a double; TOGETHER numbers further t; again TOGETHER further dt/dx.  With row -1,
+        which an infinite argument has too, t and dt/dx have no meaning; of a NaN t is NaN.
+    Returns nothing.
+    """
+    for k in range(begin, end):
+        c = np.uint64(k)
+        position = locate_row(scratch[arguments + c], laws[k % len(laws)])
+        scratch[positions + c] = bits_to_float(position.row)
+        scratch[positions + _T + c] = position.t
+        scratch[positions + _DT_DX + c] = position.dt_dx
+
+
+@inline_kernel
+def _position(place, c, scratch):
+    """Return the :class:`RowPosition` of a state of the block, as :func:`_write_positions` has
+    written it.
+
+    place : unsigned int, index in ``scratch`` of the positions: _POSITION for u, _STICK_POSITION
+    for v.
+    c : unsigned int, column of the state in the scratch, its place in the block, from 0 to
+    TOGETHER - 1.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.
+    """
+    return RowPosition(
+        float_to_bits(scratch[place + c]), scratch[place + _T + c], scratch[place + _DT_DX + c]
+    )
+
+
+@inline_kernel
+def _write_other_fields(n, c, law, scratch, request):
+    """Write the requested quantities of a state, except Q and M, into ``request.out``.
+
+    n : int, index of the state, >= 0; not checked.
+    c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
+    law : :class:`Law` with the material of the state selected; without rows of the moments of the
+        bodies (:mod:`.alpha_axis`) none of these four may be requested.
+    scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`, after all its stages; not changed.
+    request : :class:`Request` of states and quantities; of ``out`` the numbers of state n in the
+        rows of the requested quantities are written, dimensionless.
+
+    Returns nothing.  The quantities: delta_star (critical creepage), delta (creepage), delta_0
+    (creepage of free rolling), full_slip (1.0 or 0.0), grip (1 - |Q|/mu), lam (contact length
+    divided by l0), zeta (half the transit time divided by T_ref), epsilon (shift of the contact
+    ahead of the axis, in half contact lengths), beta (stick zone divided by the contact length),
+    dQ_dV, dQ_ddelta, dQ_domega, dM_dV, and M of half-space and cylinder with their slopes in V.
+
+    At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta
+    and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded
+    to L.  ``dQ_dV`` is at fixed delta or omega, whichever the states have (:func:`Q_slopes`).
+    """
+    to = request.to
+    state = _state(c, scratch, request)
+    u = scratch[_U + c]
+    L = scratch[_L + c]
+    D = scratch[_D + c]
+    v = scratch[_STICK + c]
+    position = _position(_POSITION, c, scratch)
+    stick_position = _position(_STICK_POSITION, c, scratch)
+    write_field(to.delta_star, 0.5 * state.mu / state.kappa * L, n, request)
+    write_field(to.delta, slip_and_creepage(state)[1], n, request)
+    write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
+    write_field(to.full_slip, 1.0 if abs(D) == np.inf else 0.0, n, request)
+    if to.grip >= 0:
+        write_field(to.grip, friction_reserve(stick_position, v, L, abs(D), law), n, request)
+    if max(to.lam, to.zeta, to.epsilon, to.beta) >= 0:
+        lam, epsilon = lam_and_epsilon(position, u, law)
+        write_field(to.beta, stick_fraction(stick_position, v, lam, L, abs(D), law), n, request)
+        Q = -scratch[_Q + c] if scratch[_V + c] < 0.0 else scratch[_Q + c]  # as of the mirror image
+        lam_change, epsilon_change = length_change(Q, position, u, law.cover_rows)
+        lam = lam + lam_change
+        write_field(to.lam, lam, n, request)
+        write_field(to.zeta, 0.5 * lam / u, n, request)
+        write_field(to.epsilon, epsilon + epsilon_change, n, request)
+    slopes = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
+    bodies = max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
+    bodies = bodies or max(to.dM_half_space_domega, to.dM_cylinder_domega) >= 0
+    _write_reaction(n, position, u, state, law, law.cover_rows, request)
+    if slopes or bodies:
+        slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
+        _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
+
+
+@inline_kernel
+def _write_reaction(n, position, u, state, law, cover_rows, request):
+    """Write how shear acts back on the moments of a state on a cover
+    (:class:`.cover_law.Reaction`), if it is requested.
+
+    n : int, index of the state.
+    position : :class:`RowPosition` of u.
+    u : float, kappa |V|, dimensionless, >= 0.
+    state : :class:`State` of numbers, of which kappa and mu are read.
+    law : :class:`Law` of the material, of which L is read.
+    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written: nobody asks
+    for it.
+    request : :class:`Request` of states and quantities.
+    Returns nothing.
+    """
+    if cover_rows is not None:
+        to = request.to
+        if (
+            max(
+                to.reaction_half_space,
+                to.reaction_cylinder,
+                to.excess_half_space,
+                to.excess_cylinder,
+            )
+            >= 0
+        ):
+            functions = length_and_moment(position, u, law)
+            shear = shear_reaction(
+                position, u, state.kappa, state.mu, functions.L, functions.dL, cover_rows
+            )
+            write_field(to.reaction_half_space, shear.half_space, n, request)
+            write_field(to.reaction_cylinder, shear.cylinder, n, request)
+            write_field(to.excess_half_space, shear.half_space_excess, n, request)
+            write_field(to.excess_cylinder, shear.cylinder_excess, n, request)
+
+
+@inline_kernel
+def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
+    """Write the moments of the bodies, and the slopes of Q and of the moments, of those that are
+    requested.
+
+    n, c, law, scratch, request : as of :func:`_write_other_fields`.
+    bodies : bool, whether a quantity of one body is requested.
+    slopes_of_Q : bool, whether a slope of Q is requested; the moments of a cover need them in any
+    case.
+    Returns nothing.  Of half-spaces M depends on the speed alone: its slopes in delta and omega are
+    0.
+    """
+    to = request.to
+    state = _state(c, scratch, request)
+    u = scratch[_U + c]
+    position = _position(_POSITION, c, scratch)
+    functions = length_and_moment(position, u, law)
+    change = traction_on_moments(position, u, functions, scratch[_Q + c], state, law.cover_rows)
+    over_V = 0.0
+    over_delta = 0.0
+    over_omega = 0.0
+    if slopes_of_Q or _is_cover(law.cover_rows):
+        over_V, over_delta, over_omega = Q_slopes(
+            u, functions.L, functions.dL, scratch[_D + c], state, law
+        )
+        write_field(to.dQ_dV, over_V, n, request)
+        write_field(to.dQ_ddelta, over_delta, n, request)
+        write_field(to.dQ_domega, over_omega, n, request)
+    change_dQ = change.half_space_dQ + change.cylinder_dQ
+    write_field(to.dM_ddelta, moment_slope(change_dQ, over_delta), n, request)
+    write_field(to.dM_domega, moment_slope(change_dQ, over_omega), n, request)
+    change_du = change.half_space_du + change.cylinder_du
+    write_field(
+        to.dM_dV,
+        functions.d_um + moment_slope_over_V(change_du, change_dQ, over_V, state),
+        n,
+        request,
+    )
+    if bodies:
+        factor = moment_factor(position, u, functions.scale, state)
+        half_space, cylinder, half_space_slope, cylinder_slope = body_moments(position, u, law)
+        write_field(to.M_half_space, factor * half_space + change.half_space, n, request)
+        write_field(to.M_cylinder, factor * cylinder + change.cylinder, n, request)
+        half_space_slope += moment_slope_over_V(
+            change.half_space_du, change.half_space_dQ, over_V, state
+        )
+        cylinder_slope += moment_slope_over_V(change.cylinder_du, change.cylinder_dQ, over_V, state)
+        write_field(to.dM_half_space_dV, half_space_slope, n, request)
+        write_field(to.dM_cylinder_dV, cylinder_slope, n, request)
+        write_field(
+            to.dM_half_space_domega, moment_slope(change.half_space_dQ, over_omega), n, request
+        )
+        write_field(to.dM_cylinder_domega, moment_slope(change.cylinder_dQ, over_omega), n, request)
+
+
+@inline_kernel
+def _is_cover(cover_rows):
+    """Return whether a law is that of a cover, a bool that numba knows when it compiles.
+
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
+    half-spaces.
+    """
+    return cover_rows is not None
+
+
+@inline_kernel
+def _write_moment_of_half_space(n, c, position, functions, cover_rows, scratch, request):
+    """Write M of a state on half-spaces, which depends on the speed alone, if it is requested.
+
+    n, c, scratch, request : as of :func:`_write_other_fields`.
+    position, functions : :class:`RowPosition` of u, and :class:`LengthAndMoment` there.
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`), and then nothing
+        is written; None for half-spaces.
+    Returns nothing.
+    """
+    if cover_rows is None:
+        factor = moment_factor(
+            position, scratch[_U + c], functions.scale, _state(c, scratch, request)
+        )
+        write_field(request.to.M, factor * functions.m, n, request)
+
+
+@inline_kernel
+def _write_moment_of_cover(Q, n, c, law, cover_rows, scratch, request):
+    """Store Q of a state on a cover in the scratch, and write M, which depends on it, if that is
+    requested.
+
+    Q : float, traction, dimensionless.
+    n, c, law, scratch, request : as of :func:`_write_other_fields`; the entry of Q is written.
+    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written.
+    Returns nothing.
+    """
+    if cover_rows is not None:
+        scratch[_Q + c] = Q
+        state = _state(c, scratch, request)
+        u = scratch[_U + c]
+        position = _position(_POSITION, c, scratch)
+        functions = length_and_moment(position, u, law)
+        change = traction_on_moments(position, u, functions, Q, state, cover_rows)
+        M = moment_factor(position, u, functions.scale, state) * functions.m
+        write_field(request.to.M, M + (change.half_space + change.cylinder), n, request)
+
+
+@kernel
+def contact_loop(laws, request, scratch, count):
+    """Evaluate the law at ``count`` states and write what is requested, in the units of
+    docs/symbols.md for a scene.
+
+    laws : tuple of :class:`Law`.  States of one material have one law, whose rows are complete.  If
+        every state has a material of its own, these are as many laws as states are evaluated
+        together, each with one material selected at a time; the loop selects them.
+    request : :class:`Request`: ``states`` (arrays of length 1 or with one number for each state),
+        ``order`` of evaluation, ``to`` (for each quantity its row of ``out``, -1 if it is not
+        requested), ``out``, (quantities, columns), of which column ``first`` + n is written for
+        state n.  The quantities are lam, zeta, epsilon, delta_star, delta, full_slip, beta, grip,
+        Q, M, dQ_dV, dQ_ddelta, dQ_domega, dM_dV, M_half_space, M_cylinder, dM_half_space_dV,
+        dM_cylinder_dV and delta_0.
+    scratch : (SCRATCH_SIZE,) doubles, overwritten.
+    count : int, number of states, >= 0; with an ``order`` its first ``count`` entries are
+        evaluated, else the states 0 to ``count`` - 1.
+
+    The kernel returns nothing.  What each quantity is at V = 0 and in full slip is said at
+    :func:`signed_traction` and :func:`_write_other_fields`; M is 0 at V = 0 and has the sign of V.
+
+    The states pass through the stages in blocks of TOGETHER: their numbers are copied; then come
+    the positions in the rows, the polynomials of the speed, creepage and position of v, and the
+    polynomials of the traction.  Each stage is a short loop over the states of a block.  So the
+    processor works on several states at once, stages without polynomials are compiled to vector
+    instructions, and what is requested is tested once for a block.
+    """
+    to = request.to
+    others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)
+    for first in range(0, count, TOGETHER):
+        size = min(TOGETHER, count - first)
+        for k in range(size):
+            c = np.uint64(k)
+            state = read_state(request.states, _index(first + k, request))
+            scratch[_KAPPA + c] = state.kappa
+            scratch[_MU + c] = state.mu
+            scratch[_V + c] = state.V
+            scratch[_CREEP + c] = state.creep
+            scratch[_U + c] = state.kappa * abs(state.V)
+        together = size if laws[0].selector == 0 else len(laws)
+        for begin in range(0, size, together):
+            end = min(begin + together, size)
+            for k in range(begin, end):
+                select_material(laws[k % len(laws)], _index(first + k, request))
+            _write_positions(_U, _POSITION, begin, end, laws, scratch)
+            for k in range(begin, end):
+                law = laws[k % len(laws)]
+                c = np.uint64(k)
+                u = scratch[_U + c]
+                position = _position(_POSITION, c, scratch)
+                functions = length_and_moment(position, u, law)
+                scratch[_L + c] = functions.L
+                scratch[_FREE_CREEP + c] = free_creep_at(position, u, law.cover_rows)[0]
+                _write_moment_of_half_space(
+                    _index(first + k, request),
+                    c,
+                    position,
+                    functions,
+                    law.cover_rows,
+                    scratch,
+                    request,
+                )
+            for k in range(begin, end):
+                c = np.uint64(k)
+                L = scratch[_L + c]
+                D = signed_creep(L, scratch[_FREE_CREEP + c], _state(c, scratch, request), laws[0])
+                scratch[_D + c] = D
+                scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
+            _write_positions(_STICK, _STICK_POSITION, begin, end, laws, scratch)
+            if to.Q >= 0 or _is_cover(laws[0].cover_rows):
+                for k in range(begin, end):
+                    c = np.uint64(k)
+                    Q = signed_traction(
+                        _position(_STICK_POSITION, c, scratch),
+                        scratch[_STICK + c],
+                        scratch[_U + c],
+                        scratch[_L + c],
+                        scratch[_D + c],
+                        scratch[_MU + c],
+                        laws[k % len(laws)],
+                    )
+                    write_field(to.Q, Q, _index(first + k, request), request)
+                    law = laws[k % len(laws)]
+                    _write_moment_of_cover(
+                        Q, _index(first + k, request), c, law, law.cover_rows, scratch, request
+                    )
+            if others:
+                for k in range(begin, end):
+                    n = _index(first + k, request)
+                    _write_other_fields(n, np.uint64(k), laws[k % len(laws)], scratch, request)

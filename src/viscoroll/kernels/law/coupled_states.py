@@ -1,0 +1,483 @@
+"""States of one row, that is at one speed: contact length of the load, edge of the stick zone,
+powers.
+
+Units as in :mod:`.contact_elements`; then lam = 2 c, epsilon = g/c, kappa M = g + int x p/int p, 2
+kappa delta = 2 d, and the load is int p = pi/8.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numerics.jit import inline_kernel, kernel
+from .contact_elements import (
+    add_local,
+    assemble,
+    eliminate,
+    find_zones,
+    make_mesh,
+    moments,
+    node_value,
+    pressure_and_strain,
+    product,
+    scale_mesh,
+    solve_zones,
+    strain_by_shear,
+)
+
+#: load in units of the elements
+LOAD = math.pi / 8.0
+#: columns of a state: lam, epsilon, Q/(mu P), kappa M, 2 kappa times the work of the strain, kappa
+#: M and work of the cylinder alone, beta, status, half length
+COLUMNS = 10
+#: status of a state: solved; the zones were not found; negative pressure; the load was not reached;
+#: singular matrix
+SOLVED, NO_ZONES, TENSION, NO_LOAD, SINGULAR = range(5)
+#: distance of an edge from its spot times the number of elements from which on the mesh is made
+#: anew
+OFF_SPOT = 0.25
+#: number of meshes after which the last one is kept
+_MOST_CENTRINGS = 6
+#: largest number of half lengths that are tried for one load
+_MOST_LENGTHS = 20
+#: relative error of the load, for which lam is then corrected to first order
+_LOAD_ERROR = 2e-5
+#: relative error of the load where only zones are asked
+_ROUGH_LOAD = 1e-3
+#: least change of ln(c) from which a secant is taken: that of a new mesh is smaller
+_LEAST_CHANGE = 1e-3
+#: bounds of d ln(load)/d ln(half length)
+_LEAST_SLOPE = 0.7
+_LARGEST_SLOPE = 5.0
+#: most edges at which a mesh is refined
+MOST_SPOTS = 8
+#: width of the refinement at an edge times the number of elements, and elements in a factor of e
+WIDTH_OF_SPOT = 0.1
+WEIGHT_OF_SPOT = 1.0
+#: elements in a factor of e of the distance from the front edge, down to the edge layer
+WEIGHT_OF_LAYER = 3.0
+#: integral of negative pressure over the load that counts as tension
+_TENSION = 1e-6
+#: steps of the bisection of the creep where the other slip opens
+_BISECTIONS = 17
+
+
+class Row(NamedTuple):
+    """Kernels of both bodies at one speed.
+
+    table : summed, (BINS, 2, 3, DEGREE + 1), as :func:`.contact_elements.assemble` takes it; own:
+    those of the cylinder.
+    instant, own_instant : instantaneous compliance of both, and of the cylinder, over the long-time
+    one of both.
+    coupled : whether shear acts on the pressure.
+    split : whether both bodies deform; else all losses are in one.
+    cylinder : whether that one is the cylinder.
+    local, own_local : local coupling of both, and of the cylinder, by modes
+    (:func:`.contact_elements.add_local`).
+    layer : length of the layer at the front edge in which the material is stiff; infinite without
+    one.
+    """
+
+    table: Any
+    own: Any
+    instant: float
+    own_instant: float
+    coupled: bool
+    split: bool
+    cylinder: bool
+    local: Any
+    own_local: Any
+    layer: float
+
+
+class Contact(NamedTuple):
+    """Arrays of one contact of N elements.
+
+    nodes : (N + 1,).  at : (N,), places of collocation.  H, T, C : (N, N - 1).  p, q : at inner
+    nodes, (N - 1,).
+    strain : u' at places, (N,).  zone : (N - 1,).  place : parameters of the nodes, (N + 1,).
+    """
+
+    nodes: Any
+    at: Any
+    H: Any
+    T: Any
+    C: Any
+    p: Any
+    q: Any
+    strain: Any
+    zone: Any
+    place: Any
+
+
+@kernel(allocates=True)
+def new_contact(count):
+    """Return the arrays of a contact of ``count`` elements."""
+    inner = count - 1
+    return Contact(
+        nodes=np.zeros(count + 1),
+        at=np.zeros(count),
+        H=np.zeros((count, inner)),
+        T=np.zeros((count, inner)),
+        C=np.zeros((count, inner)),
+        p=np.zeros(inner),
+        q=np.zeros(inner),
+        strain=np.zeros(count),
+        zone=np.zeros(inner),
+        place=np.linspace(0.0, 1.0, count + 1),
+    )
+
+
+@kernel
+def find_spots(zone, place, width, weight, spots):
+    """Write the spots of a mesh at the edges of the zones of a contact; return their number.
+
+    zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
+    width, weight : of each spot.
+    spots : (MOST_SPOTS, 3), written; further edges have none.
+    """
+    used = 0
+    for i in range(zone.size - 1):
+        if zone[i] != zone[i + 1] and used < spots.shape[0]:
+            spots[used, 0] = place[i + 1] if zone[i] != 0.0 else place[i + 2]
+            spots[used, 1] = width
+            spots[used, 2] = weight
+            used += 1
+    return used
+
+
+@kernel(allocates=True)
+def carry_zones(zone, place, own, moved):
+    """Write zones of one mesh to the nodes of another: that of the nearest node.
+
+    zone, place : (N - 1,) and (N + 1,), of the first mesh.  own : parameters of the other, (M +
+    1,).
+    moved : (M - 1,), written.
+    """
+    i = 0
+    for k in range(moved.size):
+        t = own[k + 1]
+        while i + 1 < zone.size and abs(place[i + 2] - t) <= abs(place[i + 1] - t):
+            i += 1
+        moved[k] = zone[i]
+
+
+@kernel(allocates=True)
+def gather(row, contact, c, spots):
+    """Make the mesh of a contact, which gathers at the edges of its zones and at the edge layer;
+    return their number.
+
+    row : :class:`Row`.  contact : its zones are carried to the new mesh.  c : half length.
+    spots : (MOST_SPOTS, 3), written: the edges first.
+    """
+    count = contact.at.size
+    edges = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
+    used = edges
+    thin = math.sqrt(2.0 * row.layer / c) / math.pi
+    if thin * count < 1.0 and used < MOST_SPOTS:
+        spots[used, 0] = 1.0
+        spots[used, 1] = thin
+        spots[used, 2] = WEIGHT_OF_LAYER
+        used += 1
+    zone = contact.zone.copy()
+    place = contact.place.copy()
+    make_mesh(c, spots, used, contact.nodes, contact.at, contact.place)
+    carry_zones(zone, place, contact.place, contact.zone)
+    return edges
+
+
+@kernel(allocates=True)
+def solve_contact(row, contact, c, mu, d, spots, again):
+    """Solve one contact of half length c with its zones of stick and slip.
+
+    row : :class:`Row`.  contact : :class:`Contact`, written; its zones are the first guess.
+    c : half length.  mu : friction.  d : creep.
+    spots : (MOST_SPOTS, 3), where the mesh gathers; written, or read if ``again``: the mesh of the
+    call before is kept.
+    Returns (status; g; whether the edges found lie where the mesh gathers).
+    """
+    count = contact.at.size
+    edges = 0
+    if again:
+        scale_mesh(c, contact.nodes, contact.at)
+    else:
+        edges = gather(row, contact, c, spots)
+    assemble(row.table, row.instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
+    add_local(row.local, contact.nodes, contact.at, contact.C)
+    good, B = eliminate(contact.H, contact.C, contact.at, row.coupled)
+    if not good:
+        return SINGULAR, 0.0, True
+    S = strain_by_shear(contact.T, contact.C, B, row.coupled)
+    if math.isinf(d):
+        if not solve_zones(S, B, mu, contact.zone, 0.0, contact.q):
+            return SINGULAR, 0.0, True
+        return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain), True
+    good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
+    found = np.empty((MOST_SPOTS, 3))
+    centred = find_spots(contact.zone, contact.place, 1.0, 1.0, found) == edges
+    for k in range(edges):
+        centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
+    return SOLVED if good else NO_ZONES, g, centred
+
+
+@kernel
+def slip_work(contact, d):
+    """Return the work of slip, the integral of q (d - u') over the elements that slip, per unit of
+    speed.
+
+    contact : solved :class:`Contact`.  d : creep.
+    """
+    found = 0.0
+    for e in range(contact.at.size):
+        if contact.zone[max(e - 1, 0)] != 0.0:
+            a = node_value(contact.q, e)
+            b = node_value(contact.q, e + 1)
+            found += (
+                0.5 * (contact.nodes[e + 1] - contact.nodes[e]) * (a + b) * (d - contact.strain[e])
+            )
+    return found
+
+
+@kernel
+def stick_length(contact):
+    """Return the length of the elements that stick over that of the contact.  contact: solved
+    :class:`Contact`.
+    """
+    found = 0.0
+    for e in range(contact.at.size):
+        if contact.zone[max(e - 1, 0)] == 0.0:
+            found += contact.nodes[e + 1] - contact.nodes[e]
+    return found / (contact.nodes[contact.at.size] - contact.nodes[0])
+
+
+@inline_kernel
+def _of_matrix(matrix, e, values):
+    """Return the product of row e of a matrix and a vector."""
+    found = 0.0
+    for j in range(values.size):
+        found += matrix[e, j] * values[j]
+    return found
+
+
+@kernel(allocates=True)
+def split_powers(row, contact):
+    """Return (int p times the slope of the cylinder; int q times its strain), of a solved contact.
+
+    The matrices of ``contact`` are overwritten by those of the cylinder.
+    """
+    assemble(row.own, row.own_instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
+    add_local(row.own_local, contact.nodes, contact.at, contact.C)
+    N = contact.at.size
+    slope = np.empty(N)
+    strain = np.empty(N)
+    for e in range(N):
+        slope[e] = _of_matrix(contact.H, e, contact.p) + _of_matrix(contact.C, e, contact.q)
+        strain[e] = _of_matrix(contact.T, e, contact.q) - _of_matrix(contact.C, e, contact.p)
+    return (
+        product(contact.nodes, contact.at, contact.p, slope),
+        product(contact.nodes, contact.at, contact.q, strain),
+    )
+
+
+@kernel(allocates=True)
+def write_state(row, contact, c, g, mu, d, status, out):
+    """Write a solved state without the powers of the cylinder.
+
+    out : (COLUMNS,), written; lam is that of the elements' load, 2 c.
+    Returns the integral of p.
+    """
+    total, moment = moments(contact.nodes, contact.p)
+    traction, _ = moments(contact.nodes, contact.q)
+    slip = 0.0 if math.isinf(d) else d
+    out[0] = 2.0 * c
+    out[1] = g / c
+    out[2] = traction / (mu * total)
+    out[3] = g + moment / total
+    if math.isinf(d):
+        out[4] = 2.0 * product(contact.nodes, contact.at, contact.q, contact.strain) / total
+    else:
+        out[4] = 2.0 * (slip * traction - slip_work(contact, slip)) / total
+    out[7] = stick_length(contact)
+    if status == SOLVED:
+        negative = 0.0
+        for i in range(contact.p.size):
+            negative -= min(contact.p[i], 0.0) * 0.5 * (contact.nodes[i + 2] - contact.nodes[i])
+        if negative > _TENSION * total:
+            status = TENSION
+    out[8] = status
+    out[9] = c
+    return total
+
+
+@kernel(allocates=True)
+def find_length(row, contact, c, slope, mu, d, tolerance, out):
+    """Find the half length at which the contact bears the load, by the secant method in logarithms.
+
+    The mesh of each length gathers at the edges that the one before had.
+
+    c, slope : first guesses of the half length and of d ln(load)/d ln(c).
+    tolerance : relative error of the load.
+    out : (COLUMNS,), written.
+    Returns (half length; slope).
+    """
+    spots = np.empty((MOST_SPOTS, 3))
+    y = math.log(c)
+    last = 0.0
+    before = 0.0
+    error = 1.0
+    for n in range(_MOST_LENGTHS):
+        c = math.exp(y)
+        status, g, centred = solve_contact(row, contact, c, mu, d, spots, n > _MOST_CENTRINGS)
+        total = write_state(row, contact, c, g, mu, d, status, out)
+        if status == SINGULAR:
+            return c, slope
+        error = math.log(total / LOAD) if total > 0.0 else -1.0
+        if n > 0 and abs(y - before) > _LEAST_CHANGE:
+            slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
+        if n > 0 and abs(error) < tolerance and (centred or n >= _MOST_CENTRINGS):
+            break
+        last = error
+        before = y
+        y -= error / slope
+    if not abs(error) < tolerance and out[8] == SOLVED:
+        out[8] = NO_LOAD
+    c *= math.exp(-error / slope)
+    out[0] = 2.0 * c
+    out[9] = c
+    return c, slope
+
+
+@kernel(allocates=True)
+def finish_state(row, contact, out):
+    """Write the powers of the cylinder into a state, ``out``, of a contact that was solved last."""
+    if row.split:
+        total, _ = moments(contact.nodes, contact.p)
+        moment, work = split_powers(row, contact)
+        out[5] = moment / total
+        out[6] = 2.0 * work / total
+    else:
+        out[5] = out[3] if row.cylinder else 0.0
+        out[6] = out[4] if row.cylinder else 0.0
+
+
+@kernel(allocates=True)
+def full_slip(row, mu, sign, count, c, out):
+    """Solve full slip of one sign; write the state and return its onset, the creep d.
+
+    sign : 1.0, -1.0, the sign of the slip.  c : guess of the half length.  out : (COLUMNS,),
+    written.  The onset is the largest strain of that sign; at the edges it is extrapolated, by the
+    parameter of the mesh, or by its square where u' falls like a root (without local coupling it
+    does not).
+    """
+    contact = new_contact(count)
+    contact.zone[:] = sign
+    find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
+    best = -np.inf
+    for e in range(count):
+        best = max(best, sign * contact.strain[e])
+    power = 1.0 if row.coupled else 2.0
+    x0 = 0.5**power
+    x1 = 1.5**power
+    x2 = 2.5**power
+    for end in range(2):
+        f0 = contact.strain[count - 1 if end else 0]
+        f1 = contact.strain[count - 2 if end else 1]
+        f2 = contact.strain[count - 3 if end else 2]
+        value = f0 * x1 * x2 / ((x0 - x1) * (x0 - x2)) + f1 * x0 * x2 / ((x1 - x0) * (x1 - x2))
+        value += f2 * x0 * x1 / ((x2 - x0) * (x2 - x1))
+        best = max(best, sign * value)
+    finish_state(row, contact, out)
+    return sign * best
+
+
+@kernel(allocates=True)
+def states_loop(row, mu, creeps, count, c, apart, out):
+    """Solve states at creeps between the onsets, in their order, each from the zones and length of
+    the one before.
+
+    row : :class:`Row`.  mu : friction.
+    creeps : d of each, (n,); neighbours should be near each other.
+    count : number of elements.
+    c : guess of the first half length.
+    apart : whether each is solved from nothing, so that it does not depend on the others.
+    out : (n, COLUMNS), written.
+    """
+    contact = new_contact(count)
+    slope = 2.0
+    guess = c
+    first = c
+    for n in range(creeps.size):
+        if apart:
+            contact.zone[:] = 0.0
+            guess = first
+            slope = 2.0
+        c, slope = find_length(row, contact, guess, slope, mu, creeps[n], _LOAD_ERROR, out[n])
+        finish_state(row, contact, out[n])
+        guess = c
+        if 0 < n < creeps.size - 1:
+            ahead = (creeps[n + 1] - creeps[n]) / (creeps[n] - creeps[n - 1])
+            guess *= (c / out[n - 1, 9]) ** min(ahead, 2.0)
+
+
+@kernel(allocates=True)
+def rear_slip(row, contact, c, mu, d, out):
+    """Solve a state and return (slip of sign + in its rear half; of sign -; zone at the rear edge;
+    half length).
+    """
+    c, _ = find_length(row, contact, c, 2.0, mu, d, _ROUGH_LOAD, out)
+    plus = False
+    minus = False
+    for i in range(contact.zone.size // 2):
+        plus = plus or contact.zone[i] > 0.0
+        minus = minus or contact.zone[i] < 0.0
+    return plus, minus, contact.zone[0], c
+
+
+@kernel(allocates=True)
+def touch_creep(row, mu, low, high, count, c):
+    """Return the creep d at which slip of the other sign opens in the rear half, between the onsets
+    low and high.
+
+    Below it the rear slips backwards, above it forwards; where both do in between it is the creep
+    at which the sign at the rear edge ends.  Found by bisection on the zones.
+    """
+    contact = new_contact(count)
+    out = np.zeros(COLUMNS)
+    a = low
+    b = high
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (a + b)
+        plus, _, _, c = rear_slip(row, contact, c, mu, middle, out)
+        if plus:
+            b = middle
+        else:
+            a = middle
+    opened = 0.5 * (a + b)
+    _, minus, edge, c = rear_slip(row, contact, c, mu, b + 2e-3 * (high - low), out)
+    if not minus or edge < 0.0:
+        return opened
+    a = opened
+    b = high
+    for _ in range(_BISECTIONS):
+        middle = 0.5 * (a + b)
+        _, minus, _, c = rear_slip(row, contact, c, mu, middle, out)
+        if minus:
+            a = middle
+        else:
+            b = middle
+    return 0.5 * (a + b)
+
+
+@kernel(allocates=True)
+def solve_one(row, mu, d, count, c, sign, out):
+    """Solve one state and return its :class:`Contact`.
+
+    d : creep; infinite: full slip of the sign ``sign``.  c : guess of the half length.  out :
+    (COLUMNS,), written.
+    """
+    contact = new_contact(count)
+    if math.isinf(d):
+        contact.zone[:] = sign
+    find_length(row, contact, c, 2.0, mu, d, _LOAD_ERROR, out)
+    return contact

@@ -1,0 +1,538 @@
+"""The law of covers of finite thickness: what it has besides its rows, and rows over thickness.
+
+What the law of a cover of finite thickness has besides its rows, and how shear acts back on its
+rolling moment.
+
+``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0,
+and numba compiles nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE`
+numbers, the limits of fast rolling, and then for each row of the law three pairs of functions of
+u = kappa |V| (:mod:`simd`).  The limits hold beyond the last row of the law.
+
+With the traction Q, |Q| <= mu, and delta_f = (f_b + f_c)/(2 kappa), the creepage of free rolling
+with stick,
+
+    M_half_space = V m_half_space - Q [f_b + g_b |Q|/mu]/(2 kappa)
+    M_cylinder = V m_cylinder - Q [f_c + g_c |Q|/mu]/(2 kappa + f_b + f_c)
+    lam = lam_0 + lam_Q Q        epsilon = epsilon_0 + epsilon_Q Q
+
+f_b and f_c are what the stretched surface of the base and of the cylinder adds to 2 kappa delta_f;
+g_b and g_c change the moment of full slip to that of the mirrored strain (docs/theory_covers.md).
+A body without a layer has f = g = 0.
+|g_b + g_c| is limited to mu L/2 by a smooth function, so that the loss in slip is never below 0.
+
+Letters: kappa = R/l0, mu the coefficient of friction; L = 2 kappa delta_star/mu; lam, length of the
+contact divided by l0, and epsilon, its shift in half contact lengths, functions of u; eta, half the
+transit time of the stick zone, and eta/F, a function of v = 1/F(eta) (:mod:`.law`).
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
+
+Rows for one thickness of a cover after another, interpolated between laws at nodes, without root
+finding.
+
+Every number of a law is a polynomial of log2(h/l0) within an octave of the thickness h, and of
+ln(3 - 4 nu) where covers differ in Poisson's ratio nu.  It is the sum of the numbers of the laws at
+the nodes, each times a weight that depends on thickness and nu alone.  The head, the rows and the
+marks of a law, and the parts of a row, are those of :mod:`law_record`; cover rows are the numbers
+that only a cover has (:mod:`cover_law`).  All numbers are dimensionless.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..numerics.intrinsics import floats_at, integers_at, record_at, record_type
+from ..numerics.jit import inline_kernel, kernel
+from ..numerics.simd import TERMS, evaluate_pair
+from .law_record import (
+    H_OVER_F2,
+    MAKER_MARKS,
+    MAKER_NUMBERS,
+    PART_SIZE,
+    PARTS_PER_ROW,
+    ROW_COUNT,
+    ROW_SIZE,
+    SELECTED,
+    VERSION,
+    select_index,
+)
+
+# --- What the law of a cover of finite thickness has besides its rows ---
+
+#: Index in the head: lam as u -> infinity; after it the coefficient of 1/u, as after each of the
+#: next six.
+LAM_LIMIT = 0
+#: Index in the head: f_b, the part of 2 kappa delta_f by the base, as u -> infinity.
+FREE_HALF_SPACE_LIMIT = 2
+#: Index in the head: f_c, the part of 2 kappa delta_f by the cylinder, as u -> infinity.
+FREE_CYLINDER_LIMIT = 4
+#: Index in the head: g_b as u -> infinity.
+EXCESS_HALF_SPACE_LIMIT = 6
+#: Index in the head: g_c as u -> infinity.
+EXCESS_CYLINDER_LIMIT = 8
+#: Index in the head: lam_Q as u -> infinity.
+LAM_SLOPE_LIMIT = 10
+#: Index in the head: epsilon_Q as u -> infinity.
+EPSILON_SLOPE_LIMIT = 12
+#: Index in the head: eta/F as v -> infinity; after it the coefficient of 1/v.
+ETA_OVER_F_LIMIT = 14
+#: Index in the head: epsilon u as u -> infinity.
+EPSILON_LIMIT = 16
+#: Index in the head: 2 M u^2/(V L) as u -> infinity, of both bodies together.
+MOMENT_LIMIT = 17
+#: Numbers of the head.
+COVER_FRONT_SIZE = 18
+#: Numbers of a pair of functions in a row.
+_PAIR_SIZE = 2 * TERMS
+#: Offset in a row of f_b and f_c, interleaved.
+FREE = 0
+#: Offset in a row of g_b and g_c, interleaved.
+EXCESS = _PAIR_SIZE
+#: Offset in a row of lam_Q and epsilon_Q, interleaved.
+TILT = 2 * _PAIR_SIZE
+#: Numbers of a row.
+COVER_ROW_SIZE = 3 * _PAIR_SIZE
+
+
+class FreeCreep(NamedTuple):
+    """Parts that the creepage of free rolling, delta_0, adds to the kinematics omega = V (1 +
+    delta_0 + k L d).
+
+    Here k = mu/(2 kappa) and L = 2 kappa delta_star/mu; d is (delta - delta_0)/delta_star.  All
+    parts are dimensionless.
+
+    creep : delta_0.
+    aside : d(V delta_0)/dV divided by k d(u L)/du, by which d is shifted.
+    bend : d^2(u delta_0)/du^2 divided by k, with u = kappa |V|.
+    """
+
+    creep: float
+    aside: float
+    bend: float
+
+
+@inline_kernel
+def fast_moment(shift, u, cover_rows):
+    """Return M/V divided by z, without the term alpha z W/8 of :func:`.law_functions._fast_terms`,
+    in the fast limit.
+
+    The fast limit holds beyond the last row of the law, and z = lam_fast/(2 u) is the ``scale`` of
+    M/V there.
+
+    shift : float, this part of a half-space, dimensionless, which is the result if ``cover_rows``
+        is None; else not read.
+    u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces.
+    Returns a float, dimensionless, which -> 0 for u -> infinity: of a cover as 1/u, of half-spaces
+    as (ln u)/u.
+    """
+    if cover_rows is None:
+        return shift
+    return cover_rows[MOMENT_LIMIT] / u
+
+
+@inline_kernel
+def fast_lengths(lam, shift, u, cover_rows):
+    """Return length and shift of the contact beyond the last row of the law, where the fast limit
+    holds.
+
+    lam, shift : floats, length divided by l0 and shift epsilon of a half-space, dimensionless,
+        which are the result if ``cover_rows`` is None; else not read.
+    u : float, kappa |V|, dimensionless, > 0; read of a cover alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces.
+    Returns (lam, epsilon), floats, dimensionless; epsilon is in half contact lengths.
+    """
+    if cover_rows is None:
+        return lam, shift
+    return cover_rows[LAM_LIMIT] + cover_rows[LAM_LIMIT + 1] / u, cover_rows[EPSILON_LIMIT] / u
+
+
+@inline_kernel
+def fast_eta_over_F(eta_over_F, v, cover_rows):
+    """Return eta/F beyond the last row of the law, where the fast limit holds.
+
+    eta_over_F : float, eta/F of a half-space, dimensionless, which is the result if ``cover_rows``
+        is None; else not read.
+    v : float, 1/F(eta), dimensionless, > 0, which may be infinite; read of a cover alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces.
+    Returns a float, dimensionless; of a cover its limit lam/L for v -> infinity and a term in 1/v.
+    """
+    if cover_rows is None:
+        return eta_over_F
+    return cover_rows[ETA_OVER_F_LIMIT] + cover_rows[ETA_OVER_F_LIMIT + 1] / v
+
+
+class PairOverSpeed(NamedTuple):
+    """Two functions of u = kappa |V| at one speed, with their first and second derivatives over u,
+    dimensionless.
+    """
+
+    first: float
+    second: float
+    first_slope: float
+    second_slope: float
+    first_curvature: float
+    second_curvature: float
+
+
+@inline_kernel
+def _pair_at(offset, limit, position, u, cover_rows):
+    """Return two functions of a cover at one speed, with their derivatives over u, as
+    :class:`PairOverSpeed`.
+
+    offset : int, offset of the pair in a row: FREE, EXCESS or TILT.
+    limit : int, index in the head of the limit of the first function for u -> infinity; its
+        coefficient of 1/u and the two numbers of the second function follow.
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law; beyond the last row
+        a function is its limit and a term in 1/u.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
+    """
+    if position.row < 0:
+        first_change = cover_rows[limit + 1] / u
+        second_change = cover_rows[limit + 3] / u
+        return PairOverSpeed(
+            first=cover_rows[limit] + first_change,
+            second=cover_rows[limit + 2] + second_change,
+            first_slope=-first_change / u,
+            second_slope=-second_change / u,
+            first_curvature=2.0 * first_change / (u * u),
+            second_curvature=2.0 * second_change / (u * u),
+        )
+    start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + offset
+    first, second, first_slope, second_slope, first_curvature, second_curvature = evaluate_pair(
+        cover_rows, start, position.t
+    )
+    slope = position.dt_dx
+    curvature = slope * slope
+    return PairOverSpeed(
+        first=first,
+        second=second,
+        first_slope=first_slope * slope,
+        second_slope=second_slope * slope,
+        first_curvature=first_curvature * curvature,
+        second_curvature=second_curvature * curvature,
+    )
+
+
+@inline_kernel
+def free_creep_at(position, u, cover_rows):
+    """Return 2 kappa delta_0, from the creepage delta_0 of free rolling, with its derivatives over
+    u.
+
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law; beyond the last row
+        the value is a limit and a term in 1/u.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces.
+    Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; a
+    cover on the cylinder has the other sign than the same on the base; all are 0.0 for half-spaces.
+    """
+    if cover_rows is None:
+        return 0.0, 0.0, 0.0
+    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
+    return (
+        free.first + free.second,
+        free.first_slope + free.second_slope,
+        free.first_curvature + free.second_curvature,
+    )
+
+
+class Reaction(NamedTuple):
+    """How shear acts back on the rolling moments at one speed: M of a body is that without traction
+    less
+
+        Q (factor + excess |Q|/mu)
+
+    half_space, cylinder : the factors, dimensionless, of either sign.
+    half_space_excess, cylinder_excess : the excesses, dimensionless, of either sign.
+    half_space_slope, cylinder_slope, half_space_excess_slope, cylinder_excess_slope : derivatives
+    of these four over u.
+    """
+
+    half_space: float
+    cylinder: float
+    half_space_excess: float
+    cylinder_excess: float
+    half_space_slope: float
+    cylinder_slope: float
+    half_space_excess_slope: float
+    cylinder_excess_slope: float
+
+
+@inline_kernel
+def shear_reaction(position, u, kappa, mu, L, dL, cover_rows):
+    """Return how shear acts back on the rolling moments at one speed, as :class:`Reaction`, by the
+    module's equations.
+
+    The excess g = g_b + g_c is limited by g/(1 + (g/s)^4)^(1/4) with s = mu L/2, both parts in
+    proportion.
+
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    mu : float, coefficient of friction, > 0.
+    L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope over u, dimensionless.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces: all is 0.
+    """
+    if cover_rows is None:
+        return Reaction(
+            half_space=0.0,
+            cylinder=0.0,
+            half_space_excess=0.0,
+            cylinder_excess=0.0,
+            half_space_slope=0.0,
+            cylinder_slope=0.0,
+            half_space_excess_slope=0.0,
+            cylinder_excess_slope=0.0,
+        )
+    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
+    excess = _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
+    on_base = 0.5 / kappa
+    on_cylinder = 1.0 / (2.0 * kappa + free.first + free.second)
+    on_cylinder_slope = -on_cylinder * on_cylinder * (free.first_slope + free.second_slope)
+    bound = 2.0 / (mu * L)
+    ratio = bound * (excess.first + excess.second)
+    ratio_slope = bound * (excess.first_slope + excess.second_slope) - ratio * dL / L
+    cube = ratio * ratio * ratio
+    rest = 1.0 / (1.0 + cube * ratio)
+    limiter = np.sqrt(np.sqrt(rest))
+    limiter_slope = -limiter * rest * cube * ratio_slope
+    excess_slope = limiter * excess.second_slope + limiter_slope * excess.second
+    return Reaction(
+        half_space=on_base * free.first,
+        cylinder=on_cylinder * free.second,
+        half_space_excess=on_base * limiter * excess.first,
+        cylinder_excess=on_cylinder * limiter * excess.second,
+        half_space_slope=on_base * free.first_slope,
+        cylinder_slope=on_cylinder * free.second_slope + on_cylinder_slope * free.second,
+        half_space_excess_slope=on_base
+        * (limiter * excess.first_slope + limiter_slope * excess.first),
+        cylinder_excess_slope=on_cylinder * excess_slope
+        + on_cylinder_slope * limiter * excess.second,
+    )
+
+
+class MomentChange(NamedTuple):
+    """What the traction changes in the rolling moments, dimensionless: to be added to those without
+    traction.
+
+    half_space, cylinder : the changes of M_half_space and M_cylinder.
+    half_space_dQ, cylinder_dQ : their derivatives in Q at fixed speed.
+    half_space_du, cylinder_du : their derivatives over u = kappa |V| at fixed Q.
+    """
+
+    half_space: float
+    cylinder: float
+    half_space_dQ: float
+    cylinder_dQ: float
+    half_space_du: float
+    cylinder_du: float
+
+
+@inline_kernel
+def moment_change(Q, mu, reaction):
+    """Return what the traction changes in the rolling moments, as :class:`MomentChange`.
+
+    Q : float, traction, dimensionless, |Q| <= mu.
+    mu : float, coefficient of friction, > 0.
+    reaction : :class:`Reaction` at the speed.
+    """
+    used = abs(Q) / mu
+    return MomentChange(
+        half_space=-Q * (reaction.half_space + reaction.half_space_excess * used),
+        cylinder=-Q * (reaction.cylinder + reaction.cylinder_excess * used),
+        half_space_dQ=-(reaction.half_space + 2.0 * reaction.half_space_excess * used),
+        cylinder_dQ=-(reaction.cylinder + 2.0 * reaction.cylinder_excess * used),
+        half_space_du=-Q * (reaction.half_space_slope + reaction.half_space_excess_slope * used),
+        cylinder_du=-Q * (reaction.cylinder_slope + reaction.cylinder_excess_slope * used),
+    )
+
+
+@inline_kernel
+def length_change(Q, position, u, cover_rows):
+    """Return what the traction changes in length and shift of the contact, to first order.
+
+    Q : float, traction in the direction of V, dimensionless, |Q| <= mu.
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces.
+    Returns (change of lam, change of epsilon), floats, dimensionless; 0.0 each of half-spaces.
+    """
+    if cover_rows is None:
+        return 0.0, 0.0
+    tilt = _pair_at(TILT, LAM_SLOPE_LIMIT, position, u, cover_rows)
+    return Q * tilt.first, Q * tilt.second
+
+
+@inline_kernel
+def sliding_creep(slip, delta, free_creep, state, cover_rows):
+    """Return slip and creepage that cause the traction: for a cover without those of free rolling.
+
+    slip : float, a number with the sign of omega - V, of :func:`.law_record.slip_and_creepage`;
+        not read for a cover.
+    delta : float, creepage (omega - V)/V, dimensionless; infinite at V = 0 if omega is given and
+    not 0.
+    free_creep : float, 2 kappa delta_0, with delta_0 the creepage of free rolling, dimensionless;
+        read of a cover alone.
+    state : :class:`.law_record.State`, of which kappa and the sign of V are read, of a cover
+    alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces.
+    Returns (a float with the sign of the traction, delta - delta_0), dimensionless.  Of a cover the
+    first is delta - delta_0 with the sign of V, where V = 0.0 and -0.0 count as V > 0; of
+    half-spaces the two are ``slip`` and ``delta`` as given.
+    """
+    if cover_rows is None:
+        return slip, delta
+    own = delta - 0.5 * free_creep / state.kappa
+    return -own if state.V < 0.0 else own, own
+
+
+@inline_kernel
+def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
+    """Return dQ/dV at fixed creepage delta, from that at fixed delta - delta_0, the creepage less
+    that of free rolling.
+
+    A cover's delta_0 changes with the speed, so that the traction changes too while delta stays.  Q
+    is in units of P.
+
+    dQ_dV : float, slope at fixed delta - delta_0, dimensionless.
+    dQ_ddelta : float, slope over the creepage for motion with V > 0, dimensionless, >= 0.
+    free_slope : float, slope of 2 kappa delta_0 over u = kappa |V|, dimensionless.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None, for
+        half-spaces, leaves dQ_dV as it is.
+    Returns a float, dimensionless.
+    """
+    if cover_rows is None:
+        return dQ_dV
+    return dQ_dV - 0.5 * dQ_ddelta * free_slope
+
+
+@inline_kernel
+def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
+    """Return what the creepage of free rolling adds to the kinematics of partial slip at one speed.
+
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    k : float, mu/(2 kappa), dimensionless, > 0.
+    uL_slope : float, d(u L)/du, where L = 2 kappa delta_star/mu, dimensionless, > 0.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+        half-spaces, of which no other argument is read.
+    Returns :class:`FreeCreep` of floats, dimensionless: delta_0; d(V delta_0)/dV divided by k d(u
+    L)/du, which is added to d = (delta - delta_0)/delta_star in the kinematics; d^2(u delta_0)/du^2
+    divided by k.  All are -0.0 for half-spaces, which a compiler leaves out of sums.
+    """
+    if cover_rows is None:
+        return FreeCreep(-0.0, -0.0, -0.0)
+    value, slope, second_derivative = free_creep_at(position, u, cover_rows)
+    factor = 0.5 / kappa
+    return FreeCreep(
+        factor * value,
+        factor * (value + u * slope) / (k * uL_slope),
+        factor * (2.0 * slope + u * second_derivative) / k,
+    )
+
+
+# --- Rows for one thickness of a cover after another ---
+
+#: What these kernels read.  Addresses: rows, marks and cover rows of the law; the index of the
+#: cover of each state; the weights of each cover; for each cover the address of the laws of its
+#: octave and their number of rows.
+#: state_count: length of the indices, 1 or one for each state.  cover_count: number of covers.
+#: law_count: laws of an octave.
+SOURCE = record_type(
+    "rows marks cover_rows cover_index state_count weights octaves cover_count law_count"
+)
+#: Mark that is the address of the laws of the selected octave.
+_LAWS = MAKER_MARKS
+
+
+@inline_kernel
+def _interpolate(source, marks, first, to, out, count):
+    """Write numbers of the law of the selected cover, interpolated between the laws at the nodes of
+    its thickness.
+
+    Each number is the sum of those of the laws at the nodes, times weights whose sum is 1 (some may
+    be negative).
+
+    source : SOURCE record, with the weights of the nodes for each cover.
+    marks : ``marks`` of the law, with the selected cover, its number of rows, and the address of
+        the laws at the nodes of its octave.
+    first : int, index of the first number in each of the laws at the nodes (head, rows, then cover
+    rows).
+    to : int, index in ``out`` of the first number that is written.
+    out : vector of rows or cover rows of the law, of which ``count`` numbers are overwritten.
+    count : int, number of numbers.
+    Returns nothing.
+    """
+    law_size = (
+        (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
+    )
+    weights = floats_at(source.weights + 8 * source.law_count * marks[SELECTED], source.law_count)
+    for k in range(count):
+        out[to + k] = 0.0
+    for j in range(source.law_count):
+        law = floats_at(marks[_LAWS] + 8 * (j * law_size + first), count)
+        weight = weights[j]
+        for k in range(count):
+            out[to + k] += weight * law[k]
+
+
+@kernel(allocates=True)
+def select_cover(n, source):
+    """Make the cover of a state the selected one: interpolate the head of its rows, and its cover
+    rows.
+
+    n : int, index of the state, >= 0, of those for which the law was made; not checked.
+    source : pointer to a SOURCE record.  If that cover is selected already, nothing is written.
+        Else the first eight numbers of the head of rows (:data:`.law_record.ALPHA` to those of
+        :data:`.law_record.FAST_CYLINDER`) and all cover rows are written, and in the head of marks
+        the index of the cover, a new version, the number of rows and the address of the laws of its
+        octave.
+
+    Rows of the law are then interpolated when they are first read (:func:`make_part`).  Returns
+    nothing.
+    """
+    source = record_at(source)
+    marks = integers_at(source.marks, PARTS_PER_ROW)
+    index = select_index(n, source.cover_index, source.state_count, marks)
+    if index >= 0:
+        octaves = integers_at(source.octaves, 2 * source.cover_count)
+        marks[_LAWS] = octaves[2 * index]
+        count = octaves[2 * index + 1]
+        marks[ROW_COUNT] = count
+        _interpolate(source, marks, 0, 0, floats_at(source.rows, MAKER_NUMBERS), MAKER_NUMBERS)
+        size = COVER_FRONT_SIZE + COVER_ROW_SIZE * count
+        _interpolate(
+            source, marks, (count + 1) * ROW_SIZE, 0, floats_at(source.cover_rows, size), size
+        )
+
+
+@kernel(allocates=True)
+def make_part(number, source):
+    """Make a part of a row of the selected cover, by interpolation, and write it into the rows of
+    the law.
+
+    number : int, index of the part among the marks: (row + 1) PARTS_PER_ROW + offset of the part in
+    the row/PART_SIZE.
+    source : pointer to a SOURCE record.  The 24 coefficients of a function, or 48 of a pair (L with
+        M/V, lam with epsilon, moments of the bodies), are written, and as mark ``number`` the
+        version of the cover.
+
+    Returns nothing.
+    """
+    source = record_at(source)
+    marks = integers_at(source.marks, number + 1)
+    start = PART_SIZE * number
+    count = (
+        2 * PART_SIZE if start % ROW_SIZE < H_OVER_F2 else PART_SIZE
+    )  # of a pair of functions, or of one
+    _interpolate(source, marks, start, start, floats_at(source.rows, start + count), count)
+    marks[number] = marks[VERSION]

@@ -1,0 +1,506 @@
+"""The law of a grid by tensor splines, at one point and as a function of C.
+
+A tensor spline over V, delta and alpha at one point: its value and its slopes.
+
+A spline is one vector of doubles: a head, its three axes, its coefficients.  An axis is a head, the
+edges of its intervals, and for each interval the basis splines that are not 0 there, as polynomials
+of the distance from its left edge.  An axis may run in the logarithm of its coordinate.  An axis on
+which the field does not depend has no interval, and one basis spline, which is 1.
+``viscoroll.laws.law_grid`` writes the vector.
+
+The law of a table (:mod:`.coupled_splines`) at states: many at a time, and as a C function like
+:mod:`.law_callables`.
+
+Loads are odd in (V, omega), so that the table is read at |V|; V = 0 counts as V > 0.  In full slip
+Q does not depend on the creep.  Symbols are those of :mod:`.coupled_splines`; all is dimensionless
+but what is said to be in units of a caller.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import carray
+
+from ..numerics.intrinsics import floats_at, fma, record_at, record_type
+from ..numerics.jit import inline_kernel, kernel
+from .coupled_splines import (
+    CYLINDER,
+    FIELD_COUNT,
+    FREE,
+    HALF_SPACE,
+    LENGTH,
+    LIMIT,
+    MIDDLE,
+    MOST,
+    ONSET,
+    SHIFT,
+    SLIPS,
+    STICK,
+    TRACTION,
+    edge_at,
+    field_at,
+    locate_creep,
+    locate_speed,
+    place_of,
+)
+from .law_callables import RESULTS, Jitted, c_function_address, refuse
+from .law_record import read_state, slip_and_creepage, write_field
+
+# --- A tensor spline over V, delta and alpha at one point ---
+
+# Indices in the head of a spline.
+#: Lower bound, to which values are clipped.
+LOW = 0
+#: Upper bound, to which values are clipped.
+HIGH = 1
+#: Where the axis of V begins.
+V_AXIS = 2
+#: Where the axis of delta begins.
+DELTA_AXIS = 3
+#: Where the axis of alpha begins.
+ALPHA_AXIS = 4
+#: Where the coefficients begin.
+COEFFICIENTS = 5
+# Indices in the head of an axis.
+#: Number of intervals; 0 if the field does not depend on the coordinate.
+INTERVALS = 0
+#: Number of basis splines that are not 0 in an interval.
+ORDER = 1
+#: 1 if the coordinate is the logarithm, else 0.
+IS_LOG = 2
+#: Number of coefficients between neighbours along the axis.
+STRIDE = 3
+#: Where the edges of the intervals begin.
+EDGES = 4
+#: Coefficients of the polynomial of a basis spline; of a lower degree some are 0.
+TERMS = 4
+
+
+class Value(NamedTuple):
+    """A field at a point and its slopes over V, delta and alpha, in the units of the grid.
+
+    All four are NaN outside of the axes.  The slope over an axis on which the field does not depend
+    is 0, and so are all slopes where the value is clipped to the bounds.
+    """
+
+    value: float
+    dV: float
+    ddelta: float
+    dalpha: float
+
+
+class AxisPosition(NamedTuple):
+    """Position of a coordinate on an axis.
+
+    axis : int, where the axis begins in the spline.
+    interval : int, number of the interval, from 0.
+    t : distance from its left edge, in the coordinate or in its logarithm; NaN outside of the axis.
+    slope : derivative of the logarithm over the coordinate; 1 where the axis does not run in it.
+    """
+
+    axis: int
+    interval: int
+    t: float
+    slope: float
+
+
+@inline_kernel
+def _number_at(spline, n):
+    """Return number ``n`` of a spline; unsigned, as numba would test for negative ones."""
+    return spline[np.uint64(n)]
+
+
+@inline_kernel
+def _integer_at(spline, n):
+    """Return number ``n`` of a spline as an integer."""
+    return np.int64(_number_at(spline, n))
+
+
+@inline_kernel
+def _locate(spline, name, x):
+    """Return the position of a coordinate on an axis of the spline.
+
+    spline : vector of the spline: bounds, axes and coefficients.
+    name : V_AXIS, DELTA_AXIS or ALPHA_AXIS, index in the head of the spline.
+    x : float, the coordinate itself, also of a logarithmic axis, in the units of the grid; it is
+        ignored if the field does not depend on it.
+
+    Returns :class:`AxisPosition`.  A coordinate on an inner edge is at the left end of its
+    interval, one at the upper end of the axis is in the last interval.  Outside of the axis, and
+    for NaN, t is NaN and the interval 0.  If the field does not depend on the coordinate, interval
+    and t are 0 and the slope is 1.
+    """
+    axis = _integer_at(spline, name)
+    interval = np.int64(0)
+    count = _integer_at(spline, axis + INTERVALS)
+    slope = 1.0
+    if count == 0:
+        return AxisPosition(axis, interval, 0.0, slope)
+    if _number_at(spline, axis + IS_LOG) > 0.0:
+        slope = 1.0 / x
+        x = np.log(x)
+    if not _number_at(spline, axis + EDGES) <= x <= _number_at(spline, axis + EDGES + count):
+        return AxisPosition(axis, interval, np.nan, slope)
+    while count > 1:
+        middle = count >> 1
+        interval += middle * np.int64(x >= _number_at(spline, axis + EDGES + interval + middle))
+        count -= middle
+    return AxisPosition(axis, interval, x - _number_at(spline, axis + EDGES + interval), slope)
+
+
+@inline_kernel
+def _basis(spline, position, n):
+    """Return one basis spline at a position: value, slope and offset of its coefficient.
+
+    spline : vector of the spline: bounds, axes and coefficients.
+    position : the :class:`AxisPosition`.
+    n : int, 0 ... 3, index of the basis spline among those that are not 0 in the interval; those
+        beyond the degree of the axis are 0.
+
+    Returns (value, slope, offset): value, a float, dimensionless; slope over the coordinate itself,
+    also of a logarithmic axis, a float; int that is added to the position of a coefficient in the
+    vector.  Value and slope are NaN outside of the axis.
+    """
+    axis = position.axis
+    at = (
+        (position.interval * TERMS + n) * TERMS
+        + EDGES
+        + 1
+        + _integer_at(spline, axis + INTERVALS)
+        + axis
+    )
+    c0 = _number_at(spline, at)
+    c1 = _number_at(spline, at + 1)
+    c2 = _number_at(spline, at + 2)
+    c3 = _number_at(spline, at + 3)
+    t = position.t
+    start = (position.interval + n) * _integer_at(spline, axis + STRIDE)
+    return (
+        fma(t, fma(t, fma(t, c3, c2), c1), c0),
+        fma(t, fma(t, 3.0 * c3, 2.0 * c2), c1) * position.slope,
+        start,
+    )
+
+
+@inline_kernel
+def evaluate(spline, V, delta, alpha):
+    """Return the :class:`Value` of a field at a point, for kernels that inline it.
+
+    spline : vector of the spline: bounds, axes and coefficients.
+    V, delta, alpha : float, coordinates in the units of the grid.  A coordinate on which the field
+        does not depend is ignored.
+
+    Returns value and slopes over V, delta and alpha, floats in the units of the grid: all NaN if a
+    coordinate is NaN or outside of its axis; a value beyond the bounds of the field is clipped to
+    them, and all its slopes are 0.  The slope over a coordinate that is ignored is 0.
+    """
+    over_V = _locate(spline, V_AXIS, V)
+    over_delta = _locate(spline, DELTA_AXIS, delta)
+    over_alpha = _locate(spline, ALPHA_AXIS, alpha)
+    value = dV = ddelta = dalpha = 0.0 * (over_V.t + over_delta.t + over_alpha.t)
+    for k in range(_integer_at(spline, over_alpha.axis + ORDER)):
+        c, dc, plane = _basis(spline, over_alpha, k)
+        for i in range(TERMS):
+            b, db, row = _basis(spline, over_V, i)
+            row += plane + _integer_at(spline, COEFFICIENTS)
+            f = df = 0.0
+            for j in range(TERMS):
+                a, da, column = _basis(spline, over_delta, j)
+                coefficient = _number_at(spline, row + column)
+                f = fma(a, coefficient, f)
+                df = fma(da, coefficient, df)
+            value = fma(c * b, f, value)
+            dV = fma(c * db, f, dV)
+            ddelta = fma(c * b, df, ddelta)
+            dalpha = fma(dc * b, f, dalpha)
+    low = _number_at(spline, LOW)
+    high = _number_at(spline, HIGH)
+    if value < low or value > high:
+        return Value(min(max(value, low), high), 0.0, 0.0, 0.0)
+    return Value(value, dV, ddelta, dalpha)
+
+
+@kernel
+def spline_at(spline, V, delta, alpha):
+    """Return the :class:`Value` of a field at a point: value and slopes over V, delta and alpha, in
+    the units of the grid.
+
+    It is :func:`evaluate` for callers outside of this folder, compiled once.
+
+    spline : vector of doubles of :meth:`viscoroll.tables.Interpolant.jitted`: bounds, axes and
+        coefficients.
+    V, delta, alpha : float, coordinates in the units of the grid.  Where the field does not depend
+        on one of them, that argument is ignored, and any number may be given.
+
+    Returns NaN, the slopes too, if a coordinate that is not ignored is NaN or outside of its axis.
+    A value beyond the bounds of the field is clipped to them, and its slopes are 0.  The slope over
+    a coordinate that is ignored is 0.
+    """
+    return evaluate(spline, V, delta, alpha)
+
+
+# --- The law of a table (coupled_splines) at states ---
+
+#: User data.  function: address of the C function.  slopes: whether slopes are asked for.  table,
+#: size: address and length of the table.  kappa, mu: of the scene.  V, omega, Q, M: 1 of each in
+#: the units of the caller.
+TABLE = record_type("function slopes table size", "kappa mu V omega Q M")
+
+
+#: Bisections of d in [-1, 1], to rounding.
+_HALVINGS = 53
+
+
+class Load(NamedTuple):
+    """A load of a state: its value; dV, its slope over V at fixed creepage; ddelta, that over the
+    creepage.
+    """
+
+    value: float
+    dV: float
+    ddelta: float
+
+
+@inline_kernel
+def _load(name, factor, V, kappa, u, state, speed, place, table):
+    """Return a field times a factor as a :class:`Load`, which is odd in V.
+
+    name : TRACTION, HALF_SPACE or CYLINDER.
+    factor : mu of Q, 1/kappa of a moment.
+    V, kappa, u : speed of the axis, slenderness, kappa |V|.
+    state, speed, place : of :func:`.coupled_splines.place_of`,
+    :func:`.coupled_splines.locate_speed` and :func:`.coupled_splines.locate_creep`.
+    """
+    found = field_at(name, state.w, speed, place, table)
+    sign = np.copysign(1.0, V)
+    dV = factor * kappa * (found.du + found.dw * state.dw_du)
+    return Load(
+        sign * factor * found.value, dV, sign * factor * 2.0 * kappa * found.dw * state.dw_dD
+    )
+
+
+@inline_kernel
+def _traction(mu, V, kappa, u, state, speed, place, table):
+    """Return Q as a :class:`Load`; arguments as of :func:`_load`.  It is at most mu LIMIT, with
+    slopes 0 there.
+    """
+    limit = mu * table[LIMIT]
+    found = _load(TRACTION, mu, V, kappa, u, state, speed, place, table)
+    if state.w < 1.0 and abs(found.value) <= limit:
+        return found
+    sign = np.copysign(1.0, V)
+    full = sign * state.sigma * limit
+    if abs(full) < np.inf:
+        return Load(full, 0.0, 0.0)
+    return found
+
+
+@inline_kernel
+def _at_fixed_omega(load, V, delta):
+    """Return (slope of a load over V at fixed omega, that over omega), floats; infinite at V = 0
+    where it depends on the creepage.
+    """
+    if load.ddelta == 0.0:
+        return load.dV, 0.0
+    return load.dV - load.ddelta * (1.0 + delta) / V, load.ddelta / V
+
+
+@kernel(allocates=True)
+def look_up(table, u, D):
+    """Return all fields of a table at speeds kappa |V| and creeps 2 kappa delta, both (n,), as (n,
+    fields).
+    """
+    out = np.empty((u.size, np.int64(table[FIELD_COUNT])))
+    for n in range(u.size):
+        speed = locate_speed(u[n], table)
+        state = place_of(D[n], u[n], speed, table)
+        place = locate_creep(state.w, state.sigma, table)
+        for name in range(out.shape[1]):
+            out[n, name] = field_at(name, state.w, speed, place, table).value
+    return out
+
+
+@kernel
+def table_loop(table, request, count):
+    """Write the requested fields of states.
+
+    table : vector of :mod:`.coupled_splines`, with all fields.
+    request : :class:`.law_record.Request`, of which ``order`` is not read; its ``out`` is
+    written.
+    count : number of states.
+    """
+    for n in range(count):
+        _write_state(table, read_state(request.states, n), n, request)
+
+
+@inline_kernel
+def _write_state(table, given, n, request):
+    """Write the requested fields of one state, number ``n``; ``given``:
+    :class:`.law_record.State`.
+    """
+    to = request.to
+    kappa = given.kappa
+    V = given.V
+    u = kappa * abs(V)
+    _, delta = slip_and_creepage(given)
+    D = 2.0 * kappa * delta
+    speed = locate_speed(u, table)
+    state = place_of(D, u, speed, table)
+    place = locate_creep(state.w, state.sigma, table)
+    write_field(to.delta, delta, n, request)
+    write_field(to.full_slip, np.float64(state.w >= 1.0), n, request)
+    if max(to.lam, to.zeta) >= 0:
+        lam = field_at(LENGTH, state.w, speed, place, table).value
+        write_field(to.lam, lam, n, request)
+        write_field(to.zeta, 0.5 * lam / u, n, request)
+    if to.epsilon >= 0:
+        write_field(to.epsilon, field_at(SHIFT, state.w, speed, place, table).value, n, request)
+    if to.beta >= 0:
+        stick = field_at(STICK, state.w, speed, place, table).value
+        write_field(to.beta, min(max(stick, 0.0), 1.0), n, request)
+    if max(to.delta_star, to.delta_0) >= 0:
+        free = edge_at(FREE, u, speed, table).value
+        onset = edge_at(ONSET + np.int64(D >= free), u, speed, table).value
+        write_field(to.delta_star, 0.5 * abs(onset - free) / kappa, n, request)
+        write_field(to.delta_0, 0.5 * free / kappa, n, request)
+    Q = _traction(given.mu, V, kappa, u, state, speed, place, table)
+    half_space = _load(HALF_SPACE, 1.0 / kappa, V, kappa, u, state, speed, place, table)
+    cylinder = _load(CYLINDER, 1.0 / kappa, V, kappa, u, state, speed, place, table)
+    write_field(to.Q, Q.value, n, request)
+    write_field(to.grip, 1.0 - abs(Q.value) / given.mu, n, request)
+    write_field(to.M, half_space.value + cylinder.value, n, request)
+    write_field(to.M_half_space, half_space.value, n, request)
+    write_field(to.M_cylinder, cylinder.value, n, request)
+    if max(to.dQ_ddelta, to.dQ_dV, to.dQ_domega, to.dM_ddelta, to.dM_dV, to.dM_domega) >= 0:
+        _write_slopes(Q, half_space, cylinder, given, delta, n, request)
+
+
+@inline_kernel
+def _write_slopes(Q, half_space, cylinder, given, delta, n, request):
+    """Write the requested slopes of one state, number ``n``: of Q and of the moments, each a
+    :class:`Load`.
+    """
+    to = request.to
+    V = given.V
+    M = Load(
+        half_space.value + cylinder.value,
+        half_space.dV + cylinder.dV,
+        half_space.ddelta + cylinder.ddelta,
+    )
+    write_field(to.dQ_ddelta, Q.ddelta, n, request)
+    write_field(to.dM_ddelta, M.ddelta, n, request)
+    fixed = given.creep_is_omega
+    for load, over_V, over_omega in (
+        (Q, to.dQ_dV, to.dQ_domega),
+        (M, to.dM_dV, to.dM_domega),
+        (half_space, to.dM_half_space_dV, to.dM_half_space_domega),
+        (cylinder, to.dM_cylinder_dV, to.dM_cylinder_domega),
+    ):
+        dV, domega = _at_fixed_omega(load, V, delta)
+        write_field(over_V, dV if fixed else load.dV, n, request)
+        write_field(over_omega, domega, n, request)
+
+
+@kernel(allocates=True)
+def _table_law(caller_V, caller_omega, pointer, scenes):
+    """Evaluate a table at one state and write the results; it is the C function of a table.
+
+    caller_V, caller_omega : speed of the axis and angular velocity in the units of the caller, of
+    any sign.
+    pointer : address of RESULTS numbers, which are written in the units of the caller as by
+        :func:`.law_callables._evaluate`: without ``slopes`` the first four alone.
+    scenes : pointer to a TABLE record.
+    Returns the status, an int: 0; or 1, and all results are NaN, where |V| is above the table, V or
+    omega is not finite, or the creepage is outside of a table that does not slip fully at its ends.
+    """
+    out = carray(pointer, RESULTS)
+    scene = record_at(scenes)
+    table = floats_at(scene.table, scene.size)
+    V = caller_V / scene.V
+    slip = caller_omega / scene.omega - V
+    kappa = scene.kappa
+    u = kappa * abs(V)
+    if not (u <= table[MOST] and abs(slip) < np.inf):
+        return refuse(out)
+    delta = slip / V if V != 0.0 else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
+    speed = locate_speed(u, table)
+    state = place_of(2.0 * kappa * delta, u, speed, table)
+    if state.w > 1.0 and table[SLIPS] == 0.0:
+        return refuse(out)
+    place = locate_creep(state.w, state.sigma, table)
+    Q = _traction(scene.mu, V, kappa, u, state, speed, place, table)
+    half_space = _load(HALF_SPACE, 1.0 / kappa, V, kappa, u, state, speed, place, table)
+    cylinder = _load(CYLINDER, 1.0 / kappa, V, kappa, u, state, speed, place, table)
+    out[0] = scene.Q * Q.value
+    out[1] = scene.M * (half_space.value + cylinder.value)
+    out[2] = scene.M * half_space.value
+    out[3] = scene.M * cylinder.value
+    if scene.slopes:
+        dQ_dV, dQ_domega = _at_fixed_omega(Q, V, delta)
+        half_space_dV, half_space_domega = _at_fixed_omega(half_space, V, delta)
+        cylinder_dV, cylinder_domega = _at_fixed_omega(cylinder, V, delta)
+        out[4] = scene.Q / scene.V * dQ_dV
+        out[5] = scene.Q / scene.omega * dQ_domega
+        out[6] = scene.M / scene.V * half_space_dV
+        out[7] = scene.M / scene.V * cylinder_dV
+        out[8] = scene.M / scene.omega * half_space_domega
+        out[9] = scene.M / scene.omega * cylinder_domega
+    return 0
+
+
+def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
+    """Return the law of a table as a function for jitted code, :class:`Jitted`.
+
+    table : vector of :mod:`.coupled_splines`, which the law keeps alive with ``owner``.
+    kappa, mu : of the scene.
+    scale : "V", "omega", "Q" and "M" -> the unit of this dimensionless quantity in the units of the
+    caller.
+    """
+    function = c_function_address(_table_law, TABLE)
+    numbers = (
+        table.ctypes.data,
+        table.size,
+        kappa,
+        mu,
+        *(scale[name] for name in ("V", "omega", "Q", "M")),
+    )
+    return Jitted(
+        np.array([(function, slopes, *numbers) for slopes in (0, 1)], TABLE), (table, owner)
+    )
+
+
+@kernel
+def balance_loop(table, kappa, mu, u, load, of_spin, out):
+    """Find the creeps at which friction is in balance with a load at given speeds V >= 0, by
+    bisection of d = sigma w.
+
+    kappa, mu, u : slenderness, friction, kappa V, (n,) each.
+    load : value of Q - M_half_space, or where ``of_spin`` of Q + M_cylinder, (n,).
+    out : (n, 2), written: 2 kappa delta, within the onsets; what of ``load`` is not balanced, 0 but
+    at an onset.
+    """
+    for n in range(u.size):
+        speed = locate_speed(u[n], table)
+        low = -1.0
+        high = 1.0
+        d = 0.0
+        found = 0.0
+        for step in range(_HALVINGS + 2):
+            d = -1.0 if step == 0 else 1.0 if step == 1 else 0.5 * (low + high)
+            sigma = 1.0 if d >= 0.0 else -1.0
+            place = locate_creep(abs(d), sigma, table)
+            found = mu[n] * field_at(TRACTION, abs(d), speed, place, table).value
+            if of_spin:
+                found += field_at(CYLINDER, abs(d), speed, place, table).value / kappa[n]
+            else:
+                found -= field_at(HALF_SPACE, abs(d), speed, place, table).value / kappa[n]
+            if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
+                break
+            if step > 1 and found < load[n]:
+                low = d
+            elif step > 1:
+                high = d
+        middle = edge_at(MIDDLE, u[n], speed, table).value
+        onset = edge_at(ONSET + np.int64(d >= 0.0), u[n], speed, table).value
+        out[n, 0] = middle + abs(d) * (onset - middle)
+        out[n, 1] = load[n] - found if abs(d) == 1.0 else 0.0

@@ -1,0 +1,485 @@
+"""Values from a flow map: polynomials instead of integration.
+
+In full slip, mirrored so that omega > V, I = V - j omega - 2 mu T(V) is constant and determines the
+onset of partial slip.  After the onset the boundary layer is a table over (V at onset, E); then the
+motion follows the slow manifold, a function of the slow logarithm.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
+
+Terms of this file:
+
+- Flow: record of the flow map of one scene: ``table``, the vector of all its tables, of layout.SIZE
+  numbers; kappa, mu, j; ``first``, the exponent from which kappa V at onset is tabulated;
+  ``slow_rate``.
+- Times are tau = gamma t.  Distances and angles are integrals over tau: gamma times x and gamma
+  times the angle.
+- Level: SPEEDS (0): V and delta or omega alone; PATH (1): distance and angle too; LOSS (2): slip
+  loss too.
+- Mirrored frame: the signs of V and omega are changed where needed, so that omega > V in full slip
+  and V > 0 in partial slip.
+- T: time of full slip from V = 0 to V, with the sign of V; X: distance of full slip between rest
+  and V, >= 0.
+- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and
+  then keep.
+- Slow logarithm: coordinate along it, which falls linearly in tau; close to ln V plus a constant at
+  low speed.
+- Boundary layer: the time after the onset of partial slip in which delta approaches the manifold.
+  E = k0 (tau - tau_onset) is its stiff time, k0 the relaxation rate at onset, u the layer
+  coordinate (:func:`layer_coordinate`).
+- Family: PLUS (0) if omega > V at the onset of partial slip, MINUS (1) if omega < V.
+"""
+
+import numpy as np
+
+from ..law.law_functions import locate_octave
+from ..numerics.interpolation import gauss
+from ..numerics.intrinsics import fma
+from ..numerics.jit import inline_kernel, kernel
+from ..numerics.simd import (
+    LANES,
+    broadcast,
+    evaluate_pair,
+    evaluate_single,
+    fma4,
+    make_load,
+    unpack,
+)
+from ..records import Asymptote
+from . import flow_layout
+from .flow_layout import LAYER_TERMS, SHAPES, STARTS
+
+#: output level: V and omega alone
+SPEEDS = 0
+#: output level: distance and angle too
+PATH = 1
+#: output level: slip loss too
+LOSS = 2
+#: lowest kappa V of the tables
+LOWEST = 2.0**flow_layout.LOW
+#: highest kappa V of a start, two octaves below the end of the tables, so that quantities that grow
+#: with it stay inside
+HIGHEST = 2.0 ** (flow_layout.HIGH - 2)
+#: ratio of the sliding time to T below which the difference of X cancels and V is integrated
+#: instead
+_SHORT = 0.02
+#: stiff rate of a motion on the slow manifold: its layer has length 0
+_NO_LAYER = 1e30
+_LOWEST_U = 2.0**flow_layout.LAYER_LOW
+_LOWEST_SLOW_LOG = -flow_layout.SLOW_BINS * flow_layout.SLOW_WIDTH
+#: numbers of a row of the table of full slip
+_SLIDE = SHAPES.slide[2]
+#: numbers of a row of the table of onsets
+_ONSET = SHAPES.onset[2]
+#: numbers of a row of the table of speeds over sliding time
+_AFTER = SHAPES.after[2]
+#: numbers of a row of the slow manifold over its slow logarithm
+_SLOW = SHAPES.slow[1]
+#: numbers of a row of the slow manifold over kappa V
+_MANIFOLD = SHAPES.manifold[1]
+#: numbers of a row of the asymptotes
+_ASYMPTOTE_SIZE = SHAPES.asymptote[2]
+#: octaves of the tables over kappa V
+_SPEED_OCTAVES = flow_layout.HIGH - flow_layout.LOW
+#: octaves of kappa V at onset
+_ONSET_OCTAVES = flow_layout.OCTAVES
+#: octaves of the layer coordinate u
+_LAYER_OCTAVES = SHAPES.layer[2]
+#: numbers of the polynomials of one octave of u
+_LAYER = SHAPES.layer[3] * SHAPES.layer[4]
+#: loads the twelve coefficients of the powers of t, that belong to one power of s, as three vectors
+#: of four
+_powers = make_load(LAYER_TERMS // LANES)
+#: nodes of the 5-point Gauss-Legendre rule on [0, 1], for short intervals
+_GAUSS_X = gauss(5)[0]
+#: weights of that rule
+_GAUSS_W = gauss(5)[1]
+
+
+@inline_kernel
+def full_slip_integrals(V, level, flow):
+    """Return time and distance of sliding between rest and the speed V, and the limit of full slip,
+    from the map.
+
+    V : float, speed of the axis in the mirrored frame (omega > V), of either sign or 0, kappa |V| <
+        2^layout.HIGH, which is not checked.
+    level : SPEEDS, PATH or LOSS: the distance is read from the table from PATH on.
+    flow : Flow, of the scene; ``table``, kappa and mu are read.
+
+    Returns (T, X, limit): time tau from V = 0 to V, with the sign of V; distance times gamma
+    between rest and V, >= 0; delta_star |V|, the least omega - V of full slip, >= 0.  For kappa |V|
+    < 2^layout.LOW, below the table, they are their limits as V -> 0, (V/mu, V^2/(2 mu), mu |V|/(2
+    kappa)), at every level.  In the table X is 0 at level SPEEDS.
+    """
+    speed = abs(V)
+    row, t, _ = locate_octave(flow.kappa * speed, flow_layout.LOW)
+    if row == 0:
+        return V / flow.mu, 0.5 * V * V / flow.mu, 0.5 * flow.mu / flow.kappa * speed
+    at = STARTS.slide + (row - 1 + (0 if V > 0.0 else _SPEED_OCTAVES)) * _SLIDE
+    T, limit = evaluate_pair(flow.table, at, t)[:2]
+    X = evaluate_single(flow.table, at + flow_layout.SLIDE_X, t)[0] if level >= PATH else 0.0
+    return T if V > 0.0 else -T, X, limit
+
+
+@inline_kernel
+def speed_at_slide_time(T, flow):
+    """Return V in full slip, in the mirrored frame, at a time before or after V = 0.
+
+    T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^layout.HIGH, which is
+    not checked.
+    flow : Flow, of the scene; ``table``, kappa and mu are read.
+
+    Returns V, a float, with the sign of T; for kappa mu |T| < 2^layout.LOW, below the table, its
+    limit mu T for small T.
+    """
+    row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), flow_layout.LOW)
+    if row == 0:
+        return flow.mu * T
+    V = evaluate_single(
+        flow.table, STARTS.after + (row - 1 + (0 if T > 0.0 else _SPEED_OCTAVES)) * _AFTER, t
+    )[0]
+    return V if T > 0.0 else -V
+
+
+@kernel
+def slide_distance(start, tau, flow):
+    """Return the distance of sliding during a time from a given state of full slip.
+
+    start : (T, X) at the beginning, the first two values of :func:`full_slip_integrals` at level
+        PATH: time and distance between rest and the speed there, in the mirrored frame.
+    tau : float, time gamma t of sliding, > 0; T + tau is within the tables.
+    flow : Flow, of the scene; ``table``, kappa and mu are read.
+
+    Returns a float, gamma times the displacement of the axis in the mirrored frame, signed (of
+    opposite motions before and after V = 0 the sum): the difference of X; or, for tau up to
+    0.02 |T|, where that difference cancels, the integral of V by a five-point Gauss rule.
+    """
+    T, X = start
+    if tau > _SHORT * abs(T):
+        return full_slip_integrals(speed_at_slide_time(T + tau, flow), PATH, flow)[1] - X
+    x = 0.0
+    for n in range(_GAUSS_X.size):
+        x += _GAUSS_W[n] * speed_at_slide_time(T + tau * _GAUSS_X[n], flow)
+    return x * tau
+
+
+@inline_kernel
+def read_onset(I, level, flow):
+    """Return the state at the onset of partial slip of a sliding motion, in the mirrored frame
+    (omega > V).
+
+    I : float, V - j omega - 2 mu T, which is constant while sliding, with T the time that
+        :func:`full_slip_integrals` gives for V.
+    level : SPEEDS, PATH or LOSS: X is computed from PATH on.
+    flow : Flow, of the scene; ``table``, kappa and j are read.
+
+    Returns (V, T, X): speed at the onset, with the sign opposite to that of I; time tau of full
+    slip between rest and that speed, with the sign of V; distance times gamma between rest and that
+    speed, >= 0, but 0 at level SPEEDS.  All three are 0 where the onset is outside the tables, for
+    I = 0 and for an I that is NaN too.
+    """
+    x = flow.kappa * abs(I) / (1.0 + flow.j)
+    if not LOWEST <= x < HIGHEST:
+        return 0.0, 0.0, 0.0
+    row, t, _ = locate_octave(x, flow_layout.LOW)
+    at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * _ONSET
+    V, T = evaluate_pair(flow.table, at, t)[:2]
+    X = evaluate_single(flow.table, at + flow_layout.ONSET_X, t)[0] if level >= PATH else 0.0
+    return (V, T, X) if I < 0.0 else (-V, -T, X)
+
+
+@inline_kernel
+def _locate_on_manifold(slow_log):
+    """Return the position of a slow logarithm in the table of the slow manifold.
+
+    slow_log : float, slow logarithm of V, the coordinate along the slow manifold; any number below
+        2^SLOW_OCTAVES - 1, the end of the table, which is not checked; not a NaN.
+
+    Returns (position, t, factor): index in the map's vector at which the row begins, int; argument
+    in [-1, 1] of its polynomials, a float; factor of V, delta and the remaining path, a float.
+    Inside the table the factor is 1.  Below it the position is that of the lowest slow logarithm,
+    and the factor is exp(slow_log - lowest), by which these quantities fall; it may underflow to 0.
+    """
+    if slow_log >= 0.0:
+        row, t, _ = locate_octave(1.0 + slow_log, 0)
+        return STARTS.slow + (flow_layout.SLOW_BINS + row - 1) * _SLOW, t, 1.0
+    share = 1.0
+    if slow_log < _LOWEST_SLOW_LOG:
+        share = np.exp(slow_log - _LOWEST_SLOW_LOG)
+        slow_log = _LOWEST_SLOW_LOG
+    place = (slow_log - _LOWEST_SLOW_LOG) * (1.0 / flow_layout.SLOW_WIDTH)
+    row = min(np.int64(place), flow_layout.SLOW_BINS - 1)
+    return STARTS.slow + row * _SLOW, 2.0 * (place - row) - 1.0, share
+
+
+@inline_kernel
+def manifold_speeds(slow_log, table):
+    """Return (V, delta) on the slow manifold: speed, > 0 until it underflows to 0, and creepage, of
+    either sign.
+
+    Both are floats; below the table they fall as exp(slow_log).
+
+    slow_log : float, slow logarithm, not a NaN, below 2^SLOW_OCTAVES - 1, the end of the table; not
+    checked.
+    table : vector of all tables, ``table`` of Flow.
+    """
+    at, t, share = _locate_on_manifold(slow_log)
+    V, delta = evaluate_pair(table, at, t)[:2]
+    return share * V, share * delta
+
+
+@inline_kernel
+def _remaining_path(slow_log, table):
+    """Return the path that remains to rest on the slow manifold, of which :func:`manifold_path`
+    forms differences.
+
+    slow_log : float, slow logarithm, not a NaN, below 2^SLOW_OCTAVES - 1, the end of the table; not
+    checked.
+    table : vector of all tables, ``table`` of Flow.
+    Returns (distance, angle), floats, each times gamma, >= 0 for the V > 0 of the mirrored frame;
+    below the table they fall as exp(slow_log).
+    """
+    at, t, share = _locate_on_manifold(slow_log)
+    x, angle = evaluate_pair(table, at + flow_layout.SLOW_PATH, t)[:2]
+    return share * x, share * angle
+
+
+@kernel
+def manifold_path(start, span, rate, table):
+    """Return distance and angle along the slow manifold while the slow logarithm falls by ``span``.
+
+    start : float, slow logarithm at the beginning, below 2^SLOW_OCTAVES - 1; not checked.
+    span : float, decrease of the slow logarithm, >= 0.
+    rate : float, decrease of the slow logarithm in unit time tau = gamma t, > 0: ``slow_rate`` of
+    Flow.
+    table : vector of all tables, ``table`` of Flow.
+
+    Returns (distance, angle), floats, each times gamma and >= 0 for V > 0, (0.0, 0.0) of the span
+    0: the difference of the remaining path; or, for a span up to a quarter of max(1 + end, 1) with
+    the slow logarithm at its end, where that difference cancels, the integrals of V and omega by a
+    five-point Gauss rule.
+    """
+    end = start - span
+    if span > 0.25 * max(1.0 + end, 1.0):
+        x, angle = _remaining_path(start, table)
+        x_left, angle_left = _remaining_path(end, table)
+        return x - x_left, angle - angle_left
+    x = angle = 0.0
+    for n in range(_GAUSS_X.size):
+        V, delta = manifold_speeds(end + span * _GAUSS_X[n], table)
+        x += _GAUSS_W[n] * V
+        angle += _GAUSS_W[n] * V * (1.0 + delta)
+    return x * span / rate, angle * span / rate
+
+
+@kernel
+def remaining_slip_loss(slow_log, table):
+    """Return the slip loss that remains to rest on the slow manifold, a float >= 0, divided by m
+    (R/T_epsilon)^2.
+
+    slow_log : float, slow logarithm, not a NaN, below 2^SLOW_OCTAVES - 1, the end of the table; not
+        checked.  Below the table the loss falls as V^3.
+    table : vector of all tables, ``table`` of Flow.
+    """
+    at, t, share = _locate_on_manifold(slow_log)
+    return share**3 * evaluate_single(table, at + flow_layout.SLOW_LOSS, t)[0]
+
+
+@kernel
+def manifold_at_speed(v, table):
+    """Return (slow logarithm, delta) on the slow manifold at a speed, floats, each of either sign.
+
+    v : float, kappa V, from LOWEST to below 2^layout.HIGH; it is not checked.
+    table : vector of all tables, ``table`` of Flow.
+    """
+    row, t, _ = locate_octave(v, flow_layout.LOW)
+    return evaluate_pair(table, STARTS.manifold + (row - 1) * _MANIFOLD, t)[:2]
+
+
+@kernel
+def asymptote_on_manifold(slow_log):
+    """Return the :class:`.records.Asymptote` of a motion that is on the slow manifold already.
+
+    slow_log : float, its slow logarithm at the time of its onset.
+    Returns an asymptote that the motion exceeds by nothing, with split 1 and a rate of 1e30, so
+    large that its boundary layer has practically no length.
+    """
+    return Asymptote(slow_log=slow_log, rate=_NO_LAYER, split=1.0, x=0.0, angle=0.0, loss=0.0)
+
+
+@inline_kernel
+def read_asymptote(family, v, level, flow):
+    """Return the motion on the slow manifold that a motion approaches after the onset of partial
+    slip: its asymptote.
+
+    family : PLUS if omega > V at the onset, MINUS if omega < V, with V > 0.
+    v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES); it is not
+    checked.
+    level : SPEEDS, PATH or LOSS: quantities to compute.
+    flow : Flow, of the scene; ``table`` and ``first`` are read.
+
+    Returns an :class:`.records.Asymptote` of floats: slow_log, that of the asymptote at the time of
+    the onset; rate, the k0 of the stiff time E, > 0; split, the E that divides the layer, exactly 1
+    in octaves of v where motions of the family do not pass delta = 0; x, angle (both times gamma; 0
+    below level PATH) and loss (0 below level LOSS), by which the motion exceeds the asymptote from
+    the onset to rest, of either sign.
+    """
+    table = flow.table
+    row, t, _ = locate_octave(v, flow.first)
+    at = STARTS.asymptote + (row - 1 + family * _ONSET_OCTAVES) * _ASYMPTOTE_SIZE
+    slow_log, rate = evaluate_pair(table, at, t)[:2]
+    x = angle = loss = 0.0
+    if level >= PATH:
+        x, angle = evaluate_pair(table, at + flow_layout.ASYMPTOTE_PATH, t)[:2]
+    if level >= LOSS:
+        loss = evaluate_single(table, at + flow_layout.ASYMPTOTE_LOSS, t)[0]
+    return Asymptote(
+        slow_log=slow_log,
+        rate=rate,
+        split=evaluate_single(table, at + flow_layout.ASYMPTOTE_SPLIT, t)[0],
+        x=x,
+        angle=angle,
+        loss=loss,
+    )
+
+
+@inline_kernel
+def layer_coordinate(E, split):
+    """Return the layer coordinate u, which grows with the stiff time, linearly on either side of
+    the split.
+
+    E : float, stiff time since the onset, >= 0.
+    split : float, the E at which the layer is divided, > 0.
+    Returns u, a float: 2^LAYER_LOW at the onset, 1 at the split, 1 + E - split after it.
+    """
+    return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
+
+
+@inline_kernel
+def locate_in_layer(family, v, u, flow):
+    """Return the position of a motion in the table of the boundary layer.
+
+    family : PLUS or MINUS.
+    v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES).
+    u : float, layer coordinate, from 2^LAYER_LOW to below 2^LAYER_HIGH.
+    flow : Flow, of the scene; ``first`` is read.
+
+    Returns (position, t, s): index in the map's vector at which the polynomials of column 0 begin,
+    int; their arguments in [-1, 1), floats, t over v and s over u, each linear within an octave.
+    That v and u are inside of the table is not checked.
+    """
+    row, t, _ = locate_octave(v, flow.first)
+    part, s, _ = locate_octave(u, flow_layout.LAYER_LOW)
+    return (
+        STARTS.layer + (((row - 1 + family * _ONSET_OCTAVES) * _LAYER_OCTAVES) + part - 1) * _LAYER,
+        t,
+        s,
+    )
+
+
+@inline_kernel
+def _evaluate_in_t(p, t):
+    """Return the value of a polynomial of 12 coefficients, a float.
+
+    p : the coefficients in ascending order, as three vectors of four.
+    t : float, argument.
+    """
+    square = t * t
+    per = broadcast(square * square)
+    a, b, c, d = unpack(fma4(fma4(p[2], per, p[1]), per, p[0]))
+    return fma(square, fma(t, d, c), fma(t, b, a))
+
+
+@inline_kernel
+def layer_value_and_slopes(table, column, at, t, s):
+    """Return value and slopes of one quantity of the boundary layer after the onset of partial
+    slip.
+
+    table : vector of all tables, ``table`` of Flow.
+    column : int, the quantity: LAYER_LN_V ln(V/V0), LAYER_CREEP delta, LAYER_X and LAYER_ANGLE
+        (distance and angle beyond those at constant V0, in units of V0/k0), LAYER_LOSS (slip loss
+        divided by V0^2); V0 is V at the onset.
+    at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and
+    over u, in [-1, 1].
+
+    Returns (value, derivative in t at fixed s, derivative in s at fixed t), floats, dimensionless.
+    """
+    at += column * flow_layout.BLOCK
+    per = broadcast(s)
+    value = _powers(table, at + flow_layout.BLOCK - LAYER_TERMS)
+    rise = value
+    for m in range(LAYER_TERMS - 2, 0, -1):
+        value = fma4(value, per, _powers(table, at + m * LAYER_TERMS))
+        rise = fma4(rise, per, value)
+    value = fma4(value, per, _powers(table, at))
+    powers = (*unpack(value[0]), *unpack(value[1]), *unpack(value[2]))
+    slope = 11.0 * powers[11]
+    for k in range(10, 0, -1):
+        slope = fma(slope, t, k * powers[k])
+    return _evaluate_in_t(value, t), slope, _evaluate_in_t(rise, t)
+
+
+@kernel
+def layer_value(table, column, at, t, s):
+    """Return the value alone of one quantity of the boundary layer; the search for an onset needs
+    slopes too.
+
+    table : vector of all tables, ``table`` of Flow.
+    column : int, the quantity, LAYER_LN_V ... LAYER_LOSS, as of :func:`layer_value_and_slopes`.
+    at, t, s : position from :func:`locate_in_layer`: int, and the arguments over V at onset and
+    over u, in [-1, 1].
+    Returns a float, dimensionless.
+    """
+    return layer_value_and_slopes(table, column, at, t, s)[0]
+
+
+@kernel
+def layer_state(stick, asymptote, elapsed, level, flow):
+    """Return the state of a motion within the boundary layer after the onset of partial slip,
+    mirrored so that V > 0.
+
+    stick : :class:`.records.StickOnset`, of which family and v = kappa V at the onset are read.
+    asymptote : :class:`.records.Asymptote` of the motion, of which rate k0 and split are read.
+    elapsed : float, time tau = gamma t since the onset, >= 0 and at most LAYER_END/k0.
+    level : SPEEDS, PATH or LOSS: quantities to compute.
+    flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
+
+    Returns (V, delta, distance, angle, slip loss), floats: speed > 0; creepage, of either sign;
+    distance and angle since the onset, times gamma, 0 below level PATH; slip loss since the onset,
+    divided by m (R/T_epsilon)^2, 0 below level LOSS.
+    """
+    table = flow.table
+    E = elapsed * asymptote.rate
+    at, t, s = locate_in_layer(stick.family, stick.v, layer_coordinate(E, asymptote.split), flow)
+    V0 = stick.v / flow.kappa
+    x = angle = loss = 0.0
+    if level >= PATH:
+        scale = V0 / asymptote.rate
+        x = scale * (E + layer_value(table, flow_layout.LAYER_X, at, t, s))
+        angle = scale * (E + layer_value(table, flow_layout.LAYER_ANGLE, at, t, s))
+    if level >= LOSS:
+        loss = layer_value(table, flow_layout.LAYER_LOSS, at, t, s) * V0 * V0
+    V = V0 * np.exp(layer_value(table, flow_layout.LAYER_LN_V, at, t, s))
+    return V, layer_value(table, flow_layout.LAYER_CREEP, at, t, s), x, angle, loss
+
+
+@kernel
+def slow_log_at_rest(rest, flow):
+    """Return the slow logarithm at which max(|V|, |omega|) on the slow manifold equals the rest
+    threshold.
+
+    rest : float, threshold, > 0; one above half the highest V of a start, HIGHEST/kappa, is
+    replaced by that half.
+    flow : Flow, of the scene; ``table`` and kappa are read.
+    Returns the slow logarithm, a float, after four steps of a fixed-point iteration for V (a
+    negative delta counts as 0, as |V| then is the larger speed); below the tables, where delta
+    counts as 0, that of their lowest V plus the logarithm of the ratio of the speeds.
+    """
+    rest = V = min(rest, 0.5 * HIGHEST / flow.kappa)
+    for _ in range(4):
+        v = flow.kappa * V
+        V = rest / (1.0 + max(manifold_at_speed(v, flow.table)[1] if v >= LOWEST else 0.0, 0.0))
+    v = flow.kappa * V
+    if v >= LOWEST:
+        return manifold_at_speed(v, flow.table)[0]
+    return manifold_at_speed(LOWEST, flow.table)[0] + np.log(v / LOWEST)

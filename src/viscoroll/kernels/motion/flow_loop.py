@@ -1,0 +1,661 @@
+"""Many motions of one scene from its flow map.
+
+Flow map, starts in partial slip: the search for the onset of partial slip that the start would
+have come from.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
+
+Look up many motions of one scene in its flow map.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
+
+Terms of this file:
+
+- Flow: the flow map of one scene: ``table``, the vector of all its tables; kappa, mu, j; ``first``,
+  the exponent from which kappa V at onset is tabulated; ``slow_rate``.
+- Slow manifold: the creepage delta as a function of V that all motions in partial slip approach and
+  then keep; the slow logarithm is a coordinate along it that falls linearly in tau.
+- Boundary layer: the time after the onset of partial slip in which delta approaches the manifold.
+  E = k0 (tau - tau_onset) is its stiff time, k0 the relaxation rate at onset.
+- Layer coordinate u: a function of E, 2^LAYER_LOW at the onset; u = 1 at the split, an E near the
+  place where motions of the family pass delta = 0, or 1 where they do not.
+- Family: PLUS (0) if omega > V at the onset, MINUS (1) if omega < V; V > 0.
+- Times are tau = gamma t.  Distances and angles are integrals over tau, gamma times x and gamma
+  times the angle, until :func:`look_up_motions` divides them by gamma.
+- Level: SPEEDS (0): V and omega alone; PATH (1): distance and angle too; LOSS (2): slip loss too.
+- out: one motion, (ROWS, times): V 0, omega 1, distance 2, angle 3, delta 4, regime 5 (FULL_SLIP 0,
+  PARTIAL_SLIP 1, AT_REST 2), slip loss 6, rolling loss 7; losses are divided by m (R/T)^2, with the
+  unit of time T.
+- Mirrored frame: the signs of V and omega are changed (frame -1) or not (frame 1), so that omega >=
+  V in full slip and V > 0 in partial slip.
+- StickOnset: the onset of partial slip: frame, family (PLUS if omega > V there, MINUS if omega <
+  V), v = kappa V, tau, distance, angle and slip loss.
+- Asymptote: the motion on the slow manifold that a motion approaches after its onset: slow
+  logarithm at the onset, relaxation rate k0, split of the boundary layer, excess of distance, angle
+  and slip loss.
+"""
+
+import numpy as np
+
+from ..law.law_record import element
+from ..numerics.jit import inline_kernel, kernel
+from ..records import (
+    AT_REST,
+    CAME_TO_REST,
+    COMPLETED,
+    FULL_SLIP,
+    PARTIAL_SLIP,
+    FullSlipStart,
+    Output,
+    Request,
+    StickOnset,
+)
+from . import flow_layout
+from .flow_layout import LAYER_CREEP, LAYER_END, LAYER_LN_V, MINUS, OCTAVES, PLUS
+from .flow_lookup import (
+    HIGHEST,
+    LOSS,
+    LOWEST,
+    PATH,
+    SPEEDS,
+    asymptote_on_manifold,
+    full_slip_integrals,
+    layer_state,
+    layer_value_and_slopes,
+    locate_in_layer,
+    manifold_at_speed,
+    manifold_path,
+    manifold_speeds,
+    read_asymptote,
+    read_onset,
+    remaining_slip_loss,
+    slide_distance,
+    slow_log_at_rest,
+    speed_at_slide_time,
+)
+
+# --- Flow map, starts in partial slip ---
+
+#: a creepage closer to that of the slow manifold lies on it; the error of omega/V is as small
+_ON_MANIFOLD = 1e-10
+#: creepage difference below which the polynomials of the layer cannot separate a state from the
+#: slow manifold
+_INDISTINGUISHABLE = 1e-9
+#: largest relative residual in V of a solution; motions with a larger one are left to the
+#: integrator
+_RESIDUAL = 1e-10
+#: largest number of steps of Newton's iteration
+_MAX_ITERATIONS = 12
+#: step after which the iteration ends: the error that remains is about its square
+_CONVERGED = 1e-7
+#: lower end of the layer coordinate u
+_LOWEST_U = 2.0**flow_layout.LAYER_LOW
+#: upper end of the layer coordinate u, one rounding below the table's edge
+_HIGHEST_U = 2.0**flow_layout.LAYER_HIGH * (1.0 - 2.0**-50)
+
+
+@kernel
+def _initial_u(size, slow, turns):
+    """Return the first guess of the layer coordinate u at which delta has fallen to a given value,
+    by Carter's law.
+
+    size : float, delta/delta_star of the start, in [-1, 1], times 1 for PLUS and -1 for MINUS:
+        negative beyond delta = 0.
+    slow : float, delta/delta_star on the slow manifold at the speed of the start, times the same
+        sign; less than ``size``, in (-1, 1).
+    turns : bool, whether motions of this family pass delta = 0 (then the layer has a split there).
+
+    Returns u, a float from 2^LAYER_LOW on, below 1 before the split of the layer; it may lie beyond
+    the end of the layer, to which the caller limits it.
+
+    Carter's law is that of elastic bodies: with r = 1 - |delta|/delta_star the traction is 1 - r^2,
+    so that dr/dE = (a^2 - r^2)/2 where a^2 is 1 minus the traction on the slow manifold.
+    """
+    traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)
+    a = np.sqrt(1.0 - traction)
+    if size > 0.0:
+        r = 1.0 - size
+        E = np.log((a + r) / max(a - r, 1e-14)) / a
+        split = np.log((a + 1.0) / max(a - 1.0, 1e-14)) / a if turns else 1.0
+        return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
+    r = 1.0 + size
+    b = max(1.0 + slow, 1e-3)
+    return 1.0 + np.log((1.0 - b) / (1.0 + b) * (r + b) / max(r - b, 1e-14)) / b
+
+
+@inline_kernel
+def _clamp(x, low, high):
+    """Return the nearest value to x in [low, high], floats with low < high; low if x is NaN."""
+    x = x if x > low else low
+    return x if x < high else high
+
+
+@kernel
+def find_onset(V, delta, edge, flow):
+    """Find the onset of partial slip from which a state in partial slip would have come.
+
+    V : float, speed of the axis, > 0.
+    delta : float, creepage, |delta| < delta_star.
+    edge : float, delta_star at V, > 0; it serves the first guess only.
+    flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
+
+    Returns (family, kappa V at that onset, E, whether the map covers the state): int, float, float,
+    bool.  family is PLUS or MINUS; E is the stiff time since that onset, in [0, LAYER_END].  A
+    state on the slow manifold has family PLUS, kappa V of the state itself, and an infinite E.  The
+    tests are made in this order:
+
+    1. kappa V below LOWEST, or at least the smaller of HIGHEST and 2^(first + OCTAVES), or NaN: not
+       covered.
+    2. delta within 1e-10 of the manifold: covered, on the manifold.
+    3. kappa V below 2^(first + 1) or above 2^(first + OCTAVES - 1), an octave inside of the
+       tabulated onsets: not covered.
+    4. An onset is found, with E at most LAYER_END: covered.
+    5. Else, an E above LAYER_END included: covered, on the manifold, if delta is within 1e-9 of it;
+       otherwise not.
+
+    Where the state is not covered, a NaN of delta included, the first three have no meaning.
+
+    Method: Newton's iteration in ln V at onset and in u, of at most 12 steps, applied to the
+        logarithm of the distance from the manifold, which decreases nearly linearly in E; a
+        solution counts if V (relative) and delta (absolute) are met to 1e-10.
+    """
+    v = flow.kappa * V
+    lowest = 2.0**flow.first
+    highest = 2.0 ** (flow.first + flow_layout.OCTAVES)
+    if not LOWEST <= v < min(highest, HIGHEST):
+        return PLUS, v, 0.0, False
+    _, slow = manifold_at_speed(v, flow.table)
+    gap = delta - slow
+    if abs(gap) < _ON_MANIFOLD:
+        return PLUS, v, np.inf, True
+    if not 2.0 * lowest <= v <= 0.5 * highest:
+        return PLUS, v, 0.0, False
+    family, sign = (PLUS, 1.0) if gap > 0.0 else (MINUS, -1.0)
+    turns = read_asymptote(family, v, SPEEDS, flow).split != 1.0
+    u = _initial_u(sign * delta / edge, sign * slow / edge, turns)
+    v0 = v
+    ln_v0 = 0.0
+    change = np.inf
+    for _ in range(_MAX_ITERATIONS):
+        u = _clamp(u, _LOWEST_U, _HIGHEST_U)
+        at, t, s = locate_in_layer(family, v0, u, flow)
+        ln_V, ln_t, ln_s = layer_value_and_slopes(flow.table, LAYER_LN_V, at, t, s)
+        creep, creep_t, creep_s = layer_value_and_slopes(flow.table, LAYER_CREEP, at, t, s)
+        if change < _CONVERGED:
+            break
+        away = (creep - slow) / gap
+        if not away > 0.0:
+            u = 0.5 * (u + _LOWEST_U)
+            continue
+        # slopes in ln v0 and u: s and t are 4 m - 3 with the mantissa m of v0 and of u
+        per_v = t + 3.0
+        per_u = (s + 3.0) / u
+        inverse_difference = 1.0 / (creep - slow)
+        first = ln_v0 + ln_V
+        second = np.log(away)
+        a = 1.0 + ln_t * per_v
+        b = ln_s * per_u
+        c = creep_t * per_v * inverse_difference
+        d = creep_s * per_u * inverse_difference
+        determinant = a * d - b * c
+        shift = (first * d - b * second) / determinant
+        step = (a * second - c * first) / determinant
+        v0 = _clamp(v * np.exp(ln_v0 - shift), lowest, 0.99 * highest)
+        ln_v0 = ln_v0 - shift
+        u = u - step
+        change = abs(shift) + abs(second) * np.sqrt(abs(gap))
+    split = read_asymptote(family, v0, SPEEDS, flow).split
+    E = (u - _LOWEST_U) / (1.0 - _LOWEST_U) * split if u < 1.0 else u - 1.0 + split
+    found = abs(v0 * np.exp(ln_V) - v) <= _RESIDUAL * v and abs(creep - delta) <= _RESIDUAL
+    if found and E <= flow_layout.LAYER_END:
+        return family, v0, E, True
+    return PLUS, v, np.inf, abs(gap) < _INDISTINGUISHABLE
+
+
+# --- Look up many motions of one scene in its flow map ---
+
+#: status of a motion that the map does not contain
+NOT_COVERED = -1
+#: largest ratio of initial speed to speed at onset: V at onset is a difference whose error is 2e-14
+#: of the initial one
+_MAX_SPEED_RATIO = 4096.0
+# Rows of the array of outputs.
+#: speed of the axis
+_V = 0
+#: angular velocity
+_OMEGA = 1
+#: distance
+_X = 2
+#: angle
+_ANGLE = 3
+#: creepage
+_DELTA = 4
+#: regime
+_REGIME = 5
+#: energy lost by slip
+SLIP_LOSS = 6
+#: energy lost by rolling resistance
+ROLLING_LOSS = 7
+#: number of these rows
+ROWS = 8
+
+
+@inline_kernel
+def _write_output(out, column, state):
+    """Write one output state, of any part of a motion, into the rows of the module.
+
+    out : outputs (ROWS, times), of which one column is written, all rows but ROLLING_LOSS.
+    column : int, index of the output time.
+    state : :class:`.records.Output`: V, omega, distance and angle (times gamma), delta, regime (a
+        code of :mod:`.records`) and loss by slip, dimensionless, with the signs of the
+        motion, not mirrored.
+    Returns nothing.
+    """
+    out[_V, column] = state.V
+    out[_OMEGA, column] = state.omega
+    out[_X, column] = state.x
+    out[_ANGLE, column] = state.angle
+    out[_DELTA, column] = state.delta
+    out[_REGIME, column] = state.regime
+    out[SLIP_LOSS, column] = state.loss
+
+
+@inline_kernel
+def _write_rest(at, x, angle, loss, out):
+    """Write outputs at rest, V = omega = delta = 0 and regime AT_REST, from a column to the last.
+
+    at : int, first column to write; nothing is written if it is the number of columns.
+    x, angle : float, distance and angle, times gamma, of all of them, in the frame of the caller.
+    loss : float, slip loss of all of them.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS.  Returns nothing.
+    """
+    for column in range(at, out.shape[1]):
+        _write_output(
+            out,
+            column,
+            Output(V=0.0, omega=0.0, x=x, angle=angle, delta=0.0, regime=AT_REST, loss=loss),
+        )
+
+
+@inline_kernel
+def _start_in_full_slip(frame, V, omega, start, level, flow):
+    """Locate the onset of partial slip of a motion that starts in full slip.
+
+    frame : float, 1, or -1 where the motion is mirrored.
+    V, omega : float, initial speeds in the mirrored frame, omega >= V.
+    start : (T, X), time tau and distance times gamma of sliding between rest and V, from the table
+        of full slip.
+    level : SPEEDS, PATH or LOSS: quantities to compute.
+    flow : Flow, of the scene; all fields but ``slow_rate`` are read.
+
+    Returns (:class:`FullSlipStart`; :class:`StickOnset` at a time tau >= 0, in the frame in which V
+    > 0 at the onset; whether the map covers the motion: its V at onset is tabulated and |V|
+    and |omega| at the start are at most 4096 times that).  Below level PATH distance, angle and
+    slip loss of the onset have no meaning, and where the map does not cover the motion its whole
+    onset has none.
+    """
+    mu = flow.mu
+    (T, X) = start
+    w = V - flow.j * omega
+    V_on, T_on, X_on = read_onset(w - 2.0 * mu * T, level, flow)
+    v = flow.kappa * abs(V_on)
+    covered = 2.0**flow.first <= v < 2.0 ** (flow.first + OCTAVES)
+    covered = covered and flow.kappa * max(abs(V), abs(omega)) <= _MAX_SPEED_RATIO * v
+    tau = max(T_on - T, 0.0)
+    x = X_on - X
+    angle = (x - tau * (w + mu * tau)) / flow.j
+    family, frame_on = (PLUS, frame) if V_on > 0.0 else (MINUS, -frame)
+    stick = StickOnset(
+        frame=frame_on,
+        family=family,
+        v=v,
+        tau=tau,
+        x=frame * x,
+        angle=frame * angle,
+        loss=mu * (angle - x),
+    )
+    return FullSlipStart(frame, w, T, X), stick, covered
+
+
+@kernel
+def _start_in_partial_slip(V0, omega0, edge, level, flow):
+    """Locate the onset of partial slip, at a time before the start, of a motion that starts in
+    partial slip.
+
+    The motion from that onset on passes through the start, so that the tables, which begin at an
+    onset, hold for it.
+
+    V0, omega0 : float, initial speeds, not mirrored; V0 != 0, and |omega0 - V0| < edge |V0|.
+    edge : float, delta_star at V0, dimensionless.
+    level : SPEEDS, PATH or LOSS: quantities to compute.
+    flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
+
+    Returns (:class:`StickOnset` at a time tau <= 0; its :class:`Asymptote`; whether the map covers
+    the motion, without which the other two have no meaning).  Distance, angle and slip loss of the
+    onset are minus those from there to the start, not mirrored; below level PATH all are 0, below
+    LOSS the loss.  A start on the slow manifold has its onset at practically tau = 0 and no
+    boundary layer.
+    """
+    frame = 1.0 if V0 > 0.0 else -1.0
+    family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
+    if E > LAYER_END or not covered:
+        asymptote = asymptote_on_manifold(manifold_at_speed(v, flow.table)[0] if covered else 0.0)
+        return (
+            StickOnset(
+                frame=frame,
+                family=family,
+                v=v,
+                tau=-LAYER_END / asymptote.rate,
+                x=0.0,
+                angle=0.0,
+                loss=0.0,
+            ),
+            asymptote,
+            covered,
+        )
+    asymptote = read_asymptote(family, v, level, flow)
+    stick = StickOnset(
+        frame=frame, family=family, v=v, tau=-E / asymptote.rate, x=0.0, angle=0.0, loss=0.0
+    )
+    if E == 0.0 or level < PATH:
+        return stick, asymptote, covered
+    _, _, x, angle, loss = layer_state(stick, asymptote, -stick.tau, level, flow)
+    return (
+        StickOnset(
+            frame=frame,
+            family=family,
+            v=v,
+            tau=stick.tau,
+            x=-frame * x,
+            angle=-frame * angle,
+            loss=-loss,
+        ),
+        asymptote,
+        True,
+    )
+
+
+@inline_kernel
+def _write_full_slip(at, tau_out, until, slide, level, flow, out):
+    """Write the outputs before the onset of partial slip.
+
+    at : int, first column to write.
+    tau_out : output times tau = gamma t, ascending, > 0 from column ``at`` on, (times,).
+    until : float, time tau of the onset; an output at that time is not written.
+    slide : :class:`FullSlipStart`: frame; w = V - j omega at the start, in the mirrored frame; T
+        and X, time tau and gamma times the distance of sliding between rest and the V of the start.
+    level : SPEEDS, PATH or LOSS: distance, angle and slip loss are written from PATH on, and 0
+        below it.
+    flow : Flow, of the scene; ``table``, kappa, mu and j are read.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller;
+        delta is +inf where V
+        = 0.  Columns with ``tau_out`` >= ``until`` stay.
+    Returns the index of the next column to write, int; it is the number of times where no output is
+    left.
+    """
+    mu = flow.mu
+    per_j = 1.0 / flow.j
+    frame, w, T0, X0 = slide
+    while at < tau_out.size and tau_out[at] < until:
+        tau = tau_out[at]
+        V = speed_at_slide_time(T0 + tau, flow)
+        omega = (V - (w + 2.0 * mu * tau)) * per_j
+        x = angle = 0.0
+        if level >= PATH:
+            x = slide_distance((T0, X0), tau, flow)
+            angle = (x - tau * (w + mu * tau)) * per_j
+        delta = (omega - V) / V if V != 0.0 else np.inf
+        _write_output(
+            out,
+            at,
+            Output(
+                V=frame * V,
+                omega=frame * omega,
+                x=frame * x,
+                angle=frame * angle,
+                delta=delta,
+                regime=FULL_SLIP,
+                loss=mu * (angle - x),
+            ),
+        )
+        at += 1
+    return at
+
+
+@inline_kernel
+def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
+    """Write the outputs in partial slip up to a time, in the boundary layer and then on the slow
+    manifold.
+
+    at : int, first column to write.
+    tau_out : output times tau = gamma t, ascending, (times,).
+    until : float, last time tau; an output at that time is written.
+    stick : :class:`StickOnset`: frame, speed, time and path at the onset.
+    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    level : SPEEDS, PATH or LOSS: quantities beyond it are those of ``stick`` at all times, which
+        have no meaning then.
+    flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller:
+        of the times from column ``at`` to ``until``; the others stay.
+    Returns the index of the next column to write, int; it is the number of times where no output is
+    left.
+    """
+    frame = stick.frame
+    total_loss = (
+        remaining_slip_loss(asymptote.slow_log, flow.table) + asymptote.loss
+        if level >= LOSS
+        else 0.0
+    )
+    layer_end = stick.tau + LAYER_END / asymptote.rate
+    while at < tau_out.size and tau_out[at] <= until:
+        elapsed = tau_out[at] - stick.tau
+        x = angle = loss = 0.0
+        if tau_out[at] < layer_end:
+            V, delta, x, angle, loss = layer_state(stick, asymptote, elapsed, level, flow)
+        else:
+            span = flow.slow_rate * elapsed
+            now = asymptote.slow_log - span
+            V, delta = manifold_speeds(now, flow.table)
+            if level >= PATH:
+                x, angle = manifold_path(asymptote.slow_log, span, flow.slow_rate, flow.table)
+                x = x + asymptote.x
+                angle = angle + asymptote.angle
+            if level >= LOSS:
+                loss = total_loss - remaining_slip_loss(now, flow.table)
+        x = stick.x + frame * x
+        angle = stick.angle + frame * angle
+        _write_output(
+            out,
+            at,
+            Output(
+                V=frame * V,
+                omega=frame * V * (1.0 + delta),
+                x=x,
+                angle=angle,
+                delta=delta,
+                regime=PARTIAL_SLIP,
+                loss=stick.loss + loss,
+            ),
+        )
+        at += 1
+    return at
+
+
+@inline_kernel
+def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
+    """Write all outputs from the onset of partial slip to the last output time, those after coming
+    to rest included.
+
+    at : int, first column to write; nothing is written if it is the number of columns.
+    tau_out : output times tau = gamma t, ascending, (times,), at least one.
+    stick : :class:`StickOnset`: frame, speed, time and path at the onset.
+    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    request : :class:`.records.Request`: level; rest, the value of max(|V|, |omega|) below which a
+        motion is at rest, 0 for none; rest_slow_log, the slow logarithm at that value.
+    flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
+    out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller;
+        rows beyond the level have no meaning.
+
+    Returns (status, time tau at which the motion comes to rest).  The status is COMPLETED (0), with
+    the time NaN, where the motion does not come to rest before the last output time; CAME_TO_REST
+    (1) where it does; NOT_COVERED (-1), with the time NaN and nothing written, where it would come
+    to rest within the boundary layer or before the start.
+    """
+    layer_end = stick.tau + LAYER_END / asymptote.rate
+    rest_time = np.inf
+    end = tau_out[tau_out.size - 1]
+    if request.rest > 0.0:
+        rest_time = stick.tau + (asymptote.slow_log - request.rest_slow_log) / flow.slow_rate
+        if rest_time < max(layer_end, 0.0):
+            return NOT_COVERED, np.nan
+    at = _write_partial_slip(
+        at, tau_out, min(rest_time, end), stick, asymptote, request.level, flow, out
+    )
+    if end <= rest_time:
+        return COMPLETED, np.nan
+    x, angle = manifold_path(
+        asymptote.slow_log, asymptote.slow_log - request.rest_slow_log, flow.slow_rate, flow.table
+    )
+    loss = (
+        asymptote.loss
+        + remaining_slip_loss(asymptote.slow_log, flow.table)
+        - remaining_slip_loss(request.rest_slow_log, flow.table)
+    )
+    x = stick.x + stick.frame * (x + asymptote.x)
+    angle = stick.angle + stick.frame * (angle + asymptote.angle)
+    _write_rest(at, x, angle, stick.loss + loss, out)
+    return CAME_TO_REST, rest_time
+
+
+@inline_kernel
+def look_up_motion(V0, omega0, tau_out, request, flow, out):
+    """Look up one motion and write its outputs.
+
+    V0, omega0 : float, initial speeds, of any sign.
+    tau_out : output times tau = gamma t, ascending, >= 0, (times,), at least one.
+    request : :class:`.records.Request`: level; rest threshold, 0 for none; slow logarithm at that
+        threshold.
+    flow : Flow, of the scene.
+    out : outputs (ROWS, times), written in the frame of the caller but for the row ROLLING_LOSS;
+        not whole if the status is NOT_COVERED.  Below level PATH the rows of distance and angle
+        have no meaning, below LOSS that of slip loss.  delta is +inf where V = 0 in full slip, and
+        0 at rest.
+
+    Returns (status, time of the onset of partial slip, time of coming to rest).  The status is
+    COMPLETED (0), CAME_TO_REST (1) or NOT_COVERED (-1).  Times are tau.  The onset is NaN for a
+    start in partial slip, for a motion that is still in full slip at the last output time, and for
+    a start with both |V0| and |omega0| below the rest threshold, which is at rest from tau = 0 on:
+    its time of rest is 0, and its outputs are 0 with the regime AT_REST.  The time of rest is NaN
+    unless the status is CAME_TO_REST.  With NOT_COVERED the times have no meaning.
+
+    The map does not cover a motion if kappa |V0| is at least HIGHEST, if a start speed is NaN, if
+    the onset of partial slip is not tabulated or more than 4096 times slower than the start, if a
+    start in partial slip is no state of a tabulated motion (:func:`find_onset`), if V at the onset
+    is below twice the rest threshold, or if the motion comes to rest within the boundary layer or
+    before the start.  A start with V0 = omega0 = 0 is not covered without a rest threshold.
+    """
+    kappa = flow.kappa
+    level = request.level
+    if abs(V0) < request.rest and abs(omega0) < request.rest:
+        _write_rest(0, 0.0, 0.0, 0.0, out)
+        return CAME_TO_REST, np.nan, 0.0
+    if not kappa * abs(V0) < HIGHEST:
+        return NOT_COVERED, np.nan, np.nan
+    frame = 1.0 if omega0 >= V0 else -1.0
+    V = frame * V0
+    omega = frame * omega0
+    at = 0
+    first = FULL_SLIP
+    T, X, limit = full_slip_integrals(V, level, flow)
+    starts_in_full_slip = omega - V >= limit
+    if starts_in_full_slip:
+        slide, stick, covered = _start_in_full_slip(frame, V, omega, (T, X), level, flow)
+    else:
+        stick, asymptote, covered = _start_in_partial_slip(V0, omega0, limit / abs(V), level, flow)
+        first = PARTIAL_SLIP
+    if not covered or stick.v < 2.0 * kappa * request.rest:
+        return NOT_COVERED, np.nan, np.nan
+    while at < tau_out.size and tau_out[at] == 0.0:
+        _write_output(
+            out,
+            at,
+            Output(
+                V=V0,
+                omega=omega0,
+                x=0.0,
+                angle=0.0,
+                delta=(omega0 - V0) / V0 if V0 != 0.0 else np.inf,
+                regime=first,
+                loss=0.0,
+            ),
+        )
+        at += 1
+    onset = np.nan
+    if starts_in_full_slip:
+        at = _write_full_slip(at, tau_out, stick.tau, slide, level, flow, out)
+        if tau_out[tau_out.size - 1] < stick.tau:
+            return COMPLETED, np.nan, np.nan
+        onset = stick.tau
+        asymptote = read_asymptote(stick.family, stick.v, level, flow)
+    status, rest_time = _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out)
+    return status, onset, rest_time
+
+
+@kernel(allocates=True)
+def look_up_motions(flow, motions, result, start, stop):
+    """Look up some motions in the flow map and write their outputs; motions outside the map get the
+    status NOT_COVERED.
+
+    flow : Flow, of the scene.
+    motions : :class:`.records.Motions` of all n motions: gamma; rest threshold, 0 for none; initial
+        speeds V0, omega0, of length 1 or n; output times t, ascending, >= 0, (times,), at least
+        one; requested rows of an output, int, (q,).
+    result : arrays of :class:`viscoroll.motion.flow.FlowResult`, of which the entries of these
+        motions are written: out, (q, n, times); status, (n,), COMPLETED (0), CAME_TO_REST (1) or
+        NOT_COVERED (-1); onset and rest, (n,), times t of the onset of partial slip and of coming
+        to rest, NaN where there is none up to the last output time; switches, (n,), 1 with an
+        onset, else 0.
+    start, stop : int, index of the first motion and of the one after the last.
+
+    Distance and angle are written as x and angle, divided by gamma.  The rolling loss is the loss
+    of kinetic energy since the start less the slip loss.  Entries of a motion that is not covered
+    have no meaning, apart from its status.
+    Returns nothing.
+    """
+    gamma, rest, V0, omega0, t, rows = motions
+    one = np.empty((ROWS, t.size))
+    tau = t * gamma
+    j = flow.j
+    level = SPEEDS
+    for n in range(rows.size):
+        level = max(
+            level,
+            PATH
+            if rows[n] == _X or rows[n] == _ANGLE
+            else LOSS
+            if rows[n] >= SLIP_LOSS
+            else SPEEDS,
+        )
+    request = Request(level, rest, slow_log_at_rest(rest, flow) if rest > 0.0 else 0.0)
+    for i in range(start, stop):
+        V = element(V0, i)
+        omega = element(omega0, i)
+        result.status[i], onset, rest_time = look_up_motion(V, omega, tau, request, flow, one)
+        if level >= LOSS:
+            for m in range(t.size):
+                V_now = one[_V, m]
+                omega_now = one[_OMEGA, m]
+                lost = 0.5 * (
+                    (V - V_now) * (V + V_now) + j * (omega - omega_now) * (omega + omega_now)
+                )
+                one[ROLLING_LOSS, m] = lost - one[SLIP_LOSS, m]
+        result.onset[i] = onset / gamma
+        result.rest[i] = rest_time / gamma
+        result.switches[i] = 1 if onset >= 0.0 else 0
+        for n in range(rows.size):
+            row = rows[n]
+            scale = 1.0 / gamma if row == _X or row == _ANGLE else 1.0
+            for m in range(t.size):
+                result.out[n, i, m] = one[row, m] * scale

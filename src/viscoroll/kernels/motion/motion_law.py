@@ -1,0 +1,509 @@
+"""The contact law at a state of a motion, with the added mass.
+
+Added mass: N of M = M(V) + N V', the rolling moment while the speed changes slowly, and the
+factor gamma N.
+
+Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P
+T_epsilon^2.  A law of steady rolling has no N; its added mass is 0.  A law with N has it as
+polynomials over octaves of u = kappa |V| (``Law.N_rows``: for each row N and its integral over u, a
+pair; after the rows the constants of the integral).  That of a cover has NaN in its place.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
+
+The contact law at a state of a motion: rolling moments, creepage, slip, added mass.
+
+Everything is read off rows of the law (:mod:`.law_functions`) at u = kappa |V|; nothing here
+depends on the drive.
+
+Terms of this file, dimensionless (fields of the records in :mod:`records`):
+
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
+  delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
+- Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
+  under a brake; whether the brake holds omega at 0.
+- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
+- Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
+  holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
+  Radau nodes.
+"""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+import numpy as np
+
+from ..law.cover_law import MomentChange, moment_change, shear_reaction
+from ..law.law_functions import (
+    body_moments,
+    free_creep_and_slopes,
+    length_and_moment,
+    limits_at_rest,
+    locate_octave,
+    locate_row,
+)
+from ..law.law_record import ALPHA, E0, ROW_COUNT, element
+from ..numerics.intrinsics import by_value, unlikely
+from ..numerics.jit import inline_kernel, kernel
+from ..numerics.simd import TERMS, evaluate_pair
+from .table_law import Width, strain_power, width_at
+
+# --- Added mass ---
+
+#: Added mass gamma N at V = 0, in units of the mass, at or below which V = 0 is not reached: a
+#: motion in partial slip ends where gamma N falls to -1, if not before (``added_mass_margin`` of
+#: the kernels of motion), far from -4.
+_HEAVY = -4.0
+
+
+@inline_kernel
+def _evaluate_N(u, law):
+    """Return N of M = M(V) + N V' at u, its integral and its slope, with the row in which they were
+    evaluated.
+
+    u : float, kappa |V|, dimensionless, >= 0, finite.
+    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.  Read are
+        ``N_rows``, e0 and the number of rows in ``marks``, and alpha in ``rows``.
+
+    Returns (row, N, integral, slope).  row: int, index of the row from 0, or the number of rows
+    where u lies beyond the last one and N has its fast limit (alpha - 1)/(16 alpha u^2).  N: float,
+    in units of P T_epsilon^2.  integral: float, its integral over u from the place where the
+    argument t of that row is 0 (beyond the last row: from infinity).  slope: float, dN/du.  Of a
+    cover the last three are NaN in its rows; beyond the last row they are finite and mean nothing.
+    """
+    row, t, dt_dx = locate_octave(u, law.marks[E0])
+    count = law.marks[ROW_COUNT]
+    alpha = law.rows[ALPHA]
+    if row < count:
+        N, integral, slope, _, _, _ = evaluate_pair(law.N_rows, row * 2 * TERMS, t)
+        return row, N, integral, slope * dt_dx
+    integral = -(alpha - 1.0) / (16.0 * alpha * u)
+    return count, -integral / u, integral, 2.0 * integral / (u * u)
+
+
+@kernel
+def _evaluate_added_mass(law, V, kappa, gamma):
+    """Return the factor gamma N of the added mass, with its slope and its integral, for a law that
+    has N.
+
+    The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4 there), at
+    infinity.
+
+    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.
+    V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
+    Returns (gamma N, its slope over V, its integral over V), floats, dimensionless.  The slope is
+    odd in V; at V = 0.0 it is that of V > 0.  The integral is continuous at V = 0, and odd in V
+    where it begins there.  Of a cover all three are NaN in its rows; beyond the last row they mean
+    nothing.
+    """
+    count = law.marks[ROW_COUNT]
+    row, N, integral, slope = _evaluate_N(kappa * abs(V), law)
+    # the integral starts at V = 0 if that is reached, where no digits may cancel; else at infinity
+    start = count * 2 * TERMS + (count + 1 if gamma * law.N_rows[0] > _HEAVY else 0)
+    integral += law.N_rows[start + row]
+    if V < 0.0:  # continued from V = 0
+        integral = 2.0 * law.N_rows[start] - integral
+    return gamma * N, gamma * np.copysign(kappa, V) * slope, gamma * integral / kappa
+
+
+@inline_kernel
+def added_mass(law, V, kappa, gamma):
+    """Return the factor gamma N of the added mass, with its slope and its integral; zeros for a law
+    of steady rolling.
+
+    It is :func:`_evaluate_added_mass` behind a test, which is inlined so that steady rolling costs
+    nothing else.  The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4
+    there), at infinity.
+
+    law : :class:`Law` of the material: polynomials of each octave; ``N_rows`` is empty for steady
+        rolling, where nothing else is read.
+    V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
+    kappa : float, slenderness R/l0, dimensionless, > 0.
+    gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
+    Returns (gamma N, its slope over V, its integral over V), floats, dimensionless; (0.0, 0.0, 0.0)
+    for steady rolling.  The slope is odd in V; at V = 0.0 it is that of V > 0.  The integral is
+    continuous at V = 0, and odd in V where it begins there.  Of a cover that has ``N_rows`` all
+    three are NaN in its rows; beyond the last row they mean nothing.
+    """
+    return (
+        _evaluate_added_mass(law, V, kappa, gamma)
+        if unlikely(law.N_rows.size > 0)
+        else (0.0, 0.0, 0.0)
+    )
+
+
+@kernel
+def unsteady_loop(law, kappa, V, out):
+    """Write N of n states into an array.
+
+    law : :class:`Law` that has N (``N_rows`` is not empty); marks, rows and ``N_rows`` are read.
+    kappa, V : slenderness, > 0, and speed, of either sign, finite, dimensionless, of length 1 or n.
+    out : (n,) floats, written: N in units of P T_epsilon^2.  Of a cover it is NaN in the rows of
+        the law, and without meaning beyond the last row.  Returns nothing.
+    """
+    for n in range(out.size):
+        _, out[n], _, _ = _evaluate_N(element(kappa, n) * abs(element(V, n)), law)
+
+
+# --- The contact law at a state of a motion ---
+
+
+@inline_kernel
+def evaluate_moments(u, scene):
+    """Evaluate what the law gives at one speed: critical creepage, Eq. (9), and rolling moments,
+    Eq. (18).
+
+    All seven numbers are finite at u = 0 too, where they are the limits of slow rolling.  The added
+    mass is not in the moments.  The moments are 0 where both bodies are elastic (alpha = 1).
+
+    u: float, kappa |V|, dimensionless, at least 0 and finite.
+    scene: Scene, of which ``law`` and ``moments_differ`` are read; with ``moments_differ`` False
+    each body takes half of the moment.
+    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), floats,
+    dimensionless; L = lam (1 + epsilon) = 2 kappa delta_star/mu and its derivatives in u.  The
+    quotients and the slopes are even in V, so that the moment of either body at a V of any sign is
+    V times its quotient.
+    """
+    law = by_value(scene.law)
+    index = locate_row(u, law)
+    law_at_u = length_and_moment(index, u, law)
+    m = law_at_u.scale * law_at_u.m
+    slope = law_at_u.d_um
+    if not scene.moments_differ:
+        return law_at_u.L, law_at_u.dL, law_at_u.ddL, 0.5 * m, 0.5 * m, 0.5 * slope, 0.5 * slope
+    half_space, cylinder, half_space_slope, cylinder_slope = body_moments(index, u, law)
+    # The scale is 1, or less in the fast limit.
+    scale = m / (half_space + cylinder) if m > 0.0 else 1.0
+    return (
+        law_at_u.L,
+        law_at_u.dL,
+        law_at_u.ddL,
+        scale * half_space,
+        scale * cylinder,
+        half_space_slope,
+        cylinder_slope,
+    )
+
+
+class LoadedMoments(NamedTuple):
+    """Rolling moments of both bodies under traction, with their derivatives, dimensionless.
+
+    half_space, cylinder : M_half_space and M_cylinder.
+    half_space_dV, cylinder_dV : derivatives in V at fixed omega or d.
+    half_space_dd, cylinder_dd : derivatives in d at fixed V; 0 of half-spaces.
+    """
+
+    half_space: float
+    cylinder: float
+    half_space_dV: float
+    cylinder_dV: float
+    half_space_dd: float
+    cylinder_dd: float
+
+
+@inline_kernel
+def _change_at(u, Q, scene, cover_rows):
+    """Return what the traction changes in the moments at one speed, as
+    :class:`.cover_law.MomentChange`.
+
+    u: float, kappa |V|, dimensionless, at least 0 and finite.
+    Q: float, traction, dimensionless.
+    scene: Scene, of which kappa, mu and ``law`` are read, of a cover alone.
+    cover_rows: ``cover_rows`` of its law; None of half-spaces, of which all is 0.
+    """
+    if cover_rows is None:
+        return MomentChange(
+            half_space=0.0,
+            cylinder=0.0,
+            half_space_dQ=0.0,
+            cylinder_dQ=0.0,
+            half_space_du=0.0,
+            cylinder_du=0.0,
+        )
+    law = by_value(scene.law)
+    position = locate_row(u, law)
+    functions = length_and_moment(position, u, law)
+    reaction = shear_reaction(
+        position, u, scene.kappa, scene.mu, functions.L, functions.dL, cover_rows
+    )
+    return moment_change(Q, scene.mu, reaction)
+
+
+@inline_kernel
+def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene):
+    """Return the rolling moments under traction with their derivatives, as :class:`LoadedMoments`.
+
+    V: float, speed of the axis, dimensionless.
+    du_dV: float, derivative of u = kappa |V| in V, kappa with the sign of V.
+    Q, dQ_dV, dQ_dd: floats, traction and its derivatives in V and in d; of full slip the
+    derivatives are 0.
+    free: the four last numbers of :func:`evaluate_moments` at u: moments over V and slopes in V
+    without traction.
+    scene: Scene, of which kappa, mu and ``law`` are read, of a cover alone.
+    """
+    half_space, cylinder, half_space_slope, cylinder_slope = free
+    change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
+    return LoadedMoments(
+        half_space=V * half_space + change.half_space,
+        cylinder=V * cylinder + change.cylinder,
+        half_space_dV=half_space_slope
+        + du_dV * change.half_space_du
+        + change.half_space_dQ * dQ_dV,
+        cylinder_dV=cylinder_slope + du_dV * change.cylinder_du + change.cylinder_dQ * dQ_dV,
+        half_space_dd=change.half_space_dQ * dQ_dd,
+        cylinder_dd=change.cylinder_dQ * dQ_dd,
+    )
+
+
+@inline_kernel
+def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
+    """Return the power that friction takes, and that which the bodies take, at a state.
+
+    The load's power V M_half_space + omega M_cylinder + (omega - V) Q is their sum.  The bodies
+    take V^2 and omega V times the moments over V without traction; of half-spaces friction takes
+    (omega - V) Q.
+
+    V, omega, Q, M_half_space, M_cylinder: floats, the state, dimensionless, with the moments under
+    traction.
+    scene: Scene, of which ``law``, moments_differ, kappa and mu are read, of a cover alone.
+    Returns (slip, rolling), floats, dimensionless, per unit of tau.
+    """
+    change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
+    by_shear = V * change.half_space + omega * change.cylinder
+    by_shear -= strain_power(V, omega, scene.kappa, by_value(scene.law).table)
+    return (omega - V) * Q + by_shear, V * M_half_space + omega * M_cylinder - by_shear
+
+
+@inline_kernel
+def reaction_at_rest(scene):
+    """Return how shear acts back on the moments in the limit V -> 0, as
+    :class:`.cover_law.Reaction`.
+
+    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read; all is 0 of half-spaces.
+    """
+    law = by_value(scene.law)
+    position = locate_row(0.0, law)
+    functions = length_and_moment(position, 0.0, law)
+    return shear_reaction(
+        position, 0.0, scene.kappa, scene.mu, functions.L, functions.dL, law.cover_rows
+    )
+
+
+@inline_kernel
+def rest_limits(scene, sigma=1.0):
+    """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for
+    half-spaces.
+
+    L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.  Departure from rest
+    and exponential decay are decided with these limits; :func:`.evaluate.limits_at_rest` gives them
+    for a law.
+
+    scene: Scene, of which kappa and ``law`` are read, and mu of a table.
+    sigma: float, side of d, 1.0 or -1.0, on which L of a table depends; its delta_0 is the creepage
+    of d = 0.
+    """
+    law = by_value(scene.law)
+    L, delta_0 = limits_at_rest(scene.kappa, law)
+    rows = Width(
+        L=L, dL=0.0, ddL=0.0, middle=2.0 * scene.kappa * delta_0, dmiddle=0.0, ddmiddle=0.0
+    )
+    width = width_at(0.0, sigma, scene.mu, rows, law.table)
+    return width.L, 0.5 / scene.kappa * width.middle
+
+
+@kernel
+def low_speed_limits(work):
+    """Return moments, force and torque divided by V in the limit V -> 0 of free rolling, omega = V
+    (1 + delta_0).
+
+    work: Workspace, of the motion; its Scene and the gains of its feedback are read, not its force
+    and torque over time.
+    Returns (M_half_space, M_cylinder, force of feedback, torque of feedback), each divided by V,
+    floats, dimensionless.  The moments are at least 0, and 0 where alpha = 1; force and torque are
+    positive where they drive, and 0 without feedback.
+    """
+    _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
+    gains = work.drive.gains
+    omega_over_V = 1.0 + rest_limits(work.scene)[1]
+    force = gains.force_V + gains.force_omega * omega_over_V
+    torque = gains.torque_V + gains.torque_omega * omega_over_V
+    return half_space, cylinder, force, torque
+
+
+class FreeDecay(NamedTuple):
+    """Exponential decay of V in slow free rolling, V' = -rate V, dimensionless.
+
+    rate : its rate per unit of tau, below 0 where the feedback drives.
+    inertia : factor of V' in the equation of the decay.
+    torque_difference : inertia times traction divided by V.
+    """
+
+    rate: float
+    inertia: float
+    torque_difference: float
+
+
+@kernel
+def free_decay(work):
+    """Return the decay of V where nothing but resistance and feedback acts, as :class:`FreeDecay`,
+    in the limit V -> 0.
+
+    With a_b and a_c, the factors of Q by which shear acts back on M
+    (:class:`.cover_law.Reaction`), 0 of half-spaces, and delta_0 the creepage of free rolling,
+    V' = (1 + a_b) Q - M_half_space + f and j (1 + delta_0) V' = q - (1 - a_c) Q - M_cylinder, with
+    moments without traction and feedback f and q in proportion to V.
+
+    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
+    """
+    half_space, cylinder, force, torque = low_speed_limits(work)
+    scene = work.scene
+    reaction = reaction_at_rest(scene)
+    spin_inertia = scene.j * (1.0 + rest_limits(scene)[1])
+    on_axis = 1.0 + reaction.half_space
+    on_spin = 1.0 - reaction.cylinder
+    inertia = on_spin + spin_inertia * on_axis + added_inertia(0.0, scene)[0]
+    if by_value(scene.law).cover_rows is None:
+        rate = (half_space + cylinder - force - torque) / inertia
+    else:
+        rate = (on_spin * (half_space - force) + on_axis * (cylinder - torque)) / inertia
+    return FreeDecay(rate, inertia, spin_inertia * (half_space - force) - cylinder + torque)
+
+
+@inline_kernel
+def _width(V, sigma, scene):
+    """Return the :class:`.table_law.Width` at a speed V of either sign on the side sigma, without
+    derivatives.
+    """
+    u = scene.kappa * abs(V)
+    law = by_value(scene.law)
+    L = length_and_moment(locate_row(u, law), u, law).L
+    rows = Width(
+        L=L, dL=0.0, ddL=0.0, middle=free_creep_and_slopes(u, law)[0], dmiddle=0.0, ddmiddle=0.0
+    )
+    return width_at(u, sigma, scene.mu, rows, law.table)
+
+
+@inline_kernel
+def critical_creepage(V, sigma, scene):
+    """Return the critical creepage delta_star, Eq. (9), at which the whole contact slips,
+    dimensionless.
+
+    On a cover it is the excess over the creepage of free rolling.  It is above 0, even in V, and mu
+    L/(2 kappa) with L of :func:`rest_limits` at V = 0.
+
+    V: float, speed of the axis of either sign, finite, dimensionless.
+    sigma: float, sign of the slip, 1.0 or -1.0, on which that of a table depends.
+    scene: Scene, of which kappa, mu and ``law`` are read.
+    """
+    return 0.5 * scene.mu / scene.kappa * _width(V, sigma, scene).L
+
+
+@inline_kernel
+def creepage(V, d, scene):
+    """Return the creepage delta, Eq. (5), in partial slip: d delta_star, and on a cover delta_0 of
+    free rolling added.
+
+    V: float, speed of the axis of either sign, dimensionless; V = 0: the limit.
+    d: float, delta/delta_star of the excess over free rolling; |d| <= 1 in partial slip, beyond it
+    the result is linear in d too.
+    scene: Scene, of which kappa, mu and ``law`` are read.
+    Returns a float, dimensionless; omega = V (1 + delta) follows from it.
+    """
+    width = _width(V, np.copysign(1.0, d), scene)
+    return 0.5 * scene.mu / scene.kappa * width.L * d + 0.5 / scene.kappa * width.middle
+
+
+@inline_kernel
+def excess_slip(slip, V, scene):
+    """Return the slip less that of free rolling, omega - V - delta_0 V; delta_0 = 0 for
+    half-spaces.
+
+    slip: float, omega - V, signed, dimensionless.
+    V: float, speed of the axis of either sign, dimensionless.
+    scene: Scene, of which ``law`` is read, and kappa of a cover.
+    Returns a float, signed, dimensionless; full slip begins where its modulus is delta_star |V|.
+    At V = 0 it is ``slip``.
+    """
+    return slip - V * (0.5 / scene.kappa * _width(V, 1.0, scene).middle)
+
+
+@inline_kernel
+def added_inertia(V, scene):
+    """Return the factor n = gamma N of the added mass N V', with its derivative and its integral.
+
+    The equations are in docs/theory_materials.md, Slowly changing speed.
+
+    V: float, speed of the axis of either sign, dimensionless.
+    scene: Scene, of which ``law``, kappa and gamma are read; motions of a cover have none.
+    Returns (n, its derivative in V, its integral over V), floats, dimensionless; all are 0 for a
+    law without added mass.  n is even and its derivative odd in V; at V = 0 the derivative is that
+    of V > 0.  The integral begins at V = 0, but at infinity where n <= -4 at V = 0, as V = 0 is not
+    reached then.
+    """
+    return added_mass(by_value(scene.law), V, scene.kappa, scene.gamma)
+
+
+@inline_kernel
+def omega_and_delta(state, regime, scene):
+    """Return angular velocity and creepage, Eq. (5), of a state.
+
+    state: State, the unknowns.
+    regime: Regime, whose ``full_slip`` tells what the second unknown is.
+    scene: Scene, of which kappa, mu and ``law`` are read, in partial slip only.
+    Returns (omega, delta), floats, dimensionless, omega in the direction of the regime.  On a cover
+    delta contains the creepage of free rolling.  At V = 0 in partial slip omega is 0 and delta is
+    its limit; in full slip delta is then infinite with the sign of omega, +inf where omega is 0 too
+    (-inf for omega = -0.0).
+    """
+    if not regime.full_slip:
+        delta = creepage(state.V, state.omega_or_d, scene)
+        return state.V * (1.0 + delta), delta
+    slip = state.omega_or_d - state.V
+    return state.omega_or_d, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
+
+
+@inline_kernel
+def added_mass_margin(n, j):
+    """Return the margin of the added mass, above 0 while the equations are regular, dimensionless.
+
+    The factor of V' vanishes at n = 1 + j, where the equations are singular.  A motion also ends
+    where n has fallen to -min(1 + j, 2)/2: there the added mass takes half of the inertia 1 + j, or
+    half of the factor 1 + n/2 of V', and the correction by N is no longer small.  The margin is 1
+    without added mass, 0 at these two n, negative beyond them.
+
+    n: float, gamma N, signed, dimensionless.
+    j: float, moment of inertia J/(m R^2), above 0, dimensionless.
+    Returns a float, above 0 for n between the two zeros, 0 at them, below 0 elsewhere; NaN for a
+    NaN.
+    """
+    return (1.0 - n / (1.0 + j)) * (1.0 + 2.0 * n / min(1.0 + j, 2.0))
+
+
+@inline_kernel
+def stick_edge_function(V, omega_or_d, regime, scene):
+    """Return the event function of the edge of the stick zone: positive within the regime, 0 at its
+    end.
+
+    In full slip it is sigma times the slip omega - V, on a cover less the slip delta_0 V of free
+    rolling, minus the limit delta_star |V|, Eq. (9): it is 0 where a stick zone forms, and negative
+    too where the slip has the sign opposite to sigma.  In partial slip it is the product of 1 -
+    sigma d and the margin of the added mass, :func:`added_mass_margin`: it is 0 where the stick
+    zone vanishes, d = sigma, or where the margin is 0.  Without added mass the margin is 1.
+
+    V: float, speed of the axis, dimensionless.
+    omega_or_d: float, second unknown, dimensionless: omega in full slip, d in partial slip.
+    regime: Regime, the present one; ``full_slip`` and ``sigma`` are read.
+    scene: Scene, of which ``law`` and kappa are read, in full slip also mu, in partial slip gamma
+    and j.
+    Returns a float, dimensionless: in full slip a speed, in partial slip a part of the critical
+    creepage.
+    """
+    if not regime.full_slip:
+        n, _, _ = added_inertia(V, scene)
+        return (1.0 - regime.sigma * omega_or_d) * added_mass_margin(n, scene.j)
+    return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(
+        V, regime.sigma, scene
+    ) * abs(V)

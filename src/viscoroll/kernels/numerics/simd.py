@@ -1,0 +1,605 @@
+"""Vectors of four doubles, and polynomials that are evaluated and fitted by them.
+
+Vectors of four doubles for kernels: one instruction of the processor adds, multiplies or divides
+all four.
+
+``+ - * /`` work on two vectors, and on a vector and a number.  Each of the four results is rounded
+as it would be alone; :func:`fma4` rounds product and sum together.
+
+A function that takes a ``builder``, of LLVM, runs while numba compiles a kernel: it emits its
+instructions at the position of the builder and returns values of LLVM.
+
+Polynomials of 24 coefficients, evaluated by vectors of four numbers.
+
+One function is stored as its coefficients in their order: six vectors, which are the coefficients
+of four polynomials in t^4, one in each lane: lane n has the coefficients n, n + 4, n + 8 ..., and
+is multiplied by t^n.  A pair of functions a and b is stored as a0 a1 b0 b1, a2 a3 b2 b3, ...:
+twelve vectors, polynomials in t^2 of the even and odd coefficients.  So a polynomial over an octave
+costs no more than one over an eighth of the octave with half as many coefficients.
+
+All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the
+argument ``t``, in [-1, 1] on the row of the table; outside the polynomial is extrapolated.  A NaN
+of t gives NaNs.
+
+Newton's polynomial through scattered points, evaluated at the 24 nodes of a row and turned into
+powers of t.
+
+All of it works on one vector ``scratch``: the arguments of :data:`POINT_COUNT` points; for each of
+up to two functions their values, and after them the leading divided differences; values at the
+nodes; Chebyshev coefficients.  In front of arguments and values four numbers are kept free, so that
+vectors may reach below the first point.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
+"""
+
+import operator
+
+import numpy as np
+from llvmlite import ir
+from numba.core import cgutils, types
+from numba.extending import lower_builtin, models, register_model, type_callable
+
+from .interpolation import chebyshev, powers_of_chebyshev, to_chebyshev, to_doubles
+from .intrinsics import call_llvm, fma, make_intrinsic
+from .jit import inline_kernel, kernel
+
+# --- Vectors of four doubles for kernels ---
+
+#: Numbers of a vector: an AVX2 register holds four doubles.
+LANES = 4
+#: LLVM's type of a vector.
+VECTOR = ir.VectorType(ir.DoubleType(), LANES)
+#: LLVM's type of an index in a vector.
+_INT = ir.IntType(32)
+
+
+class _FourType(types.Type):
+    """numba's type of a vector."""
+
+    def __init__(self):
+        super().__init__("four numbers")
+
+
+#: numba's type of a vector.
+FOUR = _FourType()
+
+
+@register_model(_FourType)
+class _FourModel(models.PrimitiveModel):
+    """A vector is represented by LLVM's vector itself."""
+
+    def __init__(self, manager, kind) -> None:
+        super().__init__(manager, kind, VECTOR)
+
+
+def shuffle(builder, a, b, order):
+    """Return instructions that take four of the eight numbers of the vectors ``a`` and ``b``,
+    numbered by ``order``.
+    """
+    return builder.shuffle_vector(a, b, ir.Constant(ir.VectorType(_INT, LANES), list(order)))
+
+
+def broadcast_value(builder, x, vector=VECTOR):
+    """Return instructions that make a vector, of LLVM's type ``vector``, whose numbers are all
+    ``x``.
+    """
+    empty = ir.Constant(vector, ir.Undefined)
+    one = builder.insert_element(empty, x, _INT(0))
+    return builder.shuffle_vector(one, empty, ir.Constant(ir.VectorType(_INT, vector.count), None))
+
+
+def fma_vectors(builder, *vectors):
+    """Return the instruction a b + c of three vectors."""
+    return call_llvm(builder, f"llvm.fma.v{vectors[0].type.count}f64", vectors)
+
+
+def vector_pointers(context, builder, kind, array, start, count, vector=VECTOR):
+    """Return pointers to ``count`` vectors that follow each other in an array.
+
+    context, builder : numba's context of code generation, and builder of LLVM.
+    kind : numba's type of ``array``: a contiguous array of doubles, or a pointer to doubles.
+    array : the array or pointer, a value of LLVM.
+    start : index of the first number of the first vector, an integer value of LLVM; it is not
+    checked.
+    count : number of vectors, an int of Python.
+    vector : LLVM's type of the vectors; four doubles by default.
+    Returns a list of ``count`` pointers to vectors, values of LLVM, aligned to 8 bytes only.
+    """
+    data = (
+        array
+        if isinstance(kind, types.CPointer)
+        else context.make_array(kind)(context, builder, array).data
+    )
+    first = builder.bitcast(builder.gep(data, [start]), vector.as_pointer())
+    return [builder.gep(first, [_INT(n)]) for n in range(count)]
+
+
+def load_vectors(context, builder, signature, arguments, count):
+    """Return a list of ``count`` instructions that load vectors of four which follow each other in
+    an array.
+
+    context, builder, signature, arguments : of numba's lowering of a function (array, start, ...):
+        context of code generation, builder of LLVM, signature and values of LLVM of the call, of
+        which the first two are used: a contiguous array of doubles or a pointer to doubles, and the
+        index of the first double, not checked.
+    count : number of vectors, an int of Python.
+    Returns values of LLVM, each of type :data:`VECTOR`.
+    """
+    pointers = vector_pointers(context, builder, signature.args[0], *arguments[:2], count)
+    return [builder.load(pointer, align=8) for pointer in pointers]
+
+
+def _define_operator(function, name):
+    """Register with numba an operator of Python for two vectors, and for a number and a vector in
+    either order.
+
+    A number, a double, stands for four times itself; the operator returns a vector.
+
+    function : the operator, a function (a, b) of the module ``operator``.
+    name : method of LLVM's builder that makes its instruction: "fadd", "fsub", "fmul" or "fdiv".
+    Returns None; kernels may use the operator from then on.
+    """
+
+    def give_type(context):
+        return lambda a, b: FOUR if FOUR in (a, b) and {a, b} <= {FOUR, types.float64} else None
+
+    def lower(context, builder, signature, arguments):
+        operands = zip(arguments, signature.args, strict=True)
+        return getattr(builder, name)(
+            *(x if kind is FOUR else broadcast_value(builder, x) for x, kind in operands)
+        )
+
+    type_callable(function)(give_type)
+    for kinds in ((FOUR, FOUR), (FOUR, types.float64), (types.float64, FOUR)):
+        lower_builtin(function, *kinds)(lower)
+
+
+for _name, _instruction in (("add", "fadd"), ("sub", "fsub"), ("mul", "fmul"), ("truediv", "fdiv")):
+    _define_operator(getattr(operator, _name), _instruction)
+    _define_operator(getattr(operator, f"i{_name}"), _instruction)
+
+
+def _vectors_of(builder, kind, x, count):
+    """Return the vectors of a tuple ``x``, or ``count`` times the vector ``x``; ``kind`` is its
+    type.
+    """
+    return cgutils.unpack_tuple(builder, x) if isinstance(kind, types.UniTuple) else [x] * count
+
+
+def _widest(*kinds):
+    """Return numba's signature of :func:`fma4`: a tuple, if one of the arguments is a tuple, else a
+    vector.
+    """
+    return next((kind for kind in kinds if isinstance(kind, types.UniTuple)), FOUR)(*kinds)
+
+
+def _return_vectors(context, builder, kind, vectors):
+    """Return one vector, or a tuple of vectors, as ``kind`` says."""
+    return vectors[0] if kind is FOUR else context.make_tuple(builder, kind, vectors)
+
+
+def _fma4(context, builder, signature, arguments):
+    kind = signature.return_type
+    columns = (
+        _vectors_of(builder, own, x, getattr(kind, "count", 1))
+        for own, x in zip(signature.args, arguments)
+    )
+    return _return_vectors(
+        context, builder, kind, [fma_vectors(builder, *abc) for abc in zip(*columns, strict=True)]
+    )
+
+
+def _shift_in(context, builder, signature, arguments):
+    return shuffle(builder, *arguments, range(LANES - 1, 2 * LANES - 1))
+
+
+def _broadcast(context, builder, signature, arguments):
+    return broadcast_value(builder, *arguments)
+
+
+def _pack(context, builder, signature, arguments):
+    vector = ir.Constant(VECTOR, ir.Undefined)
+    for n, number in enumerate(arguments):
+        vector = builder.insert_element(vector, number, _INT(n))
+    return vector
+
+
+def _unpack(context, builder, signature, arguments):
+    numbers = [builder.extract_element(arguments[0], _INT(n)) for n in range(LANES)]
+    return context.make_tuple(builder, signature.return_type, numbers)
+
+
+def _load(context, builder, signature, arguments):
+    kind = signature.return_type
+    vectors = load_vectors(context, builder, signature, arguments, getattr(kind, "count", 1))
+    return _return_vectors(context, builder, kind, vectors)
+
+
+def _store(context, builder, signature, arguments):
+    """Make the instructions that store vectors; 8 bytes are all that the address of a double is
+    aligned to.
+
+    context, builder, signature, arguments : of numba's lowering of (array, start, vector or tuple
+    of vectors).
+    Returns numba's dummy value, as the function returns nothing.
+    """
+    vectors = _vectors_of(builder, signature.args[2], arguments[2], 1)
+    pointers = vector_pointers(context, builder, signature.args[0], *arguments[:2], len(vectors))
+    for pointer, vector in zip(pointers, vectors):
+        builder.store(vector, pointer, align=8)
+    return context.get_dummy_value()
+
+
+#: (a, b, c, d) -> the vector of four numbers.
+pack = make_intrinsic(_pack, FOUR, *[types.float64] * LANES)
+#: vector -> its four numbers, a tuple.
+unpack = make_intrinsic(_unpack, types.UniTuple(types.float64, LANES), FOUR)
+#: (a, b) -> the last number of a, then the first three of b.  A load across two stores would wait
+#: for both.
+shift_in = make_intrinsic(_shift_in, FOUR, FOUR, FOUR)
+#: (a, b, c) -> a b + c, rounded once, of vectors, or of tuples of vectors and vectors that stand
+#: for all of a tuple.
+fma4 = make_intrinsic(_fma4, _widest, None, None, None)
+#: number -> the vector of four times that number.
+broadcast = make_intrinsic(_broadcast, FOUR, types.float64)
+#: (array, start) -> the vector of the numbers start to start + 3 of a contiguous array or at a
+#: pointer.
+load = make_intrinsic(_load, FOUR, None, types.int64)
+#: (array, start, vector) stores a vector, or a tuple of vectors, at start.
+store = make_intrinsic(_store, types.void, None, types.int64, None)
+
+
+def make_load(count):
+    """Return a function for kernels that loads vectors which follow each other.
+
+    count : number of vectors, an int >= 1.
+    Returns numba's intrinsic (array, start) -> tuple of ``count`` vectors: array, contiguous
+    doubles or a pointer to doubles; start, int, index of the first number.
+    """
+    return make_intrinsic(_load, types.UniTuple(FOUR, count), None, types.int64)
+
+
+# --- Polynomials of 24 coefficients, evaluated by vectors of four numbers ---
+
+#: Coefficients of a polynomial: over an octave 24 leave the rounding of doubles.
+TERMS = 24
+#: Vectors of one function.
+_ONE = TERMS // LANES
+
+
+def _constant(numbers):
+    """Return a constant vector of LLVM with four ``numbers``."""
+    return ir.Constant(VECTOR, [float(x) for x in numbers])
+
+
+def _make_sums(count: int, orders: int):
+    """Return a kernel that evaluates a polynomial with vectors of four for coefficients, and its
+    derivatives.
+
+    count : int, number of coefficients, >= ``orders``.
+    orders : int, number of values that the kernel returns: the polynomial, its first derivative,
+    and so on.
+
+    Returns the kernel, an intrinsic of numba, which takes (table, start, x): contiguous vector of
+    doubles, or pointer; int, index in it at which the first coefficient begins, four numbers each;
+    argument, a float.  It returns a tuple of ``orders`` vectors of four doubles.  They are
+    derivatives over x by Estrin's scheme, without factorials divided out.
+    """
+
+    def lower(context, builder, signature, arguments):
+        """Return the instructions of the kernel, by Estrin's scheme; numba calls this function for
+        every call of the kernel.
+
+        context, builder, signature, arguments : numba's context of code generation, builder of
+            LLVM, signature of the call, and values of LLVM of its arguments (table, start, x).
+        Returns a value of LLVM: the tuple of the kernel.
+        """
+        terms = load_vectors(context, builder, signature, arguments, count)
+        sums = []
+        for _ in range(orders):
+            level = terms
+            power = broadcast_value(builder, arguments[2])
+            while len(level) > 1:  # by Estrin's scheme, whose parts do not wait for one another
+                pairs = [level[n : n + 2] for n in range(0, len(level), 2)]
+                level = [
+                    fma_vectors(builder, odd[0], power, even) if odd else even
+                    for even, *odd in pairs
+                ]
+                power = builder.fmul(power, power)
+            sums.append(level[0])
+            terms = [builder.fmul(_constant([k] * LANES), term) for k, term in enumerate(terms)][1:]
+        return context.make_tuple(builder, signature.return_type, sums)
+
+    return make_intrinsic(lower, types.UniTuple(FOUR, orders), None, types.int64, types.float64)
+
+
+def _lower_secants(context, builder, signature, arguments):
+    """Return instructions of (table, start, x, z) -> p(x) and (p(x) - p(z))/(x - z), of one
+    function and of its slope.
+
+    Here p is the polynomial with six vectors for coefficients, and x and z are the fourth powers of
+    two arguments t; the secant is formed without a difference, so that x = z gives dp/dx.
+
+    context, builder, signature, arguments : numba's context of code generation, builder of LLVM,
+        signature of the call, and values of LLVM of its arguments: vector or pointer, int, two
+        doubles.
+    Returns a value of LLVM, a tuple of four vectors of four: p and its secant of the function, then
+    both of its slope in t.
+    """
+    terms = load_vectors(context, builder, signature, arguments, _ONE)
+    sums = []
+    x, z = (broadcast_value(builder, power) for power in arguments[2:])
+    for _ in range(2):
+        value = total = terms[-1]
+        for term in terms[-2:0:-1]:
+            value = fma_vectors(builder, x, value, term)
+            total = fma_vectors(builder, z, total, value)
+        sums += [fma_vectors(builder, x, value, terms[0]), total]
+        # the coefficients of the slope: each moves down by one power
+        following = zip(terms, [*terms[1:], _constant([0.0] * LANES)])
+        moved = [shuffle(builder, *neighbours, range(1, LANES + 1)) for neighbours in following]
+        terms = [
+            builder.fmul(_constant(range(n, n + LANES)), term)
+            for n, term in zip(range(1, TERMS, LANES), moved)
+        ]
+    return context.make_tuple(builder, signature.return_type, sums)
+
+
+_pair_sums = _make_sums(2 * _ONE, 3)
+_one_sums = _make_sums(_ONE, 2)
+_one_secants = make_intrinsic(
+    _lower_secants, types.UniTuple(FOUR, 4), None, types.int64, types.float64, types.float64
+)
+
+
+@inline_kernel
+def evaluate_pair(table, start, t):
+    """Return two functions that are stored as a pair, with their first and second derivatives in t.
+
+    table : contiguous vector of doubles, or pointer to them, with 48 coefficients of the pair,
+    interleaved by two.
+    start : int, index in ``table`` at which they begin; it is not checked.
+    t : float, argument, dimensionless.
+    Returns (a, b, a', b', a'', b''), floats in the units of the coefficients; the compiler leaves
+    out what a caller does not read.
+    """
+    twice = 2.0 * t
+    square = t * t
+    value, first_derivative, second_derivative = _pair_sums(table, start, square)
+    # each function is E + t O, with polynomials E and O of t^2
+    a_even, a_odd, b_even, b_odd = unpack(value)
+    a_even_1, a_odd_1, b_even_1, b_odd_1 = unpack(first_derivative)
+    a_even_2, a_odd_2, b_even_2, b_odd_2 = unpack(second_derivative)
+    a_1 = fma(t, a_odd_1, a_even_1)
+    b_1 = fma(t, b_odd_1, b_even_1)
+    a_2 = 2.0 * fma(twice, a_odd_1 + fma(square, a_odd_2, t * a_even_2), a_1)
+    b_2 = 2.0 * fma(twice, b_odd_1 + fma(square, b_odd_2, t * b_even_2), b_1)
+    return (
+        fma(t, a_odd, a_even),
+        fma(t, b_odd, b_even),
+        fma(twice, a_1, a_odd),
+        fma(twice, b_1, b_odd),
+        a_2,
+        b_2,
+    )
+
+
+@inline_kernel
+def _join(sums, t, square):
+    """Return a + b t + c t^2 + d t^3, the last step of Estrin's scheme for a polynomial in t.
+
+    a, b, c and d are polynomials in t^4: that of the coefficients 0, 4, 8 ..., that of 1, 5, 9 ...,
+    and so on.
+
+    sums : vector of four, the values of a, b, c and d at t^4.
+    t, square : floats, argument and t^2, dimensionless.
+    Returns a float, in the unit of the coefficients.
+    """
+    a, b, c, d = unpack(sums)
+    return fma(square, fma(t, d, c), fma(t, b, a))
+
+
+@inline_kernel
+def evaluate_single(table, start, t):
+    """Return one function of the table and its slope in t.
+
+    table : contiguous vector of doubles, or pointer to them, with the 24 coefficients of the
+        function, the constant first.
+    start : int, index in ``table`` at which they begin; it is not checked.
+    t : float, argument, dimensionless.
+    Returns (value, slope), floats in the unit of the coefficients.
+    """
+    square = t * t
+    value, first_derivative = _one_sums(table, start, square * square)
+    _, b, c, d = unpack(value)
+    slope = fma(
+        4.0 * t * square, _join(first_derivative, t, square), fma(t, fma(3.0 * t, d, 2.0 * c), b)
+    )
+    return _join(value, t, square), slope
+
+
+@inline_kernel
+def _join_secant(sums, secants, t, s):
+    """Return p(t) and its secant (p(t) - p(s))/(t - s) from the four polynomials in t^4 of which p
+    consists.
+
+    sums : vector of four, the values of the four polynomials at t^4: lane n is the factor of t^n.
+    secants : vector of four, their secants between t^4 and s^4.
+    t, s : floats, arguments, dimensionless.
+    Returns (p(t), secant), floats; the secant is p'(t) at s = t, since nothing is divided by t - s.
+    """
+    square = t * t
+    s_square = s * s
+    # t^n a - s^n b = s^n (a - b) + a (t^n - s^n)
+    _, first, second, third = unpack(sums)
+    first = fma(fma(t, s, square + s_square), third, fma(t + s, second, first))
+    return _join(sums, t, square), (t + s) * (square + s_square) * _join(
+        secants, s, s_square
+    ) + first
+
+
+@inline_kernel
+def evaluate_secants(table, start, t, s):
+    """Return p(t) and (p(t) - p(s))/(t - s) of one function p, and the same of its slope p',
+    without cancellation.
+
+    table : contiguous vector of doubles, or pointer to them, with the 24 coefficients of p, the
+    constant first.
+    start : int, index in ``table`` at which they begin; it is not checked.
+    t, s : floats, arguments, dimensionless, in any order; in [-1, 1] on the row, outside p is
+    extrapolated.
+
+    Returns (p(t), secant of p, p'(t), secant of p'), floats in the unit of the coefficients; at s =
+    t the secants are p'(t) and p''(t).  A NaN of s makes the two secants NaN, but not p(t) and
+    p'(t).
+    """
+    square = t * t
+    s_square = s * s
+    sums, secants, slope_sums, slope_secants = _one_secants(
+        table, start, square * square, s_square * s_square
+    )
+    value, first_derivative = _join_secant(sums, secants, t, s)
+    return value, first_derivative, *_join_secant(slope_sums, slope_secants, t, s)
+
+
+# --- Newton's polynomial through scattered points ---
+
+#: Points of a polynomial; with 10 points an octave the error then is that of rounding.
+POINT_COUNT = 36
+#: Numbers of one vector over the points, with the four in front.
+_BLOCK = LANES + POINT_COUNT
+#: Position in ``scratch`` of the arguments of the points.
+ARGUMENTS = LANES
+#: Position of the values of the first function; its divided differences are one block further.
+VALUES = LANES + _BLOCK
+#: Distance from the values of the first function to those of the second.
+FUNCTION_STRIDE = 2 * _BLOCK
+#: Position of the values at the nodes of a row, and later of the powers of t.
+NODE_VALUES = 5 * _BLOCK
+#: Position of the Chebyshev coefficients.
+_COEFFICIENTS = NODE_VALUES + TERMS
+#: Numbers of ``scratch``.
+SCRATCH_SIZE = _COEFFICIENTS + TERMS
+#: (array, start) -> 24 numbers, as six vectors of four.
+load_row = make_load(TERMS // LANES)
+#: Nodes of a row: the zeros of T_24 on [-1, 1].
+NODES = to_doubles(chebyshev(TERMS))
+#: In the slow row a Chebyshev coefficient below this fraction of the function is rounding and is
+#: set to zero.
+_ROUNDING = 4e-16
+#: From values at the nodes to Chebyshev coefficients: for each node, 24 numbers.
+_TO_CHEBYSHEV = np.ascontiguousarray(to_chebyshev(TERMS).T).ravel()
+#: From Chebyshev coefficients to powers of t in [-1, 1]: for each coefficient, 24 numbers.
+_POWERS = powers_of_chebyshev(TERMS, 0.0, 1.0).ravel()
+#: The same for t in [0, 1], in the slow row.
+_SLOW_POWERS = powers_of_chebyshev(TERMS, 1.0, 2.0).ravel()
+
+
+@kernel
+def divided_differences(count, scratch):
+    """Compute the leading divided differences of ``count`` functions from arguments and values in
+    ``scratch``.
+
+    They are the coefficients of Newton's polynomial through the points.  Each order is computed in
+    place, four at a time, from the last point down.  The entries below the first difference of an
+    order are overwritten and are not read again.
+
+    count : int, number of functions, 1 or 2.
+    scratch : vector of SCRATCH_SIZE numbers with POINT_COUNT arguments, all different, from
+        ARGUMENTS on, and as many values from VALUES on, those of the second function
+        FUNCTION_STRIDE further.  POINT_COUNT differences of each function, those of order 0 first,
+        are written one block (40 numbers) after the begin of its values, and the values are
+        overwritten.  Returns nothing.
+    """
+    for order in range(POINT_COUNT):
+        first = POINT_COUNT - LANES
+        while order > 0 and first > order - LANES:
+            x = ARGUMENTS + first
+            inverse = 1.0 / (load(scratch, x) - load(scratch, x - order))
+            for which in range(count):
+                start = VALUES + FUNCTION_STRIDE * which + first
+                upper = load(scratch, start)
+                store(
+                    scratch,
+                    start,
+                    (upper - shift_in(load(scratch, start - LANES), upper)) * inverse,
+                )
+            first -= LANES
+        for which in range(count):
+            start = VALUES + FUNCTION_STRIDE * which + order
+            scratch[start + _BLOCK] = scratch[start]
+
+
+@kernel
+def evaluate_at_nodes(nodes, which, scratch):
+    """Evaluate Newton's polynomial of one function at the 24 nodes of a row, and write the values
+    into ``scratch``.
+
+    nodes : (24,) contiguous floats, the nodes in the variable of the arguments in ``scratch``.
+    which : int, 0 or 1, index of the function.
+    scratch : vector of this module with arguments and with the divided differences of that
+        function; 24 values are written from NODE_VALUES on, in the order of ``nodes``, over those
+        of another function.  Returns nothing.
+    """
+    start = VALUES + FUNCTION_STRIDE * which + _BLOCK
+    x = load_row(nodes, 0)
+    last = broadcast(scratch[start + POINT_COUNT - 1])
+    value = last, last, last, last, last, last
+    for n in range(POINT_COUNT - 2, -1, -1):
+        distance = fma4(x, broadcast(1.0), broadcast(-scratch[ARGUMENTS + n]))
+        value = fma4(distance, value, broadcast(scratch[start + n]))
+    store(scratch, NODE_VALUES, value)
+
+
+@inline_kernel
+def sum_of_rows(matrix, first, terms, factors, to, numbers):
+    """Write the sum of rows of 24 numbers, each times a factor: the product of a matrix and a
+    vector.
+
+    matrix : contiguous vector of doubles in which the rows follow each other.
+    first : int, index in ``matrix`` at which the first row begins.
+    terms : int, number of rows and of factors, >= 0.
+    factors, to : int, indices in ``numbers`` at which the factors begin, and the sum.
+    numbers : contiguous vector with the factors; the sum, 24 numbers, is written after all factors
+        have been read, so that the two may overlap; zeros if ``terms`` is 0.  Returns nothing.
+    """
+    zero = broadcast(0.0)
+    total = zero, zero, zero, zero, zero, zero
+    for n in range(terms):
+        total = fma4(load_row(matrix, first + TERMS * n), broadcast(numbers[factors + n]), total)
+    store(numbers, to, total)
+
+
+@kernel
+def to_powers(slow, limit, scratch):
+    """Replace the values of a function at the 24 nodes of a row by its coefficients of the powers
+    of t.
+
+    The way is by Chebyshev coefficients, of the values less a reference value, which keeps rounding
+    errors small.
+
+    slow : bool, whether this is the slow row, where t is in [0, 1]; there the last Chebyshev
+        coefficient, and those below 4e-16 of the largest one and of ``limit``, are set to zero.
+        The other rows have t in [-1, 1].
+    limit : float; in the slow row the value at t = 0, which has been subtracted from the values at
+        the nodes and is added to the constant coefficient.  In the other rows it is not read: the
+        value at a middle node takes its place.
+    scratch : vector of this module; 24 values from NODE_VALUES on are read, and the 24
+        coefficients, the constant first, are written in their place.  Chebyshev coefficients are
+        left after them.  Returns nothing.
+    """
+    if not slow:
+        limit = scratch[NODE_VALUES + TERMS // 2]
+        for k in range(TERMS):
+            scratch[NODE_VALUES + k] -= limit
+    sum_of_rows(_TO_CHEBYSHEV, 0, TERMS, NODE_VALUES, _COEFFICIENTS, scratch)
+    if slow:
+        largest = limit
+        for k in range(TERMS):
+            largest = max(largest, abs(scratch[_COEFFICIENTS + k]))
+        for k in range(TERMS):
+            if k == TERMS - 1 or abs(scratch[_COEFFICIENTS + k]) < _ROUNDING * largest:
+                scratch[_COEFFICIENTS + k] = 0.0
+    sum_of_rows(_SLOW_POWERS if slow else _POWERS, 0, TERMS, _COEFFICIENTS, NODE_VALUES, scratch)
+    scratch[NODE_VALUES] += limit

@@ -1,1 +1,0 @@
-"""Tensor splines of grids, evaluated one point at a time: values with slopes, and the law of a grid at one alpha."""

@@ -1,0 +1,664 @@
+"""The law of a cover over speed, as rows.
+
+What shear does in the contact of a cover, to first order, and how M is split between the bodies.
+
+Notation as in :mod:`.cover_solve`.  With C the coupling of both bodies, that of the base less that
+of the cylinder, the pressure p strains the surfaces by u' = -C p and a traction q changes the
+slopes by C q (docs/theory_covers.md):
+
+- Stick without slip: T q - C p = delta with the pressure of the contact without shear.  Its
+  creepage less half of Q times the limit of full slip is delta_f, the creepage of free rolling.
+- Full slip, q = Q p: the contact of half length z carries another load, by the solution for the
+  slopes -C p.
+- M of full slip changes by -delta_0* Q, with delta_0* the mean strain mirrored about the middle of
+  the contact.
+
+All of these are linear in C, so that each body has its part.
+
+The law of a cover over speed: solutions of :mod:`.cover_solve` at nodes of u = kappa |V|, as
+rows of polynomials.
+
+A scene fixes l0/h, so that theta = lam l0/(2 h) follows from the half contact length that carries
+the load; all quantities are then smooth functions of u alone.  They are computed at twelve nodes an
+octave, from slow to fast, each from a start that is extrapolated from the nodes before.  Octaves
+are interpolated between these nodes.  Below the first octave there is a polynomial of u, beyond the
+last one a polynomial of 1/u, both with the limits of elastic layers.  Beside a half-space that
+relaxes too, that of 1/u has a second one times ln u: long waves then have a memory of their own,
+which the core does not cut off.
+
+The quantities of a node, in the order of the indices below, are lam, L = 2 kappa delta_star/mu,
+epsilon, M/V of the base and of the cylinder, f of both, g of both, lam_Q and epsilon_Q,
+dimensionless, with M in units of P R, V in units of R/T_ref, and T_ref the unit of time of the
+cover's series (:mod:`.cover_law` has f, g and the slopes).
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.checks import Floats
+from ..core.errors import ParameterError
+from ..materials.bodies import Cover
+from .cover_solve import (
+    LARGE_ALPHA,
+    LARGEST_THETA,
+    LEAST_TERMS,
+    CoverModes,
+    CoverState,
+    LocalPressure,
+    decays,
+    layer_operator,
+    local_pressure,
+    solve,
+    term_count,
+)
+from .law_rows import NODES, Rows, row_range
+from .row_layout import CoverRows, constant_rows, steady_table
+
+# --- What shear does in the contact of a cover, to first order ---
+
+#: highest order of the local coupling, whose terms fall as 1/n^2: highest of
+#: :func:`.cover_solve.decays`
+_LOCAL_ORDERS = 100
+
+
+class Shear(NamedTuple):
+    """What shear does to a contact, dimensionless; slopes and creep in units of V T_ref/R; the base
+    comes first.
+
+    moments : M/V of each body, with M divided by P R and V by R/T_ref, (2,).
+    free : parts of each body in the creepage of free rolling with stick, (2,).
+    mirrored : parts of each body in delta_0*, (2,).
+    load : relative change of H with Q at fixed z, in full slip.
+    shift : change of the shift g with Q at fixed z.
+    """
+
+    moments: Floats
+    free: Floats
+    mirrored: Floats
+    load: float
+    shift: float
+
+
+def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
+    """Return what shear does to a contact of half length z that :func:`.cover_solve.solve` has
+    found.
+
+    modes: :class:`CoverModes` of the bodies.
+    z: half contact length divided by V T_ref, dimensionless, > 0.
+    state: :class:`CoverState` of that length.
+    Returns :class:`Shear`.
+    """
+    work = state.work
+    local = local_pressure(modes, z, state) if any(body.local for body in modes.bodies) else None
+    s, excess = _sources(modes, z, state, local)
+    S, c = layer_operator(
+        work.A, work.memory, (modes.L + modes.shear) * work.own / work.compliance.sum(axis=0)
+    )
+    Phi = 2.0 * work.exponentials.ratio[1:]
+    right = Phi @ (work.Xi @ excess) + s[1:]
+    stick = np.linalg.solve(np.eye(state.q.size) + S[1:] + Phi @ (work.Xi @ c), right)
+    creep = _shift(modes, state, c @ stick - excess) + S[0] @ stick - s[0]
+    # q_1 of the traction over q_1 of the pressure is Q
+    free = creep - 0.5 * state.creep_limit * stick[0] / state.q[0]
+    # slopes by Q p are those that the pressure of -C p takes back
+    change = np.linalg.solve(work.matrix, -right.sum(axis=1))
+    S, c = layer_operator(work.A, work.memory, modes.L * work.own / work.compliance.sum(axis=0))
+    shift = _shift(modes, state, c @ change + excess.sum(axis=1)) + S[0] @ change + s[0].sum()
+    load = float(change[0] / state.q[0])
+    return Shear(
+        moments=_moments(modes, z, state),
+        free=free,
+        mirrored=_mirrored(modes, state, local),
+        load=load,
+        shift=float(shift),
+    )
+
+
+def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:
+    """Return the mean slope, without S, of a solution that has an excess memory and no slope of its
+    own.
+
+    modes: :class:`CoverModes`.
+    state: :class:`CoverState`, of which the exponentials are read.
+    excess: excess memory of each creep mode, (modes,), or (modes, k) of k solutions.
+    Returns a float, or (k,).
+    """
+    _, root, edge, x, sigma = state.work.exponentials
+    source = (sigma * excess.T).T
+    within = modes.series.Q @ (root * (x[:, 1:] @ source).T).T
+    return modes.series.t @ (source - (edge * within.T).T)
+
+
+def _sources(
+    modes: CoverModes, z: float, state: CoverState, local: LocalPressure | None
+) -> tuple[Floats, Floats]:
+    """Return C p of each body over the compliance of both, as terms T_n(x) and as excess memory of
+    each creep mode.
+
+    modes: :class:`CoverModes`.
+    z: half contact length divided by V T_ref, > 0.
+    state: :class:`CoverState`, of N terms.
+    local: the pressure at points, for the coupling of short waves; None: there is none.
+    Returns (terms from n = 0, (N + 1, 2); excess memory, (modes, 2)).
+    """
+    work = state.work
+    A = work.A
+    F = modes.mine * (
+        modes.C * work.own / work.compliance.sum(axis=0) * (work.odd + 1j * work.even)
+    )
+    s = 2.0 * np.where(np.arange(len(A))[:, None] % 2, -(A @ F.imag.T), A @ F.real.T)
+    s[0] *= 0.5
+    excess = (work.memory @ F.T).real
+    if local is not None:
+        terms = local.terms[: _LOCAL_ORDERS + 1]
+        D = decays(modes.series.b * z, _LOCAL_ORDERS)
+        # ahead of the edge there is no pressure, while the series goes on
+        s = s + terms[: len(A)]
+        excess = excess - D.T @ terms
+    return s, excess
+
+
+def _mirrored(modes: CoverModes, state: CoverState, local: LocalPressure | None) -> Floats:
+    """Return the parts of each body in delta_0*, (2,): minus the mean of its C p, mirrored, with p
+    as weight.
+
+    modes: :class:`CoverModes`.
+    state: :class:`CoverState`.
+    local: what the coupling of short waves has in it; None: nothing.
+    """
+    work = state.work
+    strain = modes.C * (work.own * (work.odd + 1j * work.even) ** 2).real / work.v
+    found = -2.0 / state.q[0] * (modes.mine @ strain)
+    return found if local is None else found - local.mirrored
+
+
+def _moments(modes: CoverModes, z: float, state: CoverState) -> Floats:
+    """Return M/V of each body, the power that its compliance dissipates in the pressure, (2,).
+
+    Each creep mode has a part, as for half-spaces (:mod:`.material_series`), without
+    cancellation; what the layers' smooth kernels change in the slopes is an integral over the wave
+    number.
+    modes: :class:`CoverModes`.
+    z: half contact length divided by V T_ref, > 0.
+    state: :class:`CoverState`.
+    """
+    work = state.work
+    total = modes.L * work.own / work.compliance.sum(axis=0)
+    multipliers = (
+        modes.mine * (modes.L * work.own) + (modes.shares[:, None] - work.compliance) * total
+    )
+    smooth = 2.0 / state.q[0] * (multipliers.imag @ ((work.odd**2 + work.even**2) / work.v))
+    if not modes.J.size:
+        return 0.0 * smooth
+    _, _, e, t, _, Q = modes.series
+    within = Q @ (state.X * _edge_weights(modes, z, state) / e)
+    return modes.weights @ (work.shares + t * within) + smooth
+
+
+def _edge_weights(modes: CoverModes, z: float, state: CoverState) -> Floats:
+    """Return the mean of 1 - exp(alpha_i x)/I_0(alpha_i) over the contact, with the pressure as
+    weight.
+
+    modes: :class:`CoverModes`, with at least one mode.
+    z: half contact length divided by V T_ref, > 0.
+    state: :class:`CoverState`.
+    Returns (modes,), dimensionless.  Sums over all orders are in closed form, with i2 = I_2/I_0.
+    """
+    ratio = state.work.exponentials.ratio
+    alpha = np.minimum(modes.series.a * z, LARGE_ALPHA)
+    i2 = ratio[2]
+    # i2_i - i2_l, from 1 - i2 = 2 I_1/(alpha I_0) where that is small
+    rest_of_1 = 2.0 * ratio[1] / alpha
+    near_1 = np.minimum.outer(alpha, alpha) > 1.0
+    change = np.where(near_1, np.subtract.outer(-rest_of_1, -rest_of_1), np.subtract.outer(i2, i2))
+    sums = change * np.multiply.outer(alpha, alpha) / np.add.outer(alpha, alpha)
+    # the rest of the terms, which is smooth
+    m = np.arange(1, state.q.size + 1)
+    rest = state.q - 2.0 * ratio[1:] @ state.X
+    rest[0] -= z
+    weights = -2.0 / alpha * (m[:, None] * ratio[1:])
+    weights[0] = i2
+    return (z * i2 + sums @ state.X + rest @ weights) / state.q[0]
+
+
+# --- The law of a cover over speed ---
+
+#: nodes an octave of u at which the cover is solved; with 12 and the neighbours below rows agree
+#: with the solve to 1e-11
+PER_OCTAVE = 12
+#: nodes on either side of an octave that take part in its polynomial; with 18 it is accurate to
+#: rounding
+_ASIDE = 18
+#: imaginary step for derivatives, relative or of log2 u; its square is far below rounding,
+#: dimensionless
+_TINY = 1e-30
+#: quantities of a node
+_COUNT = 11
+#: index of lam among them
+_LAM = 0
+#: index of L = 2 kappa delta_star/mu
+_LIMIT = 1
+#: index of epsilon
+_EPSILON = 2
+#: indices of M/V
+_MOMENTS = slice(3, 5)
+#: indices of f, of which the sum is 2 kappa delta_f
+_FREE = slice(5, 7)
+#: indices of g, of which the sum is 2 kappa (delta_0* - delta_f)
+_EXCESS = slice(7, 9)
+#: indices of the slopes of lam and epsilon in Q
+_TILT = slice(9, 11)
+#: functions that have a row each beside those of a table: L, f, g and the slopes
+_BESIDE = [_LIMIT, *range(5, _COUNT)]
+#: offset of the first of two solves in ln z, whose difference is the slope of load and shift over z
+_OFFSET = 3e-5
+#: octaves between the fastest rate (times the thickness divided by l0 for thick covers) and the row
+#: in 1/u
+_FAST_OCTAVES = 4
+#: octaves of rows beyond those, after which the first order in 1/u is accurate to rounding
+_BEYOND = 42
+#: nodes of the polynomials at either end, from 0.05 to 1 of their range: wide enough for the noise
+#: of the solve, which loses digits there, not to be amplified at 0
+_END_NODES = 52
+#: degree of these polynomials
+_END_DEGREE = 12
+#: degree of those by shear, which for nu < 1/2 have terms in ln u at low speed, from the memory of
+#: the pressure near the edges.  Where the first octave begins they jump by 4e-12 of 2 kappa
+#: delta_star/mu, and by 4e-10 with 12; with 18 the noise of the solve makes their slopes jump by
+#: 1e-4, with 14 by 1e-6
+_STRAIN_DEGREE = 14
+#: terms in ln u of the rows beyond the last octave where the other body, a half-space, relaxes too:
+#: without them M was wrong by 1 % at a thousand times the fastest rate, with two it is by 1e-9;
+#: more terms amplify the noise of the solve
+_LOG_TERMS = 2
+#: the secant method ends where the product of the last two relative errors of the load is below
+#: this: the next step then leaves an error below rounding
+_LOAD_ERRORS = 1e-13
+#: least distance of two points of the secant method in ln z, for which rounding does not dominate
+#: the slope
+_LEAST_STEP = 1e-8
+#: most steps of the secant method; it needs 4 to 6
+_MOST_STEPS = 40
+#: thickness divided by l0 below which the half contact is longer than six thicknesses for any nu,
+#: and nothing is solved
+_THINNEST = 0.01
+#: factors of ln z at the last eight nodes in its extrapolation to the next one, the start of the
+#: secant method there
+_EXTRAPOLATION = np.array([(-1.0) ** (k + 1) * math.comb(8, k) for k in range(8, 0, -1)])
+
+
+def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
+    """Compute the law of a cover over all speeds; takes 0.1 to 0.3 s.
+
+    cover: one :class:`.bodies.Cover`, of a single thickness and Poisson's ratio.
+    thickest: thickness divided by l0 that determines the number of rows in place of that of the
+        cover, for several covers to have as many; None: that of the cover.  It has no effect for
+        elastic bodies.
+    Returns :class:`.row_layout.CoverRows`; of elastic bodies it is a single row of constants, with
+    epsilon = M = 0.
+    Raises ParameterError for a cover so thin that the half contact at rest is longer than six
+    thicknesses, and where at some speed no contact length that carries the load is found.
+    """
+    modes = CoverModes(cover)
+    thickness = cover.thinnest
+    slow_limit = _solve_elastic(modes, modes.cover.share, 1.0) if thickness > _THINNEST else None
+    if slow_limit is None or slow_limit[_LAM] > 2.0 * LARGEST_THETA * thickness:
+        allowed = (
+            f"larger: half the contact at rest may be at most {LARGEST_THETA:g} thicknesses long"
+        )
+        raise ParameterError("thickness/l0", f"{thickness:.3g}", allowed)
+    if not modes.series.a.size:
+        lam = slow_limit[_LAM]
+        L = slow_limit[_LIMIT]
+        table = steady_table(constant_rows(lam, 0.0, 0.0, 0.0, lam / L, 1.0 / (L * L)))
+        limits = np.concatenate([[L, lam], slow_limit[_BESIDE[1:]], np.zeros(_COUNT)])
+        return CoverRows(0, table, constant_rows(*slow_limit[_BESIDE]), limits)
+    instant = modes.bodies[1].instant * modes.alpha
+    fast_limit = _solve_elastic(modes, min(instant, 1.0), modes.alpha)
+    # the solve loses digits of what shear does: its limits are extrapolated, to join the values at
+    # the nodes
+    slow_limit[3:] = fast_limit[5:] = math.nan
+    if 1.0 in modes.shares:
+        slow_limit[_MOMENTS] = modes.shares * float(modes.series.e @ modes.series.e)
+    orders = max(LEAST_TERMS, term_count(0.5 * slow_limit[_LAM] / thickness))
+    e0 = int(row_range(modes.series.b[0], modes.series.a[-1])[0])
+    widest = (
+        cover.thickness
+        if cover.other_thickness is None
+        else max(cover.thickness, cover.other_thickness)
+    )
+    widest *= 1.0 if thickest is None else thickest / cover.thickness
+    last = math.frexp(modes.series.a[-1] * max(1.0, widest))[1] + _FAST_OCTAVES
+    first_node = e0 * PER_OCTAVE - _END_NODES + 1
+    u = np.exp2(np.arange(first_node, last * PER_OCTAVE + _END_NODES) / PER_OCTAVE)
+    values = _solve_nodes(modes, u, orders)
+    rows = Rows(e0, last - e0 + 1 + _BEYOND)
+    y = np.ldexp(u[:_END_NODES], -e0)
+    slow_limit, _, slow = _fit_end(y, values[:, :_END_NODES], slow_limit, rows.t[0])
+    inside = _interpolate_octaves(values, e0 * PER_OCTAVE - first_node, last - e0)
+    x = rows.x[last - e0 + 1 :]
+    half_space_relaxes = (
+        cover.other_thickness is None and cover.other.alpha > 1.0 and cover.part < 1.0
+    )
+    fast, limits = _fit_fast_rows(
+        u[-_END_NODES:],
+        values[:, -_END_NODES:],
+        fast_limit,
+        x,
+        math.ldexp(1.0, last),
+        _LOG_TERMS if half_space_relaxes else 0,
+    )
+    powers = rows.fit_slopes(*np.concatenate([slow[:, :, None], inside, fast], axis=2))
+    powers[:, 0, 0] = slow_limit
+    share, press = rows.fit_slopes(*_stick_functions(rows, powers, limits))
+    table = steady_table([powers[_LAM], powers[_EPSILON], *powers[_MOMENTS], share, press])
+    return CoverRows(e0, table, powers[_BESIDE], limits)
+
+
+def solve_at_speed(cover: Cover, u: float, *, orders: int | None = None) -> Floats:
+    """Solve one state of a cover, without rows; the rows are compared with it in tests.
+
+    cover: one :class:`.bodies.Cover`.
+    u: kappa |V|, dimensionless, > 0.
+    orders: number of terms of the pressure; None: as many as rows are made with
+    (:func:`.cover_solve.solve`).
+    Returns the quantities of a node (module), dimensionless, (11,).
+    Raises ParameterError where no contact length that carries the load is found; a contact that is
+    longer than rows allow, half of it beyond six thicknesses, is not refused.
+    """
+    return _solve_node(CoverModes(cover), u, orders=orders or LEAST_TERMS)[0]
+
+
+def _solve_node(
+    modes: CoverModes,
+    u: float,
+    start: float | None = None,
+    slope: float = 2.0,
+    orders: int | None = None,
+    stiffness: float = 1.0,
+) -> tuple[Floats, float, float]:
+    """Solve for the half contact length that carries the load at one speed, by the secant method.
+
+    The unknown is ln z, z the half contact length divided by V T_ref; the equation is ln H = -ln(4
+    stiffness u^2) with the load H of :class:`.cover_solve.CoverState`.  At the end lam, L, epsilon
+    and M are extrapolated by the last secant step.
+    modes: :class:`CoverModes` of the bodies.
+    u: kappa |V|, dimensionless, > 0.
+    start: first approximation of ln z, near enough for the first two solves to give slopes over z;
+        None: that of a half-space of a stiffness between slow and fast, shortened for a thin cover,
+        from which one is found first.
+    slope: first approximation of d ln H/d ln z, > 0; 2 is that of a half-space.
+    orders: number of terms of the pressure; None: the default of the solve.
+    stiffness: instantaneous divided by long-time stiffness, to solve fast rolling with the
+        ``modes`` of elastic bodies;
+        1: the modes have their own stiffness.
+    Returns (the quantities of a node, (11,), dimensionless; ln z after the last secant step; d ln
+    H/d ln z of the first one).
+    Raises ParameterError where the secant method has not ended after 40 solves.
+    """
+    goal = -math.log(4.0 * stiffness * u * u)
+    thickness = modes.cover.thinnest
+    if start is None:
+        rough = (
+            0.5 * goal
+            - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0))
+            - math.log1p(0.2 / thickness)
+        )
+        start = _find_length(modes, u, rough, slope, orders, goal)[0][-1]
+        # a slope as good as one that is extrapolated, for errors to be smooth over u
+        lengths, errors, _ = _find_length(modes, u, start + _OFFSET, slope, orders, goal)
+        start = lengths[-1]
+        slope = (errors[1] - errors[0]) / (lengths[1] - lengths[0])
+    y, errors, states = _find_length(modes, u, start + _OFFSET, slope, orders, goal)
+    slope = (errors[1] - errors[0]) / (y[1] - y[0])
+    shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
+    shift_slope = (shifts[1] - shifts[0]) / (y[1] - y[0])
+    found = [
+        np.array([2.0 * math.exp(each) * u, 2.0 * u * state.creep_limit, shift, state.moment])
+        for each, state, shift in zip(y, states, shifts)
+    ]
+    part = (y[-1] - y[-2]) / (y[-2] - y[-3])
+    lam, L, epsilon, moment = found[-1] + (found[-1] - found[-2]) * part
+    z = math.exp(y[-2])
+    shear = shear_of(modes, z, states[-1])
+    tilt = -shear.load / slope
+    slopes = lam * tilt, shear.shift / z + shift_slope * tilt
+    free = 2.0 * u * shear.free
+    moments = shear.moments * (moment / shear.moments.sum() if modes.J.size else 0.0)
+    values = np.array(
+        [lam, L, epsilon, *moments, *free, *(2.0 * u * shear.mirrored - free), *slopes]
+    )
+    return values, y[-1], slope
+
+
+def _find_length(
+    modes: CoverModes, u: float, y: float, slope: float, orders: int | None, goal: float
+) -> tuple[list[float], list[float], list[CoverState]]:
+    """Find the half contact length that carries a load, by the secant method in ln z.
+
+    modes: :class:`CoverModes` of the bodies.
+    u: kappa |V|, dimensionless, > 0.
+    y: first ln z.
+    slope: first approximation of d ln H/d ln z, > 0.
+    orders: number of terms of the pressure; None: the default of the solve.
+    goal: ln H of the load.
+    Returns (ln z of each solve, then that after the last step; ln H - goal of each solve; their
+    states), at least two solves.
+    Raises ParameterError where it has not ended after 40 solves.
+    """
+    lengths: list[float] = []
+    errors: list[float] = []
+    states: list[CoverState] = []
+    for _ in range(_MOST_STEPS):
+        z = math.exp(y)
+        states.append(solve(modes, z, z * u, orders))
+        lengths.append(y)
+        errors.append(math.log(states[-1].load) - goal)
+        if len(errors) > 1:
+            slope = min(max((errors[-1] - errors[-2]) / (lengths[-1] - lengths[-2]), 0.5), 8.0)
+        step = -errors[-1] / slope
+        if len(errors) > 1 and abs(errors[-1] * errors[-2]) < _LOAD_ERRORS:
+            return [*lengths, y + step], errors, states
+        y += (
+            min(max(step, -0.7), 0.7)
+            if abs(step) > _LEAST_STEP
+            else math.copysign(_LEAST_STEP, step)
+        )
+    found = f"{modes.cover.thinnest:g}"
+    raise ParameterError(
+        "thickness/l0", found, "larger: no contact length with this load was found"
+    )
+
+
+def _solve_nodes(modes: CoverModes, u: Floats, orders: int) -> Floats:
+    """Solve the states of a cover at increasing speeds, from starts and slopes extrapolated from
+    the eight before.
+
+    The first eight nodes have no extrapolation and take the start of :func:`_solve_node`.
+    modes: :class:`CoverModes` of the bodies.
+    u: kappa |V|, dimensionless, evenly spaced in ln u, ascending, (n,).
+    orders: number of terms of the pressure.
+    Returns the quantities at each node, (11, n), dimensionless.
+    Raises ParameterError where no contact length that carries the load is found.
+    """
+    values = np.empty((_COUNT, u.size))
+    known = np.empty((u.size, 2))
+    count = _EXTRAPOLATION.size
+    for n, speed in enumerate(u.tolist()):
+        start, slope = (
+            (_EXTRAPOLATION @ known[n - count : n]).tolist() if n >= count else (None, 2.0)
+        )
+        values[:, n], *known[n] = _solve_node(modes, speed, start, slope, orders)
+    return values
+
+
+def _solve_elastic(modes: CoverModes, share: float, stiffness: float) -> Floats:
+    """Solve the cover with elastic bodies: the limit of slow rolling, all relaxation completed, or
+    of fast rolling.
+
+    lam is the contact length divided by l0, delta_star the critical creepage, delta_0 the creepage
+    of free rolling, epsilon the shift of the contact ahead of the axis in half contact lengths.
+    lam, L and delta_0 of elastic bodies do not depend on the speed, so that one solve, at u = 1/2,
+    gives them.  In fast rolling all compliances are divided by alpha.  Then the length that carries
+    the load is that of a load alpha times smaller on bodies of the long-time stiffness, and the
+    slopes and creep of elastic bodies depend on that length and the layer's part of the compliance
+    alone: bodies of the long-time stiffness are solved in both limits, under a load that
+    ``stiffness`` divides.
+    modes: :class:`CoverModes` of the viscoelastic bodies, of which the Poisson's ratios and the
+    thickness are taken.
+    share: the cylinder's part of the compliance of both bodies, in [0, 1]: of long times for slow
+        rolling, of the instantaneous compliance for fast rolling.
+    stiffness: stiffness of the bodies divided by their long-time stiffness: 1 for slow rolling,
+    alpha for fast rolling.
+    Returns the quantities of a node, (11,), dimensionless, epsilon and M/V exactly 0.
+    Raises ParameterError where no contact length that carries the load is found.
+    """
+    values = _solve_node(modes.elastic(share), 0.5, orders=LEAST_TERMS, stiffness=stiffness)[0]
+    values[_EPSILON : _MOMENTS.stop] = 0.0
+    return values
+
+
+def _fit_fast_rows(
+    u: Floats, values: Floats, limits: Floats, x: Floats, begin: float, log_terms: int
+) -> tuple[Floats, Floats]:
+    """Fit the rows beyond the last octave, where all quantities, M u/V in place of M/V, are
+    polynomials of 1/u.
+
+    Beside a half-space that relaxes too, a second polynomial of 1/u, of ``log_terms`` terms, times
+    ln u is added.
+    u: last nodes of the solve, ascending, from ``begin`` to at most 20 ``begin``, (n,),
+    dimensionless.
+    values: the quantities there, (11, n); not changed.
+    limits: of these for u -> infinity, (11,); NaN: not known, then the value of a fitted polynomial
+        at 1/u = 0 is taken.  Those of epsilon and M/V are 0.
+    x: nodes of these rows in u, ascending, >= ``begin``, (rows, nodes).
+    begin: u where these rows begin, the end of the last octave.
+    log_terms: number of terms in ln u, as of :func:`_fit_end`.
+    Returns (values and slopes over ln u at x, of the quantities, (2, 11, rows, nodes);
+        :attr:`.row_layout.CoverRows.limits`, (19,), of which the last eleven, factors of 1/u, are
+        those at the last node of x).
+    """
+    y = begin / u
+    x_inverse = (begin / x).ravel()
+    values = values.copy()
+    values[_MOMENTS] /= y
+    limits, first, (fitted, slopes) = _fit_end(y, values, limits, x_inverse, log_terms)
+    slopes[_MOMENTS] = (slopes[_MOMENTS] + fitted[_MOMENTS]) * x_inverse
+    fitted[_MOMENTS] = fitted[_MOMENTS] * x_inverse
+    first *= begin
+    first[_MOMENTS] *= begin
+    order = [_LIMIT, _LAM, *_BESIDE[1:]]
+    packed = np.concatenate([limits[order], first[order], first[[_EPSILON]], first[_MOMENTS]])
+    return np.stack([fitted, -slopes]).reshape(2, len(values), *x.shape), packed
+
+
+def _fit_end(
+    y: Floats, values: Floats, limits: Floats, wanted: Floats, log_terms: int = 0
+) -> tuple[Floats, Floats, Floats]:
+    """Fit values = limit + y (P(y) + R(y) ln y) with polynomials P and R, by least squares, at one
+    end of the speeds.
+
+    The degree of P is 14 for what shear does and 12 for the others.
+    y: nodes, proportional to u at the slow end and to 1/u at the fast end, in [0.05, 1], (n,).
+    values: the quantities at the nodes (at the fast end M/(V y)), (11, n).
+    limits: values for y -> 0, (11,); for NaN the value at 0 of a polynomial through the values is
+    taken.
+    wanted: points in (0, 1], (m,), m >= 1.
+    log_terms: number of terms of R; 0: none.
+    Returns (limits, (11,), with the values at 0 in place of NaN; P + R ln y at the last of the
+    points, (11,); values and derivatives with respect to ln y at the points, (2, 11, m)).
+    """
+    from numpy.polynomial.chebyshev import chebvander
+
+    def basis(y: Any, degree: int, log_terms: int) -> Any:
+        """Return the terms at points ``y``, (points,), real or complex, (points, terms): Chebyshev
+        polynomials of 2 y - 1 up to ``degree``, then the first ``log_terms`` of them times ln y.
+        """
+        terms = chebvander(2.0 * y - 1.0, degree)
+        return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
+
+    def fit(values: Floats, at: Any, log_terms: int) -> Any:
+        """Fit each quantity to its ``values`` at the nodes y, (11, n), by its :func:`basis` with
+        ``log_terms``, and return the fits at the points ``at``, (points,), as (11, points), complex
+        where ``at`` is.
+        """
+        parts = (values[: _FREE.start], _END_DEGREE), (values[_FREE.start :], _STRAIN_DEGREE)
+        return np.concatenate(
+            [
+                (
+                    basis(at, n, log_terms)
+                    @ np.linalg.lstsq(basis(y, n, log_terms), part.T, rcond=None)[0]
+                ).T
+                for part, n in parts
+            ]
+        )
+
+    limits = np.where(np.isnan(limits), fit(values, np.array([_TINY]), 0)[:, 0], limits)[:, None]
+    # slopes by a step in the imaginary direction, which cancels no digits
+    P = fit((values - limits) / y, wanted * (1.0 + 1j * _TINY), log_terms)
+    value = P.real
+    slope = P.imag / _TINY
+    return limits[:, 0], value[:, -1], np.stack([wanted * value + limits, wanted * (value + slope)])
+
+
+def _interpolate_octaves(values: Floats, begin: int, count: int) -> Floats:
+    """Interpolate from the nodes of the solve to those of octaves, by polynomials through 49 nodes,
+    barycentric.
+
+    values: the quantities at the nodes of the solve, which are evenly spaced in log2 u, 12 an
+    octave, (11, n).
+    begin: index of the node where the first octave begins, at least 18; 18 nodes before each octave
+        and 18 after it are used.
+    count: number of octaves.
+    Returns values and slopes over ln u at the 24 nodes of each octave, (2, 11, octaves, 24).
+    """
+    points = PER_OCTAVE + 2 * _ASIDE + 1
+    nodes = (np.arange(points) - _ASIDE) / PER_OCTAVE
+    weights = np.array([(-1.0) ** k * math.comb(points - 1, k) for k in range(points)])
+    # slopes by a step in the imaginary direction, which cancels no digits
+    terms = weights[:, None] / (np.log2(0.5 * (NODES + 3.0)) + 1j * _TINY - nodes[:, None])
+    basis = terms / terms.sum(axis=0)
+    windows = np.lib.stride_tricks.sliding_window_view(values, points, axis=1)
+    around = windows[:, begin - _ASIDE + PER_OCTAVE * np.arange(count)]
+    return np.stack([around @ basis.real, around @ basis.imag / (_TINY * math.log(2.0))])
+
+
+def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats, Floats]:
+    """Return eta/F and H/F^2 of a cover at the nodes of v = 1/F(eta), and their derivatives with
+    respect to ln v.
+
+    Where the stick zone has the creep limit F' = w/(2 u), w = L - 2 kappa |delta - delta_0|/mu, its
+    law is taken as that of the whole contact at the speed u' with L(u')/(2 u') = F'.  So v = 2
+    u'/L(u'), H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').  That u' is found by Newton's method in
+    ln u', from u' = v, until all steps are below 1e-15, in at most 60 steps; nothing is raised if
+    it takes more.
+
+    rows: octaves of u and of v, as :class:`.law_rows.Rows`.
+    powers: coefficients of lam, L, 2 kappa delta_0, epsilon and M/V over u, (5, rows, 24); lam and
+    L are read.
+    limits: :attr:`.row_layout.CoverRows.limits`, which with the first order in 1/u give lam and L
+    beyond the last row.
+    Returns two arrays (2, rows, 24 nodes), dimensionless: (eta/F, H/F^2), and their derivatives.
+    """
+    v = rows.x.ravel()
+    u = v.copy()
+    end = math.nextafter(math.ldexp(1.0, rows.e0 + rows.count - 1), 0.0)
+    for _ in range(60):
+        values, slopes = rows.read(powers[[_LIMIT, _LAM]], np.minimum(u, end))
+        first = limits[8:10, None] / u
+        (L, lam), (d_L, d_lam) = np.where(
+            u > end, [limits[:2, None] + first, -first], [values, slopes]
+        )
+        dlnu_dlnv = 1.0 / (1.0 - d_L / L)
+        share = lam / L
+        press = 1.0 / (L * L)
+        step = np.log(v * L / (2.0 * u)) * dlnu_dlnv
+        if np.abs(step).max() < 1e-15:
+            break
+        u *= np.exp(step)
+    slopes = dlnu_dlnv * np.stack([share * (d_lam / lam - d_L / L), -2.0 * press * d_L / L])
+    return np.stack([share, press]).reshape(2, *rows.x.shape), slopes.reshape(2, *rows.x.shape)

@@ -1,0 +1,634 @@
+"""Steady rolling on a layer of finite thickness: solution at one speed, and its pressure.
+
+Steady rolling on bonded viscoelastic layers of finite thickness, solved by Chebyshev
+polynomials.
+
+Plane strain, constant Poisson's ratios, a Prony series for each body.  Each body is a layer that is
+bonded to a rigid core or bed, or a half-space; one of them may be rigid.  The pressure here is that
+without shear, from which :mod:`.cover_rows` finds what shear does.
+
+Notation.  All quantities are dimensionless.  T_ref is the unit of time of the materials, in which
+their rates are given; kappa = R/l0, with l0 the contact length at rest of the same bodies as
+half-spaces.  z is the half length of the contact over V T_ref (zeta of the paper, > 0), w that over
+l0, and theta = w l0/h that over the thickness h of a layer, k the wave number and v = k times the
+half length, so that k h = v/theta.  Slopes and creep are over V T_ref/R.  The pressure over E'/(4
+pi) is sqrt(1 - x^2) sum q_m U_{m-1}(x) for x in [-1, 1], positive x towards the front edge.  With
+relaxation rates a_i and creep rates b_j of both bodies together, in 1/T_ref, the exponents on the
+contact are alpha_i = a_i z and beta_j = b_j z.
+
+The transforms of the surface displacements of a layer are those of a half-space times L (normal
+displacement by pressure), T (tangential displacement by shear) and C (tangential displacement by
+pressure).  L - 1 decays like exp(-2 k h): the layers add a smooth operator S to the Hilbert
+transform, and to the memory of each creep mode an excess c.  The unknowns are the coefficients q up
+to order N = 14 + 6 theta; the exponentials of the relaxation modes enter by their first N
+coefficients, so that alpha may be arbitrarily large.
+
+Sources of the method: the law of the half-space in closed form (:mod:`.material_series`), and
+the layer's kernels as in Johnson, Contact Mechanics (1985), Sect. 5.8.
+
+The pressure of a cover along its contact, and the strain of the surfaces that it makes as on
+half-spaces.
+
+Notation as in :mod:`.cover_solve`: z is half the contact length over V T_ref, with T_ref the unit
+of time of the cover's series; x is the position from the middle of the contact over half its
+length, 1 at the front edge; the pressure p is sqrt(1 - x^2) sum q_m U_(m-1)(x).
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.checks import Floats
+from ..materials.bodies import Cover
+from .law_rows import modes_record
+
+# --- Steady rolling on bonded viscoelastic layers of finite thickness ---
+
+#: bodies in the order of all arrays that have one entry for each
+BODIES = ("base", "cylinder")
+#: terms of the pressure for theta -> 0
+_TERMS = 14
+#: further terms for each unit of theta; found by doubling all: results change by 3e-14 up to
+#: theta = 1
+_TERMS_PER_THETA = 6
+#: least number of terms with which :func:`solve` is called where shear matters: for nu < 1/2 its
+#: coupling has terms of all orders, and a number that changes with the speed would make it jump
+LEAST_TERMS = 30
+#: largest half contact length divided by the thickness; there doubling the terms still changes
+#: results by less than 1e-10
+LARGEST_THETA = 6.0
+#: step of the trapezoidal rule in s for integrals over the wave number u = 0.6 ln(1 + e^s); halving
+#: it changes nothing
+_STEP = 0.3
+#: factor of ln(1 + e^s) in that substitution
+_SCALE = 0.6
+#: ends of that rule in s: above the last one the integrands are below rounding; the first one, u =
+#: 2.5e-18, is far below the poles u = i beta/theta of slow memories at the speeds of the fastest
+#: ones: with 3e-12 epsilon was wrong by 1e-8 where rates are eight decades apart
+_ENDS = -40.0, 20.0 / 0.6
+#: step of the trapezoidal rule in s for integrals over t = 2 ln(1 + e^s), the memory of one
+#: polynomial
+_DECAY_STEP = 0.14
+#: factor of ln(1 + e^s) in that substitution
+_DECAY_SCALE = 2.0
+#: ends of that rule in s
+_DECAY_ENDS = -33.0, 18.0
+#: alpha_i from which on ratios of Bessel functions I_n/I_0 of the orders used here fall as
+#: exp(-n^2/(2 alpha_i)) to rounding; scipy has no values beyond 1e9
+LARGE_ALPHA = 1e8
+#: beta_j from which on the memory of a polynomial vanishes to rounding
+_LARGE_BETA = 1e12
+
+
+class LayerNodes(NamedTuple):
+    """Kernels of a layer at the nodes u of the integrals over the wave number; they depend on
+    Poisson's ratio alone.
+
+    All are dimensionless, (n,) each; "the weights" are those of the integral over u.
+
+    u : nodes, wave number times thickness, > 0, ascending.
+    L : (L - 1)/u times the weights.
+    shear : (T - L)/u times the weights.
+    C : C less its limit for short waves, over u, times the weights.
+    """
+
+    u: Floats
+    L: Floats
+    shear: Floats
+    C: Floats
+
+
+class CoverState(NamedTuple):
+    """The contact at one half length z, dimensionless; slopes and creep in units of V T_ref/R.
+
+    load : H = z q_1, the integral of the pressure over the contact divided by pi/2, in the unit of
+        the pressure and with lengths over V T_ref; z^2 for an elastic half-space.  At the speed
+        u' = kappa |V| the contact carries the load where H = 1/(4 u'^2).
+    shift : g = epsilon z, the shift of the contact ahead of the axis divided by V T_ref.
+    moment : M/V of both bodies, with M divided by P R and V by R/T_ref.
+    creep_limit : delta_star/mu in units of V T_ref/R: the creep from which on the whole contact
+    slips.
+    q : terms of the pressure q_1 ... q_N, (N,).
+    X : amplitudes of the relaxation modes, (modes,); from them follow terms of any higher order.
+    work : :class:`SolveWork`, what further results of this state are computed from.
+    """
+
+    load: float
+    shift: float
+    moment: float
+    creep_limit: float
+    q: Floats
+    X: Floats
+    work: SolveWork
+
+
+class SolveWork(NamedTuple):
+    """What :func:`solve` has computed at one half length, for results that not every solve needs;
+    dimensionless.
+
+    v : wave numbers times half the contact length at the nodes of the rule, (n,).
+    A : signed Bessel functions there, (N + 1, n).
+    compliance : complex compliance of each body there, (2, n); own : that of the body to which a
+    node belongs, (n,).
+    odd, even : terms of the transform of the pressure, divided by pi z, times v, (n,).
+    decays : memory D_n of each creep mode, (N + 1, modes); memory : excess memory of exp(i v x),
+    (modes, n).
+    exponentials : :class:`Exponentials`.
+    matrix : of the system for q, (N, N).
+    Xi : amplitudes of the relaxation modes by the excess memory of each creep mode, with the other
+        sign, (modes, modes).
+    shares : part of the shift g that each creep mode makes at the front edge, times t_j, (modes,).
+    """
+
+    v: Floats
+    A: Floats
+    compliance: Any
+    own: Any
+    odd: Floats
+    even: Floats
+    decays: Floats
+    memory: Any
+    exponentials: Exponentials
+    matrix: Floats
+    Xi: Floats
+    shares: Floats
+
+
+class BodyModes(NamedTuple):
+    """One body of a contact; compliances are parts of the long-time compliance of both bodies as
+    half-spaces.
+
+    instant : instantaneous compliance; J, b : strengths and rates of creep, in 1/T_ref, (its
+        modes,).  Of a rigid body all are 0 or empty.
+    local : coupling C for short waves, (1 - 2 nu)/(2 - 2 nu), with the sign of the body: positive
+    on the base.
+    """
+
+    instant: float
+    J: Floats
+    b: Floats
+    local: float
+
+
+class CoverModes:
+    """The bodies of a cover in the form that :func:`solve` uses; arrays have the base first, then
+    the cylinder.
+
+    Compliances are parts of the long-time compliance of both bodies as half-spaces.
+
+    series : record of the modes of both bodies together (:func:`.law_rows.modes_record`); its rates
+    are in 1/T_ref.
+    J : creep strengths of both bodies together, (modes,).
+    alpha : instantaneous divided by long-time stiffness of both together, float >= 1.
+    gap : relaxation rates less creep rates of both together, [creep, relaxation], in 1/T_ref.
+    cover : the :class:`.bodies.Cover`.
+    bodies : :class:`BodyModes` of both.
+    shares : part of each in the long-time compliance, (2,).
+    weights : part of each in the strength of each creep mode, (2, modes).
+    wave : nodes of the integrals over the wave number, as wave numbers times l0, of all layers one
+    after another, (n,).
+    mine : 1 where a node belongs to a layer of that body, else 0, (2, n).
+    L, shear, C : kernels of :class:`LayerNodes` at the nodes; C has the sign of its body, positive
+    on the base.
+    """
+
+    def __init__(self, cover: Cover) -> None:
+        """Compute the modes of the bodies of a cover.
+
+        cover: :class:`.bodies.Cover` of one thickness and one Poisson's ratio.
+        All attributes of the class are set.
+        """
+        modes = cover.total.modes
+        self.series = modes_record(modes)
+        self.J = modes.J
+        self.alpha = float(cover.total.alpha)
+        self.gap = modes.gap
+        self.cover = cover
+        self.shares = np.array([1.0 - cover.share, cover.share])
+        self.weights = np.stack([cover.half_space_weights, 1.0 - cover.half_space_weights])
+        bodies = []
+        kernels = []
+        for name, share, sign in zip(BODIES, self.shares.tolist(), (1.0, -1.0)):
+            series, nu, thickness = cover.body(name)
+            local = sign * (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu) if share else 0.0
+            bodies.append(
+                BodyModes(share / float(series.alpha), share * series.J, 1.0 / series.T, local)
+            )
+            if thickness is not None:
+                nodes = layer_nodes(nu)
+                mine = np.full(nodes.u.size, name == "base", np.float64)
+                kernels.append(
+                    [nodes.u / thickness, nodes.L, nodes.shear, sign * nodes.C, mine, 1.0 - mine]
+                )
+        self.bodies = tuple(bodies)
+        together = np.concatenate(kernels, axis=1)
+        self.wave, self.L, self.shear, self.C = together[:4]
+        self.mine = together[4:]
+
+    def elastic(self, share: float) -> CoverModes:
+        """Return the same bodies without relaxation: both elastic, with their Poisson's ratios and
+        thicknesses.
+
+        share: the cylinder's part of the compliance of both bodies, in [0, 1].
+        Returns a new :class:`CoverModes` without modes, of alpha = 1.
+        """
+        return CoverModes(self.cover.elastic(share))
+
+
+def _compliance(instant: float, J: Floats, b: Floats, k: Floats) -> Any:
+    """Return the complex compliance of a series for exp(i k Y), Y being the position along the
+    rolling direction.
+
+    instant: instantaneous compliance, in any unit.
+    J, b: strengths, in that unit, and rates of creep, in 1/T_ref, (modes,).
+    k: wave numbers in units of 1/(V T_ref), (n,).
+    Returns complex numbers (n,) in the unit of ``instant``; without modes they all are ``instant``.
+    """
+    return instant + (J * b / (b - 1j * k[:, None])).sum(axis=1)
+
+
+def _half_line_rule(step: float, scale: float, ends: tuple[float, float]) -> tuple[Floats, Floats]:
+    """Return nodes and weights of an integral over [0, inf), by the trapezoidal rule in s with
+    scale ln(1 + e^s) as variable.
+
+    Nodes are dense towards 0; for the integrands here the rule converges exponentially.
+    step: distance of the nodes in s, > 0.
+    scale: factor of ln(1 + e^s), > 0.
+    ends: first and last s; the last one is left out.
+    Returns (nodes in the variable, > 0, ascending; weights, > 0), (n,) each, in the unit of
+    ``scale``; n is the number of steps between the ends, rounded up.
+    """
+    s = np.arange(*ends, step)
+    return scale * np.logaddexp(0.0, s), step * scale / (1.0 + np.exp(-s))
+
+
+@lru_cache(maxsize=64)
+def layer_nodes(nu: float) -> LayerNodes:
+    """Return the kernels of a layer at the nodes of the integrals over the wave number; kept for
+    the next call.
+
+    Nodes must be dense towards u = 0, where slow memories have poles at u = i beta/theta.
+    nu: Poisson's ratio of the layer, in [0, 0.5], not checked.
+    Returns :class:`LayerNodes` of some 245 nodes.
+    """
+    u, du = _half_line_rule(_STEP, _SCALE, _ENDS)
+    kap = 3.0 - 4.0 * nu
+    e = np.exp(-2.0 * u)
+    denominator = kap * (1.0 + e * e) + (4.0 * u * u + 1.0 + kap * kap) * e
+    local = (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
+    coupling = (kap * (kap - 1.0) * (1.0 - e) ** 2 - 8.0 * u * u * e) / (
+        (kap + 1.0) * denominator
+    ) - local
+    rest = 2.0 * kap * e + 4.0 * u * u + 1.0 + kap * kap + 4.0 * u
+    shear = du * e / denominator
+    return LayerNodes(u, -shear * rest / u, 8.0 * shear, du * coupling / u)
+
+
+def bessel(v: Floats, order: int) -> Floats:
+    """Return J_0 ... J_order at v, each with the sign (-1)^(n//2), accurate to 1e-15 absolute.
+
+    They are the Chebyshev coefficients of cos(v x) (even n) and of sin(v x) (odd n), but for the
+    factor 2 from n = 1 on, by a discrete sum long enough for aliases to vanish.
+
+    v: arguments, dimensionless, >= 0, (n,), at least one.
+    order: highest order, >= 0.
+    Returns the values, dimensionless, a new array (order + 1, n): row k is (-1)^(k//2) J_k(v).
+    """
+    count = (int(v.max() + 0.5 * order) + 24) & ~1
+    phi = (np.arange(count // 2) + 0.5) * (math.pi / count)
+    arguments = np.multiply.outer(np.cos(phi), v)
+    cosines = np.cos(np.arange(order + 1)[:, None] * phi) * (2.0 / count)
+    values = np.empty((order + 1, v.size))
+    values[::2] = cosines[::2] @ np.cos(arguments)
+    values[1::2] = cosines[1::2] @ np.sin(arguments)
+    return values
+
+
+@lru_cache(maxsize=1)
+def _decay_nodes() -> tuple[Floats, Floats]:
+    """Return the rule of the integrals D_n of :func:`decays`, kept for all calls.
+
+    Returns (x - 1 = 2 sinh^2(t/2) at the nodes of t, (n,); the weights times sinh(t) exp(-n t),
+    [order, node], for orders from 0 to 100).
+    """
+    t, weights = _half_line_rule(_DECAY_STEP, _DECAY_SCALE, _DECAY_ENDS)
+    orders = np.arange(term_count(LARGEST_THETA) * 2 + 1)[:, None]
+    return 2.0 * np.sinh(0.5 * t) ** 2, np.exp(-orders * t) * (weights * np.sinh(t))
+
+
+def decays(beta: Floats, order: int) -> Floats:
+    """Return the memory that each creep mode has of the surface ahead of the front edge, for each
+    term of the series.
+
+    It is D_n(beta) = beta int_1^inf exp(-beta (x - 1)) (x - sqrt(x^2 - 1))^n dx.  The power is the
+    n-th term of the Chebyshev series continued beyond the front edge, x = 1; D_n goes to 1 for
+    large beta.
+
+    beta: b_j z, rates of creep times the half contact length over V, dimensionless, > 0, (modes,);
+        above 1e12 the value at 1e12 is taken, as nothing then changes.
+    order: highest n, at most 100.
+    Returns D_n, dimensionless, in (0, 1], a new array (order + 1, modes): row n is that of the n-th
+    term.
+    """
+    beta = np.minimum(beta, _LARGE_BETA)
+    x, weights = _decay_nodes()
+    return weights[: order + 1] @ np.exp(-x[:, None] * beta) * beta
+
+
+def term_count(theta: float) -> int:
+    """Return the number of terms of the pressure, 14 + 6 theta rounded up; theta: half length over
+    thickness, >= 0.
+    """
+    return math.ceil(_TERMS + _TERMS_PER_THETA * theta)
+
+
+class Exponentials(NamedTuple):
+    """The relaxation and creep modes on a contact of half length z, as for a half-space;
+    dimensionless.
+
+    ratio : I_n/I_0 of alpha_i, [order, mode].
+    root : sqrt(I_1/I_0), (modes,).
+    k : K_0/K_1 of beta_j, (modes,).
+    x : B^-1 sqrt(r) (e, Q^T), r = I_1/I_0, B = 1 + sqrt(r) Q^T k Q sqrt(r): the matching at the
+        front edge, of the half-space (column 0) and of a source by each creep mode, (modes, 1 +
+        modes).
+    sigma : source that an excess memory of 1 is, for each creep mode, (modes,).
+    """
+
+    ratio: Floats
+    root: Floats
+    k: Floats
+    x: Floats
+    sigma: Floats
+
+
+def evaluate_exponentials(modes: CoverModes, z: float, N: int) -> Exponentials:
+    """Evaluate the relaxation and creep modes on a contact, as for a half-space.
+
+    modes: :class:`CoverModes` of the cover and the other body; without modes all arrays are empty
+    along that axis.
+    z: half contact length divided by V T_ref, dimensionless, > 0.
+    N: highest order of the Bessel functions, the number of terms of the pressure, >= 1.
+    Returns ratios of Bessel functions, (N + 1, modes), and the matching at the front edge, as
+    :class:`Exponentials` (ratio, root, k, x, sigma).
+    For a_i z above 1e8 the ratios are those at 1e8, corrected to first order, as scipy has no
+    values there.
+    """
+    from scipy.special import ive, k0e, k1e
+
+    a, b, e, _, _, Q = modes.series
+    alpha = np.minimum(a * z, LARGE_ALPHA)
+    beta = b * z
+    n = np.arange(N + 1)[:, None]
+    ratio = ive(n, alpha) / ive(0, alpha) * np.exp(0.5 * n * n * (1.0 / alpha - 1.0 / (a * z)))
+    root = np.sqrt(ratio[1])
+    k = k0e(beta) / k1e(beta)
+    B = np.eye(root.size) + root[:, None] * ((Q.T * k) @ Q) * root
+    x = np.linalg.solve(B, np.column_stack([root * e, root[:, None] * Q.T]))
+    return Exponentials(
+        ratio=ratio, root=root, k=k, x=x, sigma=np.sqrt(modes.J * b) / (beta * k1e(beta))
+    )
+
+
+def _excess_memory(v: Floats, A: Floats, beta: Floats, D: Floats) -> Any:
+    """Return the memory of exp(i v x) at the front edge, less that of its Chebyshev series, which
+    decays beyond it.
+
+    v: wave numbers times half contact length, dimensionless, (n,).
+    A: signed Bessel functions there, as of :func:`bessel`, (N + 1, n).
+    beta: b_j z of the creep modes of both bodies together, dimensionless, (modes,).
+    D: memory of the terms of the series, as of :func:`decays`, (N + 1, modes).
+    Returns complex numbers (modes, n).
+    """
+    memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
+    memory -= 2.0 * (D[2::2].T @ A[2::2]) + 2j * (D[1::2].T @ A[1::2])
+    return memory
+
+
+def layer_operator(A: Floats, memory: Any, weights: Any) -> tuple[Floats, Floats]:
+    """Return the contributions of layers to the slope and to the memory, beyond those of a
+    half-space.
+
+    A: signed Bessel functions at the nodes of the rule, as of :func:`bessel`, (N + 1, n).
+    memory: excess memory there (:func:`_excess_memory`), (modes, n).
+    weights: the layers' multiplier over u, as (L - 1)/u, times the weights of the rule and times
+        the complex compliance of the layer divided by that of both bodies, (n,).
+    Returns (S, c).  S (N + 1, N) maps the coefficients q to those of the slope: the slope is sum (S
+    q)_n T_n(x), n from
+    0.  c (modes, N): c q is the excess memory of that slope in each creep mode.
+    """
+    N = len(A) - 1
+    n = np.arange(N + 1)
+    m = np.arange(1, N + 1)
+    odd = m % 2 == 1
+    even_part, odd_part = (2.0 * (A @ (A[1:] * part).T) for part in (weights.real, weights.imag))
+    S = np.where((n[:, None] + m) % 2 == 1, odd_part * np.where(odd, m, -m), even_part * m)
+    S[0] *= 0.5
+    weighted = memory * weights
+    return S, np.where(odd, weighted.imag @ A[1:].T, weighted.real @ A[1:].T) * m
+
+
+def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -> CoverState:
+    """Solve the contact of a given half length, by one linear system of N unknowns, the terms of
+    the pressure.
+
+    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For thick layers the
+    contact is that of half-spaces.
+    modes: :class:`CoverModes`; with those of :meth:`CoverModes.elastic` the result is that of
+        elastic bodies: ``X`` is empty, and the shift is 0 to rounding.
+    z: half contact length divided by V T_ref, dimensionless, > 0 and finite.
+    half: half contact length divided by l0, dimensionless, > 0; at most six times the thickness of
+        each layer; not checked.
+    orders: number of terms of the pressure, at most 100; None (or 0): 14 + 6 theta of the thinner
+    layer, rounded up.
+    Returns a :class:`CoverState`; slopes and creep are over V T_ref/R.
+    """
+    N = orders or term_count(half / modes.cover.thinnest)
+    v = half * modes.wave
+    A = bessel(v, N)
+    k = v / z
+    compliance = np.array([_compliance(body.instant, body.J, body.b, k) for body in modes.bodies])
+    own = (modes.mine * compliance).sum(axis=0)
+    J = compliance.sum(axis=0)
+    exponentials = evaluate_exponentials(modes, z, N)
+    ratio, root, edge, x, sigma = exponentials
+    _, b, e, t, _, Q = modes.series
+    X0 = e / root * x[:, 0]
+    Xi = (e / root)[:, None] * x[:, 1:] * sigma
+    D = decays(b * z, N)
+    memory = _excess_memory(v, A, b * z, D)
+    S, c = layer_operator(A, memory, modes.L * own / J)
+    Phi = 2.0 * ratio[1:]
+    right = Phi @ X0
+    right[0] += z
+    matrix = np.eye(N) + S[1:] + Phi @ (Xi @ c)
+    q: Any = np.linalg.solve(matrix, right)
+    excess = sigma * (c @ q)
+    # T_mean - sum X + s_0 without cancellation
+    shares = t * (edge * (Q @ (root * (x[:, 0] - x[:, 1:] @ excess))) + excess)
+    shift: Any = shares.sum() + S[0] @ q
+    # transform of the pressure divided by pi z, times v: its even and odd terms
+    mq = np.arange(1, N + 1) * q
+    odd = mq[::2] @ A[1::2]
+    even = mq[1::2] @ A[2::2]
+    limit = z + shift + np.sum((modes.shear * own * (even - 1j * odd) * np.exp(1j * v)).real)
+    work = SolveWork(
+        v=v,
+        A=A,
+        compliance=compliance,
+        own=own,
+        odd=odd,
+        even=even,
+        decays=D,
+        memory=memory,
+        exponentials=exponentials,
+        matrix=matrix,
+        Xi=Xi,
+        shares=shares,
+    )
+    moment = shift + z * q[1] / (2.0 * q[0])
+    return CoverState(
+        load=z * q[0],
+        shift=shift,
+        moment=moment,
+        creep_limit=limit,
+        q=q,
+        X=X0 - Xi @ (c @ q),
+        work=work,
+    )
+
+
+# --- The pressure of a cover along its contact ---
+
+#: intervals in arccos x for the integral of the local strain; accurate to 1e-5
+_INTERVALS = 512
+#: exponent of the decay over an interval above which nothing is left in double precision
+_DECAYED = 700.0
+
+
+def pressure(modes: CoverModes, z: float, half: float, x: Floats) -> Floats:
+    """Return the pressure along the contact over 2 P/(pi a), the largest pressure of Hertz for the
+    load P on the half length a.
+
+    modes: :class:`CoverModes` of the bodies.
+    z: a divided by V T_ref, dimensionless, > 0; infinite for V = 0, where the bodies are taken as
+        elastic with their long-time moduli.
+    half: a divided by l0, dimensionless, at most six times the thickness of each layer.
+    x: positions divided by a, from the middle of the contact, positive along V, any shape.
+    Returns the pressure, dimensionless, in the shape of x; 0 at the ends of and outside [-1, 1].
+    """
+    from numpy.polynomial.chebyshev import chebder, chebval
+
+    if z == np.inf:
+        modes = modes.elastic(modes.cover.share)
+        z = 1.0
+    state = solve(modes, z, half)
+    # I_n/I_0 is below rounding from n = 9 sqrt(alpha) on
+    width = math.sqrt(min(z * modes.series.a.max(initial=0.0), LARGE_ALPHA))
+    terms = _pressure_terms(modes, z, state, max(state.q.size, math.ceil(9.0 * width)) + 40)
+    # U_(m-1) is the derivative of T_m/m
+    series = chebder(np.append(0.0, terms / np.arange(1, terms.size + 1)))
+    inside = np.clip(x, -1.0, 1.0)
+    return np.sqrt((1.0 - inside) * (1.0 + inside)) * chebval(inside, series) / state.q[0]
+
+
+def _pressure_terms(modes: CoverModes, z: float, state: CoverState, count: int) -> Floats:
+    """Return the first coefficients of the pressure, more of them than the solve has.
+
+    The pressure is sqrt(1 - x^2) sum q_m U_(m-1)(x), x in [-1, 1].
+    modes: :class:`CoverModes` of the cover and the other body.
+    z: half contact length divided by V T_ref, dimensionless, > 0.
+    state: :class:`CoverState` of the contact of that length; its own coefficients are taken,
+        further ones follow from its relaxation modes and are 0 without such modes.
+    count: number of coefficients, not below that of ``state``.
+    Returns q_m for m = 1, 2, ..., (count,).
+    """
+    from scipy.special import ive
+
+    alpha = np.minimum(modes.series.a * z, LARGE_ALPHA)
+    terms = 2.0 * (ive(np.arange(1, count + 1)[:, None], alpha) / ive(0, alpha)) @ state.X
+    terms[: state.q.size] = state.q
+    return terms
+
+
+class LocalPressure(NamedTuple):
+    """The coupling C of short waves, that of half-spaces, of each body, times its compliance, of
+    the pressure.
+
+    terms : coefficients of T_n(x), over the compliance of both bodies, on the contact, (intervals +
+    1, 2).
+    mirrored : mean of the coupling, mirrored about the middle of the contact, with the pressure as
+    weight, (2,).
+    """
+
+    terms: Floats
+    mirrored: Floats
+
+
+def local_pressure(modes: CoverModes, z: float, state: CoverState) -> LocalPressure:
+    """Return the coupling of the pressure as on half-spaces, by values at 513 points that are
+    equidistant in arccos x.
+
+    At each point it is C J p: C = (1 - 2 nu)/(2 - 2 nu), J the compliance of the body with its
+    memory.  The mean is accurate to 1e-5 of itself, as the pressure is taken as linear between
+    points.
+    modes: :class:`CoverModes` of the bodies.
+    z: half contact length divided by V T_ref, dimensionless, > 0.
+    state: :class:`CoverState` of the contact of that length.
+    Returns :class:`LocalPressure`, with the base first; 0 of a body of nu = 1/2 and of a rigid one.
+    """
+    from scipy.fft import dct, dst
+
+    p = np.zeros(_INTERVALS + 1)
+    p[1:-1] = 0.5 * dst(_pressure_terms(modes, z, state, _INTERVALS - 1), type=1)
+    t = np.arange(_INTERVALS + 1) * (math.pi / _INTERVALS)
+    x = np.cos(t)
+    weights = np.sin(t) * (math.pi / _INTERVALS) * p[::-1]
+    a, _, e, _, _, _ = modes.series
+    values = np.zeros((2, p.size))
+    mirrored = np.zeros(2)
+    for n, body in enumerate(modes.bodies):
+        if not body.local:
+            continue
+        own = body.instant * p + body.J @ _memory(p, x, body.b * z)
+        mirrored[n] = 2.0 / (math.pi * state.q[0]) * body.local * (weights @ own)
+        if modes.shares[n] == 1.0:
+            values[n] = body.local * p
+            continue
+        # its compliance over that of both has poles at the relaxation rates of both
+        J = body.instant - modes.weights[n] * modes.J * modes.series.b @ (1.0 / modes.gap)
+        strengths = -(e * e * a) * J
+        values[n] = body.local * (body.instant * modes.alpha * p + strengths @ _memory(p, x, a * z))
+    terms = dct(values, type=1, axis=1).T / _INTERVALS
+    terms[0] *= 0.5
+    return LocalPressure(terms, mirrored)
+
+
+def _memory(p: Floats, x: Floats, rates: Floats) -> Floats:
+    """Return the memory that modes have of the pressure, f(x) = int_0^inf beta exp(-beta s) p(x +
+    s) ds.
+
+    It runs from the front edge x = 1 to the rear; p is linear between points.
+    p: pressure at the points, 0 at both ends, in any unit, (n + 1,).
+    x: points, descending from 1 to -1.
+    rates: beta of each mode, times half the contact length over V, > 0, (modes,).
+    Returns f in the unit of p, (modes, n + 1).
+    """
+    step = np.minimum(rates[:, None] * (x[:-1] - x[1:]), _DECAYED)
+    decay = np.exp(-step)
+    gone = -np.expm1(-step)
+    # for a linear p: its value at the near end, and its increase towards the far end, times the
+    # mean distance
+    mean = gone / step - decay
+    f = np.zeros((rates.size, p.size))
+    reach = 1
+    f[:, 1:] = gone * p[1:] + (p[:-1] - p[1:]) * mean
+    while reach < p.size - 1:  # f_{k+1} = decay_k f_k + gain_k, for all k at once by doubling
+        f[:, 1 + reach :] += decay[:, reach:] * f[:, 1:-reach].copy()
+        decay[:, reach:] *= decay[:, :-reach].copy()
+        reach *= 2
+    return f

@@ -1,0 +1,538 @@
+"""The law of a grid, by tensor splines.
+
+The law of a grid: splines of Q over V and delta and of M over V, from a file of this package or
+another program.
+
+A grid is in SI units where its V has a unit, else dimensionless as a :class:`viscoroll.Scene`: V
+over R/T_epsilon, Q over the load, M over load times radius, delta = (omega R - V)/V in both.
+
+Tensor splines on grids, by scipy, and in the form that compiled code reads
+(``kernels.splines``).
+"""
+
+from __future__ import annotations
+
+import io
+import math
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
+from os import PathLike
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..core.checks import Floats, check_array, check_number
+from ..core.errors import (
+    FileError,
+    OutOfTableError,
+    ParameterError,
+    describe_value,
+    described_error,
+)
+from ..core.files import read_sealed
+from ..core.quantities import conversion_factor
+from .coupled_rows import FIELDS, CoupledRows
+from .law_table import LawTable, coupled_table
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# --- The law of a grid ---
+
+#: SI unit of each variable of a grid; a moment divided by a length is a force
+UNITS = {"V": "m/s", "delta": "1", "Q": "N/m", "M": "N", "M_half_space": "N", "M_cylinder": "N"}
+#: methods to interpolate to an alpha between the nodes, by the number of nodes less 1
+_METHODS = ("nearest", "linear", "quadratic", "cubic")
+#: error of a value relative to the largest of its variable: files may have six digits only
+_ROUNDING = 1e-5
+#: fraction of the largest |Q| by which Q may fall where delta grows: other programs iterate to
+#: about this
+_NOISE = 1e-3
+#: moduli of what programs write where they have no value: the default of netCDF, and habits.  -9999
+#: and the like need no place here: no field but Q is negative, and Q has a limit.
+_FILL_VALUES = np.array([9.969209968386869e36, 1e20, np.float32(1e20), 1e30, 1e35])
+#: field -> lowest and highest value that a contact has
+_BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(
+    ("lam", "delta_star", "M", "M_half_space", "M_cylinder"), (0.0, np.inf)
+)
+#: largest file that is read, bytes
+_MOST_BYTES = 1 << 31
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LawGrid:
+    """The law that :func:`viscoroll.load_law` reads from a grid; :func:`viscoroll.law` makes it a
+    function of V and omega.
+
+    Attributes
+    ----------
+    rows : :class:`.coupled_rows.CoupledRows` over V and delta, of kappa = 1: Q over its limit, or
+        itself without one, and M, in the units of the grid.
+    most : largest abs(Q); 1 where it is not known.
+    V : slowest and fastest speed, > 0; dimensionless, or m/s.
+    delta : lowest and highest creep ratio (omega R - V)/V.
+    slips : whether the contact slips fully at both ends of delta, at every speed: abs(Q) is at
+        least 1 - 1e-5 of its limit there, and so is known beyond the ends.  False without a mu.
+    R : radius in m; 1 for a dimensionless grid.
+    load : force per length P in N/m; 1 for a dimensionless grid, and where it is not known.
+    title : title of the file; "of another program" without one.
+    """
+
+    rows: CoupledRows
+    most: float
+    V: tuple[float, float]
+    delta: tuple[float, float]
+    slips: bool
+    R: float
+    load: float
+    title: str
+
+    def __repr__(self) -> str:
+        return f"LawGrid({self.title}; for vr.law alone, or as the material of a Scene)"
+
+    def table(self, kappa: float) -> LawTable:
+        """Return the law for motions of a scene; of a grid in SI units times are in s, speeds over
+        R/s.
+
+        kappa: R/l0 of the scene, a number, which has no effect on the motion.
+        Raises ParameterError for a grid without mu, or that does not slip fully at both ends of its
+        axis of delta.
+        """
+        if not self.slips:
+            allowed = "states mu (in SI units with a load), and slips fully at both ends of delta"
+            raise ParameterError("material", repr(self), f"a grid that {allowed}")
+        fields = self.rows.fields * [
+            1.0,
+            kappa / (self.load * self.R),
+            kappa / (self.load * self.R),
+        ]
+        # lengths are not known, and the work of strain counts as that of slip
+        fields = np.pad(fields, [(0, 0), (0, 0), (0, len(FIELDS) - fields.shape[-1])])
+        u = kappa / self.R * self.rows.u
+        edges = kappa * self.rows.edges
+        rows = replace(
+            self.rows, mu=self.most / self.load, u=u, edges=edges, fields=fields, fastest=u[-1]
+        )
+        return coupled_table(1.0, rows)
+
+    def refuse_outside(self, V: Floats, omega: Floats) -> None:
+        """Raise the OutOfTableError of a state that the caller has found to be outside the axes.
+
+        It always raises: for V if |V| is beyond the fastest speed, else for delta, without
+        comparing delta with its axis.
+        V: speed in the unit of the grid, a number or an array of one; of V = 0 the error states an
+            infinite or NaN delta, and numpy gives a RuntimeWarning.
+        omega: angular velocity in the unit of the grid, likewise.
+        """
+        if np.abs(V) > self.V[1]:
+            raise OutOfTableError("V", float(V), -self.V[1], self.V[1])
+        raise OutOfTableError("delta", float(np.divide(omega * self.R - V, V)), *self.delta)
+
+
+def friction_limit(attributes: Any) -> float:
+    """Return the largest |Q| that the law allows, Eq. (15): mu, or in SI units mu times the load.
+
+    attributes: mapping of the attributes of a grid, of which "mu" (dimensionless) and "load" (N/m;
+        without it 1) are used.
+    Returns a float in the unit of Q: dimensionless, or N/m; infinite without a mu, beside which
+    load is not used.
+    Raises ParameterError for one of them that is no finite number > 0.
+    """
+    if "mu" not in attributes:
+        return np.inf
+    mu, load = (check_number(name, attributes.get(name, 1.0), above=0.0) for name in ("mu", "load"))
+    return mu * load
+
+
+def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid | None:
+    """Read the law of a grid from a netCDF file of any program.
+
+    Parameters
+    ----------
+    path : file with variables V(V) > 0, delta(delta), Q over both and M over V or both, each with
+        an attribute ``units`` ("1" for none); all over alpha too where there is an axis of that
+        name.  In place of M there may be M_half_space and
+        M_cylinder; one that is missing is half of M.  Its global attributes are mu (without it Q
+        has no bound), and where V has a unit R in m and, beside mu, the load in N/m; all > 0.
+    alpha : required where the grid has an axis alpha, whose nodes must be > 0 and ascend; between
+        them a spline in ln alpha is used.  It must be left out, or None, for a grid without that
+        axis.
+
+    Returns
+    -------
+    LawGrid or None
+        None for a file that is no netCDF or has no variables V, delta and Q.
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read or differs from its seal; a variable that is missing or empty, is
+        not of real numbers, has other dimensions or other units, is not finite or does not
+        increase; a node with a fill value or of no contact (:func:`refuse_filled`,
+        :func:`check_nodes`); an R, mu or load that is no finite number > 0; beside speeds with a
+        unit no R, or a mu without load.
+    ParameterError
+        An alpha outside the grid, or none for a grid with that axis; an alpha for a grid without
+        it.
+    """
+    import xarray as xr
+
+    content = io.BytesIO(read_sealed(path, _MOST_BYTES, "law or grid", "build it again"))
+    try:
+        table = xr.load_dataset(content, decode_times=False)
+    except Exception:  # libraries raise many kinds
+        return None
+    if not {"V", "delta", "Q"} <= set(map(str, table.variables)):
+        return None
+    names = [name for name in (*UNITS, "alpha") if name in table.variables]
+    if "M" not in names and not {"M_half_space", "M_cylinder"} <= set(names):
+        raise FileError(
+            path, "is not a grid of a law: variable 'M' is missing: must be given over V"
+        )
+    for name in names:
+        if not (table[name].size and table[name].dtype.kind in "iuf"):
+            problem = f"is not a grid of a law: {name} = {describe_value(table[name].values)}"
+            raise FileError(path, f"{problem}: must be real numbers, at least one")
+        refuse_filled(table[name], path)
+        if name in ("V", "delta") and (
+            table[name].size < 2 or (np.diff(table[name].values) <= 0.0).any()
+        ):
+            raise FileError(
+                path,
+                f"is not a grid of a law: {name} must increase strictly, over at least two nodes",
+            )
+    with _told_of(path):
+        table = _in_si(table)
+        check_nodes(table, path)
+    table = _at_alpha(table, path, alpha)
+    with _told_of(path):
+        return _law_of(table)
+
+
+@contextmanager
+def _told_of(path: Any) -> Iterator[None]:
+    """Raise errors of a grid as FileError of its ``path``: of a missing variable, of scipy, of an
+    attribute.
+    """
+    try:
+        yield
+    except (KeyError, ValueError, TypeError) as error:
+        raise FileError(
+            path, f"is not a grid of a law: {' '.join(str(error).split()):.120}"
+        ) from error
+
+
+def _refuse_nodes(variable: xr.DataArray, bad: Any, path: Any, allowed: str) -> None:
+    """Raise FileError for the first bad node of a variable, with its value and its place; none if
+    no node is bad.
+
+    variable: variable of a grid.
+    bad: truth values of its shape.
+    path: path of the file, for the message.
+    allowed: words that follow "must be".
+    """
+    if bad.any():
+        first = np.argwhere(bad)[0]
+        place = ", ".join(f"{dim}[{n}]" for dim, n in zip(variable.dims, first, strict=True))
+        found = (
+            f"{variable.name} = {describe_value(variable.values[tuple(first)].item())} at "
+            f"{place or variable.name}"
+        )
+        raise FileError(path, f"is not a grid of a law: {found}: must be {allowed}")
+
+
+def refuse_filled(variable: xr.DataArray, path: Any) -> None:
+    """Raise FileError for a node of a grid that has no value: not finite, or a fill value, declared
+    or customary.
+
+    variable: variable of a grid, of real numbers, in the unit of the file; of an axis, which users
+        choose, customary fill values are numbers as any other.
+    path: path of the file, for the message.
+    """
+    values = variable.values
+    customary = () if variable.name in variable.dims else _FILL_VALUES
+    declared = [variable.attrs.get(name, np.nan) for name in ("_FillValue", "missing_value")]
+    filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
+    _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
+    _refuse_nodes(variable, filled, path, "given: this number stands for a missing value")
+
+
+def check_nodes(table: xr.Dataset, path: Any) -> None:
+    """Raise FileError for a node of a grid whose field no contact has, with its value and place.
+
+    Allowed are |Q| <= mu P, Eq. (15), a Q that does not fall where delta grows and that has the
+    sign of delta (of delta
+    - delta_0 where the grid has delta_0) at both ends of its axis, 0 <= beta <= 1, and values >= 0
+      of M and its parts,
+    lam and delta_star; all to the digits of a file, 1e-5 of the largest value.  Missing values are
+    not sought: :func:`refuse_filled`.
+
+    table: dataset of a grid, in SI units or dimensionless, whose values are finite.
+    path: path of its file, for messages.
+    Raises ParameterError for a mu or load that is no finite number > 0.
+    """
+    limit = friction_limit(table.attrs)
+    for name, (low, high) in _BOUNDS.items():
+        if name in table.variables:
+            values = table[name].values
+            rounding = _ROUNDING * np.abs(values).max()
+            bad = (values < low - rounding) | (values > high + _ROUNDING)
+            _refuse_nodes(
+                table[name],
+                bad,
+                path,
+                f"in [{low:g}, {high:g}]" if high < np.inf else f">= {low:g}",
+            )
+    if "Q" in table.variables:
+        Q = table["Q"].transpose(..., "delta")
+        _refuse_nodes(
+            Q, np.abs(Q.values) > limit * (1.0 + _ROUNDING), path, f"within +-mu P = {limit:.6g}"
+        )
+        noise = _NOISE * np.abs(Q.values).max()
+        creep = (table["delta"] - table.get("delta_0", 0.0) + 0.0 * Q).transpose(*Q.dims).values
+        against = Q.values * np.sign(creep) < -noise
+        against[..., 1:-1] = False  # of a layer without delta_0 the sign changes beside delta = 0
+        _refuse_nodes(
+            Q,
+            against,
+            path,
+            "of the sign of delta: a wheel that spins faster than it rolls is driven",
+        )
+        falls = np.diff(Q.values, prepend=-np.inf) < -noise
+        _refuse_nodes(
+            Q,
+            falls,
+            path,
+            "at least that at the node of delta before, as Q does not fall with delta",
+        )
+
+
+def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
+    """Return a grid at one alpha.
+
+    table: dataset of a grid, with or without an axis alpha, > 0 and ascending; without it the grid
+        is returned as it is.
+    path: path of the file, for errors.
+    alpha: wanted value, from the first to the last node, both included; None: not given.
+    Returns the dataset without that axis: of a single node as it is, else interpolated in ln alpha,
+    linear between two nodes, quadratic between three, cubic from four on.
+    Raises ParameterError for an alpha outside the axis or no single number, none for a grid that
+    has one, and one for a grid without; FileError for an axis that is not > 0 or does not increase.
+    Errors of xarray pass.
+    """
+    if "alpha" not in table.dims:
+        if alpha is not None:
+            raise ParameterError("alpha", f"{alpha!r:.60}", f"left out: {path} has no axis alpha")
+        return table
+    nodes = table["alpha"].values
+    if not (nodes[0] > 0.0 and (np.diff(nodes) > 0.0).all()):
+        raise FileError(path, "coordinate 'alpha' must be > 0 and increase strictly")
+    low, high = nodes[[0, -1]]
+    if alpha is None or not low <= check_number("alpha", alpha) <= high:
+        raise ParameterError("alpha", alpha, f"in [{low:.15g}, {high:.15g}], the range of {path}")
+    if low == high:
+        return table.squeeze("alpha")
+    method: Any = _METHODS[min(table.sizes["alpha"], len(_METHODS)) - 1]
+    return table.assign_coords(alpha=np.log(table["alpha"])).interp(
+        alpha=np.log(alpha), method=method
+    )
+
+
+def _in_si(table: xr.Dataset) -> xr.Dataset:
+    """Return a grid in SI units if its V has a unit, else without dimension.
+
+    table: dataset of a grid; V, delta, Q, M, M_half_space and M_cylinder, where present, must have
+        an attribute ``units``; "1" is no unit.
+    Returns a dataset with doubles in the units of :data:`UNITS`; if the unit of V is "1" all must
+    be dimensionless, and the attributes R and load are 1.
+    Raises ParameterError for a unit that is missing or of another dimension, and in SI units for a
+    missing attribute R or, beside mu, load.
+    """
+    names = [name for name in UNITS if name in table.variables]
+    given = {name: str(table[name].attrs.get("units", "missing")) for name in names}
+    for name, unit in given.items():
+        wanted = "1" if given["V"] == "1" else UNITS[name]
+        try:
+            by = conversion_factor(unit, wanted)[0]
+        except ParameterError as error:
+            allowed = (
+                "1, since V has no unit"
+                if wanted == "1"
+                else f"a unit of {wanted}, since V has a unit"
+            )
+            raise ParameterError(f"unit of {name}", unit, allowed) from error
+        table = table.assign({name: table[name].astype(np.float64) * by})
+    if given["V"] == "1":
+        return table.assign_attrs(R=1.0, load=1.0)
+    for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
+        if name not in table.attrs:
+            raise described_error(
+                f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit"
+            )
+    return table
+
+
+def _law_of(table: xr.Dataset) -> LawGrid:
+    """Return the law of a grid, as splines: cubic, in ln V, and Q in delta too, clipped to |Q| <=
+    :func:`friction_limit`.
+
+    table: dataset of a grid at one alpha, in SI units or dimensionless; without M_half_space or
+        M_cylinder that body has half of M.
+    Returns the :class:`LawGrid`, whose ends of V and delta are those of the axes; without the
+    attribute ``mu`` Q is not clipped and ``slips`` is False.
+    Raises KeyError for a missing variable, and ValueError, of which ParameterError is one, for
+    values that are not finite, speeds that are not positive, axes that do not increase or have a
+    single node, other dimensions, or an R, or a mu and load, that are no finite numbers > 0.
+    """
+    V = check_array("V", table["V"].values, above=0.0)
+    delta = table["delta"].values.astype(np.float64)
+    for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
+        if name not in table.attrs:
+            raise described_error(
+                f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit"
+            )
+    limit = friction_limit(table.attrs)
+    most = limit if limit < np.inf else 1.0
+    Q = table["Q"].transpose("V", "delta").values
+    slips = bool((abs(Q[:, [0, -1]]) >= (1.0 - _ROUNDING) * limit).all())
+    bodies = [
+        table[name] if name in table else 0.5 * table["M"]
+        for name in ("M_half_space", "M_cylinder")
+    ]
+    moments = [
+        field.expand_dims(delta=table["delta"]) if "delta" not in field.dims else field
+        for field in bodies
+    ]
+    fields = np.stack(
+        [Q / most, *(field.transpose("V", "delta").values for field in moments)], axis=-1
+    )
+    # at V = 0 Q as at the slowest speed, and M over V alone is 0
+    still = [1.0, *(float("delta" in field.dims) for field in bodies)]
+    fields = np.concatenate([fields[:1] * still, fields, fields[-1:]])
+    middle = 0.5 * (delta[0] + delta[-1])
+    half = 0.5 * (delta[-1] - delta[0])
+    edges = np.tile(2.0 * np.array([middle, delta[0], delta[-1], middle]), (V.size + 2, 1))
+    t = np.concatenate([[-1.0], (delta[1:-1] - middle) / half, [1.0]])
+    rows = CoupledRows(
+        mu=most,
+        u=V,
+        t=t,
+        edges=edges,
+        fields=fields,
+        graded=False,
+        fastest=V[-1],
+        slips=slips,
+        limit=1.0 if limit < np.inf else np.inf,
+    )
+    return LawGrid(
+        rows=rows,
+        most=most,
+        V=(V[0], V[-1]),
+        delta=(delta[0], delta[-1]),
+        slips=slips,
+        R=check_number("R", table.attrs["R"], above=0.0),
+        load=float(table.attrs.get("load", 1.0)),
+        title=str(table.attrs.get("title", "of another program")),
+    )
+
+
+# --- Tensor splines on grids, by scipy ---
+
+
+def fit_spline(values: Floats, axes: list[Floats], degree: int) -> Any:
+    """Return the not-a-knot tensor spline through values on a grid, of lower degree along axes of
+    few nodes.
+
+    Parameters
+    ----------
+    values : values at the nodes, (nodes of the first axis, nodes of the second, ...); without axes
+    a number or array.
+    axes : coordinates of the nodes, increasing, at least two, one array (nodes,) for each axis of
+        ``values``, in that order; an empty list for a single value.
+    degree : 1 or 3; along an axis of fewer than degree + 1 nodes it is the number of nodes less 1.
+
+    Returns
+    -------
+    scipy.interpolate.NdBSpline
+        Over all axes, in their order; it takes points (..., axes) and returns values (...).
+        Without axes ``values`` itself.
+
+    Raises
+    ------
+    ValueError
+        Of scipy, for values that are not finite, coordinates that do not increase, and an axis of a
+        single node.
+    """
+    from scipy.interpolate import NdBSpline, make_interp_spline
+
+    knots = []
+    degrees = tuple(min(degree, axis.size - 1) for axis in axes)
+    for n, axis in enumerate(axes):
+        one = make_interp_spline(axis, values, k=degrees[n], axis=n)
+        knots.append(one.t)
+        values = np.moveaxis(one.c, 0, n)
+    return NdBSpline(tuple(knots), np.ascontiguousarray(values), degrees) if axes else values
+
+
+def _axis(knots: Floats, degree: int, log: bool, stride: int) -> Floats:
+    """Return an axis of a spline in the form that ``kernels.splines.spline`` reads.
+
+    knots: knots of a not-a-knot spline, ascending, with ``degree`` + 1 equal ones at either end, in
+        the unit of the coordinate, or its logarithm.
+    degree: 1 to 3, the degree of the spline.
+    log: whether the spline runs in the logarithm of the coordinate; the knots are logarithms then.
+    stride: number of coefficients that one step along the axis is.
+    Returns one vector of 5 + 17 n numbers for n intervals between the different knots: n, degree +
+    1, log (0 or 1) and stride; the n + 1 ends of the intervals; then for each interval four basis
+    splines with four Taylor coefficients each about its left end, of which those from ``degree`` +
+    1 on are 0.
+    """
+    from scipy.interpolate import BSpline
+
+    from ..kernels.law.spline_law import TERMS
+
+    edges = knots[degree : knots.size - degree]
+    of = np.arange(edges.size - 1)[:, np.newaxis]
+    own = np.arange(degree + 1)
+    basis = np.zeros((edges.size - 1, TERMS, TERMS))
+    every = BSpline(knots, np.eye(knots.size - degree - 1), degree)
+    for power in own:
+        basis[:, own, power] = every(edges[:-1], nu=power)[of, of + own] / math.factorial(power)
+    return np.concatenate([[edges.size - 1, degree + 1, log, stride], edges, basis.ravel()])
+
+
+def pack_spline(
+    found: Any, axes: tuple[str, ...], logs: tuple[str, ...], bounds: tuple[float, float]
+) -> Floats:
+    """Return a spline over some of V, delta and alpha as the vector that ``kernels.splines.spline``
+    reads.
+
+    Parameters
+    ----------
+    found : a spline of :func:`fit_spline`, or the value, a number, of a field over no axis.
+    axes : names of its axes, in their order, of "V", "delta" and "alpha".
+    logs : names of the axes in whose logarithm it runs; other names in it have no effect.
+    bounds : lowest and highest value, to which kernels clip results, in the unit of the values;
+    infinite for none.
+
+    Returns
+    -------
+    vector
+        Six numbers: the bounds, and the indices in the vector where the axes V, delta and alpha and
+        the coefficients begin; the three axes as of :func:`_axis`, with no interval and one basis
+        spline, the constant 1, for an axis that the field does not depend on; the coefficients,
+        last axis fastest, with 3 - degree zeros after the last ones of each axis.
+    """
+    # an axis that the field is not over: no interval, one basis spline, which is 1
+    vectors = dict.fromkeys(
+        ("V", "delta", "alpha"), np.array([0.0, 1.0, 0.0, 0.0, 0.0, 1.0] + [0.0] * 15)
+    )
+    values = np.pad(found.c, [(0, 3 - degree) for degree in found.k]) if axes else np.asarray(found)
+    for n, name in enumerate(axes):
+        vectors[name] = _axis(
+            found.t[n], found.k[n], name in logs, values.strides[n] // values.itemsize
+        )
+    begin = np.cumsum([6, *(each.size for each in vectors.values())])
+    return np.concatenate([bounds, begin, *vectors.values(), values.ravel()])

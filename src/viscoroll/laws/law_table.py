@@ -1,0 +1,531 @@
+"""The law of one material, one pair, or every alpha, as a table of rows.
+
+Rows of the law of one material or pair, fitted to the formulas of its modes.
+
+The formulas are evaluated once, at 24 nodes an octave of w = 1/z, with z half the transit time of
+the contact in units of T_ref, the unit of time of the material.  The polynomials of w are then
+inverted: for the functions of u = kappa |V|, w = 2 u (1 + 2 h/z)^(1/2), for those of v = 1/F(eta),
+w = v (1 + g/z), with the functions g and h of the material (:mod:`.material_series`).  They
+give F(z) = z + g and H(z) = z^2 + 2 z h, the contact length over that at rest lam = (1 + 2
+h/z)^(-1/2), and its shift over half the length epsilon = g/z; eta is z of the stick zone.  All
+quantities are dimensionless; M/V is in units of P T_ref.
+
+The law of one material or pair as a table: :class:`LawTable`, made once a process by
+:func:`law_table`.
+
+Its functions, in the order of the coefficients (:data:`.row_layout.FUNCTIONS`), are lam, epsilon,
+M/V of half-space and of cylinder, N, eta/F and H/F^2.
+
+The law of one relaxation time for all alpha: Chebyshev polynomials of ln alpha, one an octave of
+alpha.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from typing import Any
+
+import numpy as np
+
+from ..core.checks import Floats, check_number
+from ..core.errors import ParameterError
+from ..materials.bodies import Bodies, Cover, total_series
+from ..materials.pair import Pair
+from ..materials.prony import Prony, lock_array
+from ..materials.prony_forms import HIGHEST_ALPHA
+from .coupled_rows import CoupledRows
+from .cover_rows import cover_rows
+from .law_rows import Rows, evaluate_by_modes, refuse_distant_times, row_range
+from .row_layout import (
+    FUNCTIONS,
+    CoverRows,
+    constant_rows,
+    from_axis,
+    pack_record,
+    pack_unsteady,
+    steady_table,
+    to_axis,
+)
+
+# --- Rows of the law of one material or pair, fitted to the formulas of its modes ---
+
+#: as rows._ROUNDING, for N, whose formula has larger rounding errors; dimensionless
+_ROUNDING_OF_N = 3e-15
+#: Newton steps for w from an error of 1e-3: two leave 1e-13, whose effect is of second order and
+#: below rounding
+_NEWTON_STEPS = 2
+
+
+@dataclass(frozen=True)
+class _FunctionsOfW:
+    """Polynomials of w = 1/z for g/z, h/z, and M/V of half-space and cylinder; dimensionless.
+
+    rows : octaves of w, as :class:`.law_rows.Rows`.
+    powers : coefficients, (4, rows, 24 powers).
+    values : values at the nodes, (4, nodes), the nodes of all rows one after another.
+    """
+
+    rows: Rows
+    powers: Floats
+    values: Floats
+
+    def at_speed(self, u: Floats) -> tuple[Floats, Floats]:
+        """Return lam, epsilon, and M/V of half-space and cylinder at u, and their derivatives with
+        respect to ln u.
+
+        :func:`fit_rows` fits the rows of u to it.
+        u: kappa |V|, dimensionless, > 0, shape (n,), such that w = 2 u (1 + 2 h/z)^(1/2) lies
+            within ``rows``, which is not checked.
+        Returns (values of the four functions, their derivatives), (4, n) each, dimensionless.
+        """
+        (shift, rise, *parts), (d_shift, d_rise, *d_parts) = self._solve(
+            u, 1, lambda whole: 2.0 * np.sqrt(whole)
+        )
+        lam = 1.0 / np.sqrt(1.0 + 2.0 * rise)
+        return np.stack([lam, shift, *parts]), np.stack([-(lam**3) * d_rise, d_shift, *d_parts])
+
+    def at_stick_limit(self, v: Floats) -> tuple[Floats, Floats]:
+        """Return eta/F and H/F^2 at v, and their derivatives with respect to ln v.
+
+        :func:`fit_rows` fits the rows of v to it.
+        v: 1/F(eta), dimensionless, > 0, shape (n,), such that w = v (1 + g/z) lies within ``rows``,
+            which is not checked; eta is half the transit time of the stick zone.
+        Returns (values of both functions, their derivatives), (2, n) each, dimensionless.
+        """
+        (shift, rise, *_), (d_shift, d_rise, *_) = self._solve(v, 0, lambda whole: whole)
+        share = 1.0 / (1.0 + shift)
+        press = (1.0 + 2.0 * rise) * share**2
+        fall = share * d_shift
+        return np.stack([share, press]), np.stack(
+            [-share * fall, 2.0 * (d_rise * share**2 - press * fall)]
+        )
+
+    def _solve(
+        self, x: Floats, which: int, factor: Callable[[Floats], Floats]
+    ) -> tuple[Floats, Floats]:
+        """Return the functions where w = x factor(1 + g/z) or w = x factor(1 + 2 h/z), by Newton's
+        method.
+
+        Two steps are made from an interpolated start; the error that is left is subtracted to first
+        order from the values.
+        x: u = kappa |V| or v = 1/F(eta), dimensionless, > 0, (n,), such that w lies within
+            ``rows``, which is not checked.
+        which: index into ``powers`` of the function in the equation: 0 for g/z, 1 for h/z, of which
+            twice is taken.
+        factor: function of the sum in brackets, an array of any shape, that returns an array of
+            that shape.
+        Returns (values of g/z, h/z, and M/V of half-space and cylinder; their derivatives with
+        respect to ln x), (4, n) each, dimensionless.
+        """
+        nodes = self.rows.x.ravel()
+        x_of_nodes = nodes * (1.0 / factor(1.0 + (1 + which) * self.values[which]))
+        w = np.exp(np.interp(np.log(x), np.log(x_of_nodes), np.log(nodes)))
+        for _ in range(_NEWTON_STEPS):
+            (value,), (slope,) = self.rows.read(self.powers[[which]], w)
+            whole = 1.0 + (1 + which) * value
+            w += (x * factor(whole) - w) / (1.0 - slope / whole)
+        values, slopes = self.rows.read(self.powers, w)
+        whole = 1.0 + (1 + which) * values[which]
+        dlnw_dlnx = 1.0 / (1.0 - slopes[which] / whole)
+        return values + slopes * ((x * factor(whole) / w - 1.0) * dlnw_dlnx), slopes * dlnw_dlnx
+
+
+def fit_rows(material: Any, rows: Rows, alpha: float, T_mean: Floats) -> Floats:
+    """Fit the rows of the law of steady rolling, one polynomial for each function and octave.
+
+    material: alpha > 1 as a float, a :class:`.prony.Prony` of one material or a
+        :class:`.bodies.Bodies` of one pair; not elastic, as without modes there is nothing to fit.
+    rows: octaves of u = kappa |V| and of v = 1/F(eta), as :class:`.law_rows.Rows`.
+    alpha: instantaneous divided by long-time stiffness, a number > 1, dimensionless.
+    T_mean: sums J_j T_j of half-space and cylinder, in units of T_ref, (2,): the limits of M/V at
+        rest.
+    Returns the table (rows, 24 powers, 7 functions) with NaN for N; functions as
+    :data:`.row_layout.FUNCTIONS`.  In the first row the limits at rest are set, not fitted: lam =
+    eta/F = H/F^2 = 1, epsilon = 0 with its slope T_mean, and M/V = ``T_mean``.
+    """
+    e0 = rows.e0
+    mean = float(T_mean.sum())
+    w = Rows(e0, rows.count + 2 + math.ceil(0.5 * math.log2(alpha)))
+    by_modes = evaluate_by_modes(material, 1.0 / w.x.ravel())
+    powers = w.fit_slopes(*(part.reshape(-1, *w.x.shape) for part in by_modes[:2]))
+    powers[:2, 0, :2] = [0.0, math.ldexp(0.5 * mean, e0)]
+    powers[2:, 0, 0] = T_mean
+    functions = _FunctionsOfW(w, powers, by_modes.values)
+    x = rows.x.ravel()
+    both = zip(functions.at_speed(x), functions.at_stick_limit(x), strict=True)
+    powers = rows.fit_slopes(*(np.concatenate(parts).reshape(-1, *rows.x.shape) for parts in both))
+    powers[[0, 4, 5], 0, 0] = 1.0
+    powers[1, 0, :2] = [0.0, math.ldexp(mean, e0)]
+    powers[2:4, 0, 0] = T_mean
+    return steady_table(powers)
+
+
+def fit_unsteady(material: Any, table: Floats, e0: int) -> Floats:
+    """Return a table with the coefficients of N in M = M(V) + N dV/dt, which the rows of steady
+    rolling do not have.
+
+    material: alpha > 1 as a float, a :class:`.prony.Prony` of one material or a
+        :class:`.bodies.Bodies` of one pair; not elastic, and no cover.
+    table: rows of its steady rolling, (rows, 24 powers, 7 functions), of which lam is read; not
+        changed.
+    e0: exponent of the end of the first row, which is [0, 2^e0).
+    Returns a copy of the table with the column of N, in units of P T_ref^2; its value at rest is
+    set to the exact limit.
+    """
+    rows = Rows(e0, len(table))
+    whole = table.copy()
+    (lam,), _ = rows.read(table[None, :, :, FUNCTIONS.index("lam")], rows.x.ravel())
+    *N, at_rest = evaluate_by_modes(material, np.append(0.5 * lam / rows.x.ravel(), np.inf)).N
+    powers = rows.fit(np.reshape(N, rows.x.shape), rounding=_ROUNDING_OF_N)
+    powers[0, 0] = at_rest
+    whole[:, :, FUNCTIONS.index("N")] = powers
+    return whole
+
+
+# --- The law of one material or pair as a table ---
+
+#: number of tables that a process keeps; each takes about 0.2 MB
+_KEPT_TABLES = 32
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class LawTable:
+    """The law of one material or pair for any load, speed, creep, radius and friction; arrays are
+    read only.
+
+    The variables are u = kappa |V| and v = 1/F(eta) (:mod:`.row_layout`).  All numbers are
+    dimensionless, with times in units of ``T_ref``.
+
+    Attributes
+    ----------
+    material : material whose law this is: alpha as a float, with T_epsilon for the unit of time; a
+        :class:`.prony.Prony` series; or :class:`.bodies.Bodies`, of which :class:`.bodies.Cover`
+        is one.  Like bodies and elastic ones are stored as one series or as 1.0.
+    steady_coefficients : as :attr:`coefficients`, with NaN where N was not computed yet.
+    e0 : exponent of the end of the first row, which is the interval [0, 2^e0); 0 for elastic
+        bodies, which have one row.
+    alpha : instantaneous divided by long-time stiffness, dimensionless.
+    T_mean : limit of M/V for V -> 0, in units of P ``T_ref``: the sum of J_j T_j, except for a
+        cover against a body that deforms.
+    unlike : whether the bodies differ; True for a cover.
+    fast_limit : W = sum J_j/T_j and C = sum J_j/T_j (ln(2 T_j) - 0.5772...) of both bodies
+        together, of the half-space and of the cylinder, shape (3, 2); of a cover those of the
+        bodies as half-spaces, which its law does not use.
+    relaxation_strength, relaxation_time, creep_strength, retardation_time : both forms of the
+        series of both bodies together, (modes,), slowest mode first, times in units of ``T_ref``.
+    half_space_weight : part of each creep strength that is the half-space's, dimensionless,
+        (modes,); 0.5 of like bodies.
+    T_ref : unit of time, s; 1 where the material was given without units.
+    pair : the bodies in SI units, if the table was made of such; else None.
+    cover : rows that a cover of finite thickness has in addition, :class:`.row_layout.CoverRows`;
+        None for half-spaces.
+    coupled : the solution in which shear acts on pressure, at one mu,
+        :class:`.coupled_rows.CoupledRows`, which is then the law; None without.  All but
+        ``material``, ``unlike``, ``pair`` and ``T_ref`` are those of half-spaces then.
+    """
+
+    material: float | Prony | Bodies
+    steady_coefficients: Floats
+    e0: int
+    alpha: float
+    T_mean: float
+    unlike: bool
+    fast_limit: Floats
+    relaxation_strength: Floats
+    relaxation_time: Floats
+    creep_strength: Floats
+    retardation_time: Floats
+    half_space_weight: Floats
+    T_ref: float = 1.0
+    pair: Pair | None = None
+    cover: CoverRows | None = None
+    coupled: CoupledRows | None = None
+
+    def __repr__(self) -> str:
+        return f"LawTable({self.pair or self.material!r})"
+
+    @cached_property
+    def coefficients(self) -> Floats:
+        """Return the coefficients (rows, 24 powers, 7 functions), functions in the order of
+        :data:`.row_layout.FUNCTIONS`.
+
+        Those of N, in units of P T_ref^2, are computed at the first use.  For a cover N is not
+        known: its column is NaN.
+        """
+        table = self.steady_coefficients
+        if self.cover is not None or not np.isnan(table[0, 0, FUNCTIONS.index("N")]):
+            return table
+        return lock_array(fit_unsteady(self.material, table, self.e0))
+
+    @cached_property
+    def record(self) -> Any:
+        """Record of the law that kernels read (:class:`.law_record.Law`)."""
+        made = pack_record(
+            self.steady_coefficients, self.e0, self.alpha, self.fast_limit, self.cover
+        )
+        return made if self.coupled is None else made._replace(table=self.coupled.vector)
+
+    @cached_property
+    def unsteady_record(self) -> Any:
+        """As :attr:`record`, with the rows of N (:func:`.row_layout.pack_unsteady`), which are NaN
+        for a cover.
+        """
+        return self.record._replace(
+            N_rows=lock_array(pack_unsteady(self.coefficients, self.e0, self.alpha))
+        )
+
+
+def law_table(
+    material: float | Prony | Bodies | LawTable, coefficients: Floats | None = None
+) -> LawTable:
+    """Return the table of the law of a material; it is made once a process and shared by all its
+    threads.
+
+    The last 32 tables are kept.
+
+    Parameters
+    ----------
+    material : alpha >= 1 as a number, with T_epsilon for the unit of time; a :class:`.prony.Prony`
+        series; :class:`.bodies.Bodies`, which are one material if they are alike or both elastic,
+        or a :class:`.bodies.Cover`; or a :class:`LawTable`, which is returned.
+    coefficients : rows of the law, as read from a file, (rows, 24 powers, 7 functions), from which
+        a new table is made, which is not kept; None: they are computed.  Ignored for a table, a
+        cover and elastic bodies.
+
+    Returns
+    -------
+    LawTable
+        With times in the unit of the material, T_ref = 1 and no ``pair``.
+
+    Raises
+    ------
+    ParameterError
+        Many materials; times beyond 1e-100 to 1e100 of their unit (of half-spaces), which is also
+        the message for an alpha in (0, 1) or NaN; a pair of more than 64 modes; a cover that is too
+        thin.  :func:`.law_netcdf.law_table_of` refuses an alpha by its range.
+    """
+    if isinstance(material, LawTable):
+        return material
+    if isinstance(material, Prony | Bodies) and material.shape:
+        raise ParameterError("material", repr(material), "one material, as material[i]")
+    if (
+        isinstance(material, Bodies)
+        and not isinstance(material, Cover)
+        and (material.like or material.alpha == 1.0)
+    ):
+        material = material.total if material.total.E.size else 1.0
+    material = material if isinstance(material, Prony | Bodies) else float(material)
+    if coefficients is not None:
+        return make_table(material, coefficients)
+    with _lock:
+        return _made(material)
+
+
+def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
+    """Return the law of coupled rows as a :class:`LawTable`.
+
+    material: alpha, a series, bodies or a cover, of one scene.
+    rows: :class:`.coupled_rows.CoupledRows` of it.
+    """
+    total = total_series(material)
+    base = law_table(total if total.E.size else 1.0)
+    return replace(base, material=material, unlike=True, coupled=rows)
+
+
+_lock = threading.Lock()
+
+
+@lru_cache(maxsize=_KEPT_TABLES)
+def _made(material: float | Prony | Bodies) -> LawTable:
+    return make_table(material)
+
+
+def make_table(
+    material: float | Prony | Bodies,
+    coefficients: Floats | None = None,
+    cover: CoverRows | None = None,
+) -> LawTable:
+    """Make the table of the law of a material, without looking for one that was kept; rows that are
+    not given are computed.
+
+    material: alpha >= 1 as a float, a :class:`.prony.Prony` of one material,
+        :class:`.bodies.Bodies` of one pair, or one :class:`.bodies.Cover`.  Bodies are taken as
+        unlike: :func:`law_table` replaces alike or elastic ones.
+    coefficients: rows of the law, (rows, 24 powers, 7 functions); None: they are computed.  Ignored
+        for a cover and for elastic bodies, whose functions are the constants 1 and 0.
+    cover: :class:`.row_layout.CoverRows`, rows of the law of a cover; None: they are computed if
+        ``material`` is one.  Ignored for other materials.
+    Returns the :class:`LawTable`, whose arrays are read-only, with T_ref = 1; N is computed at
+    first use, but of elastic bodies it is 0.
+    Raises ParameterError for times of half-spaces beyond 1e-100 to 1e100 of their unit, for a pair
+    of more than 64 modes, and for a cover that is too thin.
+    """
+    total = total_series(material)
+    unlike = isinstance(material, Bodies)
+    modes = total.modes
+    alpha = total.alpha
+    weights = (
+        material.half_space_weights if isinstance(material, Bodies) else np.full(modes.J.size, 0.5)
+    )
+    W = modes.J * modes.b
+    terms = W, W * (math.log(2.0) - np.log(modes.b) - np.euler_gamma), modes.J / modes.b
+    sums = np.array(
+        [[math.fsum(part * term) for term in terms] for part in (1.0, weights, 1.0 - weights)]
+    )
+    e0 = 0
+    T_mean = total.T_mean
+    if isinstance(material, Cover):
+        cover = cover or cover_rows(material)
+        coefficients = cover.coefficients
+        e0 = cover.e0
+        T_mean = float(cover.coefficients[0, 0, 2:4].sum())
+    elif modes.a.size:
+        refuse_distant_times(modes.b[0], modes.a[-1])
+        e0, count = map(int, row_range(modes.b[0], modes.a[-1]))
+        if coefficients is None:
+            coefficients = fit_rows(material, Rows(e0, count), alpha, sums[1:, 2])
+    else:  # elastic bodies: lam = eta/F = H/F^2 = 1, and neither shift nor moment
+        coefficients = steady_table(constant_rows(1.0, 0.0, 0.0, 0.0, 1.0, 1.0), N=0.0)
+    arrays = (coefficients, sums[:, :2], modes.E, 1.0 / modes.a, modes.J, 1.0 / modes.b, weights)
+    coefficients, fast_limit, E, tau, J, T, weights = map(lock_array, arrays)
+    return LawTable(
+        material=material,
+        steady_coefficients=coefficients,
+        e0=e0,
+        alpha=alpha,
+        T_mean=T_mean,
+        unlike=unlike,
+        fast_limit=fast_limit,
+        relaxation_strength=E,
+        relaxation_time=tau,
+        creep_strength=J,
+        retardation_time=T,
+        half_space_weight=weights,
+        cover=cover,
+    )
+
+
+# --- The law of one relaxation time for all alpha ---
+
+#: Chebyshev terms of an octave of alpha; 16 leave an error of rounding
+#: (tests/tables/test_law_axis.py)
+TERMS_OF_ALPHA = 16
+#: octaves of alpha from 1 to the highest alpha
+OCTAVES = math.frexp(HIGHEST_ALPHA)[1]
+
+
+@dataclass(frozen=True, eq=False)
+class LawAxis:
+    """The law of one relaxation time, with unit of time T_epsilon, for all alpha of some octaves;
+    arrays are read only.
+
+    alpha is the instantaneous divided by the long-time modulus, dimensionless.
+
+    Attributes
+    ----------
+    coefficients : (octaves of alpha, 16 terms, rows, 24 powers, 6 functions), the functions as
+        :data:`.row_layout.AXIS_FUNCTIONS`, of which epsilon, M/V and N are divided by (alpha -
+        1)/alpha.  For alpha in [2^n, 2^(n+1)) a row is the sum of its terms times T_j(2
+        log2(alpha/2^n) - 1).
+        All octaves have equal numbers of
+        rows: those beyond the last of an octave, in the fast limit, are zero.
+    rows : number of rows of each octave of alpha.
+    first : log2 of the lowest alpha.
+    e0 : exponent of the end of the first row.
+    """
+
+    coefficients: Floats
+    rows: tuple[int, ...]
+    first: int
+    e0: int
+
+    @property
+    def alpha(self) -> tuple[float, float]:
+        """Lowest and highest alpha."""
+        return 2.0**self.first, 2.0 ** (self.first + len(self.rows))
+
+    def at(self, alpha: float) -> LawTable:
+        """Return the law of one ``alpha``, with T_epsilon for the unit of time.
+
+        alpha: instantaneous divided by long-time modulus, dimensionless, from the lowest to the
+            highest alpha of the axis (:attr:`alpha`), both included.
+        Returns the :class:`LawTable`, whose rows are interpolated in ln alpha to rounding; of 1
+        that of elastic bodies, a single row of constants.
+
+        Raises
+        ------
+        ParameterError
+            An alpha outside the axis, or no finite number.
+        """
+        low, high = self.alpha
+        alpha = check_number("alpha", alpha, low=low, high=high)
+        if alpha == 1.0:
+            return law_table(1.0)
+        n = min(math.frexp(alpha)[1] - 1 - self.first, len(self.rows) - 1)
+        s = 2.0 * (math.log2(alpha / 2.0 ** (n + self.first))) - 1.0
+        columns = np.asarray(
+            np.polynomial.chebyshev.chebval(s, self.coefficients[n, :, : self.rows[n]])
+        )
+        return make_table(alpha, from_axis(columns, (alpha - 1.0) / alpha))
+
+
+def law_axis(low: float, high: float) -> LawAxis:
+    """Compute the law of one relaxation time for all alpha of the octaves in which two values lie.
+
+    low, high: alpha, dimensionless, 1 <= low < high <= 1e12.
+    Returns the :class:`LawAxis`, from the octave [2^n, 2^(n+1)) of ``low`` to that which ends at or
+    above ``high``: its range includes both values and is mostly wider.
+
+    Raises
+    ------
+    ParameterError
+        Values outside this range, or low >= high.
+    """
+    low, high = (check_number("alpha", value, low=1.0, high=HIGHEST_ALPHA) for value in (low, high))
+    if not low < high:
+        raise ParameterError("alpha", f"{low:g} to {high:g}", "two numbers, the lower one first")
+    octaves = range(math.frexp(low)[1] - 1, math.ceil(math.log2(high)))
+    pieces = []
+    for octave in octaves:
+        tables = tables_of_octave(octave)
+        c = np.array([table.T_mean for table in tables])[:, None, None, None]
+        pieces.append(alpha_terms(to_axis(np.array([table.coefficients for table in tables]), c)))
+    rows = tuple(piece.shape[1] for piece in pieces)
+    coefficients = np.zeros((len(rows), TERMS_OF_ALPHA, max(rows), *pieces[0].shape[2:]))
+    for padded, piece in zip(coefficients, pieces, strict=True):
+        padded[:, : piece.shape[1]] = piece
+    return LawAxis(lock_array(coefficients), rows, octaves[0], tables[0].e0)
+
+
+def tables_of_octave(octave: int) -> list[LawTable]:
+    """Return the tables at the 16 Chebyshev nodes of an octave of alpha, from which it is
+    interpolated.
+
+    octave: n of the octave [2^n, 2^(n+1)), from 0 to 39.
+    Returns a list of :class:`LawTable`, in the order of the nodes, all with equal numbers of
+    rows.
+    """
+    return [make_table(alpha) for alpha in np.exp2(octave + 0.5 + 0.5 * _nodes()[0]).tolist()]
+
+
+def alpha_terms(values: Floats) -> Floats:
+    """Return the Chebyshev terms of functions of alpha, by :func:`numpy.einsum`.
+
+    values: values of the functions at the nodes of an octave, (16, ...).
+    Returns the coefficients of T_0 to T_15 in s = 2 log2(alpha/2^n) - 1, in the same shape.
+    """
+    return np.einsum("jk,k...->j...", _nodes()[1], values)
+
+
+@lru_cache(maxsize=1)
+def _nodes() -> tuple[Floats, Floats]:
+    """Return the nodes of an octave in [-1, 1], (16,), and the matrix from values there to terms,
+    (16, 16).
+    """
+    from ..kernels.numerics.interpolation import chebyshev, to_chebyshev, to_doubles
+
+    return to_doubles(chebyshev(TERMS_OF_ALPHA)), to_chebyshev(TERMS_OF_ALPHA)

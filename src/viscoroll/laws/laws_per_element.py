@@ -1,0 +1,360 @@
+"""Laws of arrays in which every element has its own alpha, material or cover: rows are made where
+kernels read them.
+
+An element is a state or a motion.  A record (:class:`.law_record.Law`) holds the law of
+one element at a time, which :func:`.law_record.select_material` selects; the kernel that
+reads a part of a row has it made if it is that of another element.  Such a record belongs to one
+thread.
+"""
+
+from __future__ import annotations
+
+import math
+import threading
+from functools import lru_cache
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+
+from ..core.checks import Floats, Integers
+from ..core.errors import ParameterError
+from ..materials.bodies import Bodies, Cover
+from ..materials.prony import Prony, lock_array
+from .cover_rows import cover_rows
+from .law_rows import refuse_distant_times
+from .law_table import OCTAVES, make_table, tables_of_octave
+from .row_layout import AxisRows, allocate_rows, pack_axis, pack_materials
+
+#: laws of an octave of thickness, at Chebyshev nodes; of a rubber with three modes the error then
+#: is 1e-12
+_THICKNESS_NODES = 14
+#: laws over Poisson's ratio in [0, 1/2] at each of them, at Chebyshev nodes of ln(3 - 4 nu), where
+#: the kernel of the layer has no singularity nearby; the error then is 1e-10 of covers down to
+#: h/l0 = 0.25, and 5e-9 down to 0.13
+_NU_NODES = 12
+
+_lock = threading.Lock()
+#: rows of every octave of alpha that this process has used; they are kept until it ends
+_octaves: dict[int, AxisRows] = {}
+#: addresses of the two arrays and number of rows of each of them, which kernels read (OCTAVE_SIZE
+#: of ``kernels/law/alpha_axis.py``, which loads numba); 0 rows: not used yet
+_octave_table = np.zeros((OCTAVES, 3), np.int64)
+
+
+def record_of_alphas(alpha: Floats) -> Any:
+    """Return the record of the laws of states or motions that have an alpha each, for use by one
+    thread.
+
+    The record holds the law of one element at a time
+    (:func:`.law_record.select_material`).
+
+    alpha: instantaneous divided by long-time modulus, dimensionless, in [1, 1e12], not checked: one
+        value for each element, (n,), n >= 1, or one for all, (1,).
+    Returns :class:`.law_record.Law`, with T_epsilon for the unit of time.
+    """
+    return records_of_alphas(alpha, 1)[0]
+
+
+def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
+    """Return several records as of :func:`record_of_alphas`, so that as many elements are evaluated
+    together.
+
+    alpha: one value for each element, (n,), n >= 1, or one for all, (1,), dimensionless, in [1,
+        1e12]; not checked.
+    count: number of records, each of which holds the law of one element at a time.
+    Returns a tuple of ``count`` :class:`.law_record.Law`, in which no element is
+    selected yet.  Octaves of alpha that this process has not used before are computed and kept
+    until it ends.
+    """
+    from ..kernels.law import alpha_axis
+    from ..kernels.law.law_record import E0
+
+    alpha = np.ascontiguousarray(alpha, dtype=np.float64)
+    octaves = np.flatnonzero(np.bincount(_exponents(alpha) - 1))
+    with _lock:
+        for octave in octaves[_octave_table[octaves, -1] == 0].tolist():
+            tables = tables_of_octave(octave)
+            axis = pack_axis(
+                [table.record for table in tables], np.array([table.T_mean for table in tables])
+            )
+            _octaves[octave] = axis
+            _octave_table[octave] = axis.numbers.ctypes.data, axis.starts.ctypes.data, axis.rows
+    row_count = int(_octave_table[octaves, -1].max())
+    records = []
+    for _ in range(count):
+        numbers, marks = allocate_rows(row_count)
+        marks[E0] = alpha_axis.ALPHA_E0
+        record = _lazy_record(
+            alpha_axis,
+            alpha_axis.select_alpha,
+            rows=numbers,
+            marks=marks,
+            alpha=alpha,
+            state_count=alpha.size,
+            octaves=_octave_table,
+        )
+        records.append(record)
+    return tuple(records)
+
+
+def sort_by_octave(alpha: Floats, kappa: Floats, V: Floats) -> Integers:
+    """Return an order of states in which those of one octave of alpha and one of kappa |V| follow
+    each other.
+
+    They then read rows that are close in memory: states in random order take half as long again.
+    alpha, kappa, V: instantaneous over long-time modulus, slenderness R/l0, and speed of the
+        states, of any sign, dimensionless, finite, (n,), or (1,) for all; contiguous doubles.
+        Octaves of kappa |V| below 2^-5 count as one, as do those from 2^99 on.
+    Returns indices (n,), int64, by ascending octave of alpha, then of kappa |V|, the states of one
+    octave in the order given; an empty array, which stands for the order given, for a single state.
+    """
+    octaves = (256 * _exponents(alpha) + np.clip(_exponents(kappa * V), -5, 100)).astype(np.int16)
+    return np.argsort(octaves, kind="stable") if octaves.size > 1 else np.empty(0, np.int64)
+
+
+def _exponents(x: Floats) -> Integers:
+    """Return n with 2^(n-1) <= |x| < 2^n for each x, from its bits; -1022 for 0 and for subnormal
+    numbers.
+
+    ``np.frexp`` takes four times as long.
+    x: contiguous doubles, finite.
+    Returns integers in the shape of x.
+    """
+    return ((x.view(np.int64) >> 52) & 0x7FF) - 1022
+
+
+def record_of_materials(materials: Prony | Bodies, which: Integers) -> Any:
+    """Return the record of the laws of states or motions that have a material each, for use by one
+    thread.
+
+    The record holds the law of one element at a time
+    (:func:`.law_record.select_material`).
+    materials: :class:`.prony.Prony` of n materials, :class:`.bodies.Bodies` of n pairs, or
+        :class:`.bodies.Cover` of n covers; elastic ones may be among them.
+    which: index of the material of each element, int, (elements,), at least one, or (1,) for all.
+    Returns :class:`.law_record.Law`, in which no element is selected yet.  Of series and
+    pairs no row is computed before kernels read it; of covers the laws at the nodes of
+    :func:`count_laws` are, and kept for later calls.
+    Raises ParameterError for times of half-spaces beyond 1e-100 to 1e100 times T_ref, and for a
+    cover that is too thin.
+    """
+    used, index = np.unique(which, return_inverse=True)
+    index = np.ascontiguousarray(index, dtype=np.int64)
+    if isinstance(materials, Cover):
+        return _record_of_covers(materials[used], index)
+    from ..kernels.law import material_series, z_grid
+
+    blocks = list(materials.blocks(used))
+    most_modes = max((block.modes.a.shape[-1] for block in blocks), default=0)
+    numbers = np.zeros((used.size, z_grid.SERIES_START + material_series.series_size(most_modes)))
+    for block in blocks:
+        if block.modes.a.shape[-1]:
+            refuse_distant_times(block.modes.b.min(), block.modes.a.max())
+        packed = pack_materials(block)
+        numbers[block.rows, : packed.shape[1]] = packed
+    row_count = int(numbers[:, z_grid.FIRST_EXPONENT + 1].max(initial=1.0))
+    nodes = z_grid.grid_size(row_count, float(numbers[:, 0].max(initial=1.0)))
+    workspace = np.empty(material_series.workspace_size(most_modes))
+    rows, marks = allocate_rows(row_count)
+    return _lazy_record(
+        z_grid,
+        z_grid.select_series,
+        rows=rows,
+        marks=marks,
+        material_index=index,
+        state_count=index.size,
+        materials=numbers,
+        material_size=numbers.shape[1],
+        numbers=np.empty(z_grid.work_size(nodes)),
+        node_count=nodes,
+        node_versions=np.zeros(nodes // material_series.LANES, np.int64),
+        workspace=workspace,
+        workspace_size=workspace.size,
+        unlike=any(block.weights is not None for block in blocks),
+    )
+
+
+def _lazy_record(
+    kernels: Any,
+    select: Any,
+    rows: Floats,
+    marks: Integers,
+    cover_rows: Floats | None = None,
+    kept: Any = None,
+    **fields: Any,
+) -> Any:
+    """Return the record of a law whose rows are made by kernels where they are read.
+
+    kernels: module with the kernel ``make_part`` and the type SOURCE, a record of numbers and
+        addresses of arrays that both kernels read.
+    select: kernel (index of an element, address of the SOURCE record) that makes the law of that
+        element the current one.
+    rows, marks: numbers and marks of the record (:func:`.row_layout.allocate_rows`), which the
+        kernels write.
+    cover_rows: array for the numbers that covers have in addition, which the kernels write; None
+        for half-spaces.
+    kept: any objects that own memory whose addresses are among the fields, and that must live as
+        long as the record;
+        None: there are none.
+    fields: the other fields of SOURCE by name, numbers or arrays; of an array the address is
+        passed, and the array is kept alive.
+    Returns :class:`.law_record.Law`, without rows of N.  Its arrays are read-only views,
+    which the kernels change through their addresses.
+    """
+    from ..kernels.law.law_record import Law
+    from ..kernels.numerics.intrinsics import function_address
+
+    fields |= {"rows": rows, "marks": marks} | (
+        {} if cover_rows is None else {"cover_rows": cover_rows}
+    )
+    source = np.zeros(1, kernels.SOURCE)
+    for name, value in fields.items():
+        source[name] = value.ctypes.data if isinstance(value, np.ndarray) else value
+    # the marks keep all arrays alive of which the kernels have the addresses
+    owner = SimpleNamespace(
+        __array_interface__=marks.__array_interface__, arrays=(source, fields, kept)
+    )
+    selector, maker = (
+        function_address(kernel, kernels.SOURCE) for kernel in (select, kernels.make_part)
+    )
+    rows, marks, N_rows = map(lock_array, (rows.view(), np.asarray(owner), np.empty(0)))
+    cover_rows = None if cover_rows is None else lock_array(cover_rows.view())
+    return Law(
+        rows=rows,
+        marks=marks,
+        N_rows=N_rows,
+        selector=selector,
+        maker=maker,
+        source=int(source.ctypes.data),
+        cover_rows=cover_rows,
+    )
+
+
+def count_laws(covers: Cover) -> int:
+    """Return the number of laws that :func:`record_of_materials` makes for covers; 1 for a single
+    cover.
+
+    Many covers have 14 laws for each octave of thickness in which one lies; 12 times as many if
+    ``nu`` is an array.
+    covers: :class:`.bodies.Cover`, one cover, or many, whose laws are interpolated between nodes of
+        thickness, and of Poisson's ratio where ``nu`` is an array.
+    Returns an int, 0 for an array of no covers; laws that the process has made before are counted
+    too.
+    """
+    if not covers.shape:
+        return 1
+    return (
+        np.unique(_octave_of(covers.thickness)).size
+        * _THICKNESS_NODES
+        * (_NU_NODES if np.ndim(covers.nu) else 1)
+    )
+
+
+def _octave_of(thickness: Floats) -> Floats:
+    """Return the exponent n, a float, of the octave [2^n, 2^(n + 1)) that contains each
+    ``thickness`` > 0 over l0.
+    """
+    return np.floor(np.log2(thickness))
+
+
+def _record_of_covers(covers: Cover, index: Integers) -> Any:
+    """Return the record of the laws of covers that differ in thickness, interpolated within octaves
+    of thickness.
+
+    covers: :class:`.bodies.Cover` of n covers, which may differ in Poisson's ratio too.
+    index: index of the cover of each element, (elements,), or (1,) for all.
+    Returns :class:`.law_record.Law`, which holds the law of one element at a time.
+    Raises ParameterError for a cover in an octave of thickness whose thinnest cover, which may be
+    thinner than any of ``covers``, is so thin that the half contact at rest is longer than six
+    thicknesses.
+    """
+    from ..kernels.law import cover_law
+    from ..kernels.law.law_record import E0, ROW_COUNT
+
+    octave = _octave_of(covers.thickness)
+    many_nu = np.ndim(covers.nu) > 0
+    weights = _node_weights(np.log2(covers.thickness) - octave, _THICKNESS_NODES)
+    laws = {}
+    if many_nu:
+        of_nu = _node_weights(np.log(3.0 - 4.0 * covers.nu) / math.log(3.0), _NU_NODES)
+        weights = (of_nu[:, :, None] * weights[:, None]).reshape(len(weights), -1)
+    for exponent in np.unique(octave).tolist():
+        with _lock:
+            try:
+                laws[exponent] = _laws_of_octave(
+                    covers.of_thickness(2.0**exponent, np.max(covers.nu)), many_nu
+                )
+            except ParameterError as error:
+                thin = covers.thickness.min()
+                allowed = 2.0 ** (exponent + 1.0)
+                reason = (
+                    f"at least {allowed:g} where covers differ: the laws of thinner ones are "
+                    "not interpolated"
+                )
+                raise ParameterError("thickness/l0", f"{thin:.3g}", reason) from error
+    octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
+    records = [record for _, record in laws.values()]
+    rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))
+    marks[E0] = records[0].marks[E0]
+    return _lazy_record(
+        cover_law,
+        cover_law.select_cover,
+        rows=rows,
+        marks=marks,
+        cover_index=index,
+        state_count=index.size,
+        cover_rows=np.zeros(max(record.cover_rows.size for record in records)),
+        cover_count=len(weights),
+        weights=np.ascontiguousarray(weights),
+        law_count=weights.shape[1],
+        octaves=np.array(octaves, np.int64),
+        kept=laws,
+    )
+
+
+def _node_weights(x: Floats, count: int) -> Floats:
+    """Return the weights of values at Chebyshev nodes in the polynomial through them, whose value
+    is then a weighted sum.
+
+    x: points, in [0, 1], (points,): the place of a cover in its octave of thickness, or in the
+        range of nu.
+    count: number of nodes, the Chebyshev points of [0, 1].
+    Returns the weights, of either sign, (points, nodes); their sum over the nodes is 1.
+    """
+    from ..kernels.numerics.interpolation import to_chebyshev
+
+    return np.polynomial.chebyshev.chebvander(2.0 * x - 1.0, count - 1) @ to_chebyshev(count)
+
+
+@lru_cache(maxsize=32)
+def _laws_of_octave(thinnest: Cover, many_nu: bool) -> tuple[Floats, Any]:
+    """Return the laws at the nodes of an octave of thickness; the last 32 octaves are kept.
+
+    thinnest: :class:`.bodies.Cover` at the lower end of the octave, of which all but the thickness,
+        and ``nu`` if ``many_nu``, is that of all laws.
+    many_nu: whether laws are made at the 12 nodes of Poisson's ratio in [0, 1/2] too; else at the
+        ``nu`` of ``thinnest`` alone.
+    Returns two values.  The first is an array (laws, numbers).  Law k n + i belongs to Poisson's
+    ratio k and thickness
+    i: n = 14 thicknesses ascend, at the Chebyshev zeros of the logarithm of the thickness;
+    Poisson's ratios fall from near 1/2 to near 0, at the Chebyshev zeros x of nu = 3/4 - 3^((1 +
+    x)/2)/4.  Its numbers are ``rows`` and then ``cover_rows`` of the record of that law.  The
+    second is the record of the last law, :class:`.law_record.Law`, from which number of
+    rows and e0, equal for all, are read.
+    Raises ParameterError for a cover at a node that is too thin.
+    """
+    from ..kernels.numerics.interpolation import chebyshev, to_doubles
+
+    ratios = (
+        0.75 - 0.25 * 3.0 ** (0.5 + 0.5 * to_doubles(chebyshev(_NU_NODES)))
+        if many_nu
+        else np.array([thinnest.nu])
+    )
+    numbers = []
+    for nu in ratios.tolist():
+        for node in to_doubles(chebyshev(_THICKNESS_NODES)).tolist():
+            cover = thinnest.of_thickness(thinnest.thickness * 2.0 ** (0.5 + 0.5 * node), nu)
+            record = make_table(cover, cover=cover_rows(cover, 2.0 * thinnest.thickness)).record
+            numbers.append(np.concatenate([record.rows, record.cover_rows]))
+    return np.array(numbers), record

@@ -1,0 +1,621 @@
+"""NetCDF files with a checksum: laws and materials.
+
+The file of a law: the names of its numbers, their checksum, and a read that trusts nothing it
+has not checked.
+
+A material as netCDF that contains its series: ``to_netcdf`` and ``from_netcdf`` of
+:class:`viscoroll.Material`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import io
+import shlex
+import sys
+from collections.abc import Callable, Mapping
+from datetime import UTC, datetime
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+
+from .. import __version__
+from ..core.errors import FileError, ParameterError
+from ..core.files import read_sealed, seal_matches
+from ..core.scale import PAPER
+from .measured_data import Measured, shifts_as_toml, shifts_of_toml
+from .prony import Prony
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# --- The file of a law ---
+
+#: integer attribute of a file that states its schema
+SCHEMA = "law_schema"
+#: schema of this version; it changes if a file of this version could not be read by an older one
+VERSION = 1
+#: attribute with the checksum of the numbers
+CHECKSUM = "sha256_of_numbers"
+#: what a user can do about a file that is not as it was written
+REMEDY = "write it again by `viscoroll tables law`"
+#: largest file that is read, bytes; laws have less than 10 MB
+_MOST_BYTES = 1 << 27
+#: first bytes of netCDF-4
+_HDF5 = b"\x89HDF"
+#: attribute that names the kind of a file
+KIND = "viscoroll_table"
+#: kind: the law of one material or pair
+LAW = "law"
+#: kind: the law of one relaxation time for all alpha
+AXIS = "axis"
+#: kind: the law of a layer of finite thickness
+COVER = "cover"
+#: kind: the coupled solution of one scene at nodes of speed and creep
+COUPLED = "coupled"
+
+
+class Kind(NamedTuple):
+    """Contents of the files of a kind.
+
+    summary : beginning of the summary of the file.
+    functions : name of each function in the order of its coefficients -> meaning.
+    dims : dimensions of the coefficients.
+    terms : what the numbers of a function are, in words.
+    others : name of each other variable -> (dimensions, meaning).
+    comment : how the numbers are evaluated.
+    error : attribute of a function with its largest error.
+    """
+
+    summary: str
+    functions: dict[str, str]
+    dims: tuple[str, ...]
+    terms: str
+    others: dict[str, tuple[tuple[str, ...], str]]
+    comment: str
+    error: str = "largest_relative_error"
+
+
+_ROW = (
+    "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < "
+    "n < rows: row n at "
+    "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. "
+)
+_E0 = (), "row 0 covers [0, 2^e0)"
+#: end of a summary
+_ANY = "any speed, creep, kappa and mu, by two look-ups and no iteration."
+_LAW = Kind(
+    summary="The contact law of one material or pair as polynomials, one for each octave of speed: "
+    + _ANY,
+    functions={
+        "lam": "contact length divided by contact length at rest, as a function of kappa |V|",
+        "epsilon": "shift of the contact divided by half its length, as a function of kappa |V|",
+        "m_half_space": "M_half_space/V, as a function of kappa |V|",
+        "m_cylinder": "M_cylinder/V, as a function of kappa |V|",
+        "N": "N of M = M(V) + N dV/dt, as a function of kappa |V|",
+        "share": "eta/F(eta), as a function of v = 1/F(eta)",
+        "press": "H(eta)/F(eta)^2, as a function of v = 1/F(eta)",
+    },
+    dims=("octave", "power"),
+    terms="coefficients of powers of t",
+    others={
+        "e0": _E0,
+        "alpha": ((), "instantaneous modulus divided by long-time modulus"),
+        "T_mean": ((), "sum of J_j T_j, divided by T_ref"),
+        "T_ref": ((), "unit of time; 1 where none was given"),
+        "fast_limit": (
+            ("body", "term"),
+            "W = sum J_j/T_j and C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all, of the half-space "
+            "and of the cylinder",
+        ),
+        "relaxation_strength": (("mode",), "E_i divided by the long-time modulus"),
+        "relaxation_time": (("mode",), "tau_i divided by T_ref"),
+        "creep_strength": (("mode",), "J_j divided by the long-time compliance"),
+        "retardation_time": (("mode",), "T_j divided by T_ref"),
+        "half_space_weight": (("mode",), "share of the half-space in J_j"),
+    },
+    comment=_ROW
+    + "u = kappa |V|; L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; "
+    "D >= L: full slip, |Q| = mu, beta = 0."
+    " Else w = L - D, v = 2 u/w: beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)); where D < "
+    "L/8: "
+    "|Q| = mu D ((2 L - D) press(v) - (2 u L/w) S), S the mean slope of press between 2 u/L and v. "
+    "M_half_space = V m_half_space, M_cylinder = V m_cylinder, M their sum. Q has the sign of "
+    "omega - V. Fast limit: "
+    "z = 1/(2 u sqrt(alpha)), W and C of fast_limit: lam = alpha^-1/2, epsilon = (alpha z/2)(C - W "
+    "ln z), "
+    "m = (alpha z^2/2)(C - W ln z + W/4) with those of either body, N = (alpha - 1) z^2/4; y = "
+    "1/v: "
+    "share = 1 - (alpha y/2)(C - W ln y), press = alpha share^2. At another temperature: look up u "
+    "a_T, N times a_T^2.",
+)
+_OF_SPEED = ("lam", "epsilon", "m_half_space", "m_cylinder", "share", "press")
+KINDS = {
+    LAW: _LAW,
+    COUPLED: Kind(
+        summary="The coupled solution of rolling with partial slip of one scene, at nodes of speed "
+        "and "
+        "creep: ",
+        functions={
+            "Q_over_mu": "traction divided by mu and load",
+            "M_half_space": "kappa M_half_space",
+            "M_cylinder": "kappa M_cylinder",
+            "lam": "contact length divided by l0",
+            "epsilon": "shift of the contact divided by half its length",
+            "beta": "length of the stick zone divided by that of the contact",
+            "work_half_space": (
+                "2 kappa times the integral of traction and strain of the half-space"
+            ),
+            "work_cylinder": "2 kappa times the integral of traction and strain of the cylinder",
+        },
+        dims=("row", "place"),
+        terms="values at nodes",
+        others={
+            "u": (("speed",), "nodes of kappa |V|"),
+            "t": (("place",), "nodes of the place in creep"),
+            "edges": (
+                ("row", "edge"),
+                "2 kappa times the creepages: middle, onset of negative slip, of positive, free",
+            ),
+            "mu": ((), "coefficient of friction"),
+            "alpha": _LAW.others["alpha"],
+            "T_ref": _LAW.others["T_ref"],
+        },
+        comment="Rows: u = 0, the nodes of u, u infinite; between nodes cubic splines in ln u, "
+        "below the "
+        "first linear in u, "
+        "beyond the last one linear in 1/u, joined smoothly. D = 2 kappa delta; onset: that of "
+        "positive slip where "
+        "D > middle, else of negative; w = (D - middle)/(onset - middle), at most 1; t = +-(1 - (1 "
+        "- w)^(2/3))^(1/2), "
+        "the sign of D - middle; clamped cubic splines in t on either side of t = 0. For V < 0 Q "
+        "and M change sign.",
+        error="largest_error",
+    ),
+    COVER: Kind(
+        summary="The contact law of a layer of finite thickness at one l0/h as polynomials, one "
+        "for each "
+        "octave of speed: " + _ANY,
+        functions={name: _LAW.functions[name] for name in _OF_SPEED}
+        | {
+            "limit": "2 kappa delta_star/mu, as a function of kappa |V|",
+            "free_half_space": (
+                "part of the half-space in 2 kappa delta_0, as a function of kappa |V|"
+            ),
+            "free_cylinder": "part of the cylinder in 2 kappa delta_0, as a function of kappa |V|",
+            "excess_half_space": (
+                "g of the half-space, by which full slip changes M, as a function of kappa |V|"
+            ),
+            "excess_cylinder": "g of the cylinder, as a function of kappa |V|",
+            "lam_Q": "slope of lam in Q, as a function of kappa |V|",
+            "epsilon_Q": "slope of epsilon in Q, as a function of kappa |V|",
+        },
+        dims=("octave", "power"),
+        terms="coefficients of powers of t",
+        others={
+            "e0": _E0,
+            "alpha": _LAW.others["alpha"],
+            "T_ref": _LAW.others["T_ref"],
+            "limits": (
+                ("limit_number",),
+                "limits for u -> infinity: of limit, lam, free (2), excess (2), lam_Q and "
+                "epsilon_Q; of their "
+                "coefficients of 1/u; of epsilon u, and of m_half_space u^2 and m_cylinder u^2",
+            ),
+        },
+        comment=_ROW
+        + "u = kappa |V|; L = limit(u); delta_star = mu L/(2 kappa); f_h = free_half_space, f_c = "
+        "free_cylinder, "
+        "f = f_h + f_c; delta_0 = f/(2 kappa); D = |2 kappa delta - f|/mu; D >= L: full slip, |Q| "
+        "= mu, beta = 0. Else "
+        "w = L - D, v = 2 u/w: beta = share(v) w/lam(u), |Q| = mu (1 - w^2 press(v)). Q has the "
+        "sign of "
+        "(delta - delta_0) V. r = (g_h + g_c)/(mu L/2) with g of excess; k = (1 + r^4)^(-1/4)/mu; "
+        "M_half_space = V m_half_space - Q (f_h + k g_h |Q|)/(2 kappa); "
+        "M_cylinder = V m_cylinder - Q (f_c + k g_c |Q|)/(2 kappa + f); lam = lam(u) + lam_Q Q, "
+        "epsilon = epsilon(u) + epsilon_Q Q, for V < 0 with -Q. Fast limit: the limits and their "
+        "first order in 1/u; "
+        "with L_1 and a the limit of L and its coefficient: press = (1 - 2 a/(L_1 v))^2/L_1^2, "
+        "share = lam/L and in first order 2 (b L_1 - lam a)/(L_1^3 v) more, b that of lam.",
+    ),
+    AXIS: Kind(
+        summary="The contact law of one relaxation time as polynomials of speed and of ln alpha: "
+        + _ANY,
+        functions={
+            "lam": _LAW.functions["lam"],
+            "epsilon": (
+                "shift of the contact divided by half its length and by c, as a function "
+                "of "
+                "kappa |V|"
+            ),
+            "m": "M/V divided by c, as a function of kappa |V|",
+            "N": "N of M = M(V) + N dV/dt divided by c, as a function of kappa |V|",
+            "share": _LAW.functions["share"],
+            "press": _LAW.functions["press"],
+        },
+        dims=("octave_of_alpha", "degree", "octave", "power"),
+        terms="coefficients of T_j(s) and of powers of t",
+        others={
+            "first": ((), "log2 of the lowest alpha"),
+            "rows": (
+                ("octave_of_alpha",),
+                "number of rows of an octave of alpha before the fast limit; the remaining rows "
+                "are 0",
+            ),
+            "e0": _E0,
+        },
+        comment="alpha = m 2^e with m in [1/2, 1) (frexp); i = e - 1 - first; s = 2 log2(2 m) - 1; "
+        "c = "
+        "(alpha - 1)/alpha. The "
+        "table of that alpha is the sum over j of T_j(s) times [i, j], T_j Chebyshev's "
+        "polynomials; epsilon, m and N "
+        "come over c. It is read as the file of one material (viscoroll tables law MATERIAL.toml): "
+        "x = m 2^e; row n = "
+        "e - e0; n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows[i]: row n at t = 4 m - 3; "
+        "beyond: the fast limit "
+        "with W = c, C = c (ln 2 - 0.5772...). T_epsilon is the unit of time; both bodies take "
+        "half of m.",
+    ),
+}
+
+
+class Content(NamedTuple):
+    """Content of a file.
+
+    numbers : arrays by the names of variables.
+    attributes : values by the names of global attributes.
+    """
+
+    numbers: dict[str, Any]
+    attributes: dict[str, Any]
+
+
+def dataset_content(dataset: Any) -> Content:
+    """Return the content of a ``dataset``; for another object, empty numbers and attributes."""
+    numbers = {
+        str(name): variable.values for name, variable in getattr(dataset, "variables", {}).items()
+    }
+    return Content(numbers, getattr(dataset, "attrs", {}))
+
+
+def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
+    """Return the SHA-256 over the variables of a file: of each its name in UTF-8, then its numbers
+    as little-endian doubles, last dimension fastest.
+
+    numbers: arrays by the names of the variables; names that the kind does not have are left out.
+    kind: kind of the file, a key of :data:`KINDS`, which determines the names and their order: its
+        functions, then its other variables.
+    Returns the 64 hexadecimal digits, in lower case.
+    Raises KeyError for another kind and for a variable that is missing, and ValueError for one that
+    is not numeric.
+    """
+    digest = hashlib.sha256()
+    for name in (*KINDS[kind].functions, *KINDS[kind].others):
+        digest.update(name.encode() + np.ascontiguousarray(numbers[name], "<f8").tobytes())
+    return digest.hexdigest()
+
+
+def make_dataset(
+    law: Any, kind: str, title: str, errors: Mapping[str, float], **attributes: str
+) -> xr.Dataset:
+    """Return the dataset of a file: its numbers, their meaning and origin, and their checksum.
+
+    law: the law, an object with the variables of its kind as attributes, and ``coefficients``,
+        whose axes are those of the kind (:attr:`Kind.dims`) and, last, its functions in their
+        order.
+    kind: kind of the file, a key of :data:`KINDS`, which lists the variables.
+    title: bodies whose law it is, in words.
+    errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each
+        function of the kind, else KeyError, as of another kind.
+    attributes: further global attributes of the dataset by name.
+    Returns the dataset, with one variable of coefficients for each function, whose error is its
+    attribute ``largest_relative_error``; the other variables of the kind, integers as int32; and as
+    global attributes ``viscoroll_table`` (the kind), ``law_schema``, ``sha256_of_numbers`` (the
+    :func:`checksum`), ``history`` (time of the call, UTC, and command line), title, summary,
+    comment, keywords, references, source, license and Conventions.
+    """
+    import xarray as xr
+
+    about = KINDS[kind]
+    data = {}
+    for n, (name, meaning) in enumerate(about.functions.items()):
+        labels = {"long_name": f"{about.terms}: {meaning}", about.error: errors[name]}
+        data[name] = xr.Variable(about.dims, law.coefficients[..., n], labels)
+    for name, (dims, meaning) in about.others.items():
+        value = np.asarray(getattr(law, name))
+        value = value.astype(np.int32) if value.dtype.kind == "i" else value
+        unit = (
+            {"units": "s"} if name == "T_ref" else {}
+        )  # the other variables are dimensionless or in T_ref
+        data[name] = xr.Variable(dims, value, {"long_name": meaning, **unit})
+    dataset = xr.Dataset(
+        data,
+        attrs={
+            "Conventions": "CF-1.11, ACDD-1.3",
+            "title": f"Contact law of rolling with partial slip: {title}",
+            "summary": about.summary,
+            "keywords": "rolling contact, viscoelasticity, rolling resistance",
+            KIND: kind,
+            SCHEMA: np.int32(VERSION),
+            **attributes,
+            "comment": about.comment,
+            "references": PAPER,
+            "source": f"viscoroll {__version__}",
+            "history": f"{datetime.now(UTC):%Y-%m-%dT%H:%M:%SZ} {shlex.join(sys.orig_argv)}",
+            "license": "BSD-3-Clause",
+        },
+    )
+    return dataset.assign_attrs({CHECKSUM: checksum(dataset_content(dataset).numbers, kind)})
+
+
+def stated_errors(dataset: Any) -> dict[str, float]:
+    """Return the largest error of every function that a ``dataset`` states: relative, of a coupled
+    table absolute.
+    """
+    kind = KINDS[dataset.attrs[KIND]]
+    return {name: float(dataset[name].attrs[kind.error]) for name in kind.functions}
+
+
+def is_law(path: str | PathLike[str]) -> bool:
+    """Return whether a file is the law of a material, a pair or a cover, by its attribute
+    ``viscoroll_table``.
+
+    Neither the schema nor the checksum of the numbers is examined; :func:`read_law` does that.
+    path: path of the file.
+    Returns True where the attribute is "law" (a material or pair) or "cover"; False where it is
+    "axis" (the law of every alpha), for another HDF5 file, and for a file that is no HDF5.
+    Raises FileError for a file that cannot be read, is larger than 128 MiB, or whose seal, the
+    SHA-256 at its end, is not that of its bytes.  A file without a seal is read as it is; errors of
+    h5py other than OSError pass.
+    """
+    try:
+        content = read_content(path, "material or law of viscoroll", "write it again")
+    except OSError:  # no HDF5: the reader of materials reports that
+        return False
+    return str(content.attributes.get(KIND)) in (LAW, COVER, COUPLED)
+
+
+def read_law(path: str | PathLike[str]) -> Content:
+    """Return the content of a law file, verified by its seal, schema and checksum.
+
+    path: path of the file; a file without a seal is verified by its schema and checksum alone.
+    Returns :class:`Content`: ``numbers``, with all variables of the kind, a key of :data:`KINDS`,
+    and ``attributes``.
+    Raises FileError for a file that cannot be read, is larger than 128 MiB, is damaged, is no
+    netCDF, is no law, is of another schema, lacks a variable, or has one that is not numeric.
+    """
+    try:
+        content = read_content(path, "law file of viscoroll", REMEDY)
+        check_law(content, path)
+    except FileError:
+        raise
+    except Exception as error:  # libraries raise many kinds
+        if not Path(path).read_bytes().startswith(_HDF5):
+            raise FileError(
+                path, "is not netCDF: must be the .nc file of a law or a grid"
+            ) from error
+        raise FileError(
+            path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}"
+        ) from error
+    return content
+
+
+def read_content(path: str | PathLike[str], expected: str, remedy: str) -> Content:
+    """Read a netCDF file by h5py alone, which takes a tenth of the time of xarray.
+
+    path: path of the file.
+    expected: kind of file in words, for errors.
+    remedy: what to do about a damaged file, for errors.
+    Returns the :class:`Content`: arrays of all variables of the root group, of a scalar a numpy
+    number; and global attributes as :func:`_to_scalar` returns them.
+    Raises FileError for a file that cannot be read, is larger than 128 MiB, or whose seal does not
+    match it, and any error of h5py, as OSError for a file that is no HDF5.  A file without a seal
+    is read as it is.
+    """
+    import h5py
+
+    with h5py.File(io.BytesIO(read_sealed(path, _MOST_BYTES, expected, remedy)), "r") as file:
+        numbers = {
+            name: variable[()]
+            for name, variable in file.items()
+            if isinstance(variable, h5py.Dataset)
+        }
+        return Content(numbers, {key: _to_scalar(value) for key, value in file.attrs.items()})
+
+
+def _to_scalar(value: Any) -> Any:
+    """Return the value of an attribute as text or number: some programs write arrays of one, and
+    texts as bytes.
+
+    value: what h5py reads.
+    Returns a text for bytes, in UTF-8 with replacements of wrong bytes; of an array of one its
+    element, as Python has it; an array of no or more elements, and any other value, as it is.
+    """
+    if np.size(value) == 1:
+        value = np.asarray(value).item()
+    return value.decode(errors="replace") if isinstance(value, bytes) else value
+
+
+def check_law(content: Content, path: Any) -> None:
+    """Raise FileError for a file that is no law of this schema, or whose numbers do not match its
+    checksum.
+
+    It checks in turn: that the attribute ``viscoroll_table`` is a key of :data:`KINDS`; that
+    ``law_schema`` is an integer equal to :data:`VERSION`; that no variable of the kind is missing;
+    that the :func:`checksum` of the numbers is the attribute ``sha256_of_numbers``.
+    content: :class:`Content` of the file.
+    path: path of the file, for errors.
+    Returns None for a file that is as it was written; ValueError of the checksum, for a variable
+    that is not numeric, passes.
+    """
+    numbers, attributes = content
+    kind = str(attributes.get(KIND))  # another writer may have stored an array
+    if kind not in KINDS:
+        raise FileError(path, "is not a law file of viscoroll: `viscoroll tables law` writes one")
+    schema = attributes.get(SCHEMA)
+    if not isinstance(schema, int | np.integer) or schema != VERSION:
+        problem = f"has the law schema {schema!s:.20}, but viscoroll {__version__} reads {VERSION}"
+        raise FileError(path, f"{problem}: {REMEDY}, or install the version that wrote it")
+    missing = [
+        name for name in (*KINDS[kind].functions, *KINDS[kind].others) if name not in numbers
+    ]
+    if missing:
+        raise FileError(
+            path, f"is an incomplete law file: variable {missing[0]!r} is missing; {REMEDY}"
+        )
+    if checksum(numbers, kind) != attributes.get(CHECKSUM):
+        raise FileError(
+            path, f"is damaged or was edited: its numbers are not those of its {CHECKSUM}; {REMEDY}"
+        )
+
+
+# --- A material as netCDF that contains its series ---
+
+_Made = TypeVar("_Made")
+#: suffix of netCDF files
+SUFFIX = ".nc"
+#: attribute ``schema`` of a file; its number changes if an older version could not read the file
+_SCHEMA = "viscoroll material 1"
+#: variables of each form of the series
+_FORMS = {"relaxation": ("E", "tau"), "creep": ("J", "T")}
+#: meaning and unit of each variable
+_MEANING = {
+    "E": ("strengths of relaxation divided by E_long", "1"),
+    "tau": ("relaxation times over T_ref", "1"),
+    "J": ("strengths of creep divided by the long-time compliance", "1"),
+    "T": ("retardation times over T_ref", "1"),
+    "E_long": ("long-time Young's modulus; infinite for a rigid body", "Pa"),
+    "nu": ("Poisson's ratio, of long times", "1"),
+    "nu_instant": ("Poisson's ratio at t = 0, where it differs from nu", "1"),
+    "T_ref": ("unit of the times tau and T", "s"),
+    "alpha": ("instantaneous modulus divided by long-time modulus", "1"),
+    "density": ("density", "kg m-3"),
+    "thickness": ("thickness of the layer", "m"),
+    "temperature": ("temperature of moduli and times", "degC"),
+    "measured_low": ("first angular frequency of the data", "rad s-1"),
+    "measured_high": ("last angular frequency of the data", "rad s-1"),
+    "measured_rate": ("transit frequencies at which the accuracy of M is known", "s-1"),
+    "measured_M_error": ("accuracy of M by the data as +-, relative", "1"),
+    "measured_misfit": ("root mean square of the relative errors of the fit", "1"),
+    "measured_strain": ("amplitude of engineering strain of the test", "1"),
+}
+#: variables that a file may lack
+_OPTIONAL = ("density", "thickness", "temperature", "nu_instant")
+#: fields of the measured band, which a file may lack
+_BAND = ("low", "high", "misfit", "strain")
+#: transit frequencies and accuracies of M, which a file may lack
+_ERRORS = ("measured_rate", "measured_M_error")
+
+
+def material_as_dataset(material: Any) -> xr.Dataset:
+    """Return both forms of the series, relaxation and creep, and the constants of a material as a
+    dataset.
+
+    material: a :class:`viscoroll.Material`.
+    Returns a dataset with E, tau (relaxation) and J, T (creep) over "mode", slowest first, of
+    length 0 if elastic: strengths over the long-time modulus or compliance, times in units of
+    T_ref; and the constants in SI units: E_long, nu, T_ref, alpha, and those of density, thickness,
+    temperature (degrees Celsius) and the measured band (measured_low, measured_high,
+    measured_misfit, measured_strain, and over "rate" measured_rate, 1/s, and measured_M_error) that
+    are given.  Each variable has the attributes ``long_name`` and ``units``.  The attribute
+    ``shifts`` has the time-temperature shifts as lines of TOML; the attribute ``given`` of the
+    dataset names the form from which the material is read, "relaxation" or "creep"; ``name`` and
+    ``measured`` are the name and the source of the data, "" without; the others are
+    ``Conventions``, ``schema``, ``title``, ``law`` (the formulas of E(t) and J(t)) and ``source``
+    (this version).
+    """
+    import xarray as xr
+
+    series = material.prony
+    band = material.measured
+    shifts = shifts_as_toml(material.shift, material.vertical_shift)
+    held = {"E_long": material.E, "nu": material.nu, "T_ref": material.T_ref, "alpha": series.alpha}
+    held |= {name: getattr(material, name) for name in _OPTIONAL}
+    held |= {f"measured_{name}": getattr(band, name, None) for name in _BAND}
+    if band is not None and band.M_error:
+        held |= dict(zip(_ERRORS, np.transpose(band.M_error), strict=True))
+    held |= {name: getattr(series, name) for names in _FORMS.values() for name in names}
+    data = {
+        name: (
+            ("rate" if name in _ERRORS else "mode",) * np.ndim(value),
+            value,
+            dict(zip(("long_name", "units"), _MEANING[name], strict=True)),
+        )
+        for name, value in held.items()
+        if value is not None
+    }
+    return xr.Dataset(
+        data,
+        attrs={
+            "Conventions": "CF-1.11",
+            "schema": _SCHEMA,
+            "title": material.name or "linear viscoelastic material",
+            "name": material.name,
+            "given": "creep" if series.by_creep else "relaxation",
+            "law": (
+                "E(t) = E_long (1 + sum E exp(-t/(tau T_ref))), J(t) = (1 - sum J exp(-t/(T "
+                "T_ref)))/E_long"
+            ),
+            "source": f"viscoroll {__version__}",
+            "measured": getattr(band, "source", ""),
+            "shifts": "\n".join(f"{key} = {value}" for key, value in shifts.items()),
+        },
+    )
+
+
+def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Made:
+    """Read a file of :meth:`viscoroll.Material.to_netcdf`.
+
+    path: path of the file.
+    make: constructor of the material, called with the parameters of :class:`viscoroll.Material` by
+        name: E, prony, name, nu and T_ref, and those of density, thickness, temperature and
+        measured that the file has.
+    Returns what ``make`` returns, which may warn of a temperature that looks like kelvin.
+    Raises FileError for a file that is missing, damaged, larger than 128 MiB, without a seal, no
+    material, lacks a variable, or has values out of range; so it does for each ParameterError,
+    KeyError, ValueError and OSError of ``make``, whose other exceptions pass.
+    """
+    try:
+        numbers, about = read_content(path, "material of this package", "write it again")
+        if str(about.get(KIND)) in KINDS:
+            raise FileError(path, "is not a material file: it is a law, for vr.load_law")
+        if {"V", "Q"} <= numbers.keys():
+            raise FileError(
+                path,
+                "is not a material file: it is a grid, for vr.load_law and vr.tables.interpolate",
+            )
+        if about.get("schema") != _SCHEMA:
+            raise FileError(
+                path,
+                f"is not a material file: its schema is {about.get('schema')!r}, not {_SCHEMA!r}",
+            )
+        if seal_matches(Path(path).read_bytes()) is None:
+            raise FileError(
+                path,
+                "is damaged or is not a material file of this package: the SHA-256 at its end is "
+                "missing",
+            )
+        form = tuple(numbers[name] for name in _FORMS[about["given"]])
+        series = (
+            Prony(*form)
+            if about["given"] == "relaxation"
+            else Prony.creep(*form, alpha=numbers["alpha"])
+        )
+        found: dict[str, Any] = {
+            name: numbers[name] for name in ("nu", "T_ref", *_OPTIONAL) if name in numbers
+        }
+        if "measured_low" in numbers:
+            band: dict[str, Any] = {name: numbers.get(f"measured_{name}") for name in _BAND}
+            pairs = zip(
+                *(numbers[name].tolist() for name in _ERRORS if name in numbers), strict=True
+            )
+            found["measured"] = Measured(**band, source=about["measured"], M_error=tuple(pairs))
+        found |= shifts_of_toml(about.get("shifts", ""))
+        return make(E=numbers["E_long"], prony=series, name=about["name"], **found)
+    except (ParameterError, KeyError, ValueError, OSError) as error:
+        raise FileError(
+            path, f"is not a material file ({' '.join(str(error).split()):.200})"
+        ) from error

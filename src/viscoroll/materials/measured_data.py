@@ -1,0 +1,745 @@
+"""Data that a material was fitted to, and time-temperature shifts.
+
+Time-temperature shifts: :class:`WLF`, :class:`Arrhenius` and :class:`ShiftFactors`, functions of
+the temperature in degrees Celsius.
+
+Their value a_T is the factor of all times of a material, which is 1 at the reference temperature
+T0.
+
+The data that a material was fitted to: :class:`Measured`.
+"""
+
+from __future__ import annotations
+
+import math
+import tomllib
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from typing import Any, TypeVar
+
+import numpy as np
+
+from ..core.checks import Floats, check_array, check_number, check_text
+from ..core.errors import ModelWarning, ParameterError, caller_level, described_error
+from ..core.scale import SI, Units
+
+# --- Time-temperature shifts ---
+
+#: molar gas constant, J/(mol K); exact since the SI of 2019
+GAS_CONSTANT = 8.31446261815324
+#: absolute zero, degrees Celsius; exact
+ABSOLUTE_ZERO = -273.15
+#: temperatures between which rubbers and polymers are measured and used, degrees Celsius.  300 K,
+#: room temperature in kelvin, lies above; room temperature converted twice, 27 - 273 = -246, lies
+#: below; 200 K is below the glass transition of nearly every rubber, so that a number above 200 is
+#: more likely in kelvin than in degrees Celsius
+USUAL_RANGE = -150.0, 200.0
+#: K; distance from the temperatures of found factors up to which they are used: that within which
+#: sweeps are one
+NEAR = 0.5
+#: decades by which a fitted law may miss a found factor before it warns: a speed is then off by a
+#: quarter
+_FAR_OFF = 0.1
+#: K; bounds of C2 - (T0 - lowest temperature) of a fitted WLF: at the lower one the pole is beside
+#: the data, at the upper one log a_T is a straight line
+_GAP = 1.0, 1e4
+
+
+@dataclass(frozen=True, kw_only=True)
+class WLF:
+    """log10 a_T = -C1 (T - T0)/(C2 + T - T0), of M. Williams, R. Landel and J. Ferry (1955).
+
+    Parameters
+    ----------
+    T0 : reference temperature, degrees Celsius, at which a_T = 1.
+    C1 : > 0; the defaults are the "universal" pair, which holds at the glass transition.
+    C2 : K, > 0.
+
+    Raises
+    ------
+    ParameterError
+        A value that is not finite or out of range; when called, a temperature at or below the pole
+        T0 - C2, or so near that no double holds a_T.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+    >>> shift(20.0), shift(0.0) > 1.0
+    (1.0, True)
+    """
+
+    T0: float
+    C1: float = 17.44
+    C2: float = 51.6
+
+    def __post_init__(self) -> None:
+        check_fields(self, C1=0.0, C2=0.0)
+        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
+
+    def __call__(self, temperature: float) -> float:
+        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
+
+        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is
+        converted.
+        Raises ParameterError and warns as the class states.
+        """
+        above = check_celsius("temperature", temperature) - self.T0
+        if self.C2 + above <= 0.0:
+            allowed = (
+                f"> T0 - C2 = {self.T0 - self.C2:g}, where the WLF shift is infinite, in "
+                "degrees Celsius"
+            )
+            raise ParameterError("temperature", temperature, allowed)
+        return _shift(temperature, -math.log(10.0) * self.C1 * above / (self.C2 + above))
+
+    def log(self, temperature: Floats) -> Floats:
+        """Return ln a_T at temperatures, for arrays and without checks.
+
+        Parameters
+        ----------
+        temperature : degrees Celsius, an array of any shape.
+
+        Returns
+        -------
+        array
+            ln a_T, dimensionless; +inf where a_T is infinite.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.WLF(T0=20.0)
+        >>> shift.log(np.array([20.0]))
+        array([0.])
+        """
+        above = np.maximum(temperature - self.T0 + self.C2, 0.0)
+        with np.errstate(divide="ignore"):
+            return math.log(10.0) * self.C1 * (self.C2 / above - 1.0)
+
+    def temperature_of(self, log: Floats) -> Floats:
+        """Return the temperatures at which ln a_T has given values, for arrays and without checks.
+
+        Parameters
+        ----------
+        log : ln a_T, dimensionless, an array of any shape.
+
+        Returns
+        -------
+        array
+            Degrees Celsius; +inf where a_T is smaller at no temperature.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.WLF(T0=20.0)
+        >>> shift.temperature_of(np.array([0.0]))
+        array([20.])
+        """
+        above_least = np.maximum(math.log(10.0) * self.C1 + log, 0.0)
+        with np.errstate(divide="ignore"):
+            return self.T0 - self.C2 + math.log(10.0) * self.C1 * self.C2 / above_least
+
+
+@dataclass(frozen=True, kw_only=True)
+class Arrhenius:
+    """ln a_T = (energy/R_gas) (1/T - 1/T0), with both temperatures in kelvin.
+
+    Parameters
+    ----------
+    energy : activation energy, J/mol, > 0.
+    T0 : reference temperature, degrees Celsius, at which a_T = 1.
+
+    Raises
+    ------
+    ParameterError
+        A value that is not finite or out of range; when called, a temperature at or below -273.15,
+        or so low that no double holds a_T.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+    >>> shift(20.0), shift(60.0) < 1.0
+    (1.0, True)
+    """
+
+    energy: float
+    T0: float
+
+    def __post_init__(self) -> None:
+        check_fields(self, energy=0.0)
+        object.__setattr__(self, "T0", check_celsius("T0", self.T0))
+
+    def __call__(self, temperature: float) -> float:
+        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
+
+        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is
+        converted.
+        Raises ParameterError and warns as the class states.
+        """
+        kelvin = check_celsius("temperature", temperature) - ABSOLUTE_ZERO
+        return _shift(
+            temperature,
+            self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)),
+        )
+
+    def log(self, temperature: Floats) -> Floats:
+        """Return ln a_T at temperatures, for arrays and without checks.
+
+        Parameters
+        ----------
+        temperature : degrees Celsius, an array of any shape.
+
+        Returns
+        -------
+        array
+            ln a_T, dimensionless; +inf where a_T is infinite.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+        >>> shift.log(np.array([20.0]))
+        array([0.])
+        """
+        kelvin = np.maximum(temperature - ABSOLUTE_ZERO, 0.0)
+        with np.errstate(divide="ignore"):
+            return self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO))
+
+    def temperature_of(self, log: Floats) -> Floats:
+        """Return the temperatures at which ln a_T has given values, for arrays and without checks.
+
+        Parameters
+        ----------
+        log : ln a_T, dimensionless, an array of any shape.
+
+        Returns
+        -------
+        array
+            Degrees Celsius; +inf where a_T is smaller at no temperature.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+        >>> shift.temperature_of(np.array([0.0]))
+        array([20.])
+        """
+        inverse = np.maximum(
+            log * GAS_CONSTANT / self.energy + 1.0 / (self.T0 - ABSOLUTE_ZERO), 0.0
+        )
+        with np.errstate(divide="ignore"):
+            return ABSOLUTE_ZERO + 1.0 / inverse
+
+
+_Law = TypeVar("_Law", WLF, Arrhenius)
+
+
+@dataclass(frozen=True, kw_only=True)
+class ShiftFactors:
+    """Factors a_T found at some temperatures, as a function between them.
+
+    ln a_T is interpolated in the temperature, by a monotone piecewise cubic (PCHIP).
+
+    Parameters
+    ----------
+    temperature : temperatures, ascending, degrees Celsius, (n,).
+    a_T : factor of all times at each of them, dimensionless, > 0, (n,).
+    T0 : reference temperature, degrees Celsius, at which a_T = 1.
+
+    Raises
+    ------
+    ParameterError
+        When called, a temperature that is more than 0.5 K outside of the found ones.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature outside -150 to 200: it looks like one in kelvin (:data:`USUAL_RANGE`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> found = vr.ShiftFactors(temperature=(0.0, 20.0, 40.0), a_T=(100.0, 1.0, 0.05), T0=20.0)
+    >>> round(found(20.0), 12), 1.0 < found(10.0) < 100.0
+    (1.0, True)
+
+    Factors that follow a WLF law are within 3 % of it half way between temperatures 10 K apart
+    (``tests/test_dma.py``).
+    """
+
+    temperature: tuple[float, ...]
+    a_T: tuple[float, ...]
+    T0: float
+
+    def __call__(self, temperature: float) -> float:
+        """Return a_T, a float, dimensionless, > 0, which is 1 at T0.
+
+        temperature: a number in degrees Celsius, or a value with a unit of temperature, which is
+        converted.
+        Raises ParameterError and warns as the class states.
+        """
+        from scipy.interpolate import PchipInterpolator
+
+        found = check_celsius("temperature", temperature)
+        low = self.temperature[0]
+        high = self.temperature[-1]
+        if not low - NEAR <= found <= high + NEAR:
+            allowed = (
+                f"within [{low:g}, {high:g}], where factors were found; beyond them use "
+                "wlf() or arrhenius()"
+            )
+            raise ParameterError("temperature", temperature, allowed)
+        if low == high:
+            return self.a_T[0]
+        return math.exp(PchipInterpolator(self.temperature, np.log(self.a_T))(found))
+
+    def wlf(self) -> WLF:
+        """Fit the law of Williams, Landel and Ferry to the factors, so that other temperatures need
+        no new fit.
+
+        The least squares are those of log10 a_T, which is 0 at T0.
+
+        Returns
+        -------
+        WLF
+            With the T0 of the factors.
+
+        Raises
+        ------
+        ParameterError
+            Fewer than three temperatures; factors that rise with temperature.
+
+        Warns
+        -----
+        ModelWarning
+            Where the law misses a factor by more than 0.1 decades.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
+        >>> at = 0.0, 10.0, 20.0, 30.0
+        >>> law = vr.ShiftFactors(temperature=at, a_T=tuple(map(shift, at)), T0=20.0).wlf()
+        >>> round(law.C1, 4), round(law.C2, 3)
+        (8.86, 101.6)
+        """
+        from scipy.optimize import least_squares
+
+        above, logs = self._points(3)
+        gap = max(0.0, float(-above.min()))
+
+        def constants(free: Any) -> Any:
+            """Return (C1, C2) from [ln(C1/C2), ln(C2 - gap)]."""
+            C2 = gap + np.exp(free[1])
+            return C2 * np.exp(free[0]), C2
+
+        def errors(free: Any) -> Any:
+            """Return the errors of log10 a_T, (n,)."""
+            C1, C2 = constants(free)
+            return -C1 * above / (C2 + above) - logs
+
+        low, high = np.log(_GAP)
+        start = math.log((logs[0] - logs[-1]) / (above[-1] - above[0])), 0.5 * (low + high)
+        found = least_squares(
+            errors, start, bounds=([-np.inf, low], [np.inf, high]), xtol=1e-12, ftol=1e-12
+        )
+        C1, C2 = constants(found.x)
+        return self._told(WLF(C1=float(C1), C2=float(C2), T0=self.T0))
+
+    def arrhenius(self) -> Arrhenius:
+        """Fit the law of Arrhenius to the factors, as :meth:`wlf` does its own.
+
+        Returns
+        -------
+        Arrhenius
+            With the T0 of the factors.
+
+        Raises
+        ------
+        ParameterError
+            Fewer than two temperatures; factors that rise with temperature.
+
+        Warns
+        -----
+        ModelWarning
+            Where the law misses a factor by more than 0.1 decades.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
+        >>> found = vr.ShiftFactors(temperature=(0.0, 20.0), a_T=(shift(0.0), 1.0), T0=20.0)
+        >>> round(found.arrhenius().energy, 3)
+        50000.0
+        """
+        above, logs = self._points(2)
+        kelvin = self.T0 - ABSOLUTE_ZERO
+        slower = 1.0 / (kelvin + above) - 1.0 / kelvin
+        energy = GAS_CONSTANT * math.log(10.0) * (slower @ logs) / (slower @ slower)
+        return self._told(Arrhenius(energy=float(energy), T0=self.T0))
+
+    def _points(self, fewest: int) -> tuple[Any, Any]:
+        """Return (temperature - T0, K; log10 a_T), (n,) each, of factors to which a law can be
+        fitted.
+
+        fewest: least number of temperatures.
+        Raises ParameterError for fewer temperatures, and for factors that do not fall from the
+        first to the last.
+        """
+        if len(self.a_T) < fewest:
+            raise ParameterError(
+                "temperature", f"{len(self.a_T)} temperatures", f"at least {fewest} for this law"
+            )
+        if not self.a_T[-1] < self.a_T[0]:
+            found = f"{self.a_T[0]:.3g} to {self.a_T[-1]:.3g}"
+            raise ParameterError("a_T", found, "factors that fall with temperature")
+        return np.subtract(self.temperature, self.T0), np.log10(self.a_T)
+
+    def _told(self, law: _Law) -> _Law:
+        """Return a fitted law, and warn where it misses a factor by more than :data:`_FAR_OFF`, 0.1
+        decades.
+        """
+        errors = [
+            math.log10(law(T) / a_T) for T, a_T in zip(self.temperature, self.a_T, strict=True)
+        ]
+        worst = int(np.argmax(np.abs(errors)))
+        if abs(errors[worst]) > _FAR_OFF:
+            text = (
+                f"{law} misses the factor found at {self.temperature[worst]:g} °C by "
+                f"{errors[worst]:+.2f} decades"
+            )
+            warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        return law
+
+
+def check_celsius(name: str, temperature: Any) -> float:
+    """Return a temperature as a number of degrees Celsius, and warn of one that looks like kelvin.
+
+    Parameters
+    ----------
+    name : name of the parameter, for the error and the warning.
+    temperature : number of degrees Celsius, or a value with a unit of temperature, which is
+        converted; above absolute zero.
+
+    Returns
+    -------
+    float
+        Degrees Celsius; also where it warns.
+
+    Raises
+    ------
+    ParameterError
+        A value that is no single finite number above -273.15.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature outside :data:`USUAL_RANGE`, -150 to 200.  The text contains no value, so that
+        Python shows it once for each line of a program.
+    """
+    found = check_number(name, temperature, unit="degC", above=ABSOLUTE_ZERO)
+    if not USUAL_RANGE[0] <= found <= USUAL_RANGE[1]:
+        low, high = USUAL_RANGE
+        text = (
+            f"{name} is outside {low:g} to {high:g}: temperatures are in degrees Celsius, and "
+            "this looks like kelvin"
+        )
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+    return found
+
+
+def relative_shift(
+    shift: Callable[[float], float], temperature: float, reference: float | None
+) -> float:
+    """Return the ratio of times at a temperature to those at a reference,
+    a_T(temperature)/a_T(reference).
+
+    The ratio is the same whatever temperature the constants of the shift refer to: WLF and
+    Arrhenius keep their form when they are converted to another (J. D. Ferry, Viscoelastic
+    Properties of Polymers, 3rd ed., 1980, Ch. 11).
+
+    Parameters
+    ----------
+    shift : function of a temperature in degrees Celsius that returns a_T, a number, dimensionless,
+    > 0.
+    temperature : degrees Celsius; None: the temperature at which the shift is 1.
+    reference : degrees Celsius; None likewise.
+
+    Returns
+    -------
+    float
+        The ratio, dimensionless, > 0; 1.0 if both temperatures are None.
+
+    Raises
+    ------
+    ParameterError
+        A temperature that the shift does not allow; a shift that returns no finite positive number;
+        a ratio that no double holds.  Other exceptions of the shift, and its warnings, pass.
+    """
+    factor, unit = (
+        1.0 if at is None else check_number("a_T", shift(at), above=0.0)
+        for at in (temperature, reference)
+    )
+    return check_number("a_T", factor / unit, above=0.0)
+
+
+def vertical_factor(
+    shift: Callable[[float], float] | str | None, temperature: float, reference: float | None
+) -> float:
+    """Return the ratio of moduli at a temperature to those at a reference,
+    b_T(temperature)/b_T(reference).
+
+    Parameters
+    ----------
+    shift : a function of a temperature in degrees Celsius that returns b_T, a number,
+        dimensionless, > 0; "entropic": b_T is the absolute temperature, as of an ideal network;
+        None: moduli do not depend on the temperature.
+    temperature, reference : degrees Celsius; a reference of None is allowed only without a vertical
+    shift.
+
+    Returns
+    -------
+    float
+        The ratio, dimensionless, > 0; 1.0 for None.
+
+    Raises
+    ------
+    ParameterError
+        A reference of None, or a shift that returns no finite positive number.
+    """
+    if shift is None:
+        return 1.0
+    if reference is None:
+        allowed = (
+            "given beside vertical_shift: moduli are multiplied by b_T(temperature)/b_T(its own)"
+        )
+        raise ParameterError("temperature", None, allowed)
+    b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
+    factor, unit = (check_number("b_T", b_T(at), above=0.0) for at in (temperature, reference))  # type: ignore[operator]
+    return factor / unit
+
+
+def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
+    """Return the shifts of a material that files hold as key -> value in TOML: wlf or arrhenius,
+    vertical_shift.
+
+    shift, vertical_shift: as of :class:`.material.Material`; a function is left out.
+    """
+    found = {} if vertical_shift != "entropic" else {"vertical_shift": '"entropic"'}
+    if isinstance(shift, WLF | Arrhenius):
+        numbers = ", ".join(f"{name} = {value!r}" for name, value in vars(shift).items())
+        found[type(shift).__name__.lower()] = f"{{ {numbers} }}"
+    return found
+
+
+def shifts_of_toml(text: str) -> dict[str, Any]:
+    """Return ``shift`` and ``vertical_shift``, as parameters of a material, of lines as
+    :func:`shifts_as_toml` has.
+    """
+    found: dict[str, Any] = tomllib.loads(text)
+    for name, kind in (("wlf", WLF), ("arrhenius", Arrhenius)):
+        if name in found:
+            found["shift"] = kind(**found.pop(name))
+    return found
+
+
+def check_fields(instance: Any, unit: Units = SI, **lows: float) -> None:
+    """Check that fields of a frozen dataclass are numbers above lower bounds, and replace them by
+    floats in their unit.
+
+    instance: the dataclass, whose fields are changed in place, one after another; at an error those
+        before it are changed.
+    unit: unit of all these fields, as "rad s-1", or an object that has units by name, as SI
+    (default).
+    lows: lower bound of each field by name, in that unit; the number must be larger.
+    Raises ParameterError for the first field that is no such number (also None, NaN, an array), or
+    is infinite.
+    """
+    for name, low in lows.items():
+        object.__setattr__(
+            instance, name, check_number(name, getattr(instance, name), unit=unit, above=low)
+        )
+
+
+def _shift(temperature: float, exponent: float) -> float:
+    """Return a_T = exp(exponent), dimensionless, > 0.
+
+    temperature: degrees Celsius, as the caller gave it, for the error.
+    exponent: ln a_T, dimensionless; NaN is refused too.
+    Raises ParameterError for an exponent of 700 or more in size, near which a_T leaves the range of
+    doubles.
+    """
+    if not abs(exponent) < 700.0:
+        raise ParameterError(
+            "temperature",
+            temperature,
+            f"nearer to T0: a_T = exp({exponent:.3g}) cannot be represented in double precision",
+        )
+    return math.exp(exponent)
+
+
+# --- The data that a material was fitted to ---
+
+#: Ratio of the highest angular frequency that a contact needs, rad/s, to its transit frequency,
+#: 1/s.  Data that end there leave an error of M of 3 to 8 % (docs/validity.md), as data do that
+#: begin at the transit frequency.
+HIGHEST_RATE = 3.0
+
+
+@dataclass(frozen=True)
+class Measured:
+    """The data that a :class:`Material` was fitted to, and the misfit of the fit.
+
+    Parameters
+    ----------
+    low, high : first and last angular frequency of the data at the temperature of the material,
+        rad/s, 0 < low <= high.
+    misfit : root mean square of the relative errors of storage or loss modulus, whichever is
+        larger, dimensionless, >= 0.
+    source : text that names the source of the data.
+    M_error : accuracy of the rolling moment by the data: pairs (transit frequency of a contact,
+        1/s, ascending; relative error of M as +-, dimensionless); fits give it, (): not known.
+    strain : amplitude of engineering strain of the test, dimensionless, > 0 (0.001 is 0.1 %); None:
+        it is not known.
+
+    Raises
+    ------
+    ParameterError
+        A value that is not finite or out of range, low above high, frequencies of ``M_error`` that
+        do not ascend.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> band = vr.Measured(low=0.06, high=630.0, misfit=0.004, source="dma.csv")
+    >>> print(band)
+    0.06 to 630 rad/s, misfit 0.4 % (dma.csv)
+    """
+
+    low: float
+    high: float
+    misfit: float
+    source: str = ""
+    M_error: tuple[tuple[float, float], ...] = ()
+    strain: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check the fields, and replace the numbers by floats in rad/s; a value with a unit is
+        converted.
+
+        Raises ParameterError as the class states, and for a source that is no text, or has NUL or
+        surrogates.
+        """
+        check_fields(self, "rad s-1", low=0.0, high=0.0)
+        object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))
+        if self.low > self.high:
+            raise ParameterError("high", self.high, f">= low = {self.low:g}")
+        check_text("source", self.source)
+        pairs = check_array("M_error", self.M_error, low=0.0).reshape(-1, 2)
+        if not (np.diff(pairs[:, 0]) > 0.0).all():
+            raise described_error(
+                "M_error", "has frequencies that do not ascend", "pairs (transit frequency, +-)"
+            )
+        object.__setattr__(self, "M_error", tuple(map(tuple, pairs.tolist())))
+        if self.strain is not None:
+            check_fields(self, "1", strain=0.0)
+
+    @property
+    def transit_band(self) -> tuple[float, float]:
+        """(lowest, highest) transit frequency, 1/s, of a contact for which the data suffice:
+        ``low``, and ``high`` divided by :data:`HIGHEST_RATE`; the first is above the second of data
+        over less than that ratio.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Measured(low=0.1, high=150.0, misfit=0.004).transit_band
+        (0.1, 50.0)
+        """
+        return self.low, self.high / HIGHEST_RATE
+
+    def moment_error(self, rate: Any) -> Any:
+        """Return the accuracy of the rolling moment at transit frequencies, by the data alone.
+
+        It is the largest change of M by any spectrum that meets the data as well as the fit does
+        (:attr:`viscoroll.Fit.admissible`), interpolated in ln(rate).
+
+        Parameters
+        ----------
+        rate : transit frequency |V|/length of a contact, 1/s, >= 0, of any shape, not checked: the
+            ``value`` of ``validity(V).measured``.
+
+        Returns
+        -------
+        array
+            Relative error of M as +-, dimensionless, in that shape: infinite outside
+            :attr:`transit_band`, NaN where ``M_error`` is not known.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> band = vr.Measured(
+        ...     low=0.1, high=300.0, misfit=0.004, M_error=((0.1, 0.1), (100.0, 0.04))
+        ... )
+        >>> band.moment_error([0.1, 100.0, 200.0])
+        array([0.1 , 0.04,  inf])
+        """
+        low, high = self.transit_band
+        rates = np.asarray(rate, np.float64)
+        if not self.M_error:
+            return np.full(rates.shape, np.nan)
+        at, error = np.transpose(self.M_error)
+        inside = (rates >= low) & (rates <= high)
+        found = np.interp(np.log(np.where(inside, rates, low)), np.log(at), error)
+        return np.where(inside, found, np.inf)
+
+    def shifted(self, a_T: float) -> Measured:
+        """Return the measured band at another temperature.
+
+        Parameters
+        ----------
+        a_T : factor of all times from the temperature of the band to the other one, dimensionless,
+            > 0.
+
+        Returns
+        -------
+        Measured
+            A new one, whose frequencies are divided by ``a_T``; misfit, source and errors stay.
+
+        Raises
+        ------
+        ParameterError
+            A factor with which a frequency is 0, negative, infinite or NaN.
+        ZeroDivisionError
+            The float 0.0.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Measured(low=0.1, high=100.0, misfit=0.004).shifted(10.0).high
+        10.0
+        """
+        moved = tuple((rate / a_T, error) for rate, error in self.M_error)
+        return replace(self, low=self.low / a_T, high=self.high / a_T, M_error=moved)
+
+    def __str__(self) -> str:
+        source = f" ({self.source})" if self.source else ""
+        return (
+            f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %{source}"
+        )

@@ -1,0 +1,393 @@
+"""Columns of a dynamic mechanical analysis: their names and quantities.
+
+Names of the columns of tests of materials in five languages, and their quantities, read from
+headings.toml.
+
+Which columns of a table are frequency, moduli and temperature, and their numbers.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+import unicodedata
+from collections.abc import Mapping
+from importlib.resources import files
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.errors import FileError, ParameterError
+from ..core.toml_sections import suggestion
+from ..materials.measured_data import ABSOLUTE_ZERO
+from .text_cells import Numbers
+from .text_table import NO_UNIT, Table, conversion, find_column, readings
+
+# --- Names of the columns of tests of materials in five languages ---
+
+#: columns beside moduli without E or G that only a test in shear has
+OF_SHEAR = re.compile(
+    r"(?i)shear|schub|scher|cisaill|taglio|せん断|torque|torsion|drehmoment|viscosity|viskosit|gamma|γ"
+)
+
+
+def _plain(text: str) -> str:
+    """Return a text without accents and in compatible characters, as words of headings are
+    compared.
+    """
+    text = unicodedata.normalize("NFKD", text.replace("\u2033", "''"))
+    return "".join(sign for sign in text if not unicodedata.combining(sign))
+
+
+_DATA: dict[str, Any] = tomllib.loads(
+    (files(__package__) / "headings.toml").read_text(encoding="utf-8")
+)
+#: quantity -> the unit that its numbers are converted to
+UNITS = {name: about["unit"] for name, about in _DATA["quantities"].items()}
+#: quantity -> the unit that is assumed, "" where none can be
+ASSUMED = {name: about["assumed"] for name, about in _DATA["quantities"].items()}
+#: test -> quantities of the columns of a file without headings, in their order
+BARE = _DATA["bare"]
+#: test -> its quantities
+QUANTITIES = {
+    test: [name for name, about in _DATA["quantities"].items() if test in about["of"].split()]
+    for test in BARE
+}
+#: kinds of the words of a name -> quantity
+_NAMED_BY = {
+    frozenset(kinds.split()): name
+    for name, about in _DATA["quantities"].items()
+    for kinds in about["named"]
+}
+#: word of a name -> the kinds of word that it is; "-": a word that does not tell columns apart
+_KINDS = {
+    _plain(word): kinds
+    for language in _DATA["words"].values()
+    for kinds, words in language.items()
+    for word in words.split()
+}
+_LONG = sorted(
+    (word for word in _KINDS if len(word) > 2 or not word.isascii()), key=len, reverse=True
+)
+#: words written together, as "storagemodulus", "Estor", "Phasenwinkel"
+_COMPOUND = re.compile(rf"([eg](?=sto|loss))?((?:{'|'.join(_LONG)})+)")
+_WORD = re.compile("|".join(_LONG))
+
+
+class Meaning(NamedTuple):
+    """A quantity that a heading may name.
+
+    name : name of the quantity, a key of :data:`UNITS`.
+    mode : mode of the modulus, "tension", "shear", or "" where the heading does not say.
+    unit : unit in the heading or in the row of units, "" without.
+    log : base of the logarithms of which the column is, 0 of numbers.
+    sure : whether the unit stands in brackets, behind a slash or in the row of units, where nothing
+    else stands.
+    """
+
+    name: str
+    mode: str
+    unit: str
+    log: float
+    sure: bool
+
+
+def meanings(heading: str, row: str = "") -> list[Meaning]:
+    """Return all quantities that a heading may name, the likeliest first.
+
+    heading : text of the heading, with its unit or without, as "E' [MPa]" or "Speichermodul".
+    row : the cell of a row of units for this column, "" without.
+    Returns a list of :class:`Meaning`, one for each way to part the heading into name and unit
+    whose name is understood, in the order of :func:`.readings`: the name without a unit first; an
+    empty list where no name is.
+    """
+    found = [(_quantity(each.name), each) for each in readings(heading, row)]
+    return [
+        Meaning(*quantity, each.unit, each.log, each.sure) for quantity, each in found if quantity
+    ]
+
+
+def _quantity(name: str) -> tuple[str, str] | None:
+    """Return quantity and mode of a column by its name without unit.
+
+    name : words of the heading, in any case, with signs such as ' or the Greek letters; of single
+        letters T is a temperature, and t a time, which is no quantity here.
+    Returns (quantity, mode): a key of :data:`UNITS`; and "tension", "shear", or "" where the name
+    does not say it or the quantity is no modulus, compliance or stress.
+    None if a word is not in the vocabulary, the words together name no quantity, both modes are
+    named, or the text has a sign of a unit, % or °.
+    """
+    if re.search("[%°º]", name):  # of a unit
+        return None
+    text = _plain(name)
+    for pattern, words in _DATA["signs"]["replaced"]:
+        text = re.sub(pattern, words, text)
+    parts = [part for word in re.findall(r"[^\W\d_]+|\d+", text) for part in _parts(word.lower())]
+    if not all(part in _KINDS for part in parts):
+        return None
+    kinds = {kind for part in parts for kind in _KINDS[part].split()}
+    modes = kinds & {"tension", "shear"}
+    named = frozenset(kinds - modes - {"-"})
+    quantity = _NAMED_BY.get(named) or _NAMED_BY.get(named - {"modulus"})
+    if quantity is None or len(modes) > 1:
+        return None
+    return quantity, " ".join(modes) if "Pa" in UNITS[quantity] else ""
+
+
+def _parts(word: str) -> list[str]:
+    """Split a word that is composed of words of the vocabulary, as "storagemodulus" into "storage"
+    and "modulus".
+
+    A letter e or g before "storage" or "loss" is split off too, as in "estorage".
+
+    word : letters, in lower case, or digits.
+    Returns the words that it is composed of; [word] if it is in the vocabulary itself or is not
+    composed of such words.
+    """
+    if word in _KINDS or not (found := _COMPOUND.fullmatch(word)):
+        return [word]
+    return [*filter(None, [found[1]]), *_WORD.findall(found[2])]
+
+
+# --- Which columns of a table are frequency, moduli and temperature ---
+
+#: degrees; temperatures without a unit that go above it are taken to be kelvins, in which DMA
+#: seldom goes below
+_KELVIN = 200.0
+#: quantity -> bounds of its numbers, and these in words
+_RANGES = {
+    "phase angle": (-math.inf, 0.5 * math.pi, "below 90 degrees"),
+    "temperature": (ABSOLUTE_ZERO, math.inf, f"finite and above {ABSOLUTE_ZERO} °C"),
+}
+#: units of frequency that say revolutions or cycles, or radians; "1/s" and "1/min" say neither
+_CYCLES = re.compile(r"(?i)hz|rpm|cpm|rad|rev|cyc|osc|giri|tours|[ucr]/|upm|u\s*min|deg|°")
+#: a heading that begins with G and at most three further letters or digits
+_OF_G = re.compile(r"\W*[Gg][^\W_]{0,3}(?![^\W_])")
+#: a power of ten in a heading
+_POWER_OF_TEN = re.compile(r"(?<!\d)10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])|\b1[eE][+-]?\d")
+#: units of angles
+_ANGLE = re.compile(r"(?i)rad|deg|°|º|grad")
+
+
+class Column(NamedTuple):
+    """A column of a known quantity.
+
+    position, heading : index from 0 and heading in its table.
+    name : name of its quantity, a key of :data:`UNITS`.
+    mode : mode of its modulus, "tension", "shear", or "" where the heading does not say.
+    log : base of the logarithms that its numbers are, 0 of others.
+    unit : unit in which its numbers are written, of the file, the user, or assumed; "" where none
+    can be assumed.
+    stated : whether the file or the user gives the unit; False: it is assumed.
+    """
+
+    position: int
+    heading: str
+    name: str
+    mode: str
+    log: float
+    unit: str
+    stated: bool
+
+    @property
+    def quantity(self) -> str:
+        """Name of what its numbers are converted to, as "storage" or "frequency".
+
+        An angular frequency counts as a frequency, a compliance as the modulus of the same name, a
+        phase angle as tan delta; "reduced" stays in the name.
+        """
+        return _quantity_of_column(self.name)
+
+
+def columns_of(
+    table: Table,
+    test: str,
+    named: Mapping[str, str],
+    overruling: Mapping[str, str],
+    defaults: Mapping[str, str],
+) -> tuple[list[Column], dict[str, str]]:
+    """Find the columns of a table whose quantity is known: the user named it, or the heading says
+    it and its unit fits.
+
+    table : :class:`Table`, table with headings.
+    test : "dma" or "relaxation", whose quantities are looked for.
+    named : quantity -> heading, of columns that the user named; keys of :data:`UNITS`,
+    here and below.
+    overruling : quantity -> unit in place of that of the file.
+    defaults : quantity -> unit where the file gives none.
+    Returns (a list of :class:`Column`, the columns of known quantities, in the order of the table;
+    a dict, heading of each other column, or "column INDEX" without one -> why it is left out: "no
+    numbers", a unit that does not fit, or "" where no quantity is known of it).  Headings of what
+    the user named by another column are left out.
+    Raises ParameterError for a heading that the table does not have, FileError for one that several
+    columns have, and for a column that the user named and whose unit is not understood.
+    """
+    owners = {_index(table, heading): name for name, heading in named.items()}
+    taken = {_quantity_of_column(name) for name in named}
+    columns: list[Column] = []
+    others: dict[str, str] = {}
+    for index, (heading, row) in enumerate(zip(table.headings, table.units, strict=True)):
+        if index in owners:
+            found = _named(owners[index], heading, row, overruling)
+        else:
+            found = [each for each in meanings(heading, row) if each.name in QUANTITIES[test]]
+            found = [each for each in found if _quantity_of_column(each.name) not in taken]
+        faults = [_contradiction(each, heading, overruling) for each in found]
+        if not table.has_numbers(index):
+            faults = ["no numbers"]
+        if "" in faults:
+            name, mode, unit, log, _ = found[faults.index("")]
+            sign = (
+                "1" if name == "strain" and any(each.unit for each in found) else ""
+            )  # of a ratio, where per cent are as usual
+            unit = (
+                overruling.get(name)
+                or (sign if unit in NO_UNIT else unit)
+                or defaults.get(name, "")
+            )
+            columns.append(
+                Column(
+                    position=index,
+                    heading=heading,
+                    name=name,
+                    mode=mode,
+                    log=log,
+                    unit=unit or ASSUMED[name],
+                    stated=bool(unit),
+                )
+            )
+        elif index in owners:
+            raise FileError(table.path, f"column {heading!r}: {faults[0]}")
+        else:
+            others[heading or f"column {index}"] = faults[0] if faults else ""
+    return columns, others
+
+
+def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> list[Meaning]:
+    """Return the ways to read a heading of a column whose quantity the user named, those with a
+    unit first.
+
+    name : the quantity.
+    heading, row : text of the heading, and the cell of a row of units.
+    overruling : quantity -> unit in place of that of the file.
+    Returns a list of :class:`Meaning`.  A modulus is of shear where the heading begins with G and
+    at most three further letters or digits, as "Gp"; a heading that says "angular" is of an angular
+    frequency.  A heading that states a unit cannot be read without one, and one with a power of ten
+    has no known unit, if ``overruling`` has none.
+    """
+    known = meanings(heading, row)
+    mode = next((each.mode for each in known if each.mode), "shear" if _OF_G.match(heading) else "")
+    if any("angular " + name == each.name for each in known):
+        name = "angular " + name
+    mode = mode if "Pa" in UNITS[name] else ""
+    ways = [
+        Meaning(name=name, mode=mode, unit=each.unit, log=each.log, sure=each.sure)
+        for each in readings(heading or "column", row)
+    ]
+    ways.sort(key=lambda each: each.unit in NO_UNIT)
+    if name not in overruling and _POWER_OF_TEN.search(heading):
+        return [ways[0]._replace(unit=heading)]
+    stated = [each for each in ways if each.sure and each.unit not in NO_UNIT]
+    return [each for each in ways if not stated or each.unit not in NO_UNIT]
+
+
+def _index(table: Table, heading: str) -> int:
+    """Return the index of the column that the user named by its heading.
+
+    table : :class:`Table`, table with headings.
+    heading : the heading, with its unit or without.
+    Returns the index, from 0.
+    Raises ParameterError, with the headings of the table, where the table does not have it;
+    FileError where several columns have it.
+    """
+    found = find_column(table, heading)
+    if found is None:
+        allowed = f"one of {', '.join(map(repr, table.headings))}{suggestion(str(heading), table.headings)}"  # noqa: E501
+        raise ParameterError("columns", f"{heading!r:.60}", allowed)
+    return found
+
+
+def _quantity_of_column(name: str) -> str:
+    """Return :attr:`Column.quantity` of a quantity by its name."""
+    name = name.replace("angular ", "").removesuffix(" compliance")
+    return "tan delta" if name == "phase angle" else name
+
+
+def _contradiction(meaning: Meaning, heading: str, overruling: Mapping[str, str]) -> str:
+    """Return why the unit of a heading contradicts the quantity that the heading may name, and what
+    helps.
+
+    meaning : :class:`Meaning`, the quantity that the heading may name, with the unit that stands in
+    the heading.
+    heading : text of the heading.
+    overruling : quantity -> unit that the user gives in place of that of the file; these are not
+    checked.
+    Returns a text for the user: the unit is unknown or of another dimension, is Hz of an angular
+    frequency, or is an angle of tan delta or none of a phase angle.  "" where the unit fits, is
+    missing, or is replaced by the user.
+    """
+    name = meaning.name
+    unit = meaning.unit
+    if name in overruling or unit in NO_UNIT:
+        return ""
+    problem = f"unit {unit!r} is not a unit of {name}: give units={{{name!r}: ...}}"
+    try:
+        conversion(unit, UNITS[name])
+    except ParameterError:
+        return problem
+    if "angular" in name and unit.lower().endswith("hz"):
+        plain = name.replace("angular ", "")
+        return (
+            f"an angular frequency in {unit}: rename it {plain!r}, or give units={{{name!r}: ...}}"
+        )
+    angle = {"1": False, "rad": True}.get(UNITS[name])  # pint converts the one to the other
+    return "" if angle in (None, bool(_ANGLE.search(unit))) else problem
+
+
+@np.errstate(all="ignore")  # a number beyond the doubles is infinite, which is refused
+def numbers_of(table: Table, column: Column) -> Numbers:
+    """Return the numbers of a column, converted to the unit of its quantity.
+
+    Logarithms become numbers, frequencies in cycles angular ones, and phase angles their tangents.
+
+    table : :class:`Table`, the table that has the column.
+    column : :class:`Column`, a column whose quantity is known.
+    Returns :class:`Numbers` in rad/s, Pa, 1/Pa, degrees Celsius, or dimensionless for tan delta:
+    the values, (n,), and half a unit of the last digit that the file states of each, converted in
+    the same way, (n,).
+    Raises FileError for cells that are no numbers, and for a unit that is missing and cannot be
+    assumed: of compliances, of temperatures above 200, and of phase angles that may be in radians;
+    for a phase angle of 90 degrees and more, and a temperature at or below absolute zero.  Other
+    values are not checked: they may be infinite.
+    """
+    name = column.name
+    unit = column.unit
+    values, half = table.numbers(column.position)
+    # a phase angle of rubber in degrees goes above pi/2
+    open_unit = not unit or values.max() <= {"phase angle": 0.5 * math.pi}.get(name, -math.inf)
+    if not column.stated and (open_unit or (name == "temperature" and values.max() > _KELVIN)):
+        problem = (
+            f"column {column.heading!r} has no unit, and its largest value is {values.max():g}: "
+            "give "
+            f"units={{{name!r}: ...}}"
+        )
+        raise FileError(table.path, problem)
+    if column.log:
+        values = column.log**values
+        half = values * math.log(column.log) * half
+    factor, offset = conversion(unit, UNITS[name])
+    if column.quantity.endswith("frequency") and "angular" not in name and not _CYCLES.search(unit):
+        factor *= 2.0 * math.pi
+    values = factor * values + offset
+    half = factor * half
+    if name in _RANGES:
+        low, high, words = _RANGES[name]
+        table.require(
+            (values > low) & (values < high), f"the {name} is not {words}: remove the row"
+        )
+    return (
+        Numbers(np.tan(values), half / np.cos(values) ** 2)
+        if name == "phase angle"
+        else Numbers(values, half)
+    )

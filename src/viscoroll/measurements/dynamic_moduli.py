@@ -1,0 +1,449 @@
+"""Measured moduli of one or several sweeps.
+
+Measured moduli, checked and sorted, and whether storage and loss modulus go together.
+
+A series is fitted to a :class:`Curve` or a :class:`Relaxation`; both have the response of a mode in
+their columns.
+
+Storage and loss modulus of a dynamic mechanical analysis: :class:`DynamicModuli`.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.checks import Floats, check_array
+from ..core.errors import ModelWarning, ParameterError, caller_level, shape_error
+from ..core.results import Result, SummaryRow
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+
+# --- Measured moduli, checked and sorted ---
+
+#: least number of points of a curve: a series of one mode has three constants
+FEWEST_POINTS = 3
+#: least and largest value of a column, in its unit: doubles hold their squares, of which the least
+#: squares are made
+RANGE = 1e-100, 1e100
+#: number of points above which the means of logarithmic bins are fitted in their place: the time of
+#: the least squares is proportional to the number of points
+MOST_POINTS = 1000
+#: number of logarithmic bins: 500 keep every detail that modes of one or two a decade can follow
+_BINS = 500
+#: half width in ln omega of the window of a slope: a quarter of a decade, within which moduli bend
+#: little
+_WINDOW = 0.25 * math.log(10.0)
+#: least number of points of a slope: five average the noise of usual DMA
+_NEIGHBOURS = 5
+#: column of a curve -> its unit
+UNITS = {"omega": "rad s-1", "storage": "Pa", "loss": "Pa", "t": "s", "relaxation": "Pa"}
+#: range of ln omega below which frequencies count as one: some thousand roundings
+_APART = 1e-12
+
+
+class Curve(NamedTuple):
+    """Storage and loss modulus over angular frequency, ascending, all positive.
+
+    omega : angular frequencies, rad/s, ascending, shape (n,); they may repeat.
+    storage, loss : moduli at these, shape (n,), both in the unit that the caller used.
+    """
+
+    omega: Floats
+    storage: Floats
+    loss: Floats
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Lowest and highest angular frequency of the data, rad/s."""
+        return float(self.omega[0]), float(self.omega[-1])
+
+    @property
+    def shortest(self) -> float:
+        """Shortest time of a mode that the data determine, s: 0, which allows any.
+
+        The loss modulus of a fast mode is proportional to omega far below its peak, so that even
+        such a mode shows in data.
+        """
+        return 0.0
+
+    @property
+    def constant(self) -> tuple[float, ...]:
+        """Response of a long-time modulus of 1 in each modulus: 1 in the storage, 0 in the loss
+        modulus.
+        """
+        return 1.0, 0.0
+
+    def responses(self, tau: Floats) -> Floats:
+        """Return the responses of modes of strength 1, z^2/(1 + z^2) and z/(1 + z^2) with z = omega
+        tau.
+
+        tau : times of the modes, s, > 0, shape (modes,), which may be empty.
+        Returns them dimensionless, shape (2, n, modes): row 0 of the storage, row 1 of the loss
+        modulus, at the n points.
+        """
+        z = self.omega[:, None] * tau
+        loss = 1.0 / (z + 1.0 / z)
+        return np.array([z * loss, loss])
+
+    def slopes(self, tau: Floats, responses: Floats) -> Floats:
+        """Return the derivatives of the responses by ln tau, 2 L^2 and L (1 - 2 S).
+
+        tau : times of the modes, s, shape (modes,); not used, as the responses suffice.
+        responses : result of :meth:`responses` for these times, S in row 0 and L in row 1, shape
+        (2, n, modes).
+        Returns the derivatives, dimensionless, shape (2, n, modes), row 0 of the storage, row 1 of
+        the loss modulus.
+        """
+        storage, loss = responses
+        return np.array([2.0 * loss * loss, loss * (1.0 - 2.0 * storage)])
+
+
+class Relaxation(NamedTuple):
+    """Relaxation modulus over time, ascending, all positive.
+
+    Properties and methods are those of :class:`Curve`, with one row in place of two.
+
+    t : times since the strain was applied, s, ascending, shape (n,).
+    relaxation : relaxation modulus at these, shape (n,), in the unit that the caller used.
+    """
+
+    t: Floats
+    relaxation: Floats
+
+    @property
+    def band(self) -> tuple[float, float]:
+        """Reciprocals of the last and of the first time, 1/s, which stand for the lowest and the
+        highest angular frequency.
+        """
+        return float(1.0 / self.t[-1]), float(1.0 / self.t[0])
+
+    @property
+    def shortest(self) -> float:
+        """Shortest time of a mode that the data determine, s: half of the first time.
+
+        A mode whose time is a tenth of the first time has fallen to exp(-10) there: noise alone
+        would set its strength.
+        """
+        return 0.5 * float(self.t[0])
+
+    @property
+    def constant(self) -> tuple[float, ...]:
+        """Response of a long-time modulus of 1: 1."""
+        return (1.0,)
+
+    def responses(self, tau: Floats) -> Floats:
+        """Return the responses of modes of strength 1, exp(-t/tau).
+
+        tau : times of the modes, s, > 0, shape (modes,), which may be empty.
+        Returns them dimensionless, shape (1, n, modes), at the n times.
+        """
+        return np.exp(-self.t[:, None] / tau)[None]
+
+    def slopes(self, tau: Floats, responses: Floats) -> Floats:
+        """Return the derivatives of the responses by ln tau, (t/tau) exp(-t/tau).
+
+        tau : times of the modes, s, > 0, shape (modes,).
+        responses : result of :meth:`responses` for these times, shape (1, n, modes).
+        Returns the derivatives, dimensionless, shape (1, n, modes).
+        """
+        return (self.t[:, None] / tau) * responses
+
+
+_Data = TypeVar("_Data", Curve, Relaxation)
+
+
+class KramersKronig(NamedTuple):
+    """Ratio of the measured loss modulus to the one that the slope of the storage modulus gives.
+
+    omega : angular frequency, rad/s, ascending, shape (n,).
+    ratio : E''/((pi/2) dE'/d ln omega), dimensionless, shape (n,); infinite where E' does not rise,
+        NaN where the neighbours of a point are all of one frequency, so that there is no slope.
+    median : median of the ratios that are not NaN, infinite ones included, NaN if all are; near 1
+        where the spectrum is broad and the data are sound.
+    """
+
+    omega: Floats
+    ratio: Floats
+    median: float
+
+
+def data_of(kind: type[_Data], *columns: ArrayLike, fewest: int = FEWEST_POINTS) -> _Data:
+    """Check measured columns and return them as a curve, sorted by frequency or time.
+
+    kind : :class:`Curve` or :class:`Relaxation`.
+    columns : the fields of ``kind``, three or two (else ValueError), in any order of points, (n,),
+        each without a unit or of the dimension in :data:`UNITS`: omega in rad/s, t in s; moduli
+        without a unit may be in any, as long as it is the same.
+    fewest : least number of points.
+    Returns the curve, of the class ``kind``, in ascending order; points of one frequency or time
+    stay in the order in which they were given.
+
+    Raises
+    ------
+    ParameterError
+        Values that are no numbers, outside of :data:`RANGE`, of a unit of another dimension,
+        columns of other shapes, or fewer than ``fewest`` points.
+    """
+    names = kind._fields
+    low, high = RANGE
+    values = [
+        check_array(name, given, unit=UNITS[name], low=low, high=high)
+        for name, given in zip(names, columns, strict=True)
+    ]
+    for name, column in zip(names, values, strict=True):
+        if column.ndim != 1 or column.shape != values[0].shape:
+            raise shape_error(name, column.shape, f"one column, with the shape of {names[0]}")
+    if values[0].size < fewest:
+        raise ParameterError(names[0], f"{values[0].size} points", f"at least {fewest} points")
+    order = np.argsort(values[0], kind="stable")
+    return kind(*(column[order] for column in values))
+
+
+def thinned(data: _Data) -> _Data:
+    """Average a curve of more than :data:`MOST_POINTS` points in logarithmic bins, so that fits of
+    long records stay fast.
+
+    In a bin the frequency (time) is the geometric mean, a modulus the arithmetic one: an error of
+    measurement that is 0 on average stays so.
+
+    data : a :class:`Curve` or a :class:`Relaxation`, ascending.
+    Returns a curve of the same class, ascending, with one point for each of the 500 bins that has
+    points, which divide the range of the data in equal ratios; ``data`` itself if it has no more
+    than :data:`MOST_POINTS`, 1000, points.
+    """
+    if data[0].size <= MOST_POINTS:
+        return data
+    from scipy import stats
+
+    x = np.log(data[0])
+    means = stats.binned_statistic(x, [x, *data[1:]], bins=_BINS).statistic
+    first, *others = means[:, ~np.isnan(means[0])]
+    return type(data)(np.exp(first), *others)
+
+
+def kramers_kronig(curve: Curve) -> KramersKronig:
+    """Compare the loss modulus with the local form of the Kramers-Kronig relations, E'' = (pi/2)
+    dE'/d ln omega.
+
+    It shows whether storage and loss modulus can be of one material.  The form is exact for a power
+    law in the limit of small exponents, and good where E' bends little within a decade (H. C. Booij
+    and G. P. J. M. Thoone, Rheologica Acta 21, 15-24, 1982, doi:10.1007/BF01520702).  A straight
+    line in ln E' over ln omega is fitted to the neighbours of a point, those within a quarter of a
+    decade, and at least the five nearest, itself included: the slope is its slope times its modulus
+    at the point.
+
+    curve : :class:`Curve`, storage and loss modulus, n points, which may be fewer than five.
+    Returns :class:`KramersKronig`: the measured divided by the computed loss modulus at each point,
+    infinite where the line does not rise and NaN where all neighbours are of one frequency, and the
+    median of those that are not NaN, which is NaN if all are.
+    """
+    x = np.log(curve.omega)
+    y = np.log(curve.storage)
+    ratio = np.empty_like(x)
+    nearest = min(_NEIGHBOURS, x.size) - 1
+    for n, centre in enumerate(x):
+        distance = np.abs(x - centre)
+        near = distance <= max(_WINDOW, np.partition(distance, nearest)[nearest])
+        slope, log = (
+            np.polyfit(x[near] - centre, y[near], 1)
+            if np.ptp(x[near]) > _APART
+            else (math.nan, 0.0)
+        )
+        allowed = 0.5 * math.pi * slope * math.exp(log)
+        ratio[n] = (
+            curve.loss[n] / allowed
+            if allowed > 0.0
+            else math.nan
+            if math.isnan(slope)
+            else math.inf
+        )
+    finite = ratio[~np.isnan(ratio)]
+    return KramersKronig(curve.omega, ratio, float(np.median(finite)) if finite.size else math.nan)
+
+
+# --- Storage and loss modulus of a dynamic mechanical analysis ---
+
+#: K; temperatures that differ by no more are those of one sweep, as a chamber holds its temperature
+SAME_TEMPERATURE = 1.0
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class DynamicModuli(Result):
+    """Storage and loss modulus over angular frequency, as :func:`viscoroll.read_dma` reads them
+    from a file.
+
+    It unpacks into its first three columns, ``omega, storage, loss = record``;
+    ``fit_prony(record)`` takes it whole, with its temperatures and its mode.
+
+    Parameters
+    ----------
+    omega : angular frequencies, rad/s, shape (n,), in the order of the file.
+    storage, loss : storage and loss modulus, Pa, shape (n,).
+    temperature : temperature of each point, degrees Celsius, shape (n,); None where the file has
+    none.
+    mode : "tension" (E', E'') or "shear" (G', G'').
+    source : name of the file.
+    columns : meaning -> heading of the column that was taken for it.
+    units : meaning -> unit in which that column was written.
+    notes : sentences: what was converted, compared, assumed, and which columns were left aside.
+    strain : amplitude of the strain at each point, dimensionless, (n,); None where the file does
+        not state it with its unit.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> record = vr.read_dma(vr.datasets.path("dma.csv"))
+    >>> record.mode, record.omega.size
+    ('tension', 25)
+    """
+
+    omega: Floats
+    storage: Floats
+    loss: Floats
+    temperature: Floats | None = None
+    mode: str = "tension"
+    source: str = ""
+    columns: Mapping[str, str] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+    strain: Floats | None = None
+
+    @property
+    def isothermal(self) -> bool:
+        """Whether all points are of one temperature, as far as the file says: within 1 K."""
+        return self.temperature is None or float(np.ptp(self.temperature)) <= SAME_TEMPERATURE
+
+    def __iter__(self) -> Iterator[Floats]:
+        """Return an iterator over omega, storage and loss, (n,) each, so that ``omega, storage,
+        loss = read_dma(path)`` works.
+
+        Warns with ModelWarning where the record has temperatures that span more than 1 K, or moduli
+        of shear, which these arrays do not state.
+        """
+        lost = ["its temperatures"] * (not self.isothermal) + ["that it is of shear"] * (
+            self.mode == "shear"
+        )
+        if lost:
+            text = (
+                f"{self.source}: three columns do not state {' and '.join(lost)}: give the record "
+                "itself, "
+                f"fit_prony(record)"
+            )
+            warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        return iter((self.omega, self.storage, self.loss))
+
+    def __len__(self) -> int:
+        """Three: the columns that it unpacks into."""
+        return 3
+
+    def __getitem__(self, name: Any) -> Any:
+        """Return a field by its name, or omega, storage, loss by their place.
+
+        name : name of a field; 0, 1 or 2, or -3 to -1 from the end; or a slice, which gives a tuple
+        of the arrays.
+        Returns the field, or the array, (n,).
+        Raises KeyError for another name, IndexError for another number.
+        """
+        if isinstance(name, (int, slice)):
+            return (self.omega, self.storage, self.loss)[name]
+        return super().__getitem__(name)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the points as a dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Variables omega (rad s-1), storage and loss (Pa) and, where they are not None,
+            temperature (degC) and strain (dimensionless), each over the dimension ``point``;
+            attributes title, mode, source and notes, one text, parted by "; ".
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.read_dma(vr.datasets.path("dma.csv")).to_xarray().sizes["point"]
+        25
+        """
+        import xarray as xr
+
+        units = {
+            "omega": "rad s-1",
+            "storage": "Pa",
+            "loss": "Pa",
+            "temperature": "degC",
+            "strain": "1",
+        }
+        columns = {name: values for name in units if (values := getattr(self, name)) is not None}
+        data = {name: ("point", values, {"units": units[name]}) for name, values in columns.items()}
+        about = {
+            "title": "Dynamic moduli",
+            "mode": self.mode,
+            "source": self.source,
+            "notes": "; ".join(self.notes),
+        }
+        return xr.Dataset(data, attrs=about)
+
+    def _figure(self) -> Figure:
+        """Return the matplotlib figure of storage and loss modulus, Pa, over angular frequency,
+        rad/s.
+
+        Both axes are logarithmic; the points of all temperatures are drawn alike.
+        """
+        from ..core.plots import new_figure
+
+        figure, axes = new_figure(f"{self.source or 'Dynamic moduli'}, {self.mode}")
+        axes.loglog(
+            self.omega,
+            self.storage,
+            "o",
+            self.omega,
+            self.loss,
+            "o",
+            markerfacecolor="none",
+            markersize=4,
+        )
+        axes.legend(["G'", "G''"] if self.mode == "shear" else ["E'", "E''"], frameon=False)
+        axes.set(xlabel="angular frequency, rad/s", ylabel="modulus, Pa")
+        return figure
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return title and rows of the printed report.
+
+        Returns (title: source, number of points, range of omega in rad/s, mode and, if the record
+        has them, temperatures, in one line; two :class:`SummaryRow`: the columns with their
+        headings and units, and the notes, or "no unused column" where there are none).
+        """
+        words = [
+            f"{self.omega.size} points",
+            f"omega {self.omega.min():.4g} to {self.omega.max():.4g} rad/s",
+        ]
+        words.append("shear (G', G'')" if self.mode == "shear" else "tension (E', E'')")
+        if self.temperature is not None:
+            low = self.temperature.min()
+            high = self.temperature.max()
+            words.append(f"{low:g} °C" if low == high else f"{low:g} to {high:g} °C")
+        return f"{self.source or 'Dynamic moduli'}: {', '.join(words)}", rows_of(self)
+
+
+def rows_of(record: Any) -> list[SummaryRow]:
+    """Return the rows of the report of a record with ``columns``, ``units`` and ``notes``: columns,
+    and notes.
+    """
+    given = (
+        f"{name} {record.columns[name]!r} in {record.units.get(name, '1')}"
+        for name in record.columns
+    )
+    return [
+        SummaryRow("columns", "; ".join(given)),
+        SummaryRow("notes", "; ".join(record.notes) or "no unused column"),
+    ]

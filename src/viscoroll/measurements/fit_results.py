@@ -1,0 +1,705 @@
+"""Results of the fits of measured moduli, and their report.
+
+The lines that ``print`` shows of a fit.
+
+Of the argument ``fit``, a :class:`SeriesFit`, the functions read the public attributes
+alone.
+
+Results of the fits of measured moduli: :class:`Fit`, :class:`RelaxationFit`, and their base
+:class:`SeriesFit`.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..contact_mechanics.assumptions import (
+    MISFIT_LIMIT,
+    Assumption,
+    assess_measured_band,
+    transit_frequency,
+)
+from ..contact_mechanics.contact import contact
+from ..core.checks import Booleans, Floats, Numbers, check_array
+from ..core.errors import ModelWarning, caller_level, described_error
+from ..core.plots.result_figures import series_fit
+from ..core.results import Result, SummaryRow
+from ..materials.importers import check_poisson
+from ..materials.material import Material
+from ..materials.measured_data import WLF, Measured
+from ..materials.prony import Prony
+from .dynamic_moduli import UNITS, Curve, KramersKronig, Relaxation
+from .master_curve import Shifts, undetermined_shifts
+from .spectrum import Data, has_plateau, spectrum_of
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+    from ..rollers import Cylinder
+
+
+# --- The lines that print shows of a fit ---
+
+#: range of the median of the Kramers-Kronig ratio of data in which storage and loss go together
+_CONSISTENT = (0.8, 1.25)
+#: Poisson's ratio of the factor that the report gives of shear: the default of material()
+_NU = 0.49
+
+
+def summarize_fit(fit: Any) -> tuple[str, list[SummaryRow]]:
+    """Return the title and the lines that ``print(fit)`` shows.
+
+    fit : a :class:`viscoroll.measurements.fit_results.SeriesFit`.
+    Returns (title, a sentence with the number of modes and of measured points and the range of
+    omega or t; the lines below, a list of :class:`SummaryRow` in order).  The first call computes
+    ``fit.admissible``.
+    """
+    low, high = fit.band
+    of_time = fit.data._fields[0] == "t"
+    span = (
+        f"t = {1.0 / high:.3g} to {1.0 / low:.3g} s"
+        if of_time
+        else f"omega = {low:.3g} to {high:.3g} rad/s"
+    )
+    rows = [SummaryRow(*row) for row in _rows(fit)]
+    return f"Prony series of {fit.prony.E.size} modes for {fit.points} points, {span}", rows
+
+
+def _rows(fit: Any) -> Iterator[tuple[str, str]]:
+    """Yield the lines of the report below its title, each as (name, text).
+
+    They are: constants (with the factor to Young's modulus where the data are of shear, and the
+    temperature where it is known), thinning where points were thinned, misfit, the lines of this
+    kind of fit, modes outside the data, accuracy of M, and the table of modes with strengths
+    divided by the long-time modulus and times in s.
+
+    fit : a :class:`viscoroll.measurements.fit_results.SeriesFit`.
+    Yields pairs (name, text); name is "" of a line that continues the one before.
+    """
+    prony = fit.prony
+    symbol = symbol_of(fit)
+    floor = "" if fit.plateau else "; at its lower bound: the data do not determine it"
+    yield symbol, f"{fit.E:.6g} (long-time modulus, unit of the data){floor}"
+    if fit.mode == "shear":
+        factor = f"{2.0 * (1.0 + _NU):.4g} G at nu = {_NU:g}"
+        yield "shear", f"shear data: material(nu=) uses E = 2 (1 + nu) G, {factor}"
+    yield "alpha", f"{prony.alpha:.6g} (instantaneous modulus divided by long-time modulus)"
+    yield "T_ref", f"{fit.T_ref:.6g} s (the longest time)"
+    if fit.temperature is not None:
+        yield "temperature", f"{fit.temperature:g} C, the temperature of these times"
+    if fit.points > fit.data[0].size:
+        yield (
+            "thinned",
+            f"the means of {fit.data[0].size} logarithmic bins replace the points, here and below",
+        )
+    target = f"target {fit.target:.2%}{'' if fit.reached else ', not reached'}"
+    yield "misfit", f"{fit.misfit_text(2)} (rms, relative); {target}"
+    yield from _of_relaxation(symbol) if fit.data._fields[0] == "t" else _of_dynamic(fit, symbol)
+    yield "outside", _outside(fit)
+    found = fit.admissible
+    ends = ", ".join(
+        f"+-{found.error[n]:.2%}"
+        for n in ((0, found.rate.size // 2, -1) if found.rate.size else ())
+    )
+    where = "at the lowest, middle and highest speed inside the measured band"
+    yield "accuracy", f"M: {ends or 'no speed'}, {where}, by all spectra that meet the data as well"
+    if found.rate.size:
+        (low, high), (least, most) = (
+            (part.min(), part.max()) for part in (found.E / fit.E, found.alpha / prony.alpha)
+        )
+        yield (
+            "",
+            f"among them {symbol} changes by factors of {low:.3g} to {high:.3g}, alpha of "
+            f"{least:.3g} to {most:.3g}",
+        )
+    yield "modes", f"{symbol}_i/{symbol}      tau_i, s"
+    for E, tau, out in zip(prony.E, prony.tau * fit.T_ref, fit.outside, strict=True):
+        yield "", f"{E:<10.4g} {tau:<10.4g}{' outside the data' if out else ''}"
+
+
+def symbol_of(fit: Any) -> str:
+    """Return the symbol of the modulus of a ``fit``: "G" where ``fit.mode`` is "shear", else
+    "E".
+    """
+    return "G" if fit.mode == "shear" else "E"
+
+
+def _of_dynamic(fit: Any, symbol: str) -> Iterator[tuple[str, str]]:
+    """Yield the lines of the report on the consistency of storage and loss modulus, and on the
+    shifts of a master curve, each as (name, text).
+
+    They are one on Kramers-Kronig; of curves at two or more temperatures also the shift factors, a
+    line where temperatures were combined into fewer curves, the largest mismatch of neighbours
+    where shifts were found by their overlap, and a line for each shift that the overlap leaves
+    open.
+
+    fit : a :class:`viscoroll.Fit`.
+    symbol : "E" or "G".
+    """
+    yield f"{symbol}''", _kramers_kronig(fit.kramers_kronig.median, symbol)
+    if (shifts := fit.shifts) is None or len(shifts.temperature) < 2:
+        return
+    factors = ", ".join(
+        f"{T:.4g} C {np.log10(a):+.3f}" for T, a in zip(shifts.temperature, shifts.a_T, strict=True)
+    )
+    yield "shifts", f"to {shifts.reference:g} C, log10 a_T: {factors}"
+    count = len(shifts.temperature)
+    if shifts.distinct > count:
+        yield (
+            "",
+            f"{shifts.distinct} temperatures, within 0.5 K of one another, were combined into "
+            f"{count}",
+        )
+    if np.isfinite(shifts.mismatch).any():
+        most = np.nanmax(shifts.mismatch)
+        yield "", f"neighbouring curves differ by up to {most:.2%} where they overlap (rms)"
+    for pair in undetermined_shifts(shifts):
+        yield "", f"the overlap does not determine the shift {pair}: the curves are flat there"
+
+
+def _of_relaxation(symbol: str) -> Iterator[tuple[str, str]]:
+    """Yield the line of the report on the error of the loss modulus of a fit of relaxation, as
+    (name, text).
+
+    symbol : "E" or "G".
+    """
+    yield (
+        "",
+        f"{symbol}'' follows from the slope of {symbol}(t); its error is ten times larger or more",
+    )
+
+
+def _kramers_kronig(median: float, symbol: str) -> str:
+    """Return a sentence on whether storage and loss modulus can be of one material.
+
+    median : median of the Kramers-Kronig ratio, measured over computed loss modulus, dimensionless;
+        NaN where it could not be computed.
+    symbol : "E" or "G".
+    Returns a text without a subject, which follows the symbol of the loss modulus.  It warns of a
+    median outside of 0.8 to 1.25, and of NaN says that there are too few frequencies.
+    """
+    if np.isnan(median):
+        return f"cannot be compared with {symbol}': too few different frequencies (Kramers-Kronig)"
+    text = f"is {median:.2f} times the value from the slope of {symbol}' (Kramers-Kronig, median)"
+    sound = _CONSISTENT[0] <= median <= _CONSISTENT[1]
+    return text + (
+        ""
+        if sound
+        else ": storage and loss modulus are inconsistent, or the spectrum has few narrow modes"
+    )
+
+
+def _outside(fit: Any) -> str:
+    """Return a sentence on the modes whose times lie outside the data, with their share of the sum
+    of all strengths.
+
+    Where there are none, the sentence says so; so it does of a series without modes.
+
+    fit : a :class:`viscoroll.measurements.fit_results.SeriesFit`.
+    """
+    range_of = f"the data's range of {'times' if fit.data._fields[0] == 't' else '1/omega'}"
+    if not (count := int(fit.outside.sum())):
+        return f"no mode lies outside {range_of}"
+    share = float(fit.prony.E[fit.outside].sum() / (fit.prony.alpha - 1.0))
+    which = f"{count} of {fit.prony.E.size} modes, {share:.1%} of the sum of strengths"
+    return f"{which}, lie outside {range_of}"
+
+
+# --- Results of the fits of measured moduli ---
+
+#: which modulus was measured
+Mode = Literal["tension", "shear"]
+
+
+class Misfit(NamedTuple):
+    """Root mean square of the relative errors of storage and loss modulus, dimensionless (0.01 is 1
+    %).
+    """
+
+    storage: float
+    loss: float
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class SeriesFit(Result):
+    """A Prony series fitted to measured moduli: the base of :class:`Fit` and
+    :class:`RelaxationFit`.
+
+    E : long-time modulus, in the unit of the data; of tension or of shear, as ``mode`` says.
+    T_ref : the longest time, s; times of ``prony`` are in units of it.  1 where the series has no
+    mode.
+    prony : the series, strengths divided by E, the same for both moduli, since Poisson's ratio is
+        taken constant in time.
+    mode : "tension" (E', E'', E(t)) or "shear" (G', G'', G(t)): the modulus of the data, of E and
+        of :meth:`modulus`.
+    target : the misfit that was requested, a root mean square of relative errors, dimensionless.
+    reached : whether it is reached.
+    outside : for each mode of ``prony`` whether its time lies outside of 1/omega, or of t, of the
+    data, shape (modes,).
+    band : (lowest, highest) angular frequency of the data, rad/s; of relaxation (1/last time,
+    1/first time).
+    points : number of points that were measured; above 1000 the means of 500 logarithmic bins were
+        fitted, and they are the data and the misfit here.
+    grid : shortest and longest time that the fit was allowed, s.
+    temperature : temperature of the fit, degrees Celsius, None where it is not known.
+    source : source of the data, in words.
+    misfit : root mean square of the relative errors, dimensionless: a :class:`Misfit` of storage
+        and loss, or one number of relaxation.
+    """
+
+    E: float
+    T_ref: float
+    prony: Prony
+    mode: Mode
+    target: float
+    reached: bool
+    outside: Booleans
+    band: tuple[float, float]
+    points: int
+    grid: tuple[float, float]
+    temperature: float | None = None
+    source: str = ""
+
+    misfit: Any = None
+
+    @property
+    def data(self) -> Data:
+        """The data that were fitted, a :class:`.dynamic_moduli.Curve` or a
+        :class:`.dynamic_moduli.Relaxation`.
+        """
+        raise NotImplementedError
+
+    @property
+    def symbols(self) -> list[str]:
+        """Symbols of the measured moduli: ["E'", "E''"] or ["E(t)"]; G in place of E where they are
+        of shear.
+        """
+        signs = ["(t)"] if self.data._fields[0] == "t" else ["'", "''"]
+        return [symbol_of(self) + sign for sign in signs]
+
+    def misfit_text(self, digits: int) -> str:
+        """Return the misfit of each modulus in words, as "0.35% in E', 0.80% in E''".
+
+        Parameters
+        ----------
+        digits : number of digits after the decimal point of the per cent, an int >= 0.
+
+        Returns
+        -------
+        str
+            Two parts for storage and loss, parted by a comma; one part for relaxation.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv"))).misfit_text(1)
+        "0.4% in E', 0.4% in E''"
+        """
+        pairs = zip(np.atleast_1d(self.misfit), self.symbols, strict=True)
+        return ", ".join(f"{misfit:.{digits}%} in {symbol}" for misfit, symbol in pairs)
+
+    @property
+    def largest_misfit(self) -> float:
+        """The misfit, a root mean square of relative errors, dimensionless; of storage and loss the
+        larger one.
+        """
+        return float(np.max(self.misfit))
+
+    @property
+    def _fault(self) -> str:
+        """Words on a misfit that misses the target or is above 5 %; "" where it does neither."""
+        if not self.reached:
+            return f"the misfit of {self.target:.2%} was not reached ({self.largest_misfit:.2%})"
+        above = self.largest_misfit > MISFIT_LIMIT
+        return (
+            f"the misfit of {self.largest_misfit:.2%} is above {MISFIT_LIMIT:.0%}" if above else ""
+        )
+
+    @property
+    def alpha(self) -> float:
+        """Instantaneous divided by long-time modulus, dimensionless."""
+        return self.prony.alpha
+
+    @property
+    def plateau(self) -> bool:
+        """Whether the data determine E, which is then above the least that is allowed (1 % of the
+        lowest modulus).
+        """
+        return has_plateau(self.data, self.E)
+
+    @cached_property
+    def admissible(self) -> Any:
+        """Spectra that meet the data as well as this fit, with the smallest and the largest M at
+        each speed.
+
+        They show what the data leave open: a property in which they differ is not determined.  It
+        is of type :class:`.spectrum.AdmissibleSpectra`, with n speeds, about two a
+        decade, and the fields:
+
+        - ``rate``: transit frequencies of the contact, 1/s, (n,), over
+          :attr:`viscoroll.Measured.transit_band`;
+        - ``error``: accuracy of M at them as +-, relative, (n,): the largest of ``M_changes``;
+        - ``M_changes``: relative change of M by each spectrum, (2 n, n);
+        - ``V``, ``M``: kappa V and kappa M of this fit, dimensionless, (n,);
+        - ``E``, ``alpha``: long-time modulus of each spectrum, in the unit of the data, and its
+          instantaneous divided by its long-time modulus, (2 n,).
+
+        They are computed at the first access, in some tenths of a second; n is 0 where the data
+        span less than a factor of three, or nothing relaxes.
+        """
+        from .spectrum import admissible_spectra
+
+        return admissible_spectra(self.data, spectrum_of(self.prony, self.E, self.T_ref))
+
+    @property
+    def measured(self) -> Measured:
+        """What a material keeps of the data, a :class:`Measured`.
+
+        It has the lowest and the highest frequency, rad/s, the misfit (of storage and loss the
+        larger one), the source, or where there is none the number of points, as "25 points", and
+        the accuracy of M (:attr:`admissible`).
+        """
+        source = self.source or f"{self.points} points"
+        errors = zip(self.admissible.rate.tolist(), self.admissible.error.tolist(), strict=True)
+        return Measured(*self.band, self.largest_misfit, source, tuple(errors))
+
+    def material(
+        self,
+        nu: float = 0.49,
+        *,
+        name: str = "",
+        density: float | None = None,
+        thickness: float | None = None,
+    ) -> Material:
+        """Return the fit as a :class:`viscoroll.Material` with its ``measured`` band and
+        ``temperature``; the data must be in Pa.
+
+        A shear modulus becomes Young's by E = 2 (1 + nu) G; ``measured.source`` then says so.
+
+        Parameters
+        ----------
+        nu : Poisson's ratio, in (-1, 0.5], constant in time.
+        name : name of the material, free text.
+        density : density, kg/m^3, > 0; None: not known.
+        thickness : thickness of the layer, m, > 0; None for a half-space.
+
+        Returns
+        -------
+        viscoroll.Material
+            E in Pa, times in units of ``T_ref``, s, as the fit has them.
+
+        Raises
+        ------
+        ParameterError
+            A value that is not finite or out of the range of :class:`viscoroll.Material`.
+
+        Warns
+        -----
+        ModelWarning
+            A fit that misses its target, or whose misfit is above 5 %; a ``temperature`` that looks
+            like kelvin.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+        >>> fit.material(nu=0.49).E == fit.E
+        True
+        """
+        if self._fault:
+            text = f"{self._fault}: see the points that miss in fit.plot(), and docs/howto/dma.md"
+            warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        E = self.E
+        measured = self.measured
+        if self.mode == "shear":
+            factor = 2.0 * (1.0 + check_poisson(nu))
+            E *= factor
+            measured = replace(
+                measured, source=f"{measured.source}, shear: E = 2 (1 + nu) G = {factor:.4g} G"
+            )
+        return Material(
+            E,
+            nu,
+            self.prony,
+            self.T_ref,
+            name=name,
+            density=density,
+            thickness=thickness,
+            measured=measured,
+            temperature=self.temperature,
+        )
+
+    def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
+        """Return whether the data hold the frequencies that a contact with this material needs, and
+        the misfit of the fit is at most 5 %.
+
+        The transit frequency |V|/(lam l0) must lie in :attr:`viscoroll.Measured.transit_band` of
+        the data, ends included, so that it does not at V = 0.  Where the material was shifted to
+        another temperature (``Material.at``), the frequency is converted to that of the data.
+
+        Parameters
+        ----------
+        cylinder : a :class:`viscoroll.Cylinder`, one or, with arrays, several, whose material or
+            base is ``material()`` of this fit, at any temperature.
+        V : speed of the axis, m/s, any sign, a number or an array of any shape.
+
+        Returns
+        -------
+        Assumption
+            ``value``: |V|/(lam l0), 1/s, at the temperature of the data; ``holds``: whether it lies
+            in that band and the larger misfit is at most 0.05; ``sentence``: both in words.  The
+            first two have the shape of V, broadcast with that of the cylinder's parameters.
+
+        Raises
+        ------
+        ParameterError
+            A cylinder neither of whose bodies has the series of this fit; V that is not numeric,
+            NaN, infinite, of another dimension, or of a shape that does not broadcast with that of
+            the cylinder.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+        >>> roller = vr.Cylinder(R=0.1, m=35.5, mu=0.3, material=fit.material(nu=0.49))
+        >>> fit.validity(roller, [0.1, 1.0]).holds
+        array([ True,  True])
+        """
+        bodies = cylinder.pair.cylinder, cylinder.pair.half_space
+        body = next((body for body in bodies if body.prony == self.prony), None)
+        if body is None:
+            raise described_error(
+                "cylinder", "has other materials", "one with the material() of this fit"
+            )
+        speed = check_array("V", V, unit="m s-1")
+        lam = contact(
+            cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam"
+        ).lam
+        seen = transit_frequency(speed, lam * cylinder.l0) * (body.T_ref / self.T_ref)
+        return assess_measured_band(seen, {"the material": self.measured})
+
+    def _moduli(self, x: ArrayLike) -> Floats:
+        """Return the moduli of the fit, in the unit of the data.
+
+        x : angular frequencies, rad/s, or of a fit of relaxation times, s, > 0, of any shape;
+            neither sign nor unit is checked.
+        Returns shape (2, *x.shape), storage and loss, or (1, *x.shape), relaxation; NaN where x is
+        NaN.
+        """
+        points = np.asarray(x, np.float64)
+        data = self.data._replace(**{self.data._fields[0]: points.ravel()})
+        return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the data, the fit and its series as a dataset.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over omega (rad/s) or t (s): the data that were fitted, storage and loss or relaxation,
+            and the fit at the same points, storage_fit and loss_fit or relaxation_fit, in the unit
+            of the data.  Over ``mode``: E, strengths divided by the long-time modulus, and tau, s.
+            Attributes: E_long, long-time modulus in the unit of the data; T_ref, s; title; modulus,
+            "tension" or "shear"; and misfit_storage and misfit_loss, or misfit, root mean squares
+            of relative errors, dimensionless.  The attribute ``units`` of the moduli is the text
+            "unit of the data".
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> data = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv"))).to_xarray()
+        >>> data["storage_fit"].dims, data["tau"].dims
+        (('omega',), ('mode',))
+        """
+        import xarray as xr
+
+        x, *names = self.data._fields
+        of_data = zip(
+            (*names, *(f"{name}_fit" for name in names)),
+            (*self.data[1:], *self._moduli(self.data[0])),
+        )
+        data: dict[str, Any] = {
+            name: (x, values, {"units": "unit of the data"}) for name, values in of_data
+        }
+        data |= {
+            "E": ("mode", self.prony.E, {"long_name": "strengths divided by the long-time modulus"})
+        }
+        data |= {"tau": ("mode", self.prony.tau * self.T_ref, {"units": "s"})}
+        about = {
+            "E_long": self.E,
+            "T_ref": self.T_ref,
+            "title": "Fit of a Prony series",
+            "modulus": self.mode,
+        }
+        misfits = [f"misfit_{name}" for name in names] if len(names) > 1 else ["misfit"]
+        about |= dict(zip(misfits, np.atleast_1d(self.misfit).tolist(), strict=True))
+        return xr.Dataset(data, {x: (x, self.data[0], {"units": UNITS[x]})}, about)
+
+    _summary = summarize_fit
+    _figure = series_fit
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class Fit(SeriesFit):
+    """A Prony series fitted to a master curve, with its misfit and the consistency of the data.
+
+    Attributes
+    ----------
+    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        as of ``SeriesFit``, the base class; in shear E, storage and loss are G, G' and G''.
+    misfit : root mean square of the relative errors, dimensionless, ``.storage`` and ``.loss``.
+    kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus:
+        ``.omega``, rad/s, ``.ratio`` at these, dimensionless, and ``.median``, near 1 for sound
+        data.
+    shifts : shift factors (:class:`.master_curve.Shifts`) where temperatures were given, else None.
+    omega, storage, loss : the data, sorted and shifted, (n,) each; rad/s and the unit given.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+    >>> fit.prony.E.size, fit.misfit.loss < 0.01
+    (4, True)
+    >>> rubber = fit.material(nu=0.49, name="rubber")
+    """
+
+    misfit: Misfit
+    kramers_kronig: KramersKronig
+    shifts: Shifts | None
+    omega: Floats
+    storage: Floats
+    loss: Floats
+
+    @property
+    def data(self) -> Curve:
+        """The data that were fitted, as a :class:`.dynamic_moduli.Curve`."""
+        return Curve(self.omega, self.storage, self.loss)
+
+    def wlf(self) -> WLF:
+        """Fit the law of Williams, Landel and Ferry to the shift factors of the fit.
+
+        It is :meth:`viscoroll.ShiftFactors.wlf` of ``shifts``, which has ``arrhenius()`` too, and
+        is itself a shift for :meth:`Material.at` between the temperatures of the curves.
+
+        Returns
+        -------
+        WLF
+            A shift for any temperature, with a_T = 1 at the reference of the fit.
+
+        Raises
+        ------
+        ParameterError
+            A fit of fewer than three temperatures; factors that rise with temperature.
+
+        Warns
+        -----
+        ModelWarning
+            Where the law misses a factor by more than 0.1 decades.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> rubber = vr.Material(
+        ...     2e6, 0.5, vr.Prony([1.0, 2.0, 8.0], [1.0, 1e-2, 1e-4]), temperature=20.0
+        ... )
+        >>> shift, omega = vr.WLF(C1=8.86, C2=101.6, T0=20.0), np.geomspace(0.1, 100.0, 20)
+        >>> curves = [rubber.at(T, shift) for T in (10.0, 20.0, 30.0)]
+        >>> moduli = [m.storage(omega) for m in curves], [m.loss(omega) for m in curves]
+        >>> fit = vr.fit_prony([omega] * 3, *moduli, temperature=[10.0, 20.0, 30.0])
+        >>> bool(abs(fit.wlf()(0.0) / shift(0.0) - 1.0) < 0.05)
+        True
+        """
+        if self.shifts is None:
+            raise described_error(
+                "temperature", "was not given to the fit", "given, one for each curve"
+            )
+        return self.shifts.wlf()
+
+    def modulus(self, omega: ArrayLike) -> tuple[Floats, Floats]:
+        """Return storage and loss modulus of the fit in the unit of the data.
+
+        They are E' and E'', or G' and G'' where ``mode`` is "shear".
+
+        Parameters
+        ----------
+        omega : angular frequencies, rad/s, > 0, not checked, of any shape, also outside of the
+        data.
+
+        Returns
+        -------
+        storage, loss : the moduli, each of the shape of ``omega``; NaN where omega is NaN.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+        >>> storage, loss = fit.modulus([1.0, 10.0])
+        >>> storage.shape
+        (2,)
+        """
+        storage, loss = self._moduli(omega)
+        return storage, loss
+
+
+@dataclass(frozen=True, eq=False, repr=False, kw_only=True)
+class RelaxationFit(SeriesFit):
+    """A Prony series fitted to a relaxation modulus: the result of
+    :func:`fit_series.fit_relaxation`.
+
+    Attributes
+    ----------
+    E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
+        as of ``SeriesFit``, the base class.
+    misfit : root mean square of the relative errors, dimensionless.
+    t : times of the data, ascending, s, (n,).
+    relaxation : relaxation modulus of the data, in the unit given, (n,).
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import viscoroll as vr
+    >>> t = np.geomspace(0.01, 100.0, 30)
+    >>> fit = vr.fit_relaxation(t, 1e6 * (1.0 + 2.0 * np.exp(-t / 0.5)))
+    >>> fit.prony.E.round(6)
+    array([2.])
+    """
+
+    misfit: float
+    t: Floats
+    relaxation: Floats
+
+    @property
+    def data(self) -> Relaxation:
+        """The data that were fitted, as a :class:`.dynamic_moduli.Relaxation`."""
+        return Relaxation(self.t, self.relaxation)
+
+    def modulus(self, t: ArrayLike) -> Floats:
+        """Return the relaxation modulus of the fit, E(t) or of shear G(t), in the unit of the data.
+
+        Parameters
+        ----------
+        t : times, s, > 0, not checked, of any shape, also outside of the data.
+
+        Returns
+        -------
+        array
+            The modulus, of the shape of ``t``; NaN where t is NaN.
+
+        Examples
+        --------
+        >>> import numpy as np
+        >>> import viscoroll as vr
+        >>> t = np.geomspace(0.01, 100.0, 30)
+        >>> fit = vr.fit_relaxation(t, 1e6 * (1.0 + 2.0 * np.exp(-t / 0.5)))
+        >>> round(float(fit.modulus(1000.0)))
+        1000000
+        """
+        return self._moduli(t)[0]

@@ -1,0 +1,344 @@
+"""The fits of measured moduli: :func:`fit_prony` and :func:`fit_relaxation`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
+
+from ..core.checks import Numbers, check_choice, check_integer, check_number
+from ..core.errors import ParameterError, described_error
+from ..materials.measured_data import check_celsius
+from ..materials.prony import Prony
+from ..materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
+from .dma_reader import RelaxationModulus
+from .dynamic_moduli import Curve, DynamicModuli, Relaxation, data_of, kramers_kronig, thinned
+from .fit_results import Fit, Misfit, Mode, RelaxationFit
+from .master_curve import master_curve
+from .spectrum import fewest_modes, misfits, spectrum_of
+
+#: ratio of the highest to the lowest frequency that a fit may have; times reach a decade beyond on
+#: either side
+MOST_SPREAD = LARGEST_TIME_RATIO / 100.0
+#: ratio of the last to the first relaxation modulus above which it is none: noise on a plateau
+#: stays below
+_RISES = 1.1
+
+
+_Curve = TypeVar("_Curve", Curve, Relaxation)
+
+
+class _Options(TypedDict, total=False):
+    """Options of :func:`fit_prony`, described there, that hold for columns and for records
+    alike.
+    """
+
+    misfit: float
+    temperature: Numbers | None
+    reference: float | None
+    shift: Numbers | Callable[[float], float] | None
+    on: Literal["both", "storage"]
+    mode: Mode | None
+    source: str
+
+
+@overload
+def fit_prony(
+    omega: DynamicModuli, *, modes: int | None = None, **options: Unpack[_Options]
+) -> Fit: ...
+@overload
+def fit_prony(
+    omega: Numbers,
+    storage: Numbers,
+    loss: Numbers,
+    modes: int | None = None,
+    **options: Unpack[_Options],
+) -> Fit: ...
+def fit_prony(
+    omega: Numbers | DynamicModuli,
+    storage: Numbers | None = None,
+    loss: Numbers | None = None,
+    modes: int | None = None,
+    *,
+    misfit: float = 0.01,
+    temperature: Numbers | None = None,
+    reference: float | None = None,
+    shift: Numbers | Callable[[float], float] | None = None,
+    on: Literal["both", "storage"] = "both",
+    mode: Mode | None = None,
+    source: str = "",
+) -> Fit:
+    """Fit a Prony series to storage and loss modulus.
+
+    The strengths are those of non-negative least squares of the relative errors of both moduli, on
+    times that reach half a decade or a decade beyond the data (at the slow end less, down to half a
+    decade inside, where else no long-time modulus is left).  Then modes are left out until there
+    are as few as the misfit needs, and their times are refined too.
+
+    Parameters
+    ----------
+    omega : angular frequencies, rad/s, > 0, (n,), in any order, repeated or not; or what
+        :func:`viscoroll.read_dma`
+        returns, alone: its moduli, temperatures, mode and source are then taken.  With
+        ``temperature`` a list of curves, one vector each, or a 2-D array of one a row, is allowed
+        too.
+    storage, loss : storage and loss modulus at them, > 0, (n,), both in one unit; lists where
+        ``omega`` is one.
+    modes : number of modes, an int from 1 to 64; fewer are returned only where the least squares
+        give no more modes a strength > 0.  Default: as few as ``misfit`` needs, or, where no grid
+        reaches it, as few as come within 5 % of the least misfit.
+    misfit : root mean square of the relative errors that E' and E'' may each have, dimensionless, >
+        0 (0.01 is 1 %).  With ``modes`` it decides ``reached`` of the result alone.
+    temperature : degrees Celsius: one number of all points; one a point, (n,), as measured (those
+        within 0.5 K of one another are one curve); or one a curve, (curves,), where the columns are
+        lists of curves.  None: not known, the points are of one curve.  The curves are shifted to
+        ``reference`` first.
+    reference : temperature of the master curve, degrees Celsius, at which its times are.  Default:
+        where a given shift is 1 (T0 of a :class:`WLF`, the temperature of a factor of 1), if it is
+        within the temperatures; else the middle one of the curves.  With a list of factors it must
+        be one of the curves' temperatures, to 0.5 K.
+    shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves (of points: in the
+        order in which the temperatures come), or a function that takes a temperature in degrees
+        Celsius and returns a_T.  They are divided by that of the reference, so that constants may
+        be those of another temperature.  None: found from the overlap of neighbouring curves.
+    on : "both", or "storage" to find the shifts from the overlap of the storage modulus alone,
+        where the loss modulus is noisy or does not shift alike.
+    mode : "tension" (default) or "shear", where the moduli are G' and G'';
+        :meth:`fit_results.Fit.material` makes E of them.
+    source : source of the data, in words; it stays with the material.
+
+    Returns
+    -------
+    Fit
+        ``print`` shows a report; E, storage and loss are in the unit of the data, times in s, at
+        the reference temperature.  Where the misfit cannot be reached, ``reached`` is False, and
+        nothing is raised.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 3 points, or a curve of fewer than 2 frequencies; values outside of 1e-100 to
+        1e100; columns of other shapes; frequencies that span more than 30 decades; a curve that
+        does not level off at low frequencies; neighbouring curves that do not overlap; factors
+        larger at the highest temperature than at the lowest; a reference outside of the curves, or
+        of which the factors say nothing; ``modes``, ``misfit``, ``on`` or ``mode`` that are not
+        allowed; ``reference`` or ``shift`` without ``temperature``; ``omega`` without ``storage``
+        and ``loss``, or a record with them; another ``mode`` than that of the record; a unit of
+        another dimension.
+    RuntimeError
+        The non-negative least squares of SciPy do not end.
+
+    Warns
+    -----
+    ModelWarning
+        Where the curves are so flat that their overlap does not fix the shifts; temperatures that
+        look like kelvin.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> fit = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv")))
+    >>> fit.reached, fit.mode
+    (True, 'tension')
+
+    Notes
+    -----
+    More than 1000 points are thinned to the means of 500 logarithmic bins; ``points`` and the
+    report say so.
+    """
+    if isinstance(omega, DynamicModuli):
+        record = omega
+        for name, given in (("storage", storage), ("loss", loss)):
+            if given is not None:
+                allowed = (
+                    "left out: the result of read_dma contains it; write modes=5 for a "
+                    "number of modes"
+                )
+                raise described_error(name, "is given", allowed)
+        if mode not in (None, record.mode):
+            raise ParameterError(
+                "mode", repr(mode), f"{record.mode!r}, the mode of {record.source or 'the data'}"
+            )
+        omega = record.omega
+        storage = record.storage
+        loss = record.loss
+        mode = _mode(record.mode)
+        temperature = record.temperature if temperature is None else temperature
+        source = source or record.source
+    elif storage is None or loss is None:
+        raise ParameterError(
+            "storage and loss", None, "given with omega, or replaced by a record of read_dma"
+        )
+    check_choice("on", on, "both", "storage")
+    mode = _mode("tension" if mode is None else mode)
+    if temperature is None:
+        for name, value in (("reference", reference), ("shift", shift)):
+            if value is not None:
+                raise described_error(
+                    name, "is given, but temperature is not", "left out, or temperature given too"
+                )
+        curve = data_of(Curve, omega, storage, loss)
+        shifts = None
+    else:
+        curve, shifts = master_curve(omega, storage, loss, temperature, reference, shift, on)
+    data, fields, errors = _fit_series(curve, modes, misfit)
+    return Fit(
+        **fields,
+        misfit=Misfit(*errors),
+        kramers_kronig=kramers_kronig(data),
+        shifts=shifts,
+        mode=mode,
+        temperature=None if shifts is None else shifts.reference,
+        source=source,
+    )
+
+
+def fit_relaxation(
+    t: Numbers | RelaxationModulus,
+    relaxation: Numbers | None = None,
+    modes: int | None = None,
+    *,
+    misfit: float = 0.003,
+    temperature: float | None = None,
+    mode: Mode | None = None,
+    source: str = "",
+) -> RelaxationFit:
+    """Fit a Prony series to a relaxation modulus: what a test at constant strain gives.
+
+    The fit is by non-negative least squares of the relative errors, as in :func:`fit_prony`, on
+    times that reach half a decade or a decade beyond the data, but not below half the first time,
+    and at the slow end less, down to half a decade inside, where else no long-time modulus is left.
+
+    Parameters
+    ----------
+    t : times since the strain was applied, s, > 0, (n,), in any order.  Leave out those of the
+        ramp: E(t) is that of a step.  Or what :func:`viscoroll.read_relaxation` returns, alone: its
+        modulus, temperature, mode and source are then taken.
+    relaxation : relaxation modulus at them, stress over strain, > 0, (n,), in one unit.
+    modes : number of modes, an int from 1 to 64; fewer are returned only where the least squares
+        give no more modes a strength > 0.  None: as few as ``misfit`` needs or, where no grid
+        reaches it, as few as come within 5 % of the least misfit.
+    misfit : root mean square of the relative errors that E(t) may have, dimensionless, > 0 (0.003
+        is 0.3 %).  Rolling resistance is made of E'', which follows from the slope of E(t).  For
+        typical slopes an error of 1 % in E(t) means 10 to 30 % in E'', one of 0.3 % means about 5
+        %.  With ``modes`` it decides ``reached`` of the result alone.
+    temperature : temperature of the test, degrees Celsius, or None where it is not known; it stays
+        with the material.
+    mode : "tension" (default) or "shear", where the modulus is G(t); ``material`` makes E of it.
+    source : source of the data, in words; it stays with the material.
+
+    Returns
+    -------
+    RelaxationFit
+        ``print`` shows a report.  Its E is in the unit of the data, its times are in s.  The
+        material is taken as measured at rates between 1 over the last and 1 over the first time.
+        More than 1000 points are thinned to the means of 500 logarithmic bins first, to which the
+        misfit then belongs.  Where the misfit cannot be reached, ``reached`` is False, and nothing
+        is raised.
+
+    Raises
+    ------
+    ParameterError
+        Fewer than 3 points; values outside of 1e-100 to 1e100; columns of other shapes; times that
+        span more than 30 decades; a modulus whose last value is above 1.1 times the first, or that
+        does not level off at long times; ``modes``, ``misfit``, ``mode`` or ``temperature`` that
+        are not allowed; a unit of another dimension.
+    RuntimeError
+        The non-negative least squares of SciPy do not end.
+
+    Warns
+    -----
+    ModelWarning
+        A temperature that looks like kelvin.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import viscoroll as vr
+    >>> t = np.geomspace(0.01, 100.0, 30)
+    >>> fit = vr.fit_relaxation(t, 1e6 * (1.0 + 2.0 * np.exp(-t / 0.5)))
+    >>> round(fit.T_ref, 6), fit.material(nu=0.49).measured.high
+    (0.5, 100.0)
+    """
+    if isinstance(t, RelaxationModulus):
+        if relaxation is not None or mode not in (None, t.mode):
+            allowed = (
+                "left out: the result of read_relaxation contains both; write modes=5 for a "
+                "number of modes"
+            )
+            raise described_error("relaxation or mode", "is given", allowed)
+        mode = _mode(t.mode)
+        source = source or t.source
+        temperature = t.temperature if temperature is None else temperature
+        t, relaxation = t
+    elif relaxation is None:
+        raise ParameterError(
+            "relaxation", None, "given with t, or replaced by a record of read_relaxation"
+        )
+    curve = data_of(Relaxation, t, relaxation)
+    first, *_, last = curve.relaxation.tolist()
+    if last > _RISES * first:
+        found = f"rises with time from {first:g} to {last:g}"
+        raise described_error(
+            "relaxation", found, "a relaxation modulus, which falls (a creep compliance rises)"
+        )
+    _, fields, errors = _fit_series(curve, modes, misfit)
+    temperature = None if temperature is None else check_celsius("temperature", temperature)
+    return RelaxationFit(
+        **fields,
+        misfit=errors[0],
+        mode=_mode(mode or "tension"),
+        source=source,
+        temperature=temperature,
+    )
+
+
+def _mode(mode: Any) -> Mode:
+    """Check which modulus was measured and return it; raise ParameterError for anything but
+    "tension" or "shear".
+    """
+    check_choice("mode", mode, "tension", "shear")
+    return mode
+
+
+def _fit_series(
+    curve: _Curve, modes: int | None, misfit: float
+) -> tuple[_Curve, dict[str, Any], tuple[float, ...]]:
+    """Fit a series to measured moduli: the part that :func:`fit_prony` and :func:`fit_relaxation`
+    have in common.
+
+    curve : a :class:`Curve` or :class:`Relaxation`, all points that were measured.
+    modes : number of modes, 1 to 64, with which ``misfit`` decides "reached" alone; None: as few as
+        the misfit needs (:func:`.spectrum.fewest_modes`).
+    misfit : root mean square of the relative errors that each modulus may have, dimensionless, > 0.
+    Returns (the data that were fitted, of the class of ``curve``, thinned if it has more than 1000
+    points; a dict of arguments of :class:`.fit_results.Fit` or :class:`.fit_results.RelaxationFit`:
+    E, T_ref, prony, target, reached, grid, band and points (both of ``curve``), outside, and the
+    columns of the data; the root mean square of the relative errors of each modulus, dimensionless,
+    (storage, loss) or (relaxation,)).  A series without modes has T_ref
+    = 1.
+    Raises ParameterError for ``misfit`` or ``modes`` out of range, frequencies or times whose
+    largest ratio is above :data:`MOST_SPREAD`, 1e30, and data without a long-time modulus;
+    RuntimeError as :func:`.spectrum.on_times`.
+    """
+    target = check_number("misfit", misfit, above=0.0)
+    modes = None if modes is None else check_integer("modes", modes, 1, MOST_MODES)
+    (low, high) = curve.band
+    data = thinned(curve)
+    if high > MOST_SPREAD * low:
+        span = f"from {data[0][0]:g} to {data[0][-1]:g}"
+        raise ParameterError(data._fields[0], span, f"within a factor of {MOST_SPREAD:g}")
+    spectrum, grid, reached = fewest_modes(data, target, modes)
+    T_ref = float(spectrum.tau[0]) if spectrum.tau.size else 1.0
+    prony = Prony(spectrum.strength / spectrum.E, spectrum.tau / T_ref)
+    fields = {
+        "E": spectrum.E,
+        "T_ref": T_ref,
+        "prony": prony,
+        "target": target,
+        "reached": reached,
+        "grid": grid,
+        "band": (low, high),
+        "points": curve[0].size,
+        "outside": (spectrum.tau < 1.0 / high) | (spectrum.tau > 1.0 / low),
+    }
+    return data, fields | data._asdict(), misfits(data, spectrum_of(prony, spectrum.E, T_ref))

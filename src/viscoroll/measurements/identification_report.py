@@ -1,0 +1,361 @@
+"""Report of an identification: noise of the residuals first, then values, then limits of the data.
+
+The same as a dataset, and for JSON.  Of the argument ``fit`` the functions read the public
+attributes, ``_problem`` (:class:`.least_squares.Problem`), ``_likelihood``
+(:class:`.profile.Likelihood`) and ``_delta_chi2``.  Their sentences are texts without a full stop.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import __version__
+from .measurement_records import ROLLING
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: points of full slip in a motion below which the report says that mu rests on few
+_FEW = 5
+#: what residuals that are no noise may mean
+_INADEQUATE = "the model is inadequate, and the intervals are meaningless"
+#: correlation from which on the report names it
+_CLOSE = 0.9
+#: where a product by slopes holds
+_NEAR = "linearised, valid only while each unknown changes by less than a fifth"
+#: fall of chi2 below the best fit from which on the report names a point of a profile
+_BETTER = 0.1
+
+
+def report(fit: Any) -> str:
+    """Return the report that ``print(fit)`` shows: the fit in one line, warnings of the noise,
+    values, limits of the data.
+
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`.
+    Returns a text of several lines, without a line break at its end.  The first call computes the
+    profiles of the intervals, which take about as long as the fit for each unknown.
+    """
+    width = max(map(len, fit.values))
+    rows = []
+    for name, ends in fit.intervals().items():
+        low, high = ("unbounded" if end is None else f"{end:.6g}" for end in ends)
+        rows.append(
+            f"  {name:<{width}}  {fit.values[name]:<12.6g} +- {fit.stderr[name]:<9.2g} 95%: {low} "
+            f"to {high}"
+        )
+    noise, limits = ([f"  ! {line}" for line in lines] for lines in (_noise(fit), _limits(fit)))
+    return "\n".join([_heading(fit), *noise, *rows, *limits])
+
+
+def _heading(fit: Any) -> str:
+    """Return the first line of the report: number of unknowns and points, and chi2 or the estimated
+    standard deviations.
+
+    Of a plan it says that the standard deviations are those to expect.  Where any standard
+    deviation was estimated it lists the estimates, each after its column's "QUANTITY of RECORD":
+    that of the first point, in SI units, to three digits; standard deviations that were given, and
+    chi2, are then left out.  Else it has chi2 and the degrees of freedom and, unless the fit is
+    robust or has no degree of freedom, p, the probability that noise gives a larger chi2.
+
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`, of which values,
+        planned, sigma, chi2, dof and, of ``_problem``, y, columns and robust are read.
+    Returns a str without a line break.
+    """
+    from scipy import stats
+
+    problem = fit._problem
+    head = f"{len(fit.values)} unknowns, {problem.y.size} points"
+    if fit.planned:
+        return f"{head}, planned: expected standard deviations, if the cylinder has the true values"
+    if estimated := [
+        f"{column} {fit.sigma[str(column)][0]:.3g}"
+        for column in problem.columns
+        if column.estimated
+    ]:
+        return f"{head}; standard deviation estimated: {', '.join(estimated)}"
+    chance = (
+        "" if problem.robust or not fit.dof else f" (p = {stats.chi2.sf(fit.chi2, fit.dof):.2g})"
+    )
+    return f"{head}; chi2 {fit.chi2:.1f} of {fit.dof} degrees of freedom{chance}"
+
+
+def _noise(fit: Any) -> Iterator[str]:
+    """Yield a sentence for each quantity of a record whose residuals are no noise, as
+    ``fit.misfit`` names them.
+
+    A sentence has the rms of the residuals in units of sigma, of a robust fit as found by their
+    median, and where they are autocorrelated the lag-1 correlation, its limit and the effective
+    number of points; none is yielded where all are noise.
+
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`, of which misfit,
+        noise and ``_problem.robust`` are read.
+    """
+    for name in fit.misfit:
+        rms, lag, allowed, _ = noise = fit.noise[name]
+        size = f"rms {rms:.2f} sigma" + " by their median" * fit._problem.robust
+        if noise.repeats == 1.0:
+            yield (
+                f"the residuals of {name} are larger than noise ({size}): sigma is too small, "
+                f"or {_INADEQUATE}"
+            )
+            continue
+        points = 9.0 / allowed**2
+        yield (
+            f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most "
+            f"{allowed:.2f} "
+            f"for noise; {size}): intervals are those of {points / noise.repeats:.0f} points in "
+            f"place of {points:.0f}, "
+            f"or {_INADEQUATE}"
+        )
+
+
+def _limits(fit: Any) -> Iterator[str]:
+    """Yield sentences on what the data do not determine; none where they determine all unknowns.
+
+    They are on unknowns that do not act; unknowns that cannot be separated, or a single one that is
+    undetermined; what :func:`_interval_limits` says; further minima; motions with few points in
+    full slip; and correlations beyond +-0.9, but for pairs of unknowns that the first two name: in
+    this order.
+
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`.
+    """
+    for name in fit.does_not_act:
+        rolling = name == "mu" and any(
+            getattr(each, "omega0", None) == ROLLING for each in fit.records.values()
+        )
+        advice = (
+            ": omega0 was taken as V0/R, without slip; give omega0 if the cylinder was "
+            "launched with another"
+        )
+        yield f"the data do not depend on {name}{advice * rolling}"
+    *names, last = fit.undetermined or ("",)
+    if names:
+        yield f"{', '.join(names)} and {last} cannot be separated by these data: {_products(fit)}"
+    elif last:
+        yield f"{last} is not determined by these data"
+    yield from _interval_limits(fit)
+    for chi2, values in fit.minima[1:]:
+        yield (
+            f"another minimum has chi2 {chi2:.1f}, {chi2 - fit.chi2:.1f} higher: "
+            f"{_values_text(values)}"
+        )
+    yield from _phases(fit)
+    loose = {*fit.does_not_act, *fit.undetermined}
+    names = list(fit.values)
+    for i, k in np.argwhere(np.tril(np.abs(fit.correlations) > _CLOSE, -1)):
+        if not {names[i], names[k]} <= loose:
+            yield f"{names[k]} and {names[i]} are correlated: {fit.correlations[i, k]:+.4f}"
+
+
+def _products(fit: Any) -> str:
+    """Return a sentence on the products of unknowns that the data determine.
+
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`.
+    Returns a sentence with the products that hold over the whole intervals, then those that hold
+    near the values found only, with the distance to which they do; with the latter alone if there
+    are no others, and one that says so if there are none at all.
+    """
+    found = fit.products()
+    sure, near = (
+        " and ".join(
+            _product_text(product, fit.values) for product in found if product.near is by_slopes
+        )
+        for by_slopes in (False, True)
+    )
+    if not found:
+        return "the data determine no product of their powers"
+    limited = any(any(product.limited_by) for product in found if product.near is not bool(sure))
+    verb = "are" if " and " in (sure or near) else "is"
+    text = f"only {sure or near} {verb} {'bounded within the ranges' if limited else 'determined'}"
+    more = f"; near these values also {near}, more precisely" if sure else ", near these values"
+    return text + f"{more}: {_NEAR}" * bool(near)
+
+
+def _product_text(product: Any, values: dict[str, float]) -> str:
+    """Return a product as text, as "E T_ref^0.5 = 1200 (95%: -2 % to +2 %)", the exponent of
+    largest absolute value first.
+
+    The value is in SI units without their names, the ends of the interval are relative to it.  An
+    end that the range of an unknown limits is named, as "the lower end by the range of nu".
+    Exponents of equal absolute value stay in the order of the product; an exponent of 1 is not
+    written.
+
+    product : a :class:`.profile.Product`, whose low and high are ratios to its value; its interval
+        is at the level 0.95.
+    values : name -> value of the unknowns, SI; the name of a negative one is put between bars, as
+        "|V0|^0.5".
+    """
+    powers = sorted(product.powers.items(), key=lambda item: -abs(item[1]))
+    names = {name: f"|{name}|" if values[name] < 0.0 else name for name in product.powers}
+    text = " ".join(names[name] if p == 1.0 else f"{names[name]}^{p:.3g}" for name, p in powers)
+    low, high = (f"{100.0 * (end - 1.0):+.2g} %" for end in (product.low, product.high))
+    lower, upper = (" and ".join(bounds) for bounds in product.limited_by)
+    ends = (
+        {"both ends": lower} if lower == upper else {"the lower end": lower, "the upper end": upper}
+    )
+    limits = "".join(f", {end} by the range of {bounds}" for end, bounds in ends.items() if bounds)
+    return f"{text} = {product.value:.4g} (95%: {low} to {high}{limits})"
+
+
+def _interval_limits(fit: Any) -> Iterator[str]:
+    """Yield sentences on intervals at 0.95 that the data do not limit, and on faults that their
+    profiles show.
+
+    For each unknown that acts they are on ends that are open, several branches of the fit in the
+    interval, and a point of the profile whose chi2 is more than 0.1 below that of the best fit.
+    Then follow unknowns that are at an end of their range at the best fit, and unknowns whose range
+    limits the interval of another one.
+
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`.
+    """
+    limited: dict[str, list[str]] = {}
+    problem = fit._problem
+    for i, found in fit._likelihood.axes(fit._delta_chi2()).items():
+        name = problem.names[i]
+        for side, end, bounds in zip(("lower", "upper"), found.ends, found.limited_by, strict=True):
+            if end is None:
+                yield (
+                    f"the interval of {name} has no {side} end: chi2 does not rise enough "
+                    "within the range"
+                )
+            for bound in bounds:
+                limited.setdefault(bound, []).append(f"the {side} end of {name}")
+        if found.pieces:
+            yield (
+                f"the interval of {name} contains several branches of the fit: values inside "
+                "may fit worse than ends"
+            )
+        if found.best.chi2 < fit.chi2 - _BETTER:
+            listed = _values_text(problem.values(found.best.u))
+            yield (
+                f"a better fit was found, chi2 {found.best.chi2:.1f}, at {listed}: start there, "
+                "or use more starts"
+            )
+    for i in problem.at_bounds(fit._likelihood.best.u):
+        yield f"the best fit has {problem.names[i]} at the end of its range"
+    yield from (
+        f"the range of {bound}, not the data, determines {', '.join(ends)}"
+        for bound, ends in limited.items()
+    )
+
+
+def _values_text(values: dict[str, float]) -> str:
+    """Return values by name in one line, as "E = 1e+06, mu = 0.3"."""
+    return ", ".join(f"{name} = {value:.4g}" for name, value in values.items())
+
+
+def _phases(fit: Any) -> Iterator[str]:
+    """Yield a sentence for each motion with one to four points in full slip, which alone determine
+    mu.
+
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`; nothing is yielded
+        where mu is no unknown, and for records that are no motions.
+    """
+    for record_name, record in fit.records.items() if "mu" in fit.values else ():
+        slips = int(
+            np.sum(
+                fit._problem.predicted(record, fit._likelihood.best.u, record_name).get("slips", 0)
+            )
+        )
+        if 0 < slips < _FEW:
+            found = f"{record_name} has only {slips} points in full slip, which determine mu"
+            yield f"{found}: record that phase more densely"
+
+
+def as_dataset(fit: Any) -> xr.Dataset:
+    """Return an identification as a dataset, for files.
+
+    Parameters
+    ----------
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`; as its method
+        ``to_xarray`` there is no argument.
+
+    Returns
+    -------
+    xarray.Dataset
+        In SI units.  Over ``unknown``: value, stderr (infinite for an unknown that does not act),
+        and low and high of the 95 % interval, NaN on a side that is open.  Over (``unknown``,
+        ``other``): correlation.  Over "RECORD point", for each record, with its name for RECORD and
+        that of a coordinate or quantity for NAME: "RECORD NAME" of coordinates and data (a plan has
+        no data), and "RECORD NAME fit" and "RECORD NAME sigma" of each quantity that was measured
+        or planned.  Attributes: title, source, report (the text), chi2, dof.  Points of a record
+        are flat, in the order given.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> plan = vr.Traction(V=1.0, delta=[-0.05, 0.05], sigma=0.1)
+    >>> data = vr.identify(vr.presets.RUBBER_CYLINDER, {"mu": (0.1, 1.0)}, [plan]).to_xarray()
+    >>> data["stderr"].dims, data["traction Q fit"].dims
+    (('unknown',), ('traction point',))
+    """
+    import xarray as xr
+
+    names = np.array(list(fit.values), object)
+    ends = np.array(list(fit.intervals().values()), float)
+    data: dict[str, Any] = {
+        "value": ("unknown", list(fit.values.values())),
+        "stderr": ("unknown", list(fit.stderr.values())),
+        "low": (
+            "unknown",
+            ends[:, 0],
+            {"long_name": "lower end of the 95 % interval, NaN if unbounded"},
+        ),
+        "high": (
+            "unknown",
+            ends[:, 1],
+            {"long_name": "upper end of the 95 % interval, NaN if unbounded"},
+        ),
+        "correlation": (("unknown", "other"), fit.correlations),
+    }
+    for record_name, record in fit.records.items():
+        columns = {name: getattr(record, name) for name in (*record.COORDINATES, *record.measured)}
+        for name in record.sigma:
+            fitted = getattr(fit.predicted[record_name], name).value
+            columns |= {
+                f"{name} fit": fitted,
+                f"{name} sigma": fit.sigma[f"{name} of {record_name}"],
+            }
+        for name, values in columns.items():
+            data[f"{record_name} {name}"] = (
+                f"{record_name} point",
+                np.ravel(values),
+                {"units": record.unit(name.split()[0])},
+            )
+    about = {"title": "Identification", "source": f"viscoroll {__version__}", "report": report(fit)}
+    return xr.Dataset(
+        data, {"unknown": names, "other": names}, about | {"chi2": fit.chi2, "dof": fit.dof}
+    )
+
+
+def as_json(fit: Any) -> dict[str, Any]:
+    """Return the content of the report as numbers and texts that JSON has.
+
+    fit : a :class:`viscoroll.measurements.identification_result.Identification`.
+    Returns a dict, in SI units: chi2, dof, planned, does_not_act, undetermined, misfit and minima,
+    as of the fit; "source", name and version of this package; "unknowns", name -> {"value",
+    "stderr", "interval"} (the interval at 95 %, two numbers, None on a side that is open; stderr
+    None of an unknown that does not act); "says", a list of the sentences of the report on noise
+    and limits; "products", a list of dicts with the fields of :class:`.profile.Product` (powers,
+    value, low, high, near, limited_by); "correlations", a list of rows; "noise", "QUANTITY of
+    RECORD" -> a dict with the fields of :class:`.least_squares.Noise` (rms, lag, allowed,
+    is_noise); and "sigma", "QUANTITY of RECORD" -> standard deviation of the first point.
+    """
+    fields = ("chi2", "dof", "planned", "does_not_act", "undetermined", "misfit", "minima")
+    sd = {name: value if np.isfinite(value) else None for name, value in fit.stderr.items()}
+    unknowns = {
+        name: {"value": fit.values[name], "stderr": sd[name], "interval": ends}
+        for name, ends in fit.intervals().items()
+    }
+    return {name: getattr(fit, name) for name in fields} | {
+        "source": f"viscoroll {__version__}",
+        "unknowns": unknowns,
+        "says": [*_noise(fit), *_limits(fit)],
+        "products": [product._asdict() for product in fit.products()],
+        "correlations": fit.correlations.tolist(),
+        "noise": {name: noise._asdict() for name, noise in fit.noise.items()},
+        "sigma": {name: float(values[0]) for name, values in fit.sigma.items()},
+    }

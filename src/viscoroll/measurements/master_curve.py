@@ -1,0 +1,608 @@
+"""Sweeps at several temperatures, and their shifts to one master curve.
+
+Sweeps at several temperatures: the points of each sweep, and the reference and the factors of
+their shifts.
+
+Curves at several temperatures as one master curve, by horizontal shifts:
+:func:`master_curve`.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from itertools import pairwise, zip_longest
+from typing import Any, Literal, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.checks import Floats, Integers, check_array
+from ..core.errors import ModelWarning, ParameterError, caller_level, described_error, shape_error
+from ..core.quantities import to_unit
+from ..materials.measured_data import NEAR, USUAL_RANGE, ShiftFactors, check_celsius, relative_shift
+from .dynamic_moduli import SAME_TEMPERATURE, UNITS, Curve, data_of, thinned
+
+# --- Sweeps at several temperatures ---
+
+#: K; least distance of the temperatures of two sets: sweeps are made 5 or 10 K apart
+LEAST_DISTANCE = NEAR
+#: distance from 1 up to which a factor counts as 1: rounding of factors in files
+_ONE = 1e-9
+
+
+class Sets(NamedTuple):
+    """Sets of points, each measured at one temperature.
+
+    temperature : temperature of each set, ascending, degrees Celsius: the median of its points,
+        shape (sets,).
+    of_point : index of the set of each point, shape (n,).
+    of_curve : index of the set of each curve in the order of the caller, shape (curves,).
+    """
+
+    temperature: Floats
+    of_point: Integers
+    of_curve: Integers
+
+
+def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], Integers | None]:
+    """Return measured moduli as flat columns, with a temperature for each point.
+
+    temperature : of columns of points one number for all of them, or (n,), number i of point i; of
+        lists of curves (curves,), number k of vector k of each column, also if it is the only one;
+        degrees Celsius.
+    *columns : omega, storage and loss, three, each a column of points, (n,), or each a list or
+        tuple of ``curves`` vectors, those of curve k equally long, or a 2-D array of one curve a
+        row; with units or without.  They count as lists of curves if omega is a 2-D array, or a
+        list or tuple whose first element is a vector.
+    Returns (temperature of each point, degrees Celsius, (n,); [omega, storage, loss], (n,) each,
+    curve after curve, in rad/s and the unit of the moduli (Pa, if they have units); index of the
+    first point of each curve, (curves,), or None of columns of points).  Whether the columns are
+    numbers, finite and > 0, is not checked here.
+    Raises ParameterError for shapes that do not go together, a curve without points, a unit of
+    another dimension, and for temperatures that are no finite numbers.
+    """
+    given = check_array("temperature", temperature, unit="degC")
+    columns = tuple(
+        to_unit(name, each, UNITS[name]) for name, each in zip(Curve._fields, columns, strict=True)
+    )
+    columns = tuple(
+        [*np.asarray(each)] if getattr(each, "ndim", 0) == 2 else each for each in columns
+    )
+    if isinstance(columns[0], (list, tuple)) and columns[0] and np.ndim(columns[0][0]) == 1:
+        sizes, *others = ([np.size(curve) for curve in column] for column in columns)
+        for name, other in zip(Curve._fields[1:], others, strict=True):
+            for n, (own, wanted) in enumerate(zip_longest(other, sizes, fillvalue=0), 1):
+                if own != wanted:
+                    raise described_error(
+                        name, f"has {own} points in curve {n}", f"as many as omega, {wanted}"
+                    )
+        if given.shape != (len(sizes),):
+            raise shape_error(
+                "temperature", given.shape, f"one for each of the {len(sizes)} curves"
+            )
+        if 0 in sizes:
+            found = f"has no points for curve {sizes.index(0) + 1}"
+            raise described_error("omega", found, "one frequency or more for each curve")
+        first = np.cumsum([0, *sizes[:-1]])
+        return np.repeat(given, sizes), [np.concatenate(column) for column in columns], first
+    flat = [np.asarray(column) for column in columns]
+    if given.ndim == 0:
+        given = np.full(flat[0].shape, float(given))
+    if given.ndim != 1:
+        raise shape_error("temperature", given.shape, "one column, or one for each curve")
+    for name, column in zip(Curve._fields, flat, strict=True):
+        if column.shape != given.shape:
+            raise shape_error(
+                name, column.shape, f"one for each temperature, of shape {given.shape}"
+            )
+    return given, flat, None
+
+
+def sets_of(temperature: Floats, first: Integers | None) -> Sets:
+    """Divide points into sets of one temperature.
+
+    In ascending order, a temperature that is at most :data:`LEAST_DISTANCE`, 0.5 K, above the one
+    before is of the same set.
+
+    temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
+    first : index of the first point of each curve, each < n, (curves,), as of :func:`points_of`;
+        None: each set counts as a curve, in the order in which their first points come.
+    Returns the :class:`Sets`; several curves may be of one set.
+
+    Raises
+    ------
+    ParameterError
+        No points; a set whose temperatures span more than :data:`.dynamic_moduli.SAME_TEMPERATURE`,
+        1 K.
+    """
+    if not temperature.size:
+        raise described_error("temperature", "is empty", "one number for each point")
+    order = np.argsort(temperature, kind="stable")
+    ascending = temperature[order]
+    label = np.cumsum(np.diff(ascending, prepend=ascending[0]) > LEAST_DISTANCE, dtype=np.int64)
+    of_point = np.empty_like(label)
+    of_point[order] = label
+    parts = np.split(ascending, np.flatnonzero(np.diff(label)) + 1)
+    for part in parts:
+        if part[-1] - part[0] > SAME_TEMPERATURE:
+            found = (
+                f"rises from {part[0]:g} to {part[-1]:g} °C in steps of at most "
+                f"{LEAST_DISTANCE:g} K"
+            )
+            allowed = (
+                f"equal within {SAME_TEMPERATURE:g} K in each sweep, and differ by more "
+                "between sweeps"
+            )
+            raise described_error("temperature", found, f"{allowed}: round it to that of the sweep")
+    if first is None:  # in the order in which the sets come
+        first = np.sort(np.unique(of_point, return_index=True)[1])
+    return Sets(np.array([float(np.median(part)) for part in parts]), of_point, of_point[first])
+
+
+def default_reference(temperatures: Floats, unshifted: list[float]) -> float:
+    """Return the reference temperature of a master curve where the user gives none.
+
+    temperatures : temperatures of the sets, at least one, ascending, degrees Celsius, (sets,).
+    unshifted : temperatures at which the given shift is 1, degrees Celsius; empty, or NaN, where
+        none is known.
+    Returns a temperature, degrees Celsius: the first of ``unshifted`` between the lowest and the
+    highest set, both included, else the temperature of the middle set, of an even number the warmer
+    one of the two.
+    """
+    low = temperatures[0]
+    high = temperatures[-1]
+    return next(
+        (T for T in unshifted if low <= T <= high), float(temperatures[temperatures.size // 2])
+    )
+
+
+def nearest(base: float, temperatures: Floats) -> int:
+    """Return the index of the set nearest to a temperature, which must not lie outside of all sets.
+
+    base : the temperature for which the set is sought, degrees Celsius, a number.
+    temperatures : temperatures of the sets, ascending, degrees Celsius, (sets,).
+    Returns an index of ``temperatures``, an int; of two that are equally near that of the colder
+    set.
+    Raises ParameterError for a temperature more than :data:`LEAST_DISTANCE`, 0.5 K, below the first
+    set or above the last.
+    """
+    low = temperatures[0]
+    high = temperatures[-1]
+    if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
+        raise ParameterError("reference", base, f"within [{low:g}, {high:g}]")
+    return int(np.argmin(np.abs(temperatures - base)))
+
+
+def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, float]:
+    """Sort listed shift factors by sets and divide them by that of the reference, which is found if
+    it is not given.
+
+    shift : factors a_T > 0, dimensionless, (curves,), in the order of the curves.
+    sets : :class:`Sets`, the sets of the points.
+    base : reference, degrees Celsius; None: the temperature of the coldest set whose factor is 1 to
+        1e-9, else that of the middle set, of an even number the warmer one.
+    Returns (factors of the sets, dimensionless, (sets,), divided by that of the reference;
+    reference, degrees Celsius).
+    Raises ParameterError for factors that are not finite and > 0, of another number than the
+    curves, or different for curves of one set, and for a reference that is within 0.5 K of none of
+    the sets.
+    """
+    factors = check_array("shift", shift)
+    temperatures = sets.temperature
+    if not (factors > 0.0).all():
+        raise ParameterError(
+            "shift", f"{factors.min():g}", "> 0: factors a_T, not their logarithms"
+        )
+    if factors.shape != sets.of_curve.shape:
+        allowed = (
+            f"one factor for each of {sets.of_curve.size} temperatures, in the order of the curves"
+        )
+        raise shape_error("shift", factors.shape, allowed)
+    found = np.empty(temperatures.size)
+    found[sets.of_curve] = factors
+    if (found[sets.of_curve] != factors).any():
+        raise described_error(
+            "shift", "has several factors for one temperature", "one factor for each temperature"
+        )
+    if base is None:
+        base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
+    index = nearest(base, temperatures)
+    if abs(temperatures[index] - base) > LEAST_DISTANCE:
+        listed = ", ".join(f"{T:g}" for T in temperatures)
+        allowed = (
+            f"{listed}, whose factors shift lists; for another one give shift as a function "
+            "of the temperature"
+        )
+        raise ParameterError("reference", base, allowed)
+    return found / found[index], base
+
+
+# --- Curves at several temperatures as one master curve, by horizontal shifts ---
+
+#: least number of points of both curves in their overlap
+_POINTS = 3
+#: least ratio of the overlap to the shorter range of the two curves, in ln omega
+_OVERLAP = 0.15
+#: step in ln a_T of the search: within it the mismatch has one minimum
+_STEP = 0.05
+#: rms mismatch of a modulus below which it counts as no better: the accuracy of the best DMA
+_FLOOR = 2e-3
+#: rms mismatch of ln E' and ln E'' above which curves do not overlap: a third of the moduli
+_LARGEST_MISMATCH = 0.3
+#: ratio of the rms mismatch of one modulus to its least above which the moduli disagree on the
+#: shift
+_DISAGREES = 1.5
+#: difference of rms mismatches up to which two shifts are equally good: the accuracy of usual DMA
+_EQUALLY_GOOD = 0.01
+#: decades over which all shifts are equally good above which a plateau leaves the shift open: a
+#: factor of three either way
+LARGEST_FREEDOM = 1.0
+
+
+@dataclass(frozen=True, kw_only=True)
+class Shifts(ShiftFactors):
+    """Shift factors that lay the curves of several temperatures on one; as a function a_T at any
+    temperature between.
+
+    temperature : temperature of each curve, ascending, degrees Celsius, (curves,); the median of
+    those of its points.
+    a_T : ratio of times at this temperature to those at the reference, by which frequencies are
+    multiplied, (curves,).
+    T0, reference : temperature of the master curve, degrees Celsius, at which a_T is 1; it need not
+        be one of ``temperature``.
+    mismatch : between each curve and its warmer neighbour, root mean square of the differences of
+        ln E' and ln E'' after the shift, (curves - 1,); NaN where the factors were given.
+    freedom : between the same, decades over which the shift may be moved before the mismatch of E'
+        or of E'' rises by 0.01 (1 % of the modulus), (curves - 1,): large where the curves are flat
+        (a plateau fixes no shift); NaN where the factors were given.
+    distinct : number of different temperatures that were given.
+    """
+
+    mismatch: Floats = field(compare=False)
+    freedom: Floats = field(compare=False)
+    distinct: int
+
+    @property
+    def reference(self) -> float:
+        """Temperature of the master curve, degrees Celsius."""
+        return self.T0
+
+
+def master_curve(
+    omega: ArrayLike,
+    storage: ArrayLike,
+    loss: ArrayLike,
+    temperature: ArrayLike,
+    reference: float | None,
+    shift: ArrayLike | Callable[[float], float] | None,
+    on: Literal["both", "storage"] = "both",
+) -> tuple[Curve, Shifts]:
+    """Shift the curves of several temperatures to one, by frequencies times a_T.
+
+    Parameters
+    ----------
+    omega, storage, loss : columns, (n,), or lists of curves, one vector a temperature; rad/s, and
+    one unit of moduli.
+    temperature : degrees Celsius, one of all points, one a point, (n,), or one a curve, (curves,).
+    reference : degrees Celsius; None: where a given shift is 1 (T0 of a :class:`viscoroll.WLF` or
+        :class:`viscoroll.Arrhenius`, the temperature of a factor of 1), if it is within the
+        temperatures, else the temperature of the middle curve, of an even number the warmer one.
+    shift : factors a_T > 0, dimensionless, in the order of the curves, (curves,); a function of the
+        temperature in degrees Celsius that returns a_T; or None: found by the overlap of
+        neighbouring curves, and interpolated to the reference (:class:`viscoroll.ShiftFactors`).
+        All are divided by that of the reference.
+    on : "both" or "storage": the moduli by whose overlap shifts are found; not used where shifts
+    are given.
+
+    Returns
+    -------
+    tuple
+        (The master curve, a :class:`Curve` of all n points at the reference temperature, sorted by
+        frequency; the :class:`Shifts` of the temperatures, whose ``mismatch`` and ``freedom`` are
+        NaN where the shifts were given.) Of a single temperature the factor is 1, unless ``shift``
+        is a function and the reference another temperature.
+
+    Raises
+    ------
+    ParameterError
+        Moduli or frequencies that are not > 0 and finite, or fewer than 3 points; temperatures of
+        another number than points or curves; temperatures that drift, so that sweeps cannot be told
+        apart; a reference more than 0.5 K outside of the temperatures where the overlap gives the
+        shifts, or with listed factors at none of them; a curve of a single frequency, where the
+        overlap gives the shifts; neighbouring curves that do not overlap, or whose best shift is
+        the last that leaves an overlap; shift factors of another number than the curves, not > 0,
+        or larger at the highest temperature than at the lowest, also those that the overlap
+        determines.
+
+    Warns
+    -----
+    ModelWarning
+        Curves so flat that their overlap leaves more than a decade for the shift; E' and E'' that
+        overlap best at different shifts; a factor that rises with temperature; temperatures that
+        look like kelvin.
+    """
+    point_temperatures, columns, first = points_of(temperature, omega, storage, loss)
+    whole = [
+        check_array(name, column, above=0.0)
+        for name, column in zip(Curve._fields, columns, strict=True)
+    ]
+    sets = sets_of(point_temperatures, first)
+    temperatures = sets.temperature
+    check_celsius(
+        "temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0]
+    )
+    base = None if reference is None else check_celsius("reference", reference)
+    mismatch = freedom = np.full(temperatures.size - 1, math.nan)
+    if callable(shift):
+        base = (
+            default_reference(temperatures, [getattr(shift, "T0", math.nan)])
+            if base is None
+            else base
+        )
+        factor = np.array([relative_shift(shift, T, base) for T in temperatures.tolist()])
+    elif shift is not None:
+        factor, base = listed_factors(shift, sets, base)
+    else:
+        base = default_reference(temperatures, []) if base is None else base
+        nearest(base, temperatures)
+        parts = (
+            Curve(*(column[sets.of_point == n] for column in whole))
+            for n in range(temperatures.size)
+        )
+        curves = (thinned(data_of(Curve, *part, fewest=2)) for part in parts)
+        logs, mismatch, freedom = _shifts_by_overlap(
+            [_LogCurve(curve, on) for curve in curves], temperatures
+        )
+        found = ShiftFactors(
+            temperature=tuple(temperatures.tolist()), a_T=tuple(np.exp(logs).tolist()), T0=base
+        )
+        factor = np.exp(logs) / found(base)
+    shifts = Shifts(
+        temperature=tuple(temperatures.tolist()),
+        a_T=tuple(factor.tolist()),
+        T0=base,
+        mismatch=mismatch,
+        freedom=freedom,
+        distinct=np.unique(point_temperatures).size,
+    )
+    open_shifts = undetermined_shifts(shifts)
+    rises = [
+        f"from {cold:g} to {warm:g} C (by a factor of {ratio:.3g})"
+        for cold, warm, ratio in zip(temperatures, temperatures[1:], factor[1:] / factor[:-1])
+        if ratio > 1.0
+    ]
+    if factor[-1] > factor[0] and not open_shifts:
+        ends = (
+            f"{factor[0]:.3g} at {temperatures[0]:g} C and {factor[-1]:.3g} at "
+            f"{temperatures[-1]:g} C"
+        )
+        allowed = (
+            "shift factors a_T (time divided by time at the reference), which decrease with "
+            f"temperature, in the order of the curves; a_T rises {', '.join(rises)}"
+        )
+        raise ParameterError(
+            "shift" if shift is not None else "shift by the overlap", ends, allowed
+        )
+    if rises:
+        text = f"a_T rises with temperature {'; '.join(rises)}: check these curves, or give shift="
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+    if open_shifts:
+        text = (
+            f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the "
+            "curves are flat: give shift="
+        )
+        warnings.warn(
+            text + (', or try on="storage"' if on == "both" else ""),
+            ModelWarning,
+            stacklevel=caller_level(),
+        )
+    return data_of(Curve, whole[0] * factor[sets.of_point], *whole[1:]), shifts
+
+
+def undetermined_shifts(shifts: Shifts) -> list[str]:
+    """Return the pairs of neighbouring curves whose shift their overlap leaves open, in words for a
+    report.
+
+    shifts : :class:`Shifts`, shift factors of the curves, of which temperature and freedom are
+    read.
+    Returns a text for each pair whose ``freedom``, the decades over which its shift may be moved,
+    is above :data:`LARGEST_FREEDOM`, one decade (1 itself and NaN are not), with both temperatures
+    and these decades, coldest first; an empty list where there is none, as of factors that were
+    given.
+    """
+    pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)
+    return [
+        f"from {cold:g} to {warm:g} C (within {free:.1f} decades)"
+        for (cold, warm), free in pairs
+        if free > LARGEST_FREEDOM
+    ]
+
+
+def _shifts_by_overlap(
+    curves: list[_LogCurve], temperatures: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Find the shifts of neighbouring curves by their overlap.
+
+    curves : list of :class:`_LogCurve`, one for each temperature, at least one, the coldest first.
+    temperatures : temperatures of the curves, degrees Celsius, ascending, (curves,), for messages.
+    Returns (ln a_T of each curve relative to the coldest, (curves,), the first is 0; root mean
+    square difference of the logarithms of the moduli of each pair of neighbours, (curves - 1,);
+    decades by which the shift of each pair may vary, (curves - 1,)); of a single curve the last two
+    are empty.
+    Raises ParameterError for neighbours that do not overlap, differ by more than 0.3 in ln E' and
+    ln E'', or agree best at the end of the search where the curves are not flat.  Warns with
+    ModelWarning of neighbours whose moduli disagree on the shift.
+    """
+    found = [_align(*pair) for pair in pairwise(curves)]
+    for alignment, pair in zip(found, pairwise(temperatures), strict=True):
+        name = "moduli at {:g} and {:g} °C".format(*pair)
+        if not alignment.mismatch <= _LARGEST_MISMATCH:
+            raise described_error(
+                name, "do not agree after any shift", "curves that overlap with their neighbours"
+            )
+        if alignment.at_end and alignment.freedom <= LARGEST_FREEDOM:
+            problem = (
+                f"agree best with the least overlap that is allowed, {_OVERLAP:.0%} of a curve"
+            )
+            allowed = "curves that overlap more: measure between these temperatures, or give shift="
+            raise described_error(name, problem, allowed)
+    torn = [
+        f"from {cold:g} to {warm:g} C"
+        for alignment, (cold, warm) in zip(found, pairwise(temperatures), strict=True)
+        if alignment.disagree
+    ]
+    if torn:
+        text = (
+            f"E' and E'' overlap best at different shifts {', '.join(torn)}; the one that "
+            "overlaps better decides"
+        )
+        warnings.warn(text + ': compare with on="storage"', ModelWarning, stacklevel=caller_level())
+    steps, mismatch, freedom, *_ = np.reshape(found, (-1, len(_Alignment._fields))).T
+    return np.append(0.0, np.cumsum(steps)), mismatch, freedom
+
+
+class _LogCurve:
+    """Logarithms of moduli over ln omega, with an interpolant, of the curve of one temperature.
+
+    x : ln omega, ascending, each once, shape (n,).
+    y : ln E' and, unless the shift is found on the storage modulus alone, ln E'', shape (n, 2) or
+        (n, 1); the mean at repeated frequencies.
+    interpolate : the interpolant of y: a function of ln omega, (k,), that returns shape (k, 2) or
+    (k, 1).
+    """
+
+    def __init__(self, curve: Curve, on: str) -> None:
+        """Take logarithms, average those of repeated frequencies, and make the interpolant.
+
+        It is a cubic spline, of two or three different frequencies a monotone piecewise cubic
+        (PCHIP).
+
+        curve : :class:`Curve`, storage and loss modulus.
+        on : "storage" or "both": the moduli that are kept.
+        Raises ParameterError for a single frequency.
+        """
+        from scipy.interpolate import CubicSpline, PchipInterpolator
+
+        self.x, which = np.unique(np.log(curve.omega), return_inverse=True)
+        count = np.bincount(which)
+        columns = curve[1:2] if on == "storage" else curve[1:]
+        self.y = np.stack(
+            [np.bincount(which, np.log(column)) / count for column in columns], axis=1
+        )
+        if self.x.size < 2:
+            raise ParameterError(
+                "omega", f"{self.x.size} frequency at a temperature", "at least 2 at each"
+            )
+        self.interpolate = (
+            CubicSpline(self.x, self.y) if self.x.size > 3 else PchipInterpolator(self.x, self.y)
+        )
+
+
+class _Alignment(NamedTuple):
+    """The shift that lays the warm curve on the cold one; the numbers are NaN where no shift leaves
+    an overlap.
+
+    step : what is added to ln omega of the warm curve, signed; a factor a_T below 1 gives a step
+    below 0.
+    mismatch : root mean square difference of ln E' (and of ln E'', if it is kept) after the shift,
+    dimensionless.
+    freedom : decades over which the shift may be moved before the mismatch of a modulus rises by
+        :data:`_EQUALLY_GOOD`.
+    at_end : whether the shift is the first or last that leaves an overlap.
+    disagree : whether one modulus by itself overlaps much better at another shift.
+    """
+
+    step: float
+    mismatch: float
+    freedom: float
+    at_end: bool
+    disagree: bool
+
+
+def _align(cold: _LogCurve, warm: _LogCurve) -> _Alignment:
+    """Find the shift of a pair of curves: by a search in steps over all shifts that leave an
+    overlap, then by Brent's method.
+
+    The product of the mismatches of E' and E'' is least at the shift: that is the most likely one
+    where both have normal errors of unknown size, so that each counts by how well it overlaps
+    there, and a part of E'' that does not shift leaves the shift to E'.  Mismatches below
+    :data:`_FLOOR` count as equal.
+
+    cold, warm : :class:`_LogCurve`, curve of the lower and of the higher temperature.
+    Returns the :class:`_Alignment`, of NaN where no shift leaves enough overlap
+    (:func:`_mismatch`).  Of equal mismatches in the search the most negative shift is refined.
+    ``freedom`` is measured in the steps of the search, at most 0.05 in ln omega, between the
+    nearest steps on either side at which the mismatch of a modulus is more than 0.01 above that at
+    the best one, or the ends of the search.
+    """
+    from scipy.optimize import minimize_scalar
+
+    def cost(squares: Floats) -> Floats:
+        """Return the logarithm of the product of mismatches, from mean squares of the moduli, (...,
+        moduli).
+        """
+        return np.log(squares + _FLOOR**2).sum(axis=-1)
+
+    low = cold.x[0] - warm.x[-1]
+    high = cold.x[-1] - warm.x[0]
+    steps = np.linspace(low, high, 2 + int((high - low) / _STEP))
+    squares = np.array([_mismatch(step, cold, warm) for step in steps])
+    inside = ~np.isnan(squares[:, 0])
+    steps = steps[inside]
+    squares = squares[inside]
+    if not steps.size:
+        return _Alignment(
+            step=math.nan, mismatch=math.nan, freedom=math.nan, at_end=False, disagree=False
+        )
+    best = int(np.argmin(cost(squares)))
+    around = steps[max(best - 1, 0)], steps[min(best + 1, steps.size - 1)]
+    step = minimize_scalar(
+        lambda step: cost(_mismatch(step, cold, warm)),
+        bounds=around,
+        method="bounded",
+        options={"xatol": 1e-9},
+    ).x
+    if not cost(found := _mismatch(step, cold, warm)) < cost(squares[best]):
+        step = steps[best]
+        found = squares[best]
+    rms = np.sqrt(squares)
+    least = np.sqrt(found)
+    worse = np.flatnonzero((rms > least + _EQUALLY_GOOD).any(axis=1))
+    before = worse[worse < best]
+    behind = worse[worse > best]
+    ends = before[-1] if before.size else 0, behind[0] if behind.size else steps.size - 1
+    own = rms.min(axis=0)
+    return _Alignment(
+        step=float(step),
+        mismatch=math.sqrt(np.mean(found)),
+        freedom=(steps[ends[1]] - steps[ends[0]]) / math.log(10.0),
+        at_end=best in (0, steps.size - 1),
+        disagree=bool((least > np.maximum(_DISAGREES * own, own + _EQUALLY_GOOD)).any()),
+    )
+
+
+def _mismatch(step: float, cold: _LogCurve, warm: _LogCurve) -> Floats:
+    """Return the mean square difference of two curves where they overlap, each at its points
+    against the other's interpolant.
+
+    step : what is added to ln omega of the warm curve, signed.
+    cold, warm : :class:`_LogCurve`, curve of the lower and of the higher temperature, both with the
+    same moduli.
+    Returns the mean of the squared differences of ln E' (and of ln E'', if it is kept),
+    dimensionless, (moduli,); NaN where they overlap by less than 15 % of the shorter range in ln
+    omega, or with fewer than three points of both together.
+    """
+    low = max(cold.x[0], warm.x[0] + step)
+    high = min(cold.x[-1], warm.x[-1] + step)
+    of_warm = (warm.x + step >= low) & (warm.x + step <= high)
+    of_cold = (cold.x >= low) & (cold.x <= high)
+    short = high - low < _OVERLAP * min(cold.x[-1] - cold.x[0], warm.x[-1] - warm.x[0])
+    if short or of_warm.sum() + of_cold.sum() < _POINTS:
+        return np.full(cold.y.shape[1], math.nan)
+    at_warm = warm.y[of_warm] - cold.interpolate(warm.x[of_warm] + step)
+    at_cold = cold.y[of_cold] - warm.interpolate(cold.x[of_cold] - step)
+    difference = np.concatenate([at_warm, at_cold])
+    return np.mean(difference * difference, axis=0)

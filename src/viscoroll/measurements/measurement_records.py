@@ -1,0 +1,602 @@
+"""Records of measurements in SI units: :class:`Resistance`, :class:`Traction` and
+:class:`Coastdown`.
+
+A record without values is a plan: the fit then says how well it would determine the unknowns.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from dataclasses import KW_ONLY, dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..core.checks import Floats, Numbers, broadcast_shape, check_array, check_number
+from ..core.errors import ParameterError, check_names, described_error, shape_error
+from ..core.labels import Labels, strip_labels
+from ..core.quantities import to_unit
+from ..core.scale import DIMENSIONLESS, si_unit
+from ..rollers import Cylinder
+
+#: word for an initial angular velocity of V0/R
+ROLLING = "rolling"
+#: unknowns of a record
+OF_RECORDS: tuple[str, ...] = ("V0", "omega0", "t0")
+#: number of a record -> its lower bound
+_NUMBERS = {"load": 0.0, "m": 0.0, "temperature": -math.inf, "V0": -math.inf, "omega0": -math.inf}
+#: name -> initial value, and range (of t0 as an array of two) where the record leaves it open
+InitialValues = dict[str, tuple[float, tuple[float, float] | None]]
+#: relative tolerance of a free motion
+_RTOL = 1e-8
+#: relative tolerance of a driven motion: its outputs are smooth in the parameters to 2e-12 then
+_RTOL_DRIVEN = 1e-10
+
+
+@dataclass(frozen=True, eq=False)
+class Record:
+    """A record of measurements: coordinates of points, values at them, and standard deviations,
+    each an array or one number for all.
+
+    It is the base of :class:`Resistance`, :class:`Traction` and :class:`Coastdown`.
+
+    COORDINATES : names of the coordinates of the points, as V or t.
+    QUANTITIES : names of what may be measured at the points; a record that has none of them is a
+        plan: a test that is to be made, whose accuracy is computed before.
+    LABEL : kind of record, its name in messages.
+    sigma : as given by the caller a number, an array, a dict or None; after ``__post_init__`` a
+        dict, quantity -> standard deviations in its SI unit, in the shape of the points, or None
+        where they are to be estimated.
+    load, temperature, name : as of :class:`Resistance`.
+    labels : :class:`Labels` of xarray or pandas of the arrays that were given; None without.
+    """
+
+    #: names of places and of what may be measured there, the first what a plan is about
+    COORDINATES: ClassVar[tuple[str, ...]] = ()
+    QUANTITIES: ClassVar[tuple[str, ...]] = ()
+    LABEL: ClassVar[str] = ""
+
+    _: KW_ONLY
+    sigma: Any = None
+    load: float | None = None
+    temperature: float | None = None
+    name: str = ""
+    labels: Labels | None = field(default=None, init=False, repr=False)
+
+    def __post_init__(self) -> None:
+        """Check the fields, convert them to SI units, and replace them by the results.
+
+        Coordinates and values become float64 arrays of one shape, at least one-dimensional, which
+        may be read-only views; quantities that were not measured stay None.  ``sigma`` is given as
+        a number or an array, of the one quantity that was measured, as a dict, quantity -> number
+        or array, or as None.  It becomes a dict: of data quantity -> array of that shape, or None
+        where the standard deviation is to be estimated, for every quantity measured; of a plan for
+        those given alone, so that it is {} where none is.  ``load`` (N/m), ``temperature`` (degrees
+        Celsius), and ``m`` (kg/m), ``V0`` (m/s), ``omega0`` (rad/s) of a :class:`Coastdown`, become
+        floats; None and omega0 = "rolling" stay.  ``labels`` is set to those of the arrays, or
+        None.
+
+        Raises ParameterError for values that are not numbers, not finite, of another unit, of no
+        points, or of shapes that do not broadcast; for values or sigma at more points than the
+        coordinates have; for sigma, load or m that are not > 0; for temperature, V0 or omega0 that
+        is no finite number; for one sigma where several quantities are measured, and for a quantity
+        in sigma that the record does not have or did not measure; for a name that is no text or has
+        a colon.
+        """
+        if not isinstance(self.name, str) or ":" in self.name:
+            raise ParameterError("name", f"{self.name!r:.60}", "a text without a colon")
+        names = (*self.COORDINATES, *self.measured)
+        given = {
+            name: to_unit(self.label(name), getattr(self, name), self.unit(name)) for name in names
+        }
+        plain, labels = strip_labels(given, DIMENSIONLESS)
+        arrays = {
+            name: np.atleast_1d(check_array(self.label(name), value))
+            for name, value in plain.items()
+        }
+        for name, value in (sigma := self._sigmas()).items():
+            label = f"sigma of {name}"
+            arrays[label] = check_array(self.label(label), value, unit=self.unit(name), above=0.0)
+        shape = broadcast_shape(**{self.label(name): array for name, array in arrays.items()})
+        if broadcast_shape(**{name: arrays[name] for name in self.COORDINATES}) != shape:
+            raise shape_error(self.label(self.QUANTITIES[0]), shape, "one value for each point")
+        if 0 in shape:
+            raise described_error(
+                self.label(self.COORDINATES[0]), "is empty", "at least one number"
+            )
+        whole = {name: np.broadcast_to(array, shape) for name, array in arrays.items()}
+        sigmas = {name: whole.pop(f"sigma of {name}", None) for name in self.measured or sigma}
+        vars(self).update(whole, labels=labels, sigma=sigmas)
+        for name, low in _NUMBERS.items():
+            value = getattr(self, name, None)
+            if value is not None and not (
+                name == "omega0" and isinstance(value, str) and value == ROLLING
+            ):
+                vars(self)[name] = check_number(
+                    self.label(name), value, unit=self.unit(name), above=low
+                )
+
+    @staticmethod
+    def unit(name: str) -> str:
+        """Return the SI unit of a field of a record.
+
+        Parameters
+        ----------
+        name : name of a coordinate, a quantity or a number of a record, as "V".
+
+        Returns
+        -------
+        str
+            The unit, as "m s-1"; "1" of a creepage and of other names without a dimension.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Resistance.unit("F"), vr.Traction.unit("delta")
+        ('N m-1', '1')
+        """
+        return si_unit("force" if name == "F" else name)
+
+    def label(self, name: str) -> str:
+        """Return the name of a field as messages have it.
+
+        Parameters
+        ----------
+        name : name of the field, as "V"; not checked.
+
+        Returns
+        -------
+        str
+            "RECORD: FIELD"; an unnamed record has the name of its kind.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Traction(V=1.0, delta=0.02).label("Q")
+        'traction: Q'
+        """
+        return f"{self.name or self.LABEL}: {name}"
+
+    def _sigmas(self) -> dict[str, Any]:
+        """Return the standard deviations by quantity, from a single one or from a mapping.
+
+        A single one (a number, or an array over the points) is of the quantity that is measured or,
+        in a plan, of the first of :attr:`QUANTITIES`.
+
+        Returns a dict, quantity -> standard deviation as given and not checked, a number, an array
+        or one with a unit; quantities without one are left out, {} where none is given.
+        Raises ParameterError for a single one where several quantities are measured, and for a
+        quantity that was not measured or, in a plan, that the record does not have.
+        """
+        among = self.measured or self.QUANTITIES
+        given = {} if self.sigma is None else self.sigma
+        if not isinstance(given, Mapping):
+            if len(self.measured) > 1:
+                allowed = (
+                    f"one for each quantity, as {{{', '.join(f'{name!r}: ...' for name in among)}}}"
+                )
+                raise ParameterError(self.label("sigma"), f"{given!r:.40}", allowed)
+            given = {among[0]: given}
+        check_names(self.label("sigma"), given, among, "a quantity of it")
+        return {name: value for name, value in given.items() if value is not None}
+
+    @property
+    def measured(self) -> tuple[str, ...]:
+        """Names of the quantities that the record has values of; none of a plan."""
+        return tuple(name for name in self.QUANTITIES if getattr(self, name) is not None)
+
+    @property
+    def overrides(self) -> dict[str, float]:
+        """Inputs of the cylinder that the record replaces: "load" in N/m and "m" in kg/m -> number;
+        {} where it has neither.
+        """
+        return {
+            name: value
+            for name in ("load", "m")
+            if (value := getattr(self, name, None)) is not None
+        }
+
+    def initial_values(self, R: float) -> InitialValues:
+        """Return the start values V0, omega0 and t0 of the motion, which a fit may need;
+        :class:`Coastdown` has them.
+
+        Parameters
+        ----------
+        R : radius of the cylinder, m; not used here.
+
+        Returns
+        -------
+        dict
+            Empty: other records have no motion.  :meth:`Coastdown.initial_values` returns name ->
+            (initial value, limits), in SI units; limits are (low, high) where the record does not
+            give the value, else None.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.Traction(V=1.0, delta=0.02).initial_values(R=0.1)
+        {}
+        """
+        return {}
+
+    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
+        """Return all :attr:`QUANTITIES` of the record as the model predicts them; each kind of
+        record does this itself.
+
+        cylinder : :class:`Cylinder` with the present values of the unknowns, which has the load,
+            the mass and the temperature of this record already.
+        values : name -> value of the unknowns of bearing and record, without the name of the
+            record: "brake" in N m/m, "drag" in N m s/m, "V0" in m/s, "omega0" in rad/s, "t0" in s;
+            those that are missing are 0 or as the record has them.
+        Returns a dict, quantity -> values in SI units, in the shape of the points of the record.
+        Raises NotImplementedError here, in the base class; in the kinds of records ViscorollError,
+        where the values make no contact or no motion.
+        """
+        raise NotImplementedError
+
+
+@dataclass(frozen=True, eq=False)
+class Resistance(Record):
+    """Rolling resistance over speed: of a drum, or of a roller that is pulled.
+
+    Parameters
+    ----------
+    V : speeds, m/s, any sign, (n,) or one number.
+    M : rolling moments, N m per m of length, (n,), the torque of the bearing included, as on the
+        shaft of a drum; its sign is that of V where it resists.
+    F : pulling forces M/R, N/m, of the sign of M, in place of M or beside it.  A record without
+        both is a plan.
+    sigma : standard deviation of M or F, in its unit, a number or one for each point; of both {"M":
+        ..., "F": ...}.
+        None: estimated from the residuals.
+    load : load of this record, N/m; None: the cylinder's.
+    temperature : temperature of this record, degrees Celsius, see ``shift`` of
+        :func:`viscoroll.identify`; None: that of the cylinder's materials.
+    name : by which the report calls it, without a colon; "": its kind, "resistance".
+
+    Raises
+    ------
+    ParameterError
+        Values that are not finite, with their row, or of another unit (``attrs["units"]``), sigma
+        <= 0, a load that is not > 0; M or F of which all values drive, by more than three sigma
+        where it is given.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> drum = vr.Resistance(V=[0.5, 1.0, 2.0], M=[0.31, 0.33, 0.36], sigma=0.01)
+    >>> drum.M
+    array([0.31, 0.33, 0.36])
+    """
+
+    COORDINATES = ("V",)
+    QUANTITIES = ("M", "F")
+    LABEL = "resistance"
+
+    V: Numbers
+    M: Numbers | None = None
+    _: KW_ONLY
+    F: Numbers | None = None
+
+    def __post_init__(self) -> None:
+        """Check the sign of M and F beside all that every record checks.
+
+        Raises ParameterError as :meth:`Record.__post_init__` does, and where all values of M or F
+        have the sign that is opposite to V, by more than three sigma where it is given.
+        """
+        super().__post_init__()
+        for name in self.measured:
+            noise = 0.0 if self.sigma[name] is None else 3.0 * self.sigma[name]
+            if (getattr(self, name) * np.sign(self.V) < -noise).all():
+                allowed = "of the sign of V, as it resists: reverse its sign"
+                raise described_error(
+                    self.label(name), "has at all points the sign opposite to V", allowed
+                )
+
+    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
+        """Predict rolling moment and pulling force of free rolling, the torque of the bearing
+        included.
+
+        The moment is M of the contact at delta = 0, plus sign(V) brake + drag V/R, and the force is
+        this moment over R; both are 0 at V = 0.
+
+        Parameters
+        ----------
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load
+            and the temperature of this record, which are not read here; nor are M and F, so that a
+            plan is predicted too.
+        values : name -> value of "brake", N m/m, and "drag", N m s/m, each 0 where it is missing;
+            other names are not used.
+
+        Returns
+        -------
+        dict[str, Floats]
+            {"M": moments, N m/m; "F": forces, N/m}, in the shape of the speeds of the record.
+
+        Raises
+        ------
+        ParameterError
+            Values that make no contact, as speeds beyond the range of the law.
+
+        Warns
+        -----
+        ModelWarning
+            As :func:`viscoroll.contact`; a fit suppresses it.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> drum = vr.Resistance(V=[0.5, 1.0])
+        >>> free, braked = (
+        ...     drum.model(vr.presets.RUBBER_CYLINDER, {"brake": brake})["M"]
+        ...     for brake in (0.0, 0.1)
+        ... )
+        >>> (braked - free).round(6)
+        array([0.1, 0.1])
+        """
+        V = np.asarray(self.V)
+        brake = values.get("brake", 0.0)
+        drag = values.get("drag", 0.0)
+        M = (
+            cylinder.contact(V, delta=0.0, fields="M").M
+            + np.sign(V) * brake
+            + drag * V / cylinder.R
+        )
+        return {"M": M, "F": M / cylinder.R}
+
+
+@dataclass(frozen=True, eq=False)
+class Traction(Record):
+    """Traction over creepage, at one speed or several.
+
+    Parameters
+    ----------
+    V : speeds of the axis, m/s, one for all or one a point, (n,).
+    delta : creepages (omega R - V)/V, dimensionless, (n,) or one number.
+    Q : traction, N/m, positive for delta > 0 and V > 0, (n,); None: a plan.
+    sigma, load, temperature, name : as of :class:`Resistance`.
+
+    Raises
+    ------
+    ParameterError
+        As of :class:`Resistance`.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> traction = vr.Traction(V=1.0, delta=[-0.02, 0.0, 0.02], Q=[-60.0, 0.0, 60.0])
+    >>> traction.V
+    array([1., 1., 1.])
+    """
+
+    COORDINATES = ("V", "delta")
+    QUANTITIES = ("Q",)
+    LABEL = "traction"
+
+    V: Numbers
+    delta: Numbers
+    Q: Numbers | None = None
+
+    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
+        """Predict the traction, the Q of the contact at the speeds and creepages of the record.
+
+        Parameters
+        ----------
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load
+            and the temperature of this record, which are not read here; nor is Q, so that a plan is
+            predicted too.
+        values : not used: bearing and record have no unknowns that change the traction.
+
+        Returns
+        -------
+        dict[str, Floats]
+            {"Q": tractions, N/m}, in the shape of the points of the record.
+
+        Raises
+        ------
+        ParameterError
+            As of :meth:`Resistance.model`.
+
+        Warns
+        -----
+        ModelWarning
+            As :func:`viscoroll.contact`; a fit suppresses it.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> found = vr.Traction(V=1.0, delta=[-0.02, 0.0, 0.02]).model(
+        ...     vr.presets.RUBBER_CYLINDER, {}
+        ... )
+        >>> (found["Q"] > 0.0).tolist()
+        [False, False, True]
+        """
+        return {"Q": cylinder.contact(self.V, delta=self.delta, fields="Q").Q}
+
+
+@dataclass(frozen=True, eq=False)
+class Coastdown(Record):
+    """Speeds or distance over time of a roller that was launched or released.
+
+    Parameters
+    ----------
+    t : times, s, ascending, (n,); they may repeat.
+    V, omega, x : speed of the axis, m/s, angular velocity, rad/s, distance since the release, m,
+        (n,) each; at least one, of a plan none.
+    V0 : speed at the release, m/s; None: unknown, near the first values.
+    omega0 : angular velocity at the release, rad/s; "rolling": V0/R; None: unknown, near the first
+        values.
+    t0 : time of the release, s, before which the roller has its first speeds; (low, high): unknown.
+    m : mass with which it rolled, kg/m; None: the cylinder's.
+    sigma : as of :class:`Resistance`; of several quantities {"V": ..., "omega": ...}, whose names
+        are those that a plan measures.
+    load, temperature, name : as of :class:`Resistance`; without a name it is called "run".
+
+    Raises
+    ------
+    ParameterError
+        As of :class:`Resistance`; times that fall or are no vector; t0 of another form.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> run = vr.Coastdown(t=[0.0, 1.0, 2.0], V=[2.0, 1.7, 1.5], sigma=0.01, V0=2.0)
+    >>> run.omega0
+    'rolling'
+    """
+
+    COORDINATES = ("t",)
+    QUANTITIES = ("V", "omega", "x")
+    LABEL = "run"
+
+    t: Numbers
+    V: Numbers | None = None
+    omega: Numbers | None = None
+    x: Numbers | None = None
+    _: KW_ONLY
+    V0: float | None = None
+    omega0: float | str | None = ROLLING
+    t0: float | tuple[float, float] = 0.0
+    m: float | None = None
+
+    def __post_init__(self) -> None:
+        """Check times and t0 beside all that every record checks; t0 becomes a float or a pair of
+        floats, s.
+
+        Raises ParameterError as :meth:`Record.__post_init__` does, for times that fall (equal ones
+        are allowed) or are no vector, and for a t0 that is neither one finite number nor two;
+        whether two ascend is checked by the fit.
+        """
+        super().__post_init__()
+        t: Any = self.t
+        if t.ndim > 1:
+            raise shape_error(self.label("t"), t.shape, "a vector, in ascending order")
+        if (falls := np.flatnonzero(np.diff(t) < 0.0)).size:
+            n = falls[0]
+            at = f"{t[n]:g}, {t[n + 1]:g} at rows {n}, {n + 1}"
+            raise ParameterError(self.label("t"), at, "a vector, in ascending order")
+        t0 = check_array(self.label("t0"), self.t0, unit="s")
+        if t0.shape not in ((), (2,)):
+            raise ParameterError(self.label("t0"), self.t0, "a number, or (low, high)")
+        vars(self)["t0"] = tuple(t0.tolist()) if t0.ndim else float(t0)
+
+    def initial_values(self, R: float) -> InitialValues:
+        """Return the unknowns of the release with their initial values.
+
+        Parameters
+        ----------
+        R : radius of the cylinder, m.
+
+        Returns
+        -------
+        dict
+            Name ("t0", "V0", and "omega0" unless it is "rolling") -> (initial value; (low, high)
+            where the record leaves it open, None where it gives it), in s, m/s and rad/s.  The
+            (low, high) of V0 and omega0 is a tuple, that of t0 an array, (2,), whose order is not
+            checked here.  A t0 that is open starts at 0 limited to its
+            range: low where low > 0, high where high < 0.  V0 and omega0 that are open start at the
+            first measured value, within the largest magnitude measured to either side.  Where V was
+            not measured, V0 starts at R times the first omega, if omega0 is "rolling" and omega was
+            measured, else at the slope of the first tenth of x (at least three points, or all),
+            within its magnitude to either side.
+
+        Raises
+        ------
+        ParameterError
+            V0 or omega0 is open and the record has no data that show it.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> run = vr.Coastdown(t=[0.0, 1.0, 2.0], V=[2.0, 1.7, 1.5])
+        >>> run.initial_values(R=0.1)
+        {'t0': (0.0, None), 'V0': (2.0, (0.0, 4.0))}
+        """
+        ends: Any = np.ravel(self.t0)
+        found: InitialValues = {
+            "t0": (float(np.clip(0.0, ends[0], ends[-1])), ends if ends.size > 1 else None)
+        }
+        for name, value in (("V0", self.V0), ("omega0", self.omega0)):
+            if not isinstance(value, str):
+                found[name] = self._first(name, R) if value is None else (value, None)
+        return found
+
+    def _first(self, name: str, R: float) -> tuple[float, tuple[float, float]]:
+        """Estimate the speed or the angular velocity at the release of the cylinder from the first
+        data.
+
+        It is the first measured value of V or omega.  Where V was not measured, V0 is R times the
+        first omega, if ``omega0`` is "rolling" and omega was measured, else the slope of a straight
+        line through the first tenth of x, at least three points, or all if there are fewer.
+
+        name : "V0" or "omega0".
+        R : radius of the cylinder, m; used only to make V of omega.
+        Returns (speed, (lowest, highest value that it may have)), m/s or rad/s.  The range extends
+        to either side of the speed by the largest |V|, R |omega| or |omega| that was measured, and
+        of a slope of x by its absolute value; it has no width where these are 0.  Where the first
+        times are all one, the slope is that of least norm, with a RankWarning of numpy.
+        Raises ParameterError where none of these was measured.
+        """
+        data: Any = self.V if name == "V0" else self.omega
+        if data is None and name == "V0" and self.omega is not None and self.omega0 == ROLLING:
+            data = R * np.asarray(self.omega)
+        if data is None and name == "V0" and self.x is not None:
+            some = slice(0, max(3, np.size(self.t) // 10))
+            data = np.polyfit(np.asarray(self.t)[some], np.asarray(self.x)[some], 1)[:1]
+        if data is None:
+            raise ParameterError(self.label(name), None, "a number: the data do not determine it")
+        first = float(data[0])
+        most = float(np.max(np.abs(data)))
+        return first, (first - most, first + most)
+
+    def model(self, cylinder: Cylinder, values: Mapping[str, Any]) -> dict[str, Floats]:
+        """Predict V, omega and x, and for each point whether it is in full slip.
+
+        Before the time t0 of the release V and omega are those at the release, and x is 0.
+
+        Parameters
+        ----------
+        cylinder : :class:`Cylinder` with the present values of the unknowns, already with the load,
+            the mass and the temperature of this record, which are not read here; nor are V, omega
+            and x, so that a plan is predicted too.
+        values : name -> value of "brake", N m/m, and "drag", N m s/m, which are 0 where they are
+            missing, and of "V0", "omega0" and "t0" in place of those of the record; where these are
+            missing the record must have numbers, or "rolling" as omega0, which is V0/R.  Other
+            names are not used.
+
+        Returns
+        -------
+        dict[str, Floats]
+            Arrays over the times, (n,), by name: "V" in m/s, "omega" in rad/s, "x" in m, "slips" as
+            truth values, False before the release.  V, omega and x are NaN, and slips False, at
+            times that the motion did not reach.
+
+        Raises
+        ------
+        ParameterError
+            Values that make no motion, as infinite ones.
+
+        Warns
+        -----
+        ModelWarning, RuntimeWarning
+            As :func:`viscoroll.roll`, the latter where the motion is given up; a fit suppresses
+            both.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> run = vr.Coastdown(t=[0.0, 1.0, 2.0], V0=2.0)
+        >>> found = run.model(vr.presets.RUBBER_CYLINDER, {})
+        >>> float(found["V"][0]), bool(found["x"][2] > found["x"][1])
+        (2.0, True)
+        """
+        V0, omega0, t0 = (values.get(name, getattr(self, name)) for name in OF_RECORDS)
+        t = np.asarray(self.t) - t0
+        omega0 = V0 / cylinder.R if omega0 == ROLLING else omega0
+        drive = {name: values[name] for name in ("brake", "drag") if values.get(name)}
+        motion = cylinder.roll(
+            V0, omega0, np.maximum(t, 0.0), rtol=_RTOL_DRIVEN if drive else _RTOL, **drive
+        )
+        slips = (motion.regime == 0) & (t >= 0.0)
+        return {"V": motion.V, "omega": motion.omega, "x": motion.x, "slips": slips}

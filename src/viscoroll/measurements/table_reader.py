@@ -1,0 +1,481 @@
+"""Measured moduli from the columns of a table.
+
+Storage and loss modulus from any two of storage, loss, tan delta and magnitude; a third is
+compared.
+
+What the readers of tests of materials share: a table whose columns are understood, and their
+numbers.
+"""
+
+from __future__ import annotations
+
+import re
+import warnings
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.checks import Floats
+from ..core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
+from .dma_columns import BARE, OF_SHEAR, QUANTITIES, UNITS, Column, columns_of, meanings, numbers_of
+from .dynamic_moduli import SAME_TEMPERATURE
+from .text_cells import Numbers
+from .text_table import NO_UNIT, Table, conversion, read_table, readings
+
+# --- Storage and loss modulus from any two of storage, loss, tan delta and magnitude ---
+
+#: pair of quantities -> function of both that returns storage and loss, the pairs that lose the
+#: fewest digits first
+PAIRS: dict[tuple[str, str], Callable[[Any, Any], tuple[Any, Any]]] = {
+    ("storage", "loss"): lambda storage, loss: (storage, loss),
+    ("storage", "tan delta"): lambda storage, tan: (storage, storage * tan),
+    ("loss", "tan delta"): lambda loss, tan: (loss / tan, loss),
+    ("modulus", "tan delta"): lambda whole, tan: (
+        whole / np.hypot(1.0, tan),
+        whole / np.hypot(1.0, tan) * tan,
+    ),
+    ("loss", "modulus"): lambda loss, whole: (np.sqrt(whole**2 - loss**2), loss),
+    ("storage", "modulus"): lambda storage, whole: (storage, np.sqrt(whole**2 - storage**2)),
+}
+#: relative difference of quantities that agree, beside rounding: instruments average each quantity
+#: over cycles, and a mean of ratios is off the ratio of means by parts of a per cent
+AVERAGED = 0.01
+#: largest relative error of storage and loss that the rounding of the digits may cause
+_ROUNDED = 0.05
+
+
+@np.errstate(
+    all="ignore"
+)  # where a pair has no solution there is NaN or infinity, which is refused
+def storage_and_loss(
+    table: Table, pair: tuple[str, str], columns: dict[str, Numbers]
+) -> tuple[Floats, Floats]:
+    """Return storage and loss from two measured quantities, after a check that all others agree
+    with them.
+
+    table : :class:`Table`, the table that has the columns; its lines are named in the error
+    message.
+    pair : the two quantities, a key of :data:`PAIRS`; both are in ``columns``.
+    columns : quantity ("storage", "loss", "tan delta", "modulus") -> :class:`Numbers`, values and
+        half a unit of their last digits, (n,) each, of those that the file has; all in Pa or all in
+        1/Pa, tan delta dimensionless.
+    Returns (storage, loss), (n,) each, in the unit of the columns: compliances of compliances.
+    Signs are not checked
+    here: a negative or infinite value stays.
+    Raises FileError, with the line, where a further column differs by more than 1 % beside the
+    rounding of all three; of a pair of a magnitude and storage or loss also where the magnitude is
+    not above the other, or where the digits of the file leave the modulus that is computed
+    uncertain by more than 5 %.
+    """
+    storage, loss = PAIRS[pair](*(columns[name].values for name in pair))
+    exact = {
+        "storage": storage,
+        "loss": loss,
+        "tan delta": loss / storage,
+        "modulus": np.hypot(storage, loss),
+    }
+    rounding = sum(columns[name].half / np.abs(columns[name].values) for name in pair)
+    both = " and ".join(pair)
+    if pair[1] == "modulus":  # a difference of squares
+        other = exact["loss" if pair[0] == "storage" else "storage"]
+        rounding = rounding * (exact["modulus"] / other) ** 2
+        table.require(
+            rounding <= _ROUNDED, f"{both} do not determine the other modulus: give tan delta too"
+        )
+    for name in columns.keys() - set(pair):
+        values, half = columns[name]
+        agrees = np.abs(values - exact[name]) <= (AVERAGED + rounding) * np.abs(exact[name]) + half
+        advice = "give its unit by units=, or remove one of the columns"
+        table.require(agrees, f"{name} contradicts {both}: {advice}")
+    return storage, loss
+
+
+# --- What the readers of tests of materials share ---
+
+#: relative difference of frequencies in Hz and in rad/s that agree: 6.28 in place of 2 pi is off by
+#: 5e-4
+_ROUND_PI = 1e-3
+#: Pa; moduli that are all below it are not of a rubber in Pa
+SOFTEST = 1e3
+#: relative difference of frequencies that are one: instruments keep theirs to this
+ONE_FREQUENCY = 1e-3
+#: ratio of moduli at one frequency and one temperature above which something else was varied
+_REPEATED = 1.25
+#: advice where columns are not understood
+_NAME_THEM = "name the columns by columns={...} (`viscoroll material fit`: --column NAME=HEADING)"
+#: a number in degrees Celsius, or of three digits in kelvin, which is no rate, and none that a
+#: comma in a row of cells may have cut; before it what makes it the end of a range, as "20 to "
+_IN_DEGREES = re.compile(
+    r"(\d\s*(?:[-–~]|to|bis|à)\s*)?(?<!\d[.,])(?<![\d.])"
+    r"(\d{3}(?:[.,]\d+)?(?=[\s;,|\"]*K\b)|[+-]?\d+(?:[.,]\d+)?(?![\s;,|\"]*K\b))"
+    r"[\s;,|\"]*(℃|(?:[°º]\s*|deg\s*)?[CKF]\b)(?!\s*[/·*])"
+)
+#: a temperature without a unit behind it, at the end of a line
+_NAMED = re.compile(
+    r"(?:(?i:temp[^\W\d_]*\.?)|温度|\bT(?=\s*[:=;,\t]))\s*(?:[\[(]\s*(?:[°º]|deg)?\s*C\s*[\])])?[\s:：=;,|\"]*"
+    r"()([+-]?\d+(?:[.,]\d+)?)()[\s;,|\"]*$"
+)
+#: a heading of a temperature that is not understood, as "Ts" or "Chamber temp."
+_LIKE_TEMPERATURE = re.compile(r".*(?i:temp(?!o\b|s\b|l))|.*温度|T[^\W_]{0,2}(?![^\W_])")
+#: degrees; numbers without a unit above it may be kelvins
+_KELVIN = 200.0
+
+
+class Understood(NamedTuple):
+    """A table whose columns are understood.
+
+    table : the :class:`Table`.
+    columns : list of :class:`Column`, columns of known quantities, in the order of the file.
+    others : heading -> why the column is left out, "" for an unknown quantity.
+    """
+
+    table: Table
+    columns: list[Column]
+    others: dict[str, str]
+
+    def mode(self, said: str) -> tuple[str, list[str]]:
+        """Return the mode of the moduli, and a note in a list if it is assumed.
+
+        said : "tension", "shear", or "" where the headings of the moduli do not say it: then it is
+            "shear" if another heading is one of a test in shear, as "Torque" of rheometers, else
+            "tension".
+        """
+        beside = next((heading for heading in self.table.headings if OF_SHEAR.search(heading)), "")
+        mode = said or ("shear" if beside else "tension")
+        reason = f"{beside!r} is beside them" if beside else "no heading says E or G"
+        return mode, [f"{mode} is assumed, since {reason}"] * (not said)
+
+    def notes(self, taken: list[Column]) -> list[str]:
+        """Return the notes on columns of logarithms, columns that are left out, and lines below the
+        rows.
+
+        taken : the columns that are read.
+        """
+        notes = [
+            f"{column.heading!r} is {'log10' if column.log == 10.0 else 'ln'}"
+            for column in taken
+            if column.log
+        ]
+        listed = ", ".join(
+            f"{heading!r}" + f" ({why})" * bool(why) for heading, why in self.others.items()
+        )
+        notes += [f"unused: {listed}"] * bool(listed)
+        below = [text for n, text in self.table.titles.items() if n > self.table.rows[-1].number]
+        return notes + [f"lines below the rows are left out, as {quoted(below[:1])}"] * bool(below)
+
+
+def missing(table: Table, problem: str, others: Mapping[str, str]) -> FileError:
+    """Return the error, not raised, of columns that are missing: the problem, headings, and advice.
+
+    table : :class:`Table`, the table of the file.
+    problem : words on what is missing.
+    others : heading -> why the column is left out.
+    """
+    reasons = "".join(f"; {heading!r}: {why}" for heading, why in others.items() if why)
+    headings = ", ".join(repr(heading or f"column {n}") for n, heading in enumerate(table.headings))
+    advice = f"; {_NAME_THEM}" * ("" in others.values() or not others)
+    return FileError(table.path, f"{problem}{reasons}; headings: {headings}{advice}")
+
+
+def quoted(lines: list[str]) -> str:
+    """Return lines for a message, at most 60 characters of each, in quotes and parted by commas."""
+    return ", ".join(f"{' '.join(line.split())!r:.60}" for line in lines)
+
+
+def understand(
+    path: str | PathLike[str],
+    test: str,
+    columns: Any,
+    units: Any,
+    decimal: str | None,
+    encoding: str | None,
+) -> Understood:
+    """Read the table of a file, and find the quantities of its columns.
+
+    test : "dma" or "relaxation".
+    path, columns, units, decimal, encoding : as of :func:`.dma_reader.read_dma`.
+    Returns :class:`Understood`.
+    Raises ParameterError and FileError as :func:`.dma_reader.read_dma` does for these arguments and
+    for what is no table.
+    """
+    if not isinstance(columns, Mapping | None):
+        raise ParameterError("columns", f"{columns!r:.60}", "quantity -> heading")
+    named = dict(columns or {})
+    known = QUANTITIES[test]
+    bare = BARE[test]
+    check_names("columns", named, known, "a quantity")
+    overruling, defaults = _units(units, test)
+    table = read_table(
+        path,
+        lambda cells: _is_heading_line(cells, named, known),
+        decimal=decimal,
+        encoding=encoding,
+        is_title=lambda text: bool(_IN_DEGREES.search(text) or _NAMED.search(text)),
+    )
+    if table.without_headings and not named:
+        if len(table.headings) != len(bare):
+            called = ", ".join(map(repr, table.headings))
+            problem = f"has {len(table.headings)} columns, and no headings for {' and '.join(bare)}"
+            raise FileError(path, f"{problem}; they are called {called}: {_NAME_THEM}")
+        named = dict(zip(bare, table.headings, strict=True))
+    found, others = columns_of(table, test, named, overruling, defaults)
+    check_names("units", overruling, [column.name for column in found], "a quantity of this file")
+    return Understood(table, found, others)
+
+
+def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
+    """Split the argument ``units`` into units that replace those of the file and units for columns
+    that have none.
+
+    units : argument ``units`` of :func:`.dma_reader.read_dma`: None; (unit of frequencies or times,
+        unit of moduli), as ("Hz", "MPa"); or quantity -> unit, with the keys of
+        :data:`.dma_columns.UNITS`.
+    test : "dma" or "relaxation".
+    Returns two dicts quantity -> unit: the first replaces what the file says, the second holds
+    where the file gives none. One of them is empty: the first for a pair, the second for
+    quantity -> unit, and both for None.
+    Raises ParameterError for another form, an unknown quantity, a unit that is unknown or of
+    another dimension.
+    """
+    by_name = isinstance(units, Mapping)
+    known = QUANTITIES[test]
+    first = BARE[test][0]
+    two = (
+        "(time, moduli), as ('s', 'MPa')"
+        if first == "time"
+        else "(frequency, moduli), as ('Hz', 'MPa')"
+    )
+    allowed = f"{two}, or quantity -> unit"
+    if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
+        raise ParameterError("units", f"{units!r:.60}", allowed)
+    of_two = zip((UNITS[first], "Pa"), units or (), strict=False)
+    pairs = (
+        dict(units)
+        if by_name
+        else {name: unit for kind, unit in of_two for name in known if UNITS[name] == kind}
+    )
+    check_names("units", pairs, known, "a quantity")
+    for name, unit in pairs.items():
+        try:
+            conversion(str(unit), UNITS[name])
+        except ParameterError as error:
+            raise ParameterError(
+                "units", f"{units!r:.60}", f"{allowed}; {unit!r} is not a unit of {name}"
+            ) from error
+    return (pairs, {}) if by_name else ({}, pairs)
+
+
+def _is_heading_line(cells: list[str], named: Mapping[str, str], known: list[str]) -> bool:
+    """Return whether a line of the file is the one with the headings, which :func:`.read_table`
+    looks for.
+
+    It is if its cells name at least two different known quantities, or if a cell is a heading that
+    the user gave.
+
+    cells : texts of the cells of the line, with units or without.
+    named : quantity -> heading, the argument ``columns`` of :func:`.dma_reader.read_dma`; empty
+    where the user named none.
+    known : quantities of the test.
+    """
+    quantities = {found[0].name for cell in cells if cell and (found := meanings(cell))}
+    return len(quantities.intersection(known)) > 1 or not set(named.values()).isdisjoint(
+        filter(None, cells)
+    )
+
+
+def agreeing_numbers(
+    table: Table, quantity: str, alike: list[Column], others: dict[str, str]
+) -> Numbers:
+    """Return the numbers of the first of several columns of one quantity, after a check that the
+    others agree with it.
+
+    Frequencies agree to 0.1 %, moduli and tan delta to 1 %, temperatures to 1 K, each beside the
+    rounding of the digits.
+
+    table : :class:`Table`, the table that has the columns.
+    quantity : name of their quantity (:attr:`.dma_columns.Column.quantity`), as "frequency"
+    or "storage".
+    alike : list of :class:`Column`, the columns of this quantity, at least one.
+    others : heading -> why the column is left out.  It is changed: all columns but the first are
+    added.
+    Returns :class:`Numbers` of the first column: values, and half a unit of their last digits, (n,)
+    each, in rad/s, Pa, 1/Pa, degrees Celsius or, of tan delta, dimensionless.
+    Raises FileError with the line where two columns contradict each other, or where a cell is no
+    number, and for a unit that is missing and cannot be assumed.
+    """
+    first = numbers_of(table, alike[0])
+    for column in alike[1:]:
+        second = numbers_of(table, column)
+        relative = (
+            0.0
+            if quantity == "temperature"
+            else _ROUND_PI
+            if quantity.endswith("frequency")
+            else AVERAGED
+        )
+        allowed = relative * np.abs(first.values) + SAME_TEMPERATURE * (quantity == "temperature")
+        agrees = np.abs(first.values - second.values) <= first.half + second.half + allowed
+        same = column.heading == alike[0].heading
+        choices = " or ".join(
+            f"columns={{{each.name!r}: {each.heading!r}}}" for each in (alike[0], column)
+        )
+        advice = "rename or remove one in the file" if same else f"choose by {choices}"
+        table.require(
+            agrees, f"{alike[0].heading!r} and {column.heading!r} contradict each other: {advice}"
+        )
+        others[column.heading] = f"agrees with {alike[0].heading!r}"
+    return first
+
+
+def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> None:
+    """Warn, by one ModelWarning, of frequencies and moduli whose unit neither the file nor the user
+    gives.
+
+    Temperatures, phase angles and compliances are not examined here.  There is no warning where all
+    units are given.
+
+    table : :class:`Table`, the table of the file, for the messages.
+    taken : list of :class:`Column`, the columns that are read.
+    moduli : storage or relaxation modulus, Pa, (n,).
+    Raises FileError for a modulus without a unit beside one that has it, and for a frequency
+    likewise.
+    """
+    assumed = []
+    for word, unit in {"frequency": "rad/s", "time": "s", "moduli": "Pa"}.items():
+        alike = [column for column in taken if UNITS[column.name] == unit]
+        without = [column for column in alike if not column.stated]
+        if without and len(without) < len(alike):
+            advice = f"give units={{{without[0].name!r}: ...}}"
+            raise FileError(
+                table.path, f"column {without[0].heading!r} has no unit, but others do: {advice}"
+            )
+        assumed += [f"{column.unit} ({word})" for column in without[:1]]
+    if assumed:
+        text = f"{table.path}: columns without a unit are taken in {' and '.join(assumed)}"
+        doubt = f"; moduli of up to {moduli.max():g}: are these logarithms, or in MPa?" * bool(
+            moduli.max() < SOFTEST
+        )
+        advice = f"write units into the file, or give units={doubt}"
+        warnings.warn(f"{text}: {advice}", ModelWarning, stacklevel=caller_level())
+
+
+def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None:
+    """Refuse two rows of one frequency or time, to 0.1 %, whose moduli differ by more than a factor
+    of 1.25.
+
+    table : :class:`Table`, whose lines are named in the message.
+    name : "frequency" or "time".
+    at, modulus : frequency or time, and modulus of each row, > 0, (n,).
+    """
+    order = np.argsort(at, kind="stable")
+    same = np.diff(at[order]) <= ONE_FREQUENCY * at[order][1:]
+    holds = np.ones(at.size, bool)
+    holds[order[1:]] = ~same | (np.abs(np.diff(np.log(modulus[order]))) <= np.log(_REPEATED))
+    problem = f"an earlier row has the same {name} and another modulus"
+    table.require(
+        holds,
+        f"{problem}: rows at several temperatures need a column of temperature; keep one strain",
+    )
+
+
+def temperatures_of_lines(table: Table) -> Floats | None:
+    """Return the temperatures that lines state above the rows of each table or block, as
+    "Temperatur 20 °C".
+
+    A line between rows belongs to those below it.  Above the first block the last line counts that
+    differs from that of the second in its numbers alone.
+
+    table : :class:`Table`.
+    Returns degrees Celsius, (rows,); None where there is a single block, or no line between rows
+    states a temperature.
+    Raises FileError for a block above which not exactly one temperature is stated, as also in "20
+    to 60 °C".
+    """
+    numbers = np.array([row.number for row in table.rows])
+    commas = table.decimal != "," and "," in table.rows[0].text
+    lines: dict[int, dict[str, float]] = {}
+    for n, text in table.titles.items():
+        found = _IN_DEGREES.findall(text) or _NAMED.findall(text)
+        if found and n < numbers[-1]:
+            values = {
+                _celsius(number, unit, bool(low) or (commas and "," in number))
+                for low, number, unit in found
+            }
+            wording = re.sub(r"[\d.,+-]", "", text)
+            lines.setdefault(int(np.searchsorted(numbers, n)), {})[wording] = (
+                values.pop() if len(values) == 1 else np.nan
+            )
+    if not lines.keys() - {0}:
+        return None
+    starts = sorted({*lines, *np.searchsorted(numbers, table.starts).tolist()})
+    second = lines.get(starts[1], {})
+    lines[0] = {wording: value for wording, value in lines.get(0, {}).items() if wording in second}
+    temperature = np.empty(numbers.size)
+    for start in starts:
+        values = {*lines.get(start, {}).values()}
+        if len(values) != 1 or np.isnan([*values]).any():
+            problem = (
+                "the lines above it do not state one temperature, as 'Temperature 20 °C', "
+                "of the rows below"
+            )
+            raise FileError(table.path, f"line {numbers[start]}: {problem}")
+        temperature[start:] = values.pop()
+    return temperature
+
+
+def _celsius(number: str, unit: str, in_doubt: bool) -> float:
+    """Return a temperature in a line in degrees Celsius, NaN where it is in doubt.
+
+    number : digits, with a decimal point or comma.
+    unit : its unit as the file spells it, "" without, which is degrees Celsius unless the number is
+    above 200.
+    in_doubt : whether the text around it makes it so.
+    """
+    value = float(number.replace(",", "."))
+    if in_doubt or (not unit and value > _KELVIN):
+        return np.nan
+    factor, offset = conversion(unit or "degC", "degC")
+    return factor * value + offset
+
+
+def refuse_unread_temperatures(table: Table, others: Mapping[str, str]) -> None:
+    """Refuse a column that is left out and seems to be of several temperatures, of which a sweep
+    would be made one.
+
+    It is such a column if its unit is one of temperature, or its heading is like one, and its
+    values span more than 1 K.
+
+    table : :class:`Table`, the table of the file.
+    others : heading -> why it is left out.
+    Raises FileError with advice.
+    """
+    for index, heading in enumerate(table.headings):
+        if heading in others and table.has_numbers(index):
+            ways = readings(heading, table.units[index])
+            units = [
+                each.unit
+                for each in ways
+                if each.unit not in NO_UNIT and (each.sure or "°" in each.unit)
+            ]
+            hint = _LIKE_TEMPERATURE.match(heading) is not None
+            factor = max(map(_kelvins, units)) if units else float(hint)
+            spread = np.inf
+            with suppress(FileError):
+                spread = factor * np.ptp(table.numbers(index).values)
+            if factor and spread > SAME_TEMPERATURE:
+                problem = f"column {heading!r} looks like temperatures, which are not read"
+                advice = (
+                    f"name it by columns={{'temperature': {heading!r}}}, or remove it if it "
+                    "is not of the sample"
+                )
+                raise FileError(table.path, f"{problem}: {advice}")
+
+
+def _kelvins(unit: str) -> float:
+    """Return how many kelvins a unit of temperature is, 0 of another unit."""
+    with suppress(ParameterError):
+        return conversion(unit or "1", "degC")[0]
+    return 0.0

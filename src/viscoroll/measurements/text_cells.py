@@ -1,0 +1,273 @@
+"""A text file as lines and cells, and cells as numbers.
+
+Cells of a table: which are numbers, gaps or texts, and the numbers of a column.
+
+A text file as lines, and lines as cells: encodings, separators, comments.
+"""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections import Counter
+from contextlib import suppress
+from decimal import Decimal
+from os import PathLike
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from ..core.checks import Floats
+from ..core.errors import FileError, ParameterError
+from ..core.files import as_file_error
+
+# --- Cells of a table ---
+
+#: a number with a decimal point or comma, perhaps with an exponent of Python (e) or Fortran (d)
+_NUMBER = re.compile(r"[+-]?(?:\d+(?:[.,]\d*)?|[.,]\d+)(?:[eEdD][+-]?\d{1,3})?")
+#: a number with separators of thousands, as "1,234.5" and "1.234.567"; "1.234" may be one, or have
+#: three decimals
+_THOUSANDS = re.compile(r"[+-]?[1-9]\d{0,2}(?:[,.'\u202f’]\d{3})+(?:[.,]\d*)?")
+#: marks that instruments and spreadsheets write in place of a number that was not measured
+_GAP = re.compile(r"(?i)-*|nan|n/?a|null|none|\*+|#n/?a|#wert!|#value!|[+-]?inf(inity)?|\?+")
+#: words, dates and times, which may stand in a row of numbers
+_TEXT = re.compile(r".*[^\W\d_].*|\d+[-:./]\d+[-:./]\d+.*|\d+:\d+.*")
+#: decimal mark and exponent as Python reads them
+_PYTHON = str.maketrans(",dD", ".ee")
+#: decimal mark, "" for an unknown one -> words of a message
+_MARKS = {"": "", ".": " with a decimal point", ",": " with a decimal comma"}
+#: largest power of ten of a last digit: doubles end at 1e308
+_MOST = 300
+
+
+class Numbers(NamedTuple):
+    """Numbers of a column.
+
+    values : as written, shape (n,).
+    half : half a unit of the last digit that each was written with, by which it may be off, shape
+    (n,).
+    """
+
+    values: Floats
+    half: Floats
+
+
+def is_number(cell: str) -> bool:
+    """Return whether a cell is a number, perhaps with separators of thousands."""
+    return bool(_NUMBER.fullmatch(cell) or _THOUSANDS.fullmatch(cell))
+
+
+def are_numbers(cells: list[str]) -> bool:
+    """Return whether the cells that are not empty are two numbers or more, without words between
+    them.
+    """
+    filled = [cell for cell in cells if cell]
+    return len(filled) > 1 and all(map(_NUMBER.fullmatch, filled))
+
+
+def is_row_of_numbers(cells: list[str]) -> bool:
+    """Return whether cells are a row of numbers: at least as many numbers as words, dates and
+    times, and gaps.
+    """
+    others = [cell for cell in cells if not (is_number(cell) or _GAP.fullmatch(cell))]
+    return 0 < sum(map(is_number, cells)) >= len(others) and all(map(_TEXT.fullmatch, others))
+
+
+def decimal_mark(cells: list[str], doubtful: str) -> str:
+    """Return the decimal mark of cells, "" where the marks may be separators of thousands.
+
+    They may be where both marks occur, or where three digits stand after each mark, as in "1,234".
+
+    cells : cells of a table or a column; those that are no numbers with a single mark do not count.
+    doubtful : the marks, "", ",", or ",.", that are taken for separators of thousands if three
+        digits stand after each of them: the comma where commas also separate cells; both where the
+        column has a cell of three digits alone, as "567".  For other marks three digits after each
+        are no reason to doubt.
+    Returns "." or ",", the mark of all cells; "" where it is in doubt; "." where no cell has a
+    mark.
+    """
+    marked = [cell for cell in cells if _NUMBER.fullmatch(cell) and set(cell) & set(",.")]
+    marks = set("".join(marked)) & set(",.")
+    if len(marks) > 1 or (marks & set(doubtful) and all(map(_THOUSANDS.fullmatch, marked))):
+        return ""
+    return marks.pop() if marks else "."
+
+
+def fault_of(cell: str, decimal: str) -> str:
+    """Return why a cell cannot be read as a number, in words that continue a message; "" if it can.
+
+    cell : text of the cell; an empty one and marks as "nan", "---" and "inf" are missing values.
+    decimal : the decimal mark, "." or ","; "": unknown, so that numbers must have none.
+    Returns "" for a number without a mark, or with that decimal mark alone; else the reason: a
+    missing value, a possible separator of thousands, no number with that mark, or a number beyond
+    1.8e308.
+    """
+    if _GAP.fullmatch(cell):
+        return "is a missing value: remove its row"
+    if _NUMBER.fullmatch(cell) and set(cell) & set(",.") <= {decimal}:
+        return "is larger than a double can be" if np.isinf(float(cell.translate(_PYTHON))) else ""
+    if _THOUSANDS.fullmatch(cell) or (not decimal and _NUMBER.fullmatch(cell)):
+        return (
+            "may contain a separator of thousands, since both marks occur or all groups have three "
+            "digits: "
+            "write only decimal marks"
+        )
+    return f"is not a number{_MARKS[decimal]}"
+
+
+def numbers_of(cells: list[str]) -> Numbers:
+    """Return the numbers of cells, and half a unit of the last digit of each.
+
+    cells: texts without a fault (:func:`fault_of`), with a decimal point or comma; exponents may be
+        written with e or d.
+    Returns :class:`Numbers`, two arrays (n,): of "0,25" 0.25 and 0.005, of "3" 3.0 and 0.5, of
+    "1e3" 1000.0 and 500.0.  A number beyond the doubles is infinite; half a unit is at most
+    0.5e300.
+    Raises decimal.InvalidOperation for another text.
+    """
+    exact = [Decimal(cell.translate(_PYTHON)) for cell in cells]
+    half = [0.5 * 10.0 ** min(int(number.as_tuple().exponent), _MOST) for number in exact]
+    return Numbers(np.array(exact, np.float64), np.array(half))
+
+
+# --- A text file as lines, and lines as cells ---
+
+#: separators of cells and their names in messages, those that are least often part of a cell first
+SEPARATORS = {"\t": "tabs", ";": "semicolons", "|": "bars", ",": "commas", " ": "blanks"}
+#: mark of a comment at the beginning of a line; none is a first cell of a mark alone: "%" is a
+#: unit, "#" a point number
+_COMMENT = r"^[^\S{0}]*(?:[#%!]+|//)[^\S{0}]*(?=[^\s{0}]|$)"
+#: lines of a file by which its separator is found: enough to outvote a preamble
+_SAMPLE = 2000
+#: first bytes of a file and the encoding that they show: byte order marks, or a null beside a
+#: letter
+_ENCODINGS = {rb"\xff\xfe|\xfe\xff": "utf-16", rb"(?s).\0": "utf-16-le", rb"\0": "utf-16-be"}
+#: encodings that are tried without such bytes: that of today, that of Windows, and one that has all
+#: bytes
+_USUAL = ("utf-8-sig", "cp1252", "latin-1")
+#: encoding of Windows in Japan, and what shows it: three characters in a row of two bytes each, of
+#: which the first is a sign of typography in cp1252
+_JAPANESE = ("utf-8-sig", "cp932")
+_KANJI = re.compile(rb"(?:[\x81-\x9f][\x40-\x7e\x80-\xfc]){3}")
+#: first bytes of Excel's workbooks, of today and of before 2007
+_WORKBOOKS = (b"PK\x03\x04", b"\xd0\xcf\x11\xe0")
+
+
+class Line(NamedTuple):
+    """A line that is not blank.
+
+    number : number of the line in the file, from 1.
+    text : the line without the mark of a comment.
+    cells : its cells.
+    comment : whether it has such a mark.
+    numeric : whether it is a row of numbers.
+    """
+
+    number: int
+    text: str
+    cells: list[str]
+    comment: bool
+    numeric: bool
+
+
+def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
+    """Return the lines of a text file, without their ends.
+
+    Minus signs of typography become "-"; a first line "sep=;" of Excel becomes empty, so that line
+    numbers stay.
+
+    path : path of the file.
+    encoding : name of the encoding, as Python calls it; None or "": UTF-16 by the first bytes (a
+        byte order mark, or a null among the first two), else the first of UTF-8, cp932 (where
+        characters of Japanese show it), cp1252 and Latin-1 that fits.
+    Returns a list of texts, [""] of an empty file; lines may end by CR LF, CR or LF, and the text
+    after the last end is a line too.
+    Raises FileError for a file that cannot be read or decoded, for workbooks and archives, and for
+    a text with null characters, as of binary files; ParameterError for an encoding that Python does
+    not know.
+    """
+    with as_file_error(path, "cannot be read"):
+        raw = Path(path).read_bytes()
+    if raw.startswith(_WORKBOOKS):
+        raise FileError(path, "is a workbook or an archive, not a text file: save its sheet as CSV")
+    shown = next((name for first, name in _ENCODINGS.items() if re.match(first, raw)), None)
+    given = encoding or shown
+    usual = _JAPANESE + _USUAL[1:] if _KANJI.search(raw) else _USUAL
+    for name in (given,) if given else usual:
+        try:
+            text = raw.decode(name).removeprefix("\ufeff").replace("\u2212", "-")
+        except (LookupError, TypeError):
+            raise ParameterError(
+                "encoding", f"{name!r:.40}", "an encoding that Python knows, as 'utf-8'"
+            ) from None
+        except UnicodeError as error:
+            problem = f"cannot be read in {name} ({error})"
+            continue
+        if "\0" in text:
+            raise FileError(path, "is not a text file: it has null bytes")
+        first, *others = re.split(r"\r\n|\r|\n", text)
+        return [
+            "" if re.fullmatch(r"(?i)sep=.\s*", first) else first,
+            *others,
+        ]  # Excel's own line on the separator
+    raise FileError(path, problem)
+
+
+def cut_lines(text: list[str], separator: str) -> list[Line]:
+    """Cut lines into cells, and leave out blank ones; quoted cells may go on over several lines.
+
+    text : lines of a file, without their ends; not changed.
+    separator : a key of :data:`SEPARATORS`; a blank stands for any number of blanks and tabs.
+    Returns a list of :class:`Line`, up to the first line that Python's csv cannot cut; nothing is
+    raised.  A line with the mark of a comment is cut too, without the mark, and never counts as a
+    row of numbers.  The number of a row whose quoted cells go on over several lines is that of its
+    last line.  (pandas would require that all lines of a file, its preamble too, are as wide as its
+    table.)
+    """
+    mark = re.compile(_COMMENT.format(separator.strip(" ")))
+    plain = [mark.sub("", line) for line in text]
+    found = []
+    reader = csv.reader(
+        (line + "\n" for line in plain), delimiter=separator, skipinitialspace=separator != "\t"
+    )
+    by_csv = ((reader.line_num, [" ".join(cell.split()) for cell in row]) for row in reader)
+    with suppress(csv.Error):
+        for number, cells in (
+            enumerate(map(cut_by_blanks, plain), 1) if separator == " " else by_csv
+        ):
+            line = plain[number - 1]
+            comment = line != text[number - 1]
+            if any(cells):
+                found.append(
+                    Line(
+                        number=number,
+                        text=line.strip(),
+                        cells=cells,
+                        comment=comment,
+                        numeric=not comment and is_row_of_numbers(cells),
+                    )
+                )
+    return found
+
+
+def cut_by_blanks(text: str) -> list[str]:
+    """Cut a text at blanks that are not in quotes."""
+    return [quoted or plain for quoted, plain in re.findall(r'"([^"]*)"|(\S+)', text)]
+
+
+def separator_of(text: list[str], decimal: str | None) -> str:
+    """Return the separator that cuts most lines into rows of numbers of one width, of two cells and
+    more.
+
+    text : lines of a file, without their ends, of which the first 2000 are examined.
+    decimal : the decimal mark, "." or ",", which is then not tried as a separator; None: not given.
+    Returns a key of :data:`SEPARATORS`, the first of several that give as many rows; a tab where
+    none gives any, as in a file with a single column.
+    """
+
+    def count(separator: str) -> int:
+        rows = (line.cells for line in cut_lines(text[:_SAMPLE], separator) if line.numeric)
+        return max(Counter(len(cells) for cells in rows if len(cells) > 1).values(), default=0)
+
+    return max((separator for separator in SEPARATORS if separator != decimal), key=count)

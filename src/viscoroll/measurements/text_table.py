@@ -1,0 +1,699 @@
+"""The table in a text file: headings, units, columns.
+
+A heading of a column: its name, its unit, and the base of its logarithms.
+
+The table in a text file: its headings, its row of units and its rows of numbers:
+:func:`read_table`.
+
+Columns of a table by the name that the user gives: :func:`named_table`,
+:func:`column_in_unit`.
+"""
+
+from __future__ import annotations
+
+import math
+import re
+import tomllib
+import warnings
+from collections import Counter
+from collections.abc import Callable, Collection
+from dataclasses import dataclass
+from importlib.resources import files
+from os import PathLike
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..core.checks import Floats
+from ..core.errors import FileError, ModelWarning, ParameterError, caller_level
+from ..core.quantities import conversion_factor, is_unit
+from ..core.toml_sections import suggestion
+from .text_cells import (
+    SEPARATORS,
+    Line,
+    Numbers,
+    are_numbers,
+    cut_by_blanks,
+    cut_lines,
+    decimal_mark,
+    fault_of,
+    is_number,
+    numbers_of,
+    read_lines,
+    separator_of,
+)
+
+# --- A heading of a column ---
+
+#: signs that stand where a ratio has no unit
+NO_UNIT = ("", "1", "-", "--", "–", "—", "/", "none")
+#: a unit in brackets, which may have parentheses of its own
+_BRACKETS = re.compile(r"[\[({<]\s*([^\[\](){}<>]*?)\s*[\])}>]|\(\s*([^()]*\([^()]*\)[^()]*?)\s*\)")
+#: separators of a name and a unit without brackets, the slash of DIN 1313 first
+_BETWEEN = re.compile(r"\s*/\s*|\s+in\s+|[\s_,]+")
+#: a heading of logarithms to base 10 or, of ln, e
+_LOGARITHM = re.compile(r"(?P<kind>(?i:log|lg|ln))(?![a-z]{2})[\s_-]*(?:10(?!\d))?[\s_]*(?P<of>.+)")
+#: the same in brackets behind the name, as in "E' (log)"
+_LOG_BEHIND = re.compile(r"(?i)^(.+?)[\s,_]*[\[(]\s*(log|lg|ln)(?:10)?\s*[\])]")
+#: a text in parentheses, and what follows
+_PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
+#: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
+_POWERS = re.compile(r"(?<=[A-Za-z%°µμ)])\s*(?:\^|\*\*)?\s*[({]?[-+−]?\d(?!\d)[)}]?")
+#: rounding of factors of conversion
+_ROUNDING = 1e-9
+#: longest text that may be a unit
+_LONGEST = 24
+#: unit in small letters and without blanks, degrees and points -> unit of pint, read from
+#: units.toml
+_SPELLINGS = {
+    spelling: unit
+    for unit, spellings in tomllib.loads(
+        (files(__package__) / "units.toml").read_text(encoding="utf-8")
+    ).items()
+    for spelling in spellings.split()
+}
+#: brackets and slash of Japanese keyboards
+_WIDE = str.maketrans("（）［］【】／", "()[][]/")
+
+
+class Reading(NamedTuple):
+    """One way to read a heading.
+
+    name : the heading without unit and without the word for a logarithm.
+    unit : unit in the heading, else in the row of units, as the file spells it; "" without.
+    log : base of the logarithms of which the column is, 10 or e; 0 of numbers.
+    sure : whether the unit stands in brackets, behind a slash or "in", or in the row of units,
+        where a unit is stated even if it is not understood.
+    """
+
+    name: str
+    unit: str
+    log: float = 0.0
+    sure: bool = False
+
+
+def readings(heading: str, row: str = "") -> list[Reading]:
+    """Return all ways to read a heading, the likeliest first.
+
+    They are: as a name alone, then with a unit in brackets or at its end.
+
+    heading : text of the heading, e.g. "E' [MPa]", "Frequency/Hz", "T_C", "log10(f/Hz)"; blanks
+        within become one.
+    row : the cell of a row of units for this column, "" without; a way of reading without a unit in
+        the heading takes this one, without brackets around it.
+    Returns a list of :class:`Reading`, of "Frequency/Hz" ("Frequency/Hz", "") and ("Frequency",
+    "Hz").  Each has ``log`` set if the heading begins with log, lg, log10 or ln, which its name
+    leaves out.  The list is [] for an empty heading.  Where the heading and the row give different
+    units of one dimension, all have both as unit, as "Hz and rad/s", which is no unit.
+    """
+    log = 0.0
+    heading = _LOG_BEHIND.sub(r"\2 \1", heading.translate(_WIDE))
+    if found := _LOGARITHM.fullmatch(heading.strip()):
+        heading = found["of"]
+        log = math.e if found["kind"].lower() == "ln" else 10.0
+        if inner := _PARENTHESES.fullmatch(heading):
+            heading = f"{inner[1]} {inner[2]}".rstrip()
+    ways = [(heading, "", False)]
+    for group in reversed([*_BRACKETS.finditer(heading)]):
+        name = heading[: group.start()].rstrip(" /") + " " + heading[group.end() :]
+        ways.append((name, group[1] or group[2] or "", True))
+    for gap in _BETWEEN.finditer(heading):
+        unit = heading[gap.end() :]
+        if unit in NO_UNIT[1:] or (may_be_unit(unit) and not re.search(r"[\[\](){}]", unit)):
+            ways.append((heading[: gap.start()], unit, bool(gap[0].strip(" _,"))))
+    row = (row[1:-1] if row[:1] in ("[", "(") and row.count("(") <= 1 else row).strip()
+    differing = next((f"{unit} and {row}" for _, unit, _ in ways if _differ(unit, row)), "")
+    return [
+        Reading(
+            " ".join(name.split()), differing or unit or row, log, sure or (not unit and bool(row))
+        )
+        for name, unit, sure in ways
+        if name
+    ]
+
+
+def _differ(unit: str, row: str) -> bool:
+    """Return whether a heading and the row of units give two units of one dimension that are not
+    equal.
+
+    unit, row : texts of both; what is no unit, and units of two dimensions, as of "Temperature (T)"
+        and "°C", where the one is a symbol, do not count.
+    """
+    if not (may_be_unit(unit) and may_be_unit(row)):
+        return False
+    try:
+        factor, offset = conversion(unit, row)
+    except ParameterError:
+        return False
+    return abs(factor - 1.0) + abs(offset) > _ROUNDING
+
+
+def may_be_unit(text: str) -> bool:
+    """Return whether a text has the form of a unit; whether it is one pint decides.
+
+    A unit has 1 to 24 characters, a letter or one of % ° ℃ º, and no digits but powers of one digit
+    after a symbol and a leading "1/".  So pint does not compute numbers and towers of powers, which
+    may take very long.
+
+    text : the text, without brackets around it.
+    """
+    rest = _POWERS.sub("", re.sub(r"^\s*1\s*/", "", text))
+    return (
+        0 < len(text.strip()) <= _LONGEST
+        and not re.search(r"[\d^]|\*\*", rest)
+        and bool(re.search(r"[A-Za-z%°℃º]", text))
+    )
+
+
+def conversion(unit: str, wanted: str) -> tuple[float, float]:
+    """Return the conversion of a unit as files spell it to another: number in ``wanted`` = factor *
+    number + offset.
+
+    It reads more spellings than :func:`.units.conversion_factor`, and refuses texts that pint would
+    compute.
+
+    unit : unit as a file spells it; the texts of :data:`NO_UNIT`, as "" and "-", are that of a
+        ratio.  "mpa", "U/min", "C", "Nm" are read as MPa, rpm, degC, N m where pint does not know
+        the text, or reads a unit of another dimension than ``wanted``.
+    wanted : unit in pint's spelling, "1" of a ratio.
+    Returns (factor, offset), floats; the offset is in the unit ``wanted``, and 0 but for
+    temperatures.
+
+    Raises
+    ------
+    ParameterError
+        A unit that is not known, has no form of a unit (:func:`may_be_unit`), or is of another
+        dimension.
+    """
+    if unit in NO_UNIT:
+        unit = "1"
+    elif not may_be_unit(unit):
+        raise ParameterError("unit", unit, f"a unit that pint knows, of the dimension of {wanted}")
+    try:
+        return conversion_factor(unit, wanted)
+    except ParameterError:
+        plain = re.sub(r"[\s°º.]", "", unit)
+        spelled = _SPELLINGS.get(plain) or _SPELLINGS.get(plain.lower())
+        if spelled is None:
+            raise
+        return conversion_factor(spelled, wanted)
+
+
+# --- The table in a text file ---
+
+#: blanks between words of one heading, where blanks separate headings
+_PHRASE = re.compile(
+    r"(?i)\s+(?=[\[(])|(?<=\bstorage)\s+|(?<=\bloss)\s+|(?<=\bangular)\s+|(?<=\bcomplex)\s+|(?<=\btan)\s+(?=d)"
+    r"|(?<=\bphase)\s+|(?<=\breduced)\s+|(?<=\belastic)\s+|(?<=\bviscous)\s+|(?<=\bpoint)\s+(?=no)"
+)
+#: least number of numbers of a row
+_FEWEST = 2
+#: characters of a line that a message quotes
+_QUOTED = 60
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table of a text file.
+
+    path : path of the file.
+    headings : one a column; "column 0" and so on where the file has none.
+    units : the cell of a row of units below each heading, "" without; one a column.
+    rows : the lines of numbers, :class:`Line` each, of which all cells beyond the headings are
+    empty.
+    starts : numbers of the first lines of rows of the tables of the file, with the same headings,
+        of which these are the rows.
+    without_headings : whether the file has no headings.
+    decimal : the decimal mark, "" where it cannot be told from a separator of thousands.
+    titles : number -> text of the lines that are neither rows nor headings, nor blank.
+    """
+
+    path: str | PathLike[str]
+    headings: list[str]
+    units: list[str]
+    rows: list[Line]
+    starts: list[int]
+    without_headings: bool
+    decimal: str
+    titles: dict[int, str]
+
+    def has_numbers(self, column: int) -> bool:
+        """Return whether any cell of the column with an index is a number."""
+        return any(is_number(row.cells[column]) for row in self.rows)
+
+    def numbers(self, column: int) -> Numbers:
+        """Return the numbers of a column, with half a unit of their last digits.
+
+        column : index of the column, from 0; one beyond the headings raises IndexError.
+        Returns :class:`text_cells.Numbers`, two arrays (rows,), in the unit of the file; numbers
+        beyond the doubles are infinite.
+        Raises FileError, with the number of the line, for a gap, a text, the other decimal mark,
+        and a mark that may be a separator of thousands: both marks in one column, or three digits
+        after each mark beside a cell of three digits.
+        """
+        cells = [row.cells[column] for row in self.rows]
+        threes = any(len(cell) == 3 and cell.isdigit() for cell in cells)
+        decimal = self.decimal if decimal_mark(cells, ",." * threes) else ""
+        for row, cell in zip(self.rows, cells, strict=True):
+            if fault := fault_of(cell, decimal):
+                raise FileError(
+                    self.path,
+                    f"line {row.number}, column {self.headings[column]!r}: {cell!r} {fault}",
+                )
+        return numbers_of(cells)
+
+    def require(self, holds: Any, problem: str) -> None:
+        """Raise FileError, with the number of its line, for the first row for which a condition
+        does not hold.
+
+        holds : whether it holds for each row, shape (rows,), an array of truth values.
+        problem : words on the fault where it does not hold, which end the message.
+        """
+        if not holds.all():
+            raise FileError(self.path, f"line {self.rows[int(np.argmin(holds))].number}: {problem}")
+
+
+def read_table(
+    path: str | PathLike[str],
+    is_heading_line: Callable[[list[str]], bool],
+    *,
+    decimal: str | None = None,
+    encoding: str | None = None,
+    is_title: Callable[[str], bool] = lambda text: False,
+) -> Table:
+    """Read the table of a text file, which may have a preamble, comments, and several tables with
+    the same headings.
+
+    The separator is that by which most lines are rows of numbers.  Headings are the last line above
+    the numbers that ``is_heading_line`` accepts; if it accepts none, the last line above the first
+    row of numbers that has no number, is no comment and no row of units; if there is none either,
+    columns are named "column 0", "column 1" and so on.  Lines below the last row, as the footers of
+    instruments, are titles.
+
+    Parameters
+    ----------
+    path : a text file in UTF-8, UTF-16, cp1252 or Latin-1.
+    is_heading_line : a function of the cells of a line, a list of texts, that returns whether they
+    are headings.
+    decimal : "." or ","; None: the mark that is there.  Where a mark may be a separator of
+        thousands too, the table is returned with ``decimal`` "", and :meth:`Table.numbers` refuses
+        numbers with a mark.
+    encoding : name of the encoding, as Python calls it; None: as of :func:`.text_cells.read_lines`.
+    is_title : a function of the text of a line that returns whether the line may stand between
+        rows, as one that states the temperature of those below; lines with two numbers and more in
+        cells of their own are rows all the same.
+
+    Returns
+    -------
+    Table
+        The rows of all tables of the file, one after the other.
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read, that is no text, or has no row of numbers; several tables with
+        different headings or rows of units; rows or headings of unlike numbers of cells; rows of
+        numbers above the headings; a line among the rows, or between them and the headings, that is
+        neither numbers nor units; no headings, but a comment with names of columns whose separators
+        are not those of the numbers.
+    ParameterError
+        A decimal mark that is neither; an encoding that Python does not know.
+    """
+    if decimal not in (None, ".", ","):
+        raise ParameterError("decimal", f"{decimal!r:.20}", "'.' or ','")
+    text = read_lines(path, encoding)
+    separator = separator_of(text, decimal)
+    lines = [
+        line._replace(
+            numeric=line.numeric
+            and not (sum(map(is_number, line.cells)) < _FEWEST and is_title(line.text))
+        )
+        for line in cut_lines(text, separator)
+    ]
+    layout = _Layout(
+        path=path,
+        lines=lines,
+        separator=separator,
+        is_heading_line=is_heading_line,
+        is_title=is_title,
+    )
+    heads = layout.heads()
+    parts = [layout.part(*ends) for ends in zip(heads, [*heads[1:], len(lines)], strict=True)]
+    names, units, (first, *_) = parts[0]
+    starts = [rows[0].number for *_, rows in parts]
+    if any(part[:2] != (names, units) for part in parts):
+        found = ", ".join(map(str, starts))
+        raise FileError(
+            path,
+            f"has {len(parts)} tables with different headings (from lines {found}): keep one of "
+            "them",
+        )
+    rows = [row for *_, rows in parts for row in rows]
+    mark = decimal or decimal_mark(
+        [cell for row in rows for cell in row.cells], "," if separator == "," else ""
+    )
+    known = {line.number for line in (*rows, *(lines[head] for head in heads))}
+    titles = {n: line for n, line in enumerate(text, 1) if n not in known and line.strip()}
+    return Table(
+        path=path,
+        headings=names,
+        units=units,
+        rows=rows,
+        starts=starts,
+        without_headings=lines[heads[0]].number == first.number,
+        decimal=mark,
+        titles=titles,
+    )
+
+
+@dataclass
+class _Layout:
+    """Where the tables of a file are: their lines of headings, rows of units and rows of numbers.
+
+    path : path of the file.
+    lines : lines of the file with their cells.
+    separator : separator of the cells, a key of ``SEPARATORS``.
+    is_heading_line, is_title : as of :func:`read_table`.
+    width : most frequent number of cells of rows of numbers.
+    cut : words on the separator, for messages.
+    """
+
+    path: str | PathLike[str]
+    lines: list[Line]
+    separator: str
+    is_heading_line: Callable[[list[str]], bool]
+    is_title: Callable[[str], bool]
+
+    def __post_init__(self) -> None:
+        """Set ``width``, the most frequent number of cells of rows of numbers, and ``cut``, the
+        words on the separator.
+
+        Of several numbers of cells that are as frequent the one that occurs first is taken.
+        Raises FileError where no line is a row of numbers.
+        """
+        widths = Counter(len(line.cells) for line in self.lines if line.numeric)
+        if not widths:
+            raise FileError(self.path, "has no row of numbers")
+        self.width = widths.most_common(1)[0][0]
+        self.cut = f"separated by {SEPARATORS[self.separator]}"
+
+    def fault(self, line: Line, problem: str) -> FileError:
+        """Return the error, not raised, that names a ``line``, states a ``problem`` and quotes 60
+        characters of it.
+        """
+        return FileError(self.path, f"line {line.number} {problem}: {line.text[:_QUOTED]!r}")
+
+    def is_row(self, line: Line) -> bool:
+        """Return whether a line is a row of numbers, and either as wide as most of these, or of two
+        numbers and more without texts.
+
+        line: the line with its cells.
+        """
+        return line.numeric and (len(line.cells) == self.width or are_numbers(line.cells))
+
+    def heads(self) -> list[int]:
+        """Return the index, in ``lines``, of the line of headings of each table of the file,
+        ascending, at least one.
+
+        Lines that ``is_heading_line`` accepts and that have numbers below them begin a table each.
+        If there is none, the last line above the numbers that has none and is no comment is taken
+        for headings, or the line before if it is a row of units.  If there is none either,
+        ``lines`` is changed: a new line "column 0", "column 1" and so on replaces all lines above
+        the numbers, and [0] is returned.
+
+        Raises FileError for rows of numbers above the headings, for a line above the numbers of a
+        file without headings that has as many cells, and for a comment with names of columns whose
+        separators are not those of the numbers.
+        """
+        lines = self.lines
+        width = self.width
+        heads = [
+            n
+            for n, line in enumerate(lines)
+            if not line.numeric and self.is_heading_line(self.headings(line))
+        ]
+        # of several lines of headings above the same numbers the last one counts
+        ends = zip(heads, [*heads, len(lines)][1:])
+        heads = [head for head, end in ends if any(line.numeric for line in lines[head:end])]
+        if heads:
+            for line in lines[: heads[0]]:
+                if self.is_row(line) and len(line.cells) == width and are_numbers(line.cells):
+                    if all(line.cells):
+                        raise self.fault(
+                            line, "has numbers above the headings: keep one table of the file"
+                        )
+                    raise self.fault(
+                        line,
+                        "is a second row of headings: keep it and the columns of one of its "
+                        "numbers",
+                    )
+            return heads
+        first = next(n for n, line in enumerate(lines) if line.numeric and len(line.cells) == width)
+        above = [
+            n
+            for n, line in enumerate(lines[:first])
+            if not (line.comment or any(map(is_number, line.cells)))
+        ]
+        if above:
+            *others, last = above
+            is_units = others and self.units_of(self.headings(lines[last]))
+            return (
+                [last - 1]
+                if is_units and len(lines[last - 1].cells) == len(lines[last].cells)
+                else [last]
+            )
+        for line in lines[:first]:
+            if not line.comment and len(line.cells) == width:
+                raise self.fault(
+                    line, "is neither headings nor numbers: remove it or begin it with #"
+                )
+        for line in lines:
+            if line.comment and self.is_heading_line(re.split(r"[\s,;|]+", line.text)):
+                raise self.fault(
+                    line, f"contains column names, but does not have {width} columns, {self.cut}"
+                )
+        names = [f"column {n}" for n in range(width)]
+        lines[:first] = [
+            Line(
+                number=lines[first].number,
+                text=str(names),
+                cells=names,
+                comment=False,
+                numeric=False,
+            )
+        ]
+        return [0]
+
+    def part(self, head: int, end: int) -> tuple[list[str], list[str], list[Line]]:
+        """Read one table of the file.
+
+        head, end : index, in ``lines``, of its line of headings, and of the first line after the
+            table: the headings of the next table, or the end of the file.
+        Returns (headings, without empty ones at the end; units as the file spells them, "" where
+        none is given, as many as headings; rows, a list of :class:`Line` without comments, of which
+        lines before the next headings that are no rows, as a title, are left out).
+        Raises FileError for a line among the rows that is none and no title, for rows with fewer
+        cells than headings or with texts beyond the last heading, and for a line above them that is
+        neither units nor numbers.
+        """
+        line, *body = self.lines[head:end]
+        names = self.headings(line)
+        first = [each.numeric for each in body].index(True)
+        while not names[-1]:
+            names.pop()
+        rows = [
+            row
+            for row in body[first:]
+            if row.numeric or not (row.comment or self.is_title(row.text))
+        ]
+        while len(rows) > 1 and not self.is_row(rows[-1]):  # titles of the next table, or a footer
+            rows.pop()
+        for row in rows:
+            if not row.numeric:
+                advice = (
+                    "remove it or begin it with #; a temperature of the rows below is "
+                    "written 'Temperature 20 °C'"
+                )
+                raise self.fault(row, f"is not a row of numbers: {advice}")
+            if any(row.cells[len(names) :]) or len(row.cells) < len(names):
+                problem = (
+                    f"has {len(row.cells)} columns, but line {line.number} has "
+                    f"{len(names)}, {self.cut}"
+                )
+                raise self.fault(row, problem)
+        return names, self.units(body[:first], len(names)), rows
+
+    def headings(self, line: Line) -> list[str]:
+        """Return the cells of a line of headings or of units, a new list of texts.
+
+        Where blanks separate and the line has another number of cells than the rows, it is cut
+        again: first with words of one name, as "storage modulus", kept together, then only at two
+        blanks and more.  The first of these that gives as many cells as the rows have is taken,
+        else the first.  A blank within brackets becomes "·".
+
+        line : :class:`Line`, a line of headings or of units.
+        """
+        if self.separator != " " or len(line.cells) == self.width:
+            return [*line.cells]
+        text = re.sub(r"[\[(][^\])]*[\])]", lambda found: found[0].replace(" ", "·"), line.text)
+        cuts = [cut_by_blanks(_PHRASE.sub("", text)), re.split(r"\s{2,}|\t", text)]
+        return next((cells for cells in cuts if len(cells) == self.width), cuts[0])
+
+    def units(self, between: list[Line], width: int) -> list[str]:
+        """Find the row of units between headings and numbers: a line in which at least half of the
+        texts are units.
+
+        between : lines between headings and numbers, comments too, :class:`Line` each, which may be
+        none.
+        width : number of columns, those of the headings.
+        Returns a list of ``width`` texts, the unit of each column as the file spells it, with its
+        brackets; "" for a column without one, and for all columns if there is no row of units.
+        Raises FileError for another line there that is no comment, a second row of units too.
+        """
+        found = [""] * width
+        for line in between:
+            cells = self.headings(line)
+            fits = len(cells) == width or (self.separator != " " and not any(cells[width:]))
+            if fits and self.units_of(cells) and not any(found):
+                found = (cells + found)[:width]
+            elif not (line.comment or self.is_title(line.text)):
+                raise self.fault(
+                    line, f"is neither units nor numbers, {self.cut}: remove it or begin it with #"
+                )
+        return found
+
+    def units_of(self, cells: list[str]) -> bool:
+        """Return whether ``cells`` are a row of units: at least half of those that are not empty
+        are.
+        """
+        texts = [cell.strip("[](){}<> ") for cell in cells if cell]
+        units = [text for text in texts if text in NO_UNIT or (may_be_unit(text) and is_unit(text))]
+        return 2 * len(units) >= len(texts)
+
+
+# --- Columns of a table by the name that the user gives ---
+
+
+def named_table(
+    path: str | PathLike[str],
+    names: Collection[str],
+    decimal: str | None = None,
+    encoding: str | None = None,
+) -> Table:
+    """Read a table of which the user has named columns: its headings are the line that has one of
+    these names.
+
+    A cell has a name if it is the name, alone or with a unit.
+
+    path : path of the file.
+    names : names of columns; where no line has any, headings are found as of :func:`read_table`,
+    above the numbers.
+    decimal : decimal mark, "." or ","; None: the one that the file has.
+    encoding : name of the encoding, as Python calls it; None: UTF-16 by the first bytes, else the
+        first of UTF-8, cp1252 and Latin-1 that fits.
+    Returns the :class:`Table`; raises the errors of :func:`read_table`, and none for names that are
+    missing.
+    """
+    return read_table(
+        path,
+        lambda cells: any(_is_named(cell, name) for name in names for cell in cells if cell),
+        decimal=decimal,
+        encoding=encoding,
+    )
+
+
+def _is_named(heading: str, name: str) -> bool:
+    """Return whether a heading of a file is a name, alone or with a unit.
+
+    A heading of logarithms, as "log10(f/Hz)", must be equal to the name, so that who names it has
+    seen what it is.
+
+    heading: text of the heading.
+    name: the name that the user gives.
+    """
+    return name == heading or any(not each.log and each.name == name for each in readings(heading))
+
+
+def find_column(table: Table, name: str) -> int | None:
+    """Return the index of the column with a name, from 0; None where there is none.
+
+    Columns whose whole heading is the name are preferred to those with the name and a unit.
+
+    table : :class:`Table`, whose headings are searched.
+    name : a heading as the file has it, or without its unit; "column 0" and so on of an empty one.
+
+    Raises
+    ------
+    FileError
+        Several columns have that name.
+    """
+    exact = [n for n, heading in enumerate(table.headings) if (heading or f"column {n}") == name]
+    found = exact or [n for n, heading in enumerate(table.headings) if _is_named(heading, name)]
+    if len(found) > 1:
+        headings = " and ".join(repr(table.headings[n]) for n in found)
+        advice = "rename or remove one in the file" if exact else "name one of them with its unit"
+        raise FileError(table.path, f"columns {headings} are both named {name!r}: {advice}")
+    return found[0] if found else None
+
+
+def missing_column(table: Table, name: str, advice: str = "") -> FileError:
+    """Return the FileError, not raised, where no column of a table has a name; it lists the
+    headings of the table, and names the most similar one if any is similar.
+
+    table: :class:`Table`, whose path and headings are read.
+    name: the name that the user gives.
+    advice: words with their punctuation that end the message, as ": name one of these"; "" for
+    none.
+    """
+    found = f"{', '.join(table.headings)}{suggestion(name, table.headings)}"
+    return FileError(table.path, f"has no column {name!r}, but {found}{advice}")
+
+
+def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floats:
+    """Return the numbers of the column with a name, converted to a unit.
+
+    Parameters
+    ----------
+    table : :class:`Table`, a table with headings.
+    name : name of the column, with its unit or without.
+    wanted : unit of the result in pint's spelling, "1" of a ratio.
+    unit : unit of the numbers in the file, in place of the one that the file gives; "": that of the
+        heading or of the row of units.  Where none is given, or it is a sign as "-" or "1", the
+        numbers are taken to be in ``wanted``, with a warning unless that is "1" or "" itself.
+
+    Returns
+    -------
+    array of shape (n,)
+        The numbers, in the unit ``wanted``, float64; of a heading of logarithms the numbers of
+        which they are.
+
+    Raises
+    ------
+    FileError
+        No such column, several columns of that name, several tables in the file, cells that are no
+        numbers, gaps, or marks that may be separators of thousands (:meth:`Table.numbers`).
+    ParameterError
+        A unit that is unknown or of another dimension.
+
+    Warns
+    -----
+    ModelWarning
+        A column without a unit, whose numbers are taken to be in ``wanted``.
+    """
+    index = find_column(table, name)
+    if index is None:
+        raise missing_column(table, name)
+    if len(table.starts) > 1:
+        raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them")
+    found = readings(table.headings[index], table.units[index])
+    named = [each for each in found if each.name == name]
+    unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
+    if unit in NO_UNIT and wanted not in ("", "1"):
+        heading = table.headings[index]
+        advice = f"write its unit in the heading, as in '{heading} [{wanted}]'"
+        text = f"{table.path}: column {heading!r} has no unit, and is taken in {wanted}: {advice}"
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+    factor, offset = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
+    values = table.numbers(index).values
+    base = found[0].log if found else 0.0
+    return factor * (base**values if base else values) + offset

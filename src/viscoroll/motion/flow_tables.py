@@ -1,0 +1,508 @@
+"""The tables of a flow map: slow manifold, boundary layers, integrals.
+
+The slow manifold of a flow map: :func:`fill_manifold`.
+
+The slow manifold is the curve in (V, delta) that all motions in partial slip approach, on which V
+decays to rest.  The slow logarithm of V falls linearly in time along it, at
+``FlowProblem.slow_rate``; it tends to ln V plus a constant as V -> 0.  All is dimensionless, times
+are gamma t.
+
+The boundary layers of a flow map after the onset of partial slip: :func:`fill_layers`.
+
+After the onset omega - V relaxes at the rate k0, until the motion follows the slow manifold
+(:mod:`.flow_tables`).  E = k0 (tau - tau_onset), tau = gamma t, is the time since the onset in
+units of 1/k0.  The law has a kink at delta = 0.  Each layer is therefore divided at a value of E,
+its split: that at which delta passes 0, or 1 where delta does not.  The layer coordinate u grows
+with E, linearly on either side of the split, from 2^LAYER_LOW at the onset over 1 at the split to
+2^LAYER_HIGH at the end.  The two families are the motions with omega > V and with omega < V at the
+onset.  V0 is the speed at the onset.  All is dimensionless.
+
+The tables of a flow map, made from the rows of the law and from integrated motions:
+:func:`fill_tables`.
+
+A flow map is a set of tables from which any free motion of a scene follows without integration
+(:mod:`viscoroll.kernels.motion.flow_layout`).  In full slip the motion is an integral of the law.
+Behind the onset of partial slip it passes a boundary layer, in which omega - V relaxes, and then
+follows
+the slow manifold, one curve in (V, delta) that all motions approach.  Motions give V and delta at
+interpolation nodes; distance, angle and loss are integrals of their polynomials.  All is
+dimensionless, times are gamma t.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.polynomial.polynomial import polyval
+
+from ..core.checks import Floats
+from ..kernels.motion import flow_layout
+from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, FlowTables
+from ..kernels.numerics.interpolation import gauss
+from ..laws.law_table import law_table
+from ..laws.row_layout import interleave_pairs
+from .flow_pieces import (
+    FULL_SLIP_RETURNS,
+    NODES,
+    OUT_OF_RANGE,
+    SPEEDS,
+    STICK_ENDS,
+    STOPS,
+    FlowProblem,
+    Nodes,
+    NoFlowMap,
+    Rows,
+    octaves,
+)
+from .flow_store import FlowMap
+
+# --- The slow manifold of a flow map ---
+
+#: 5-point Gauss-Legendre rule on [0, 1], (nodes, weights), as in :mod:`.flow_lookup`.
+_GAUSS = gauss(5)
+#: Edges of the rows over the slow logarithm, dimensionless.
+_SLOW_LOG_EDGES = np.concatenate(
+    [
+        flow_layout.SLOW_WIDTH * np.arange(-flow_layout.SLOW_BINS, 0),
+        np.ldexp(1.0, np.arange(flow_layout.SLOW_OCTAVES + 1)) - 1.0,
+    ]
+)
+#: Octaves of V above the tables at which the motion along the slow manifold starts, to approach the
+#: manifold.
+_RUN_IN_OCTAVES = 3
+#: kappa V, dimensionless: the slow logarithm is 0 at the first state of the slow motion that is at
+#: or below it.
+_SLOW_LOG_ORIGIN = 0.25
+
+
+class SlowManifold(NamedTuple):
+    """The slow manifold: functions of the slow logarithm, and the slow logarithm as a function of
+    kappa V.
+
+    Each is given by coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers).
+
+    rows : rows of the slow logarithm.
+    speeds : coefficients of V and of delta.
+    path : coefficients of the remaining distance and angle to rest.
+    loss : coefficients of the remaining slip loss.
+    slow_log : coefficients of the slow logarithm over the octaves of kappa V.
+    """
+
+    rows: Rows
+    speeds: tuple[Floats, Floats]
+    path: tuple[Floats, Floats]
+    loss: Floats
+    slow_log: Floats
+
+    def path_between(self, start: Floats, span: Floats, rate: float) -> tuple[Floats, Floats]:
+        """Return distance and angle of a motion along the slow manifold, while its slow logarithm
+        decreases.
+
+        They are differences of the remaining path to rest.  Over a short span, at most a quarter of
+        max(1 + end, 1) with the slow logarithm at its end, these would cancel, and they are
+        integrals of the speeds by a 5-point Gauss rule.
+
+        start : slow logarithms at the beginning, of any shape.
+        span : decreases of the slow logarithms, >= 0, in the shape of ``start``.
+        rate : decrease of the slow logarithm in unit time gamma t, > 0.
+        Returns (distance, angle), integrals over gamma t of V and omega, >= 0, of the shape of
+        ``start``, dimensionless.
+        """
+        end = start - span
+        value = self.rows.value
+        x, angle = (value(powers, start) - value(powers, end) for powers in self.path)
+        V, delta = (
+            value(powers, end[..., None] + span[..., None] * _GAUSS[0]) for powers in self.speeds
+        )
+        near = span <= 0.25 * np.maximum(1.0 + end, 1.0)
+        direct = [
+            (_GAUSS[1] * speed).sum(axis=-1) * span / rate for speed in (V, V * (1.0 + delta))
+        ]
+        return np.where(near, direct[0], x), np.where(near, direct[1], angle)
+
+
+def fill_manifold(problem: FlowProblem, parts: FlowTables) -> SlowManifold:
+    """Fill the tables of the slow manifold.
+
+    One motion from high to low speed gives V and delta at the nodes; remaining distance, angle and
+    loss are integrals from V -> 0 upward.
+
+    problem : the :class:`FlowProblem`.
+    parts : :class:`FlowTables`, views of the tables, of which ``slow`` and ``manifold`` are
+    written; rows of ``slow`` above the highest speed of the tables stay as they are.
+    Raises :class:`NoFlowMap` where that motion leaves partial slip or its numbers the range of
+    doubles.
+    Returns the :class:`SlowManifold`, the same functions as coefficients.
+    """
+    rows, V, delta = _integrate_manifold(problem)
+    slopes = V, V * (1.0 + delta), V * delta * problem.contact_states(V, delta)[TRACTION]
+    to_go = []
+    for slope, n in zip(slopes, (1, 1, 3), strict=True):  # V falls like exp(lambda)
+        below = slope[0, 0] * math.exp(n * (rows.edges[0] - rows.x[0, 0])) / n
+        to_go.append(NODES.powers(NODES.integrals(slope, rows.half, below) / problem.slow_rate))
+    speeds = NODES.powers(V), NODES.powers(delta)
+    slow_log = rows.inverse(speeds[0], SPEEDS.x / problem.parameters[1])
+    slow = SlowManifold(
+        rows=rows,
+        speeds=speeds,
+        path=(to_go[0], to_go[1]),
+        loss=to_go[2],
+        slow_log=NODES.powers(slow_log),
+    )
+    parts.slow[: len(V)] = np.concatenate(
+        [interleave_pairs(*speeds), interleave_pairs(*slow.path), slow.loss], axis=-1
+    )
+    parts.manifold[:] = interleave_pairs(
+        slow.slow_log, NODES.powers(rows.value(speeds[1], slow_log))
+    )
+    return slow
+
+
+def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
+    """Integrate the motion along the slow manifold, from three octaves above the tables down to
+    their lowest node.
+
+    It is integrated in steps, each of about the time in which V halves, until kappa V is at most
+    1/4, and each step anew from the state before it: the remaining time to the last of these states
+    then keeps its digits.  The slow logarithm is 0 at that state, and increases with the time that
+    a state precedes it.
+
+    problem : the :class:`FlowProblem`.
+    Raises :class:`NoFlowMap` for FULL_SLIP_RETURNS where the motion leaves partial slip, and for
+    OUT_OF_RANGE where its numbers are not finite or V does not fall.
+    Returns (:class:`Rows` over the slow logarithm, those of :data:`_SLOW_LOG_EDGES` that end below
+    its value at the first of these states; V; delta at their nodes, (rows, nodes) each,
+    dimensionless).
+    """
+    kappa = problem.parameters[1]
+    j = problem.parameters[3]
+    rate = problem.slow_rate
+    V = np.array([2.0 ** (flow_layout.HIGH + _RUN_IN_OCTAVES) / kappa])
+    delta = np.zeros(1)
+    gamma = np.ones(1)
+    halves = []
+    steps = []
+    while kappa * V[0] > _SLOW_LOG_ORIGIN:
+        between = 0.75 * V
+        step = (
+            math.log(2.0)
+            * (1.0 + j)
+            * between
+            / problem.contact_states(between, np.zeros(1))[MOMENT]
+        )
+        (V,), (delta,) = problem.integrate(V, delta, gamma, step, FULL_SLIP_RETURNS)
+        if not V[0] < between[0]:
+            raise NoFlowMap(OUT_OF_RANGE)
+        halves.append((V, delta))
+        steps.append(rate * step[0])
+    starts = np.append(np.cumsum(steps[:0:-1])[::-1], 0.0)
+    rows = Rows(_SLOW_LOG_EDGES[: np.searchsorted(_SLOW_LOG_EDGES, starts[0])])
+    nodes = rows.x.ravel()[::-1]
+    states = np.empty((2, nodes.size))
+    for (V, delta), start, end in zip(halves, starts, [*starts[1:], -np.inf], strict=True):
+        inside = np.flatnonzero((nodes <= start) & (nodes > end))
+        if inside.size:
+            (states[0, inside],), (states[1, inside],) = problem.integrate(
+                V, delta, gamma, (start - nodes[inside]) / rate, FULL_SLIP_RETURNS
+            )
+    V, delta = states[:, ::-1].reshape(2, *rows.x.shape)
+    return rows, V, delta
+
+
+# --- The boundary layers of a flow map after the onset of partial slip ---
+
+#: Nodes of the coordinates of a layer.
+_COARSE = Nodes(flow_layout.LAYER_TERMS)
+#: Octaves of the layer coordinate u.
+_LAYER = octaves(flow_layout.LAYER_LOW, flow_layout.LAYER_HIGH)
+#: Number of these octaves before the split.
+_OCTAVES_BEFORE_SPLIT = -flow_layout.LAYER_LOW
+#: Lower end of u.
+_LOWEST_U = 2.0**flow_layout.LAYER_LOW
+#: E after the split at which a motion has reached the slow manifold, dimensionless.
+_JOIN_E = 2.0**flow_layout.LAYER_HIGH - 1.0
+#: Time before the onset of partial slip at which a motion of the layer starts, divided by that from
+#: onset to split, or by 1/k0 where the split is still sought: the change of state in it is near the
+#: rounding of the integrator.
+_LEAD = 1e-6
+#: Values of E between which a zero of delta is searched; beyond them the kink of the law is below
+#: rounding.
+_CROSSINGS = np.linspace(0.0, 14.0, 71)[1:]
+#: Nodes of an octave of kappa V at onset for the polynomial of the split, which is smooth.
+_SPLIT_NODES = Nodes(6)
+
+
+def fill_layers(
+    problem: FlowProblem,
+    sign: float,
+    first: int,
+    slow: SlowManifold,
+    asymptote: Floats,
+    layer: Floats,
+) -> None:
+    """Fill the tables of the boundary layers, and of the motions on the slow manifold that follow
+    them, of one family.
+
+    problem : the :class:`FlowProblem`.
+    sign : sign of omega - V at onset, 1.0 or -1.0.
+    first : binary exponent of the lowest kappa V at onset.
+    slow : the :class:`SlowManifold`.
+    asymptote : (octave of kappa V at onset, numbers of a row), written: the slow logarithm at onset
+    and k0; the split; distance and angle, and slip loss, in excess of the motion on the slow
+    manifold.
+    layer : (octave of kappa V at onset, octave of u, column, powers of u and kappa V), written;
+    columns: ln(V/V0), delta, distance and angle beyond those at constant speed V0, divided by
+    V0/k0, and slip loss divided by V0^2.
+    Returns nothing.  Raises :class:`NoFlowMap`, with nothing written, for the reason STICK_ENDS
+    where a motion of the layer leaves partial slip, and for OUT_OF_RANGE where its start is not
+    finite or k0 not positive.
+    """
+    kappa = problem.parameters[1]
+    onsets = octaves(first, first + flow_layout.OCTAVES)
+    V0 = onsets.node_positions(_COARSE) / kappa
+    k0 = _stiff_rate(problem, V0)
+    split_powers = _split_powers(problem, sign, onsets)
+    split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
+    V, delta, V_end = _layer_motions(problem, sign, V0, k0, split)
+    # over (octave, V, octave of u, u)
+    width = np.where(
+        np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT,
+        split[..., None] / (1.0 - _LOWEST_U),
+        1.0,
+    )
+    half = width * _LAYER.half
+    V_ratio = V / V0[..., None, None]
+    loss = delta * V_ratio * problem.contact_states(V, delta)[TRACTION] / (V0 * k0)[..., None, None]
+    slopes = V_ratio - 1.0, V_ratio * (1.0 + delta) - 1.0, loss
+    columns = [np.log(V_ratio), delta, *(_COARSE.integrals(slope, half) for slope in slopes)]
+    for column, values in enumerate(columns):
+        powers = _COARSE.powers(np.moveaxis(_COARSE.powers(values), 1, -1))
+        layer[:, :, column] = powers.reshape(*layer.shape[:2], -1)
+    # the motion on the slow manifold that they have reached at the end of the layer
+    E = split + _JOIN_E
+    x, angle, lost = (_COARSE.end(slope, half) for slope in slopes)
+    end = SPEEDS.value(slow.slow_log, kappa * V_end)
+    span = problem.slow_rate * E / k0
+    slow_log = end + span
+    slow_x, slow_angle = slow.path_between(slow_log, span, problem.slow_rate)
+    x = V0 / k0 * (E + x) - slow_x
+    angle = V0 / k0 * (E + angle) - slow_angle
+    lost = V0 * V0 * lost - (slow.rows.value(slow.loss, slow_log) - slow.rows.value(slow.loss, end))
+    slow_log_at_V = slow.slow_log[first - flow_layout.LOW :][: flow_layout.OCTAVES]
+    above = _COARSE.powers(slow_log - SPEEDS.value(slow.slow_log, kappa * V0))
+    rates = NODES.powers(_stiff_rate(problem, onsets.x / kappa))
+    excess = [_pad(_COARSE.powers(value)) for value in (x, angle, lost)]
+    asymptote[:] = np.concatenate(
+        [
+            interleave_pairs(slow_log_at_V + _pad(above), rates),
+            _pad(split_powers),
+            interleave_pairs(*excess[:2]),
+            excess[2],
+        ],
+        axis=-1,
+    )
+
+
+def _stiff_rate(problem: FlowProblem, V: Floats) -> Floats:
+    """Return k0 = (1 + 1/j) (dQ/d delta)/V at delta = 0, the rate at which omega - V relaxes in
+    time gamma t.
+
+    problem : the :class:`FlowProblem`; kappa, j and the law matter.
+    V : speeds, > 0, dimensionless, of any shape.
+    Returns the rates, > 0, dimensionless, in the shape of V.
+    """
+    return (
+        (1.0 + 1.0 / problem.parameters[3])
+        * problem.contact_states(V, np.zeros(V.shape))[STIFFNESS]
+        / V
+    )
+
+
+def _state_before_onset(
+    problem: FlowProblem, sign: float, V: Floats, gamma: Floats
+) -> tuple[Floats, Floats]:
+    """Return the state in full slip the time :data:`_LEAD` times ``gamma`` (in gamma t) before the
+    onset of partial slip.
+
+    A motion of the layer starts there, so that the integrator finds the onset itself.
+
+    problem : the :class:`FlowProblem`.
+    sign : sign of omega - V, 1.0 or -1.0.
+    V : speeds at onset, > 0, (n,), dimensionless.
+    gamma : unit of the times with which each motion is integrated, in gamma t: the time from onset
+    to split, or 1/k0 where the split is still sought; > 0, (n,), dimensionless.
+    Returns (V, delta), (n,) each, dimensionless, to first order in that time.
+    """
+    _, _, mu, j = problem.parameters
+    state = problem.contact_states(V, np.zeros(V.shape))
+    push = sign * mu
+    half_moment = 0.5 * state[MOMENT]
+    tau = _LEAD * gamma
+    before = V - tau * (push - half_moment)
+    return before, (
+        V * (1.0 + sign * state[DELTA_STAR]) + tau * (push + half_moment) / j
+    ) / before - 1.0
+
+
+def _layer_motions(
+    problem: FlowProblem, sign: float, V0: Floats, k0: Floats, split: Floats
+) -> tuple[Floats, Floats, Floats]:
+    """Integrate the motions of a boundary layer, and return them at the nodes of its tables.
+
+    problem : the :class:`FlowProblem`.
+    sign : sign of omega - V at onset, 1.0 or -1.0.
+    V0 : speeds at onset, (octaves, nodes), dimensionless.
+    k0 : relaxation rates of omega - V at these onsets, (octaves, nodes).
+    split : E, the time since the onset in units of 1/k0, at which the table is divided, from
+    :func:`_split_powers`, (octaves, nodes).
+    Raises :class:`NoFlowMap` where a motion leaves partial slip, or its numbers are not finite.
+    Returns (V; delta, both (octave, node of V, octave of u, node of u); V at the end of the layer,
+    (octave, node of V)), dimensionless.
+    """
+    u = _LAYER.node_positions(_COARSE)
+    gamma = (split / k0).ravel()
+    starts = _state_before_onset(problem, sign, V0.ravel(), gamma)
+    before = _LEAD + np.append((u[:_OCTAVES_BEFORE_SPLIT] - _LOWEST_U) / (1.0 - _LOWEST_U), 1.0)
+    V, delta = problem.integrate(*starts, gamma, before, STICK_ENDS)
+    V_on, delta_on = problem.integrate(
+        V[:, -1],
+        delta[:, -1],
+        1.0 / k0.ravel(),
+        np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
+        STICK_ENDS,
+    )
+    shape = (*V0.shape, _LAYER.half.size, _COARSE.t.size)
+    V_whole, delta_whole = (
+        np.concatenate([a[:, :-1], b[:, :-1]], axis=1).reshape(shape)
+        for a, b in ((V, V_on), (delta, delta_on))
+    )
+    return V_whole, delta_whole, V_on[:, -1].reshape(V0.shape)
+
+
+def _split_powers(problem: FlowProblem, sign: float, onsets: Rows) -> Floats:
+    """Fit the value of E at which delta passes 0 by polynomials of kappa V at onset, one for each
+    octave.
+
+    In an octave in which delta does not pass 0 up to E = 14 at every node, the value is 1.
+
+    problem : the :class:`FlowProblem`.
+    sign : sign of omega - V at onset, 1.0 or -1.0.  delta passes 0 only in motions of the sign of
+    1 - j, so that for the other sign, and for j = 1, all values are 1.
+    onsets : :class:`Rows`, octaves of kappa V at onset.
+    Raises :class:`NoFlowMap` where a motion leaves partial slip, or its numbers are not finite.
+    Returns coefficients of powers of t in [-1, 1] on each octave, ascending, (octaves, powers), for
+    E, dimensionless.
+    """
+    powers = np.zeros((onsets.half.size, _SPLIT_NODES.t.size))
+    powers[:, 0] = 1.0
+    if sign != np.sign(1.0 - problem.parameters[3]):
+        return powers
+    V = (onsets.node_positions(_SPLIT_NODES) / problem.parameters[1]).ravel()
+    gamma = 1.0 / _stiff_rate(problem, V)
+    _, delta = problem.integrate(
+        *_state_before_onset(problem, sign, V, gamma), gamma, _LEAD + _CROSSINGS, STICK_ENDS
+    )
+    passed = sign * delta < 0.0
+    index = np.clip(passed.argmax(axis=1), 2, _CROSSINGS.size - 2)[:, None] + np.arange(-2, 2)
+    E = _CROSSINGS[index]
+    delta = np.take_along_axis(delta, index, axis=1)
+    # the inverse of a cubic
+    split = np.zeros(V.size)
+    for n in range(4):
+        others = [delta[:, m] / (delta[:, m] - delta[:, n]) for m in range(4) if m != n]
+        split += E[:, n] * np.prod(others, axis=0)
+    split = split.reshape(powers.shape)
+    turns = np.all(passed.any(axis=1).reshape(powers.shape), axis=1)
+    powers[turns] = _SPLIT_NODES.powers(split[turns])
+    return powers
+
+
+def _pad(powers: Floats) -> Floats:
+    """Return coefficients padded with zeros to the number of powers of functions of one variable.
+
+    powers : coefficients, ascending, (rows, powers), at most as many powers as :data:`NODES` has
+    nodes.
+    Returns a new array (rows, nodes).
+    """
+    return np.pad(powers, [(0, 0), (0, NODES.t.size - powers.shape[-1])])
+
+
+# --- The tables of a flow map ---
+
+
+def fill_tables(new_map: FlowMap, threads: int | None) -> str:
+    """Fill the tables of a new flow map.
+
+    new_map : the :class:`FlowMap`, whose ``table`` is written.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    Returns "", or the reason why the scene has no map, a sentence; the table is then incomplete.
+    Of an elastic scene, which never slows down, nothing is written.
+    """
+    if new_map.slow_rate == 0.0:
+        return "an elastic cylinder never slows down"
+    parts = flow_layout.views(new_map.table)
+    first = new_map.first
+    problem = FlowProblem(
+        new_map.parameters, law_table(new_map.parameters[0]).record, new_map.slow_rate, threads
+    )
+    try:
+        with np.errstate(all="ignore"):  # what is not finite is refused
+            _fill_full_slip(problem, parts)
+            slow = fill_manifold(problem, parts)
+            for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
+                fill_layers(
+                    problem, sign, first, slow, parts.asymptote[family], parts.layer[family]
+                )
+    except NoFlowMap as reason:
+        return str(reason)
+    return ""
+
+
+def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
+    """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2 in time
+    gamma t.
+
+    problem : the :class:`FlowProblem`.
+    parts : :class:`FlowTables`, views of the tables, of which ``slide``, ``after`` and ``onset``
+    are written.
+    Raises :class:`NoFlowMap`, with the tables incomplete: for the reason STOPS where at some speed
+    the rolling resistance can hold the sliding cylinder, or nearly can, and where the speed at the
+    onset of partial slip is no unique function of the quantity that is constant while sliding; for
+    OUT_OF_RANGE where numbers leave the range of doubles.
+    """
+    _, kappa, mu, j = problem.parameters
+    V = SPEEDS.x / kappa
+    least = 2.0**flow_layout.LOW / kappa
+    state = problem.contact_states(V, np.zeros(V.shape))
+    limit = state[DELTA_STAR] * V
+    for n, sign in enumerate((1.0, -1.0)):
+        rate = mu - sign * 0.5 * state[MOMENT]
+        if not np.isfinite(limit / rate).all():
+            raise NoFlowMap(OUT_OF_RANGE)
+        if not (rate > 0.0).all():
+            raise NoFlowMap(STOPS)
+        half = SPEEDS.half / kappa
+        T = NODES.integrals(1.0 / rate, half, least / mu)
+        X = NODES.integrals(V / rate, half, 0.5 * least * least / mu)
+        slip = 2.0 * mu * T - V * (1.0 - j) + sign * j * limit
+        if not (np.diff(slip.ravel(), prepend=0.0) > 0.0).all():
+            raise NoFlowMap(STOPS)
+        time = NODES.powers(T)
+        path = NODES.powers(X)
+        onset = NODES.powers(slip)
+        parts.slide[n] = np.concatenate(
+            [interleave_pairs(time, NODES.powers(limit)), path], axis=-1
+        )
+        # nearly held: the inverse would end before the speeds that are served
+        if not kappa * mu * time[-3].sum() < 2.0 ** (flow_layout.HIGH - 1):
+            raise NoFlowMap(STOPS)
+        parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
+        u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
+        values = [
+            NODES.powers(value)
+            for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))
+        ]
+        parts.onset[n] = np.concatenate([interleave_pairs(*values[:2]), values[2]], axis=-1)

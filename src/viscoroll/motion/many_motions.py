@@ -1,0 +1,287 @@
+"""Solution of many motions, by the flow map of their scene or by integration: :func:`solve_batch`.
+
+All is dimensionless.  T_ref is the unit of time of the motions: T_epsilon of a material that is an
+alpha, the ``T_ref`` of any other material.  Speeds are divided by R/T_ref.  gamma = P T_ref^2/(m
+R).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact_mechanics.parameters import Parameters
+from ..core.blocks import broadcast_vector, run_blocks
+from ..core.checks import Booleans, Floats, Integers, extent
+from ..core.errors import MotionStatus, ParameterError, mark_dimensionless
+from ..core.scale import TIME_POWERS
+from ..kernels.records import Motions
+from ..laws.law_table import law_table
+from ..laws.laws_per_element import record_of_alphas, record_of_materials
+from ..materials.bodies import Bodies
+from .flow import FlowResult, flow_map, look_up_ensemble
+from .motion_arguments import LOSSES, ROWS, SPEED_RANGE, STATES
+from .motion_problem import MotionProblem, integrate
+
+#: Motions in a block of work where all are integrated: some hundredths of a second.
+_BLOCK = 256
+#: Motions in a block of work where most come from a flow map.
+_MAPPED_BLOCK = 1 << 14
+#: Motions from which on method "auto" uses the flow map: building one takes as long as integrating
+#: three to five thousand (docs/benchmark.md, "One scene").
+FLOW_PAYS = 4096
+
+
+class Batch(NamedTuple):
+    """Motions to be solved; dimensionless.
+
+    problem : :class:`MotionProblem`, the checked motions.
+    inputs : name -> vector, (1,) where one value holds for all motions, else (n,), in the order
+    alpha, kappa, mu, gamma, j, V0, omega0.
+    immobile : whether a motion is too slow to leave the indentation of a standstill, (n,); its size
+    is the number of motions.
+    times : output times since the start, (times,), >= 0, ascending, in T_ref.
+    rows : names, out of :data:`.motion_arguments.ROWS`, of the quantities to compute.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    progress : title of a progress bar, None for none.
+    """
+
+    problem: MotionProblem
+    inputs: dict[str, NDArray]
+    immobile: Booleans
+    times: Floats
+    rows: tuple[str, ...]
+    threads: int | None
+    progress: str | None
+
+
+class Solution(NamedTuple):
+    """Solved motions, dimensionless, and their source.
+
+    motions : :class:`.flow.FlowResult`: quantities (rows, n, times), in the order of
+    :attr:`Batch.rows`; status, onset and rest times in T_ref, number of switches, (n,) each.
+    about : "steps", integration steps of each motion, (n,) int, 0 of motions that were not
+    integrated; "flow", whether a motion was looked up in the flow map, (n,) bool; "flow_error", a
+    float, the stated error of the map, NaN if none was tried, infinite if the scene has none;
+    "flow_problem", why the scene has no map, or "".
+    """
+
+    motions: FlowResult
+    about: dict[str, Any]
+
+
+def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
+    """Solve motions: look up those that the flow map of their scene contains, and integrate all
+    others.
+
+    A flow map is a table of all free motions of one scene (:mod:`.flow`).  It is tried only for
+    free motions (no drive, no added mass) of one scene whose bodies are alike.  Where its stated
+    error exceeds rtol, as the infinite one of a scene without a map does, the map is not used, and
+    all motions are integrated; "flow_error" and "flow_problem" of the result say so.  All are
+    integrated too where all start at rest and ``speed`` is None.  Nothing is raised in these cases,
+    with method "flow" neither.  A damaged map on disk is built again, with a RuntimeWarning.
+
+    Motions that stay in the indentation of a standstill (``immobile``) are not integrated: they
+    have status CAUGHT and NaN in all quantities, onset and rest times, no switches, and ``flow`` is
+    False.
+
+    batch: :class:`Batch`, the motions.
+    method: "auto" (a map is tried from :data:`FLOW_PAYS` motions on), "flow" (for any number) or
+    "integrate" (never), as of :func:`viscoroll.ensemble`.
+    speed: highest speed, > 0, for which the flow map is made, dimensionless; None: the largest |V0|
+    or |omega0|.  It is ignored, and not checked, where no map is tried.
+    Raises ParameterError for method "flow" with parameters that are arrays, with driven or unsteady
+    motions, or with bodies that differ (covers included); where a map is tried, also for a
+    ``speed`` above 1e100; for a number of threads that is no whole number >= 1.
+    Returns the :class:`Solution`; a motion that could not be integrated to its end has a status
+    above RESTED, and NaN at the times that it did not reach.
+    """
+    scene = batch.problem.scene
+    immobile = batch.immobile
+    free = not batch.problem.driven and scene.like_bodies and not scene.tabulated
+    if method == "flow" and (scene.shape or not free):
+        which = (
+            "motions have different scenes"
+            if free
+            else "motions are driven or unsteady, or bodies differ"
+        )
+        raise ParameterError("method", "'flow'", f"'auto' or 'integrate' where {which}")
+    found = None
+    about: dict[str, Any] = {"flow_error": np.nan, "flow_problem": ""}
+    mapped = method == "flow" or (method == "auto" and immobile.size >= FLOW_PAYS)
+    if free and not scene.shape and mapped:
+        found = _solve_by_flow_map(batch, speed, about)
+    if found is None:
+        found = FlowResult.empty(len(batch.rows), immobile.size, batch.times.size)
+    about["flow"] = found.status >= 0
+    if immobile.any():
+        about["flow"] &= ~immobile
+        found.out[:, immobile] = found.onset[immobile] = found.rest[immobile] = np.nan
+        found.status[immobile] = MotionStatus.CAUGHT
+        found.switches[immobile] = 0
+    about["steps"] = _integrate_others(found, batch)
+    return Solution(found, about)
+
+
+def _solve_by_flow_map(
+    batch: Batch, speed: float | None, about: dict[str, Any]
+) -> FlowResult | None:
+    """Look motions up in the flow map of their scene, which is built if there is none yet.
+
+    The map counts time in the material's own unit.  Speeds and times are converted to that unit for
+    the look-up, and the results are converted back to T_ref.
+
+    batch: :class:`Batch`, free motions of one scene; all but ``immobile`` is read.
+    speed: highest speed for which the flow map is made, > 0, dimensionless; None: the largest |V0|
+    or |omega0|.
+    about: dict that receives "flow_error" and "flow_problem" of the map; it stays as it is where
+    all motions are at rest and ``speed`` is None.
+    Raises ParameterError for a ``speed`` that, in the material's own unit of time, is above 1e100.
+    Returns the :class:`.flow.FlowResult` of all n motions; those that the map does not contain have
+    a status below 0, and their other entries are undefined.  Returns None, with nothing looked up,
+    where all motions are at rest and ``speed`` is None, or where the stated error of the map
+    exceeds rtol, as the infinite one of a scene without a map does.
+    """
+    scene = batch.problem.scene
+    rows = batch.rows
+    rtol, threshold, _ = batch.problem.limits
+    unit = scene.in_own_time()[1]
+    V0, omega0 = (
+        batch.inputs[name] if unit == 1.0 else batch.inputs[name] * unit
+        for name in ("V0", "omega0")
+    )
+    if speed is None:
+        speed = max(
+            (abs(end) for array in (V0, omega0) if array.size for end in extent(array)), default=0.0
+        )
+    elif (speed := speed * unit) > SPEED_RANGE[1]:
+        raise mark_dimensionless(ParameterError("speed", speed, f"in (0, {SPEED_RANGE[1]:g}]"))
+    if not speed > 0.0:
+        return None
+    chosen = flow_map(scene, speed, threads=batch.threads)
+    error = chosen.stated_error(
+        path=not {"x", "angle"}.isdisjoint(rows), loss=not set(LOSSES).isdisjoint(rows)
+    )
+    about |= {"flow_error": error, "flow_problem": chosen.problem}
+    if not error <= rtol:
+        return None
+    wanted = tuple((STATES + LOSSES).index(name) for name in rows)
+    motions = Motions(
+        gamma=scene.gamma * unit * unit,
+        rest=threshold * unit,
+        V0=V0,
+        omega0=omega0,
+        t=batch.times / unit,
+        rows=wanted,
+    )
+    found = look_up_ensemble(chosen, motions, threads=batch.threads, progress=batch.progress)
+    if unit == 1.0:
+        return found
+    for n, name in enumerate(rows):
+        found.out[n] *= unit ** TIME_POWERS.get(name, 0)
+    return found._replace(onset=found.onset * unit, rest=found.rest * unit)
+
+
+def _integrate_others(found: FlowResult, batch: Batch) -> Integers:
+    """Integrate the motions that have no result yet, those with status < 0, in blocks on the
+    threads of the batch.
+
+    found: :class:`.flow.FlowResult`, into which quantities, status, number of switches, onset and
+    rest times of these motions are written, dimensionless, times in T_ref; entries of the other
+    motions stay.
+    batch: :class:`Batch`, all n motions.
+    Returns the number of integration steps of each motion, (n,), int; 0 for those that had a
+    result.
+    """
+    problem = batch.problem
+    law = _law_of(problem.scene, problem.unsteady)
+    rows = np.array([ROWS.index(name) for name in batch.rows], np.int64)
+    steps = np.zeros(batch.immobile.size, dtype=np.int64)
+
+    def work(start: int, stop: int) -> None:
+        """Integrate those motions of a block that have no result, and write their results into
+        ``found`` and ``steps``.
+
+        start, stop: index of the first motion of the block, and of the one after the last.
+        """
+        left = start + np.flatnonzero(found.status[start:stop] < 0)
+        if not left.size:
+            return
+        inputs = batch.inputs.values()
+        alpha, *others = (
+            broadcast_vector(array[left], left.shape) if array.size > 1 else array
+            for array in inputs
+        )
+        arguments = (
+            (*law(alpha, left), *others),
+            problem.kernel_drive(left),
+            batch.times,
+            problem.limits,
+            rows,
+        )
+        found.out[:, left], info = integrate(left.size, *arguments)
+        (
+            found.status[left],
+            steps[left],
+            found.switches[left],
+            found.onset[left],
+            found.rest[left],
+        ) = info.T
+
+    mapped = found.status.max(initial=-1) >= 0
+    block = (
+        _MAPPED_BLOCK
+        if mapped
+        else 1
+        if problem.unsteady and np.ndim(problem.scene.alpha)
+        else _BLOCK
+    )
+    if problem.functions is not None:
+        block = problem.functions.block(block)
+    run_blocks(work, steps.size, block, threads=batch.threads, progress=batch.progress)
+    return steps
+
+
+def _law_of(scene: Parameters, unsteady: bool) -> Callable[[NDArray, Integers], tuple[Any, bool]]:
+    """Return the function that gives the kernel's law of some motions.
+
+    scene: :class:`Parameters` of the motions, of one material or of several; ``alpha``,
+    ``material``, ``material_array`` and ``table`` are read.
+    unsteady: whether the added mass acts.  The function must then be called for one motion at a
+    time if the materials differ, since the law with N belongs to one material.
+    Returns a function of the alphas of the motions, (k,), and of their indices, (k,).  It returns
+    (the record of the law, or of the k laws, as the kernels take it; whether half-space and
+    cylinder may take unequal parts of M, which is True for any list of two bodies).  Where all
+    motions have one material the function ignores its arguments.
+    """
+    several: Any = scene.material_array
+    if scene.tabulated or (several is None and not np.ndim(scene.alpha)):
+        table: Any = scene.rolling_law
+        law = (table.unsteady_record if unsteady else table.record), table.unlike
+        return lambda alpha, index: law
+
+    def make(alpha: NDArray, index: Integers) -> tuple[Any, bool]:
+        """Return the law of some motions as the kernel takes it.
+
+        alpha: alphas of the motions, (k,); (1,) if all have the same, and with the added mass.
+        Ignored where the scene has several materials.
+        index: indices of the motions, (k,), from which their materials are taken; ignored where
+        each motion has only an alpha.
+        Returns (record of the law or laws; whether the bodies may take unequal parts of M).
+        """
+        if several is not None:
+            index = np.minimum(index, len(several) - 1)
+        if unsteady:
+            material: Any = alpha if several is None else scene.material[index.item()]  # type: ignore[index]
+            return law_table(
+                material.item() if several is None else material
+            ).unsteady_record, False
+        if several is None:
+            return record_of_alphas(alpha), False
+        return record_of_materials(several, index), isinstance(several, Bodies)
+
+    return make

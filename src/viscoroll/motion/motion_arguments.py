@@ -1,0 +1,336 @@
+"""Arguments of one motion and of an ensemble: checks, and the drive.
+
+Checks of arguments that one motion and an ensemble share.
+
+What drives motions, as the caller gives it: :class:`Drive`; the loads and speeds of a result by
+name.
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..core.checks import Floats, broadcast_shape, check_array, check_integer, check_number, extent
+from ..core.drive_arguments import Feedback, Schedule, make_dimensionless
+from ..core.errors import ParameterError, digits_beside, mark_dimensionless, shape_error
+from ..core.labels import Labels, strip_labels
+from ..core.scale import HasUnits, Scale, Units
+
+# --- Checks of arguments that one motion and an ensemble share ---
+
+#: Smallest and largest rtol, dimensionless: below, rounding errors prevail; above, errors are no
+#: longer proportional.
+RTOL_RANGE = (1e-12, 1e-2)
+#: Smallest and largest start speed, dimensionless: beyond them intermediate results leave the range
+#: of doubles.
+SPEED_RANGE = (1e-300, 1e100)
+#: Largest step limit: a motion takes some hundreds of steps.
+MOST_STEPS = 10_000_000
+
+
+def output_times(t: ArrayLike, units: Units = "1") -> Floats:
+    """Check output times.
+
+    t: one time or a vector (n,), in ``units``; numbers that carry a unit are converted.
+    units: unit of time as "s", or the units of a roller (a :class:`Scale`), of which that of time
+    is taken; "1": dimensionless.
+    Returns a new vector (n,), float64, in ``units``; of one time (1,).
+    Raises ParameterError unless they are numeric, without a unit of another dimension, finite, >=
+    0, ascending (equal times are allowed), at least one, and of one axis at most.
+    """
+    times = np.array(check_array("t", t, unit=units, low=0.0), ndmin=1)  # contiguous
+    if times.ndim != 1 or times.size == 0:
+        raise shape_error("t", times.shape, "one end time or a vector of output times")
+    falls = times[1:] < times[:-1]
+    if falls.any():
+        n = int(np.argmax(falls))
+        pair = times[n : n + 2]
+        found = f"{digits_beside(*pair)}, {digits_beside(*pair[::-1])} at rows {n}, {n + 1}"
+        raise ParameterError("t", found, "in ascending order")
+    return times
+
+
+def refuse_end(end: float, T: float) -> None:
+    """Raise ParameterError where the last output time becomes infinite when it is divided by T_ref.
+
+    end: last output time, finite, >= 0, in s, or of a scene in T_ref.
+    T: T_ref, the unit of time of the dimensionless motion, > 0, s; 1 for a scene.
+    Returns None for any other time.
+    """
+    if end / T == math.inf:
+        raise ParameterError("t", end, f"less than {sys.float_info.max * min(T, 1.0):.3g}")
+
+
+def require_single(**arguments: Any) -> None:
+    """Raise ParameterError for an array where ``roll`` takes one number.
+
+    arguments: name of an argument of ``roll`` -> its value.  Numbers, arrays of shape () and None
+    pass, and so does what is no array, which is checked elsewhere.
+    The error is that of the first argument with axes, also of shape (1,); without one None is
+    returned.
+    """
+    for name, value in arguments.items():
+        if type(value) is not float and (shape := _shape(value)):
+            sentence = f"roll computes one motion, but {name} has shape {shape}: use ensemble"
+            raise ParameterError(name, shape, "a single number", sentence)
+
+
+def _shape(value: Any) -> tuple[int, ...]:
+    """Return the shape of an argument, a tuple; () of what is no array, as None.
+
+    value: what a caller gave; a list counts as an array, a ragged one as an array of objects.
+    Nothing is raised.
+    """
+    try:
+        return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))
+    except (TypeError, ValueError):
+        return ()
+
+
+def controls(
+    rtol: float, rest: float | None, max_steps: int, scale: Scale
+) -> tuple[float, float, int]:
+    """Check the limits of an integration.
+
+    rtol: relative tolerance of the motion, dimensionless.
+    rest: threshold of max(|V|, R |omega|) below which a motion ends, in the unit of the roller,
+    perhaps with a unit;
+    None: a motion does not end at rest.
+    max_steps: largest number of steps of a motion.
+    scale: :class:`Scale` of the roller, of which the unit of ``rest`` is read; if ``rest`` is given
+    it must be one number for all motions.
+    Returns (rtol, a float; threshold of rest, dimensionless, 0.0 for none; largest number of steps,
+    an int).
+    Raises ParameterError for rtol that is no single number in [1e-12, 1e-2], rest that is no single
+    number, not positive and finite or in a unit of another dimension, max_steps outside [1, 10^7]
+    or no whole number.
+    """
+    low, high = RTOL_RANGE
+    if not low <= check_number("rtol", rtol) <= high:
+        raise ParameterError("rtol", rtol, f"a number in [{low:g}, {high:g}]")
+    threshold = (
+        0.0 if rest is None else check_number("rest", rest, unit=scale, above=0.0) / scale["rest"]
+    )
+    return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
+
+
+def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
+    """Return start speeds, checked; they are not broadcast.
+
+    V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
+    Returns (V0, omega0): as they are where both are of type float and not both 0; else both as
+    float64 arrays in their own shapes, () for a number.
+    Raises ParameterError unless both are numeric, finite and at most 1e100 in magnitude, the larger
+    of |V0| and
+    |omega0| of each motion is 0 or at least 1e-300, and the shapes broadcast.
+    """
+    low, high = SPEED_RANGE
+    # each by itself: max() of a NaN and another may be the other
+    if (
+        type(V0) is float
+        and type(omega0) is float
+        and -high <= V0 <= high
+        and -high <= omega0 <= high
+    ):
+        if abs(V0) >= low or abs(omega0) >= low:
+            return V0, omega0
+    V = check_array("V0", V0)
+    omega = check_array("omega0", omega0)
+    broadcast_shape(V0=V, omega0=omega)
+    for name, array in (("V0", V), ("omega0", omega)):
+        fastest = max(extent(array), key=abs) if array.size else 0.0
+        if abs(fastest) > high:
+            raise mark_dimensionless(
+                ParameterError(name, fastest, f"at most {high:g} in magnitude")
+            )
+    # in parts whose size does not depend on that of the arrays
+    for V_part, omega_part in np.nditer(
+        (V, omega), ["external_loop", "buffered", "zerosize_ok"], buffersize=1 << 16
+    ):
+        larger = np.maximum(np.abs(V_part), np.abs(omega_part))
+        tiny = larger[(larger > 0.0) & (larger < low)]
+        if tiny.size:
+            raise mark_dimensionless(
+                ParameterError("max(|V0|, |omega0|)", tiny.min(), f"0, or at least {low:g}")
+            )
+    return V, omega
+
+
+def with_scales(error: ParameterError, scale: Scale) -> ParameterError:
+    """Return an error whose message also says by which units the dimensionless numbers in it were
+    divided.
+
+    error: the :class:`ParameterError`.
+    scale: :class:`Scale` of the roller, which gives these units in s, m/s and N/m.
+    Returns a new ParameterError; ``error`` itself for a scene, or where its message states no
+    dimensionless numbers.  Units that differ between motions are not listed: the message then ends
+    with "(dimensionless)".
+    """
+    if not (scale.si and error.is_dimensionless):
+        return error
+    about = "dimensionless"
+    if not (np.ndim(scale["V"]) or np.ndim(scale["force"])):
+        T, V, P = (
+            f"{scale[name]:.6g} {unit}"
+            for name, unit in (("t", "s"), ("V", "m/s"), ("force", "N/m"))
+        )
+        about += f": times divided by {T}, speeds by {V}, forces by {P}"
+    return ParameterError(error.name, error.value, error.allowed, f"{error} ({about})")
+
+
+# --- What drives motions, as the caller gives it ---
+
+#: Rows of the kernel's output that describe the state.
+STATES = ("V", "omega", "x", "angle", "delta", "regime")
+#: Rows of energies lost in the contact.
+LOSSES = ("slip_loss", "rolling_loss")
+#: Rows that are 0 without a drive.
+ACTING = ("force", "torque", "work_force", "work_torque", "brake_loss")
+#: Rows of the kernel's output.
+ROWS = STATES + ACTING + LOSSES
+
+
+class Drive(NamedTuple):
+    """Loads and prescribed speeds of one motion or many, as the caller gave them; None where
+    nothing is given.
+
+    force, torque, brake, omega, V : a number, an array (n,), a Schedule or a callable of t; force
+    and torque also a Feedback of one of these.
+    slope, drag : numbers or arrays (n,).
+    Meaning, signs and units are those of :func:`viscoroll.roll`; :meth:`over` gives the
+    dimensionless ones.
+    """
+
+    force: Any = None
+    torque: Any = None
+    slope: Any = None
+    brake: Any = None
+    drag: Any = None
+    omega: Any = None
+    V: Any = None
+
+    @property
+    def given(self) -> dict[str, Any]:
+        """What is given, name of the field -> value as the caller gave it, a new dict without what
+        is None.
+        """
+        return {name: value for name, value in self._asdict().items() if value is not None}
+
+    @property
+    def numbers(self) -> dict[str, Floats]:
+        """Return name -> array, () or (n,), of each load or speed that is given as a number or as
+        one for each motion.
+
+        Arrays are float64, and other shapes are not refused here.  The angle of a slope and the
+        drag are among them.  Schedules, callables and feedbacks are left out.  Raises
+        ParameterError for what is not numeric or not finite.
+        """
+        others = Feedback | Schedule
+        return {
+            n: check_array(n, x)
+            for n, x in self.given.items()
+            if not (callable(x) or isinstance(x, others))
+        }
+
+    @property
+    def has_callable(self) -> bool:
+        """Whether one of them is a function of t, by itself or in a feedback."""
+        return any(callable(x.value if isinstance(x, Feedback) else x) for x in self.given.values())
+
+    @property
+    def acts(self) -> bool:
+        """Whether anything is given."""
+        return not (
+            self.force
+            is self.torque
+            is self.slope
+            is self.brake
+            is self.drag
+            is self.omega
+            is self.V
+            is None
+        )
+
+    def without_zeros(self) -> Drive:
+        """Return the same without a force, torque, slope, brake or drag that is 0 at all times;
+        prescribed speeds of 0 stay.
+
+        Returns a new :class:`Drive`; an empty array and one of zeros are left out, a callable never
+        is.
+        Raises ParameterError for a load that is no number and no function of time, or not finite.
+        """
+        loads = {name: value for name, value in self.given.items() if name not in ("omega", "V")}
+        return self._replace(
+            **{name: None for name, value in loads.items() if _is_zero(name, value)}
+        )
+
+    def over(self, scale: Scale) -> Drive:
+        """Return the same drive made dimensionless; for a scene, and where nothing is given, it is
+        this drive itself.
+
+        scale: :class:`Scale` of the roller: the SI values of 1 of each quantity.  Callables of the
+        result take the time in T_ref, the unit of time of that scale.
+        Raises ParameterError for what is not numeric or not finite, a brake or a drag below 0, a
+        callable for many cylinders or one that cannot be called with a time alone, and an array
+        whose length is not the number of cylinders.
+        """
+        return (
+            Drive(*map(make_dimensionless, self._fields, self, (scale,) * len(self)))
+            if scale.si and self.acts
+            else self
+        )
+
+
+def _is_zero(name: str, value: Any) -> bool:
+    """Return whether a load is 0 at all times; a callable never counts as 0.
+
+    name: name of the argument, for refusals.
+    value: what the caller gave: a number, an array, of which all must be 0, a Schedule, of which
+    all values must be, a callable or a Feedback, whose gains must be 0 too.  An empty array counts
+    as 0.
+    Raises ParameterError for what is no number and no function of time, and for numbers that are
+    not finite.
+    """
+    if isinstance(value, Feedback):
+        return not (np.any(value.V) or np.any(value.omega)) and _is_zero(name, value.value)
+    return not (
+        callable(value)
+        or np.any(value.values if isinstance(value, Schedule) else check_array(name, value))
+    )
+
+
+class PlainArguments(NamedTuple):
+    """Start speeds and drive as plain numbers, without the units and labels that they carried, and
+    these labels.
+
+    start : V0 and omega0 in the units of the roller.
+    drive : loads and prescribed speeds in the units of the roller.
+    labels : labels of arrays of xarray and pandas, by which results are labelled again; None
+    without.
+    """
+
+    start: tuple[Any, Any]
+    drive: Drive
+    labels: Labels | None
+
+
+def strip_units(start: tuple[Any, Any], drive: Drive, units: HasUnits) -> PlainArguments:
+    """Return start speeds and drive in the units of a roller, as plain numbers, and the labels that
+    they had.
+
+    start: V0 and omega0, as the caller gave them; None where a speed is prescribed.
+    drive: :class:`Drive`, loads and prescribed speeds, as the caller gave them.
+    units: units of the roller, an object with a method ``unit`` as :class:`Scale` has it.
+    Raises ParameterError for a unit of another dimension, for arrays with labels beside arrays
+    without, or with other labels, and, where any argument has a unit or labels, for a Feedback that
+    is neither force nor torque.
+    Returns :class:`PlainArguments`; what had neither a unit nor labels is unchanged, and callables
+    are.  Numbers are not checked otherwise.
+    """
+    plain, labels = strip_labels({"V0": start[0], "omega0": start[1], **drive._asdict()}, units)
+    return PlainArguments((plain.pop("V0"), plain.pop("omega0")), Drive(**plain), labels)

@@ -1,0 +1,313 @@
+"""Motions and ensembles as xarray datasets, with names, units and provenance."""
+
+from __future__ import annotations
+
+from typing import Any, NamedTuple
+
+import numpy as np
+import xarray as xr
+from numpy.typing import NDArray
+
+from .. import __version__
+from ..contact_mechanics.parameters import PARAMETERS
+from ..core.drive_arguments import Feedback, Schedule
+from ..core.errors import MotionStatus
+from ..core.results import format_value
+from ..core.scale import attributes
+from ..materials.bodies import Bodies, Cover
+from ..materials.prony import Prony
+from .motion_arguments import ROWS, STATES
+from .roll_result import RollResult
+
+#: Comment of a schedule in a dataset.
+_LINEAR = "linear between its times, constant outside; a time given twice is a jump"
+
+
+class _Flags(NamedTuple):
+    """Attributes of a column of codes: its long_name, the first code, and the meanings of all
+    codes.
+    """
+
+    long_name: str
+    first: int
+    meanings: str
+
+
+#: Columns of codes.
+_FLAGS = {
+    "regime": _Flags("regime of motion", -1, "not_reached full_slip partial_slip rest locked held"),
+    "status": _Flags(
+        "how the motion ended", 0, " ".join(status.name.lower() for status in MotionStatus)
+    ),
+    "flow": _Flags("source of the motion", 0, "integrated flow_map"),
+}
+
+
+def column_attributes(name: str, si: bool = False) -> dict[str, Any]:
+    """Return the attributes of a column of a dataset.
+
+    name: name of a field of a motion, of a start ("V0", "omega0"), or "t", "status", "flow";
+    another name gives long_name "" and units "1".
+    si: whether it is in the units of a cylinder, else of a scene.
+    Returns a new dict: long_name and units, of some also symbol and equation
+    (:func:`.scale.attributes`); of the codes "regime", "status" and "flow" long_name,
+    flag_values (int8, (codes,)) and flag_meanings, one word for each code in their order, and no
+    units.
+    """
+    if name not in _FLAGS:
+        return dict(attributes(name, si))
+    long_name, first, meanings = _FLAGS[name]
+    values = np.arange(first, first + len(meanings.split()), dtype=np.int8)
+    return {"long_name": long_name, "flag_values": values, "flag_meanings": meanings}
+
+
+def provenance(title: str) -> dict[str, str]:
+    """Return the attributes that every dataset has, a new dict of texts: Conventions, title and
+    source.
+    """
+    return {"Conventions": "CF-1.11", "title": title, "source": f"viscoroll {__version__}"}
+
+
+def _dataset(
+    result: RollResult,
+    title: str,
+    dims: tuple[str, ...],
+    variables: dict[str, Any],
+    about: dict[str, Any],
+) -> xr.Dataset:
+    """Return the dataset of a motion or an ensemble.
+
+    result: :class:`Motion` or :class:`Ensemble`, whose quantities, t, drive, scene and roller are
+    put into the dataset.
+    title: title of the dataset.
+    dims: names of the dimensions of the quantities, ("t",) or ("motion", "t").
+    variables: further variables: name -> (dimensions, values, attributes).
+    about: further attributes by name.
+    Returns the dataset over ``dims``, in the units of the roller; without loads, works and losses
+    for a free single motion, and without quantities that an ensemble does not keep.  The regime is
+    int8, -1 where it was not reached.  Its attributes are those of :func:`provenance`, ``about``,
+    drive_error of driven motions and of ensembles; of one material relaxation_strengths and
+    relaxation_times, also of a series given by its creep; of a cover cover_on, and
+    cover_thickness_over_l0 and cover_nu if they are numbers; of a cylinder R, m, j, g, load and
+    T_ref; and the texts of :func:`_describe_drive`.
+    """
+    si = result.scale.si
+    acts = result.drive.acts or "motion" in dims
+    data: dict[str, Any] = {}
+    for name in ROWS if acts else STATES:
+        if (values := result[name]) is not None:
+            if name == "regime":
+                values = np.where(np.isnan(values), -1, values).astype(np.int8)
+            data[name] = dims, values, column_attributes(name, si)
+    drives, texts = _describe_drive(result)
+    attrs = provenance(title) | about | texts
+    if acts:
+        attrs["drive_error"] = result.drive_error
+    if (series := result.scene.series) is not None:  # the unit of time is its own
+        attrs |= {"relaxation_strengths": series.E, "relaxation_times": series.tau}
+    if (cover := result.scene.cover) is not None:
+        numbers = {"cover_thickness_over_l0": cover.thickness, "cover_nu": cover.nu}
+        attrs |= {"cover_on": cover.on} | {
+            name: number for name, number in numbers.items() if not np.ndim(number)
+        }
+    if si:
+        attrs |= {
+            name: getattr(result.roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")
+        }
+    return xr.Dataset(
+        data | variables | drives, {"t": ("t", result.t, column_attributes("t", si))}, attrs
+    )
+
+
+def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]:
+    """Describe the drive of a result by variables and attributes of its dataset.
+
+    Numbers have the dimensions () or (motion), schedules (drive_force_time) or (motion,
+    drive_force_time), or where motions have times of their own (motion, drive_force_corner).
+    Attributes are those of :func:`column_attributes` with "given: " before long_name, of a schedule
+    ``comment``, of a feedback gain_V and gain_omega.
+
+    result: :class:`Motion` or :class:`Ensemble`, of which drive and scale are read.
+    Returns (name -> (dimensions, values, attributes) of variables as ``drive_force`` and
+    ``drive_force_time``, in the units of the roller; name -> text of attributes that describe
+    callables with their gains).  Both are empty without a drive.
+    """
+    variables: dict[str, Any] = {}
+    texts: dict[str, Any] = {}
+    for name, given in result.drive.given.items():
+        key = f"drive_{name}"
+        value = given
+        gains = {}
+        if isinstance(given, Feedback):
+            value = given.value
+            gains = {"gain_V": given.V, "gain_omega": given.omega}
+        if callable(value):
+            parts = (
+                f", {gain} = {format_value(x) if np.ndim(x) else f'{x:.15g}'}"
+                for gain, x in gains.items()
+            )
+            texts[key] = "a function of t" + "".join(parts)
+            continue
+        about = attributes(name, result.scale.si)
+        about = about | {"long_name": f"given: {about['long_name']}"} | gains
+        dims: tuple[str, ...] = ("motion",)
+        if isinstance(value, Schedule):
+            about_times = {
+                "long_name": f"times of the given {name}",
+                "units": result.scale.unit("t"),
+            }
+            times = _shared(value.times, 1)
+            value = value.values
+            dims = "motion", f"{key}_time" if times.ndim == 1 else f"{key}_corner"
+            variables[f"{key}_time"] = dims[-times.ndim :], times, about_times
+            about = about | {"comment": _LINEAR}
+        array = _shared(np.asarray(value, np.float64), len(dims) - 1)
+        variables[key] = dims[len(dims) - array.ndim :], array, about
+    return variables, texts
+
+
+def _shared(array: NDArray, own: int = 0) -> NDArray:
+    """Return numbers of motions, without the axis of the motions if it has length 1: they are those
+    of all motions.
+
+    array: (n, ...), or without that axis.
+    own: number of its other axes.
+    """
+    return array[0] if array.ndim > own and len(array) == 1 else array
+
+
+def _material_variables(materials: Any, count: int) -> dict[str, Any]:
+    """Return strengths and times of several materials, and share or thickness, as variables.
+
+    materials: :class:`Prony`, :class:`Bodies` or :class:`Cover` of several motions; for one
+    material, or None, the result is empty.
+    count: number of motions; what is the same for all of them is repeated.
+    Returns name -> (dimensions, values, attributes), dimensionless; values over modes are (count,
+    modes), others (count,).  Of series, in the form that was given: relaxation_strengths and
+    relaxation_times (or creep_strengths and creep_times) over (motion, mode).  Of two bodies: the
+    same of each, with the prefix cylinder_ or base_, over (motion, cylinder_mode) and (motion,
+    base_mode), and ``share`` over (motion).  Of covers: ``cover_thickness`` over (motion), divided
+    by l0, whose attributes are also the layer's relaxation_strengths and relaxation_times, (modes,)
+    each, divided by its long-time modulus and T_ref, in whichever form it was given; ``cover_nu``
+    over (motion), if the covers have several.  The side of a cover and the other body are not
+    included (:func:`_dataset` has the side, and nu if it is one number).
+    """
+    if materials is None or not materials.shape:
+        return {}
+    if not isinstance(materials, Bodies):
+        return _mode_variables(materials, count, "", "")
+
+    def along(name: str, values: Any, long_name: str, **more: Any) -> dict[str, Any]:
+        """Return one variable over the motions, as a dict name -> (dimensions, values, attributes).
+
+        name: name of the variable.
+        values: a number, or (n,), dimensionless.
+        long_name: its long name.
+        more: further attributes.
+        """
+        about = {"long_name": long_name, "units": "1"} | more
+        return {name: ("motion", np.broadcast_to(values, (count,)), about)}
+
+    if isinstance(materials, Cover):
+        layer = {"relaxation_strengths": materials.layer.E, "relaxation_times": materials.layer.tau}
+        found = along(
+            "cover_thickness", materials.thickness, "thickness of the cover divided by l0", **layer
+        )
+        nu = along("cover_nu", materials.nu, "Poisson's ratio of the cover")
+        return found | nu if np.ndim(materials.nu) else found
+    return (
+        _mode_variables(materials.cylinder, count, "cylinder_", "cylinder: ")
+        | _mode_variables(materials.base, count, "base_", "base: ")
+        | along("share", materials.share, "the cylinder's part of the long-time compliance")
+    )
+
+
+def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[str, Any]:
+    """Return the strengths and times of the modes of one body, over (motion, mode), as variables.
+
+    series: :class:`Prony`, the series of each motion, or one for all.
+    count: number of motions.
+    prefix, title: first letters of the names ("", "cylinder_", "base_") and of the long_names ("",
+    "cylinder: ", "base: ").
+    Returns name -> (dimensions, values (count, modes), attributes), dimensionless:
+    PREFIXrelaxation_strengths, divided by the long-time modulus, and PREFIXrelaxation_times,
+    divided by T_ref; of a series in creep form PREFIXcreep_strengths, divided by the long-time
+    compliance, and PREFIXcreep_times.
+    """
+    form, total = ("creep", "compliance") if series.by_creep else ("relaxation", "modulus")
+    parts = {
+        "strengths": (
+            series.J if series.by_creep else series.E,
+            f"strengths of {form} divided by the long-time {total}",
+        ),
+        "times": (series.T if series.by_creep else series.tau, f"times of {form} divided by T_ref"),
+    }
+    return {
+        f"{prefix}{form}_{name}": (
+            ("motion", f"{prefix}mode"),
+            np.broadcast_to(values, (count, np.shape(values)[-1])),
+            {"long_name": title + about, "units": "1"},
+        )
+        for name, (values, about) in parts.items()
+    }
+
+
+def motion_dataset(motion: Any) -> xr.Dataset:
+    """Return the dataset over t of one motion; of a driven one with loads, works, losses and the
+    times at which V reverses.
+
+    motion: a :class:`Motion`.
+    Returns the dataset of :func:`_dataset`, in the units of the roller, of a driven motion with
+    ``reversals`` over reversal.  Its attributes are also the numbers of the scene by name,
+    onset_time and rest_time (NaN where there is none), switches ("t = T: REGIME; ..."), status in
+    words, and steps.
+    """
+    about_reversals = {
+        "long_name": "times at which V changes its sign",
+        "units": motion.scale.unit("t"),
+    }
+    about = motion.scene.numbers | {
+        "onset_time": motion.onset_time,
+        "rest_time": motion.rest_time,
+        "switches": "; ".join(f"t = {s.t:.15g}: {s.regime}" for s in motion.switches),
+        "status": motion.message,
+        "steps": motion.steps,
+    }
+    variables = (
+        {"reversals": ("reversal", motion.reversals, about_reversals)} if motion.drive.acts else {}
+    )
+    return _dataset(
+        motion,
+        "Motion of a viscoelastic cylinder rolling with partial slip",
+        ("t",),
+        variables,
+        about,
+    )
+
+
+def ensemble_dataset(result: Any) -> xr.Dataset:
+    """Return the dataset over (motion, t) of an ensemble.
+
+    result: an :class:`Ensemble`; labels of its starts of length n become coordinates, called
+    given_NAME where a variable has their name.
+    Returns the dataset of :func:`_dataset`, in the units of the roller: quantities that the
+    ensemble keeps over (motion, t); V0, omega0, onset_time, rest_time, status and flow over motion;
+    alpha, kappa, mu, gamma and j, dimensionless, and the drive over motion, or without dimension
+    where all motions have the same; of several materials the variables of
+    :func:`_material_variables`; attributes flow_error and flow_problem.
+    """
+    si = result.scale.si
+    variables = _material_variables(result.scene.material, len(result))
+    for name in PARAMETERS:
+        value = _shared(np.asarray(getattr(result.scene, name)))
+        variables[name] = ("motion",)[: value.ndim], value, attributes(name)
+    for name in ("V0", "omega0", "onset_time", "rest_time", "status"):
+        variables[name] = "motion", result[name], column_attributes(name, si)
+    variables["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
+    about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
+    dataset = _dataset(result, "Ensemble of motions", ("motion", "t"), variables, about)
+    if result.labels is None or result.labels.shape != (len(result),):
+        return dataset
+    return dataset.assign_coords(
+        result.labels.axes_beside({*dataset.variables, *dataset.dims}, "motion")[1]
+    )

@@ -1,0 +1,427 @@
+"""Motions that are checked and ready to be integrated: :class:`MotionProblem`; and the calls of the
+kernel.
+
+T_ref is the unit of time of dimensionless motions: T_epsilon of a material that is an alpha, the
+``T_ref`` of any other material.  Speeds are divided by R/T_ref, angular velocities by 1/T_ref.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..contact_mechanics.contact import contact
+from ..contact_mechanics.contact_table import refuse_beyond
+from ..contact_mechanics.free_rolling import FreeRolling
+from ..contact_mechanics.parameters import Parameters, Roller, refuse_cover, resolve_model
+from ..contact_mechanics.validity import LARGEST_LOSS
+from ..core.blocks import broadcast_vector, run_blocks
+from ..core.checks import Floats, Integers, check_array, check_bool, check_number
+from ..core.drive_arguments import make_dimensionless
+from ..core.errors import MotionStatus, ParameterError, described_error
+from ..core.scale import HasUnits, Scale
+from ..laws.law_table import law_table
+from .drive_functions import (
+    DriveFunctions,
+    DrivenStart,
+    KernelDrive,
+    prepare_drive,
+    refuse_rest,
+    undriven,
+)
+from .motion_arguments import (
+    LOSSES,
+    ROWS,
+    STATES,
+    Drive,
+    controls,
+    refuse_end,
+    require_single,
+    with_scales,
+)
+
+#: Indices of all rows of the kernel's output.
+_ALL_ROWS = np.arange(len(ROWS))
+#: Indices of the rows of free motions.
+_FREE_ROWS = np.array([ROWS.index(name) for name in STATES + LOSSES], np.int64)
+#: (rtol, threshold of rest, step limit) of the motions of a flow map: as accurate as the integrator
+#: is, where alpha = 1e10 takes tens of thousands of steps.
+_MAP_LIMITS = (1e-12, 0.0, 100_000)
+#: Motions of a flow map in a block of work.
+_BLOCK = 40
+#: Empty arrays for the switches and for the ends of steps, where they are not kept.
+NO_NOTES = np.empty((0, 2)), np.empty(0)
+
+
+class SolverOptions(NamedTuple):
+    """How motions are integrated: the arguments of :func:`viscoroll.roll` of these names, as the
+    caller gave them.
+
+    rtol : relative tolerance, in [1e-12, 1e-2].
+    rest : rest threshold of max(|V|, R |omega|), in the unit of the roller; None: a motion does not
+    end at rest.
+    max_steps : largest number of steps of a motion.
+    resolve : largest spacing of the samples of a callable load, in the roller's unit of time; None:
+    a thousandth of the motion.
+    unsteady : whether the added mass N acts, M(V) + N dV/dt in place of M.
+    rested : whether the cylinder stood still for long before the start, or the time for which it
+    did, in the roller's unit.
+    """
+
+    rtol: float
+    rest: float | None
+    max_steps: int
+    resolve: float | None = None
+    unsteady: bool = False
+    rested: bool | float = False
+
+
+class MotionProblem(NamedTuple):
+    """Checked motions; dimensionless but for roller and drive.
+
+    roller, scene : the roller (:class:`Scene` or :class:`Cylinder`) on its slope, in the units of
+    the caller, and its dimensionless :class:`Parameters`.
+    drive : :class:`Drive`, loads and prescribed speeds as given, in the units of the roller; a load
+    that is 0 at all times is None.
+    functions : the same as dimensionless functions of time, :class:`DriveFunctions`; None for free
+    motions.
+    V0, omega0 : start speeds, numbers or (n,), reduced by the speed that a start after a standstill
+    costs.
+    immobile : whether a motion is too slow to leave the indentation of a standstill: (n,), or one
+    truth value for all.
+    end : last time, in T_ref.
+    limits : (rtol; threshold of rest, dimensionless, 0 for none; largest number of steps, the
+    corners of the drive included).
+    unsteady : whether the added mass N acts.
+    driven : whether a load other than 0, or a prescribed speed, is given, or the added mass acts.
+    """
+
+    roller: Roller
+    scene: Parameters
+    drive: Drive
+    functions: DriveFunctions | None
+    V0: Any
+    omega0: Any
+    immobile: Any
+    end: float
+    limits: tuple[float, float, int]
+    unsteady: bool
+    driven: bool
+
+    @property
+    def drive_error(self) -> float:
+        """Largest difference seen between a callable and its fit, dimensionless."""
+        return 0.0 if self.functions is None else self.functions.error
+
+    def kernel_drive(self, index: Any = slice(None)) -> KernelDrive:
+        """Return the drive of some motions as the kernels take it,
+        :data:`.drive_functions.KernelDrive`.
+
+        index : index of numpy, a slice or a vector of integers, that selects the motions; default:
+        all.
+        Returns the tuple of :meth:`.drive_functions.DriveFunctions.for_kernel`, of free motions
+        that of :func:`.drive_functions.undriven`.
+        """
+        return undriven() if self.functions is None else self.functions.for_kernel(index)
+
+
+def make_problem(
+    roller: Roller,
+    start: tuple[Any, Any],
+    drive: Drive,
+    end: float,
+    options: SolverOptions,
+    *,
+    single: bool = False,
+) -> MotionProblem:
+    """Check everything about motions before any is integrated, and convert it to dimensionless
+    numbers.
+
+    roller: :class:`Scene` or :class:`Cylinder`.
+    start: V0 and omega0 in its units, plain numbers or arrays (n,); None where a speed is
+    prescribed.
+    drive: :class:`Drive`, loads and prescribed speeds in its units, without labels.
+    end: last output time, in its unit.
+    options: :class:`SolverOptions`, not yet checked.
+    single: whether only one motion is allowed (``roll``); else an ensemble.
+    Raises ParameterError for what :func:`viscoroll.roll` (``single``) or :func:`viscoroll.ensemble`
+    refuses, apart from output times, units and labels, and of an ensemble arrays that do not
+    broadcast, fields, method, ``speed``, threads and progress.  The message states units where it
+    has dimensionless numbers (:func:`.motion_arguments.with_scales`).  Exceptions of a callable
+    pass.
+    Returns the :class:`MotionProblem`.  Its callables are fitted, loads that are 0 at all times are
+    left out, the start speeds are reduced by the cost of a standstill, and the step limit is raised
+    by the number of corners of the drive; nothing is integrated.
+    """
+    acts = drive.acts
+    if single:
+        require_single(V0=start[0], omega0=start[1], **(drive.numbers if acts else {}))
+    drive = drive.without_zeros() if acts else drive
+    (rtol, rest, max_steps, resolve, unsteady, rested) = options
+    roller, scene, scale = resolve_model(
+        roller, "roll" if single else "ensemble", moves=True, slope=drive.slope
+    )
+    if single and scene.shape:
+        require_single(material=roller.material, **roller.numbers)
+    if rest is not None and np.ndim(scale["V"]):
+        raise ParameterError(
+            "rest", rest, "None", "rest needs the same R and T_ref (or T_epsilon) for all motions"
+        )
+    unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
+    try:
+        limits = controls(rtol, rest, max_steps, scale)
+        last = float(end) / scale["t"]
+        refuse_end(float(end), scale["t"])
+        V0 = make_dimensionless("V0", start[0], scale)
+        omega0 = make_dimensionless("omega0", start[1], scale)
+        spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
+        prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
+        functions = prepared.functions
+        if functions is not None:  # a step ends at every corner
+            limits = (*limits[:2], limits[2] + functions.corners)
+        if rest is not None:
+            refuse_rest(rest, functions)
+        V0, omega0, immobile = _apply_standstill(
+            prepared, scene, _standstill_time(rested, scale) / scale["t"]
+        )
+    except ParameterError as error:
+        raise with_scales(error, scale) from error
+    many = 1 if functions is None else max(functions.counts)
+    if single and many > 1:
+        allowed = "the drive of one motion: for many use ensemble"
+        raise described_error("drive", f"has values for {many} motions", allowed)
+    driven = unsteady or (acts and drive.acts)
+    return MotionProblem(
+        roller=roller,
+        scene=scene,
+        drive=drive,
+        functions=functions,
+        V0=V0,
+        omega0=omega0,
+        immobile=immobile,
+        end=last,
+        limits=limits,
+        unsteady=unsteady,
+        driven=driven,
+    )
+
+
+def _sample_spacing(resolve: Any, drive: Drive, scale: Scale) -> float:
+    """Check ``resolve``, the largest spacing of the samples of a callable, and return it in T_ref.
+
+    resolve: the argument of the caller, not None: one number, in T_ref of a scene, in s or with a
+    unit of time of a cylinder.
+    drive: :class:`Drive` of the motions, of which only :attr:`Drive.has_callable` is read.
+    scale: :class:`Scale` of the roller, which converts s to T_ref.
+    Returns a float > 0.
+    Raises ParameterError unless ``resolve`` is one finite number above 0 without a unit of another
+    dimension, and the drive has a callable.
+    """
+    if not drive.has_callable:
+        sentence = (
+            f"resolve = {resolve!s:.60} is given, but no load or speed is a function of t: "
+            "leave it out"
+        )
+        raise ParameterError("resolve", resolve, "left out", sentence)
+    return check_number("resolve", resolve, unit=scale, above=0.0) / scale["t"]
+
+
+def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
+    """Return whether the added mass N acts, a bool.
+
+    unsteady: argument of the caller, whether M(V) + N dV/dt stands for M.
+    scene: :class:`Parameters`, dimensionless, of the roller; its cover and whether its bodies are
+    alike are read.
+    Raises ParameterError for what is no truth value, and, if it is True, for covers, which have no
+    N, and for bodies of different materials, whose motions with N are not computed.
+    """
+    if not check_bool("unsteady", unsteady):
+        return False
+    refuse_cover(scene, "N is not available: leave unsteady=True out")
+    if not scene.like_bodies:
+        sentence = (
+            "unsteady = True: motions with the added mass N are computed for two bodies of "
+            "one material only"
+        )
+        raise ParameterError("unsteady", True, "False where bodies differ", sentence)
+    return True
+
+
+def _standstill_time(rested: Any, units: HasUnits) -> float:
+    """Return the time of the standstill before the start, in the unit of the roller: 0 without one,
+    inf for a long one.
+
+    rested: argument of the caller: False (none), True (a long one), or a finite time >= 0 in the
+    unit of the roller.
+    units: units of the roller, an object with a method ``unit`` as :class:`Scale` has it.
+    Raises ParameterError for what is neither a truth value nor one finite number >= 0, and for one
+    with a unit of another dimension.
+    """
+    if isinstance(rested, bool | np.bool_):
+        return math.inf if rested else 0.0
+    time = check_array("rested", rested, unit=units, low=0.0)
+    if time.ndim:
+        raise ParameterError("rested", rested, "one time >= 0, or True")
+    return float(time)
+
+
+def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> tuple[Any, Any, Any]:
+    """Reduce the start speeds by the cost of leaving the indentation of a standstill.
+
+    start: :class:`DrivenStart`: start speeds, numbers or (n,), and drive, of which only
+    ``prescribed`` is read.
+    scene: :class:`Parameters`, dimensionless, of the roller, with gamma.
+    rested: time of the standstill, in T_ref; 0: none; infinite: a long one.
+    Returns (V0; omega0; whether the cylinder is too slow to leave its indentation), dimensionless.
+    If ``rested`` is 0, the speeds are returned as they are, with False.  Else V0 and omega0 of each
+    motion are multiplied by the same factor in [0, 1], and the third entry has the common shape of
+    V0 and the scene's arrays.  It is True where this takes more than 45 % of V
+    (:data:`LARGEST_LOSS`); the factor of such a motion has no meaning.
+    Raises ParameterError if ``rested`` is not 0, and a speed is prescribed, any motion starts in
+    full slip or from V0 = omega0 = 0, or the roller has a cover: the cost is then not known.
+    """
+    if rested == 0.0:
+        return start.V0, start.omega0, False
+    refuse_cover(
+        scene, "the energy loss of a start after a standstill is not available: leave rested out"
+    )
+    V = np.asarray(start.V0, np.float64)
+    limit = np.abs(V) * contact(scene, V, delta=0.0, fields="delta_star").delta_star
+    prescribed = start.functions is not None and start.functions.prescribed
+    still = np.any((V == 0.0) & (np.asarray(start.omega0) == 0.0))
+    if prescribed or still or np.any(np.abs(start.omega0 - V) > limit):
+        why = "a speed is prescribed" if prescribed else "it starts in full slip"
+        why = (
+            "it starts at V0 = omega0 = 0 and must yet break away"
+            if still and not prescribed
+            else why
+        )
+        sentence = f"rested is given, but {why}: the energy loss of the start is then not available"
+        raise ParameterError("rested", rested, "left out", sentence)
+    lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
+    return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS
+
+
+def integrate(
+    count: int,
+    batch: tuple[Any, ...],
+    drive: KernelDrive,
+    times: Floats,
+    limits: tuple[float, float, int],
+    rows: Integers,
+    notes: tuple[NDArray, ...] = NO_NOTES,
+) -> tuple[Floats, Floats]:
+    """Integrate motions in the kernel.
+
+    count: number of motions, >= 0.
+    batch: (law, the kernel's record of one material or of several; whether the two bodies take
+    unequal parts of M; kappa, mu, gamma, j, V0, omega0, read-only vectors of one value or ``count``
+    values), dimensionless.
+    drive: drive of the motions as the kernels take it, :data:`.drive_functions.KernelDrive`.
+    times: output times since the start, (times,), at least one, >= 0, ascending, in T_ref.
+    limits: (rtol; threshold of rest, 0 for none; largest number of steps).
+    rows: (rows,), int, indices into :data:`.motion_arguments.ROWS`: the quantities to compute.
+    notes: (switches, (k, 2): time in T_ref and new regime, or -1 where V changes its sign; ends of
+    steps, (l,), in T_ref). Both are written from the front in the order of time; what exceeds their
+    length is left out, and entries that are not needed stay as they were.  Each motion overwrites
+    those of the one before, so that they are of use for one motion.  Arrays of length 0 keep
+    nothing.
+    Returns (quantities, (rows, count, times), NaN at times that a motion did not reach; information
+    on each motion, (count, 5), floats: code of :class:`MotionStatus`, number of steps, rejected
+    ones included, number of changes of regime, onset time and rest time in T_ref, NaN where there
+    is none).
+    """
+    from ..kernels.motion.driver import N_INFO_COLUMNS, motion_loop
+
+    out = np.empty((rows.size, count, times.size))
+    info = np.empty((count, N_INFO_COLUMNS))
+    motion_loop(batch, drive, times, limits, rows, out, info, notes)
+    return out, info
+
+
+def integrate_single(
+    problem: MotionProblem, times: Floats, *notes: NDArray
+) -> tuple[Floats, list[float]]:
+    """Integrate one motion.
+
+    problem: :class:`MotionProblem` of one motion; scene, functions, V0, omega0, immobile, limits
+    and unsteady are read.
+    times: output times since the start, (times,), at least one, >= 0, ascending, in T_ref.
+    notes: the two arrays (k, 2) and (l,) of :func:`integrate`, which receive the switches and the
+    ends of steps; none: neither is kept.
+    Returns (all quantities in the order of :data:`.motion_arguments.ROWS`, (rows, times),
+    dimensionless, NaN at times that the motion did not reach; a list of five numbers: code of
+    :class:`MotionStatus`, number of steps, number of changes of regime, onset time and rest time in
+    T_ref, NaN where there
+    is none; all of them floats).  A cylinder that stays in its indentation is not integrated: its
+    quantities are NaN, the list is [MotionStatus.CAUGHT, 0, 0, NaN, NaN], with the member of the
+    enum and two ints, and ``notes`` stay as they were.
+    """
+    scene = problem.scene
+    if problem.immobile:
+        return np.full((_ALL_ROWS.size, times.size), np.nan), [
+            MotionStatus.CAUGHT,
+            0,
+            0,
+            np.nan,
+            np.nan,
+        ]
+    law = scene.rolling_law
+    assert law is not None
+    numbers = scene.kappa, scene.mu, scene.gamma, scene.j, problem.V0, problem.omega0
+    arrays = np.array(numbers, float).reshape(-1, 1)
+    arrays.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
+    batch = law.unsteady_record if problem.unsteady else law.record, law.unlike, *arrays
+    out, info = integrate(1, batch, problem.kernel_drive(), times, problem.limits, _ALL_ROWS, notes)
+    refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
+    return out[:, 0], info[0].tolist()
+
+
+def integrate_motions(
+    parameters: tuple[Any, ...],
+    starts: tuple[Floats, Floats],
+    gamma: Floats,
+    t: Floats,
+    *,
+    threads: int | None = 1,
+) -> tuple[Floats, Floats]:
+    """Integrate free motions of one scene, from which a flow map (:mod:`.flow`) is built and by
+    which it is tested.
+
+    They are integrated at rtol 1e-12, and by the same call of the kernel as an ensemble, so that no
+    kernel is compiled for them alone.
+
+    parameters: (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony` series
+    in its own unit of time.
+    starts: V0 and omega0, (n,) each, n >= 1, dimensionless.
+    gamma: P T_ref^2/(m R), the ratio of load to inertia that sets the time scale, of each motion, >
+    0, (n,) or (1,).
+    t: output times since the start, (times,), >= 0, ascending, common to all, in the material's
+    unit of time.
+    threads: number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    Raises ParameterError for a number of threads that is no whole number >= 1, ValueError for n =
+    0.
+    Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times),
+    dimensionless, NaN at times that a motion did not reach; status, steps, switches, onset and rest
+    time of each motion, (n, 5), as of :func:`integrate`).
+    """
+    material, kappa, mu, j = parameters
+    law = law_table(material)
+    count = starts[0].size
+    arrays = [
+        broadcast_vector(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)
+    ]
+    blocks: dict[int, tuple[Floats, Floats]] = {}
+
+    def work(start: int, stop: int) -> None:
+        parts = (array[start:stop] if array.size > 1 else array for array in arrays)
+        batch = law.record, law.unlike, *parts
+        blocks[start] = integrate(stop - start, batch, undriven(), t, _MAP_LIMITS, _FREE_ROWS)
+
+    run_blocks(work, count, _BLOCK, threads=threads)
+    out, info = zip(*(blocks[start] for start in sorted(blocks)), strict=True)
+    return np.concatenate(out, axis=1), np.concatenate(info)

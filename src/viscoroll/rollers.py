@@ -1,0 +1,664 @@
+"""Rollers: :class:`Scene`, dimensionless, and :class:`Cylinder`, in SI units.
+
+A dimensionless roller, :class:`Scene`, and the methods that it shares with a cylinder,
+:class:`Methods`.
+
+A roller in SI units: :class:`Cylinder`.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .contact_mechanics.body_data import BodyData
+from .contact_mechanics.bound_law import law
+from .contact_mechanics.contact import contact, stress
+from .contact_mechanics.parameters import Parameters, Roller
+from .contact_mechanics.rolling_resistance import resistance_extrema
+from .contact_mechanics.steady import steady
+from .contact_mechanics.validity import validity
+from .core.checks import broadcast_shape, check_array, check_bool, check_choice, read_only
+from .core.drive_arguments import slope_tan_cos
+from .core.errors import ParameterError, described_error, exactly_one_error, shape_error
+from .core.results import Result, SummaryRow, format_value
+from .core.scale import MEASURED, SI, Scale
+from .heat.heated_pairs import pair_temperatures
+from .heat.limits import heat_limit, turning_points
+from .heat.temperature import temperature
+from .heat.warming import warming
+from .laws.law_table import LawTable
+from .materials.bodies import Cover
+from .materials.material import Material, refuse_short_retardation
+from .materials.pair import Pair, Plane, effective_modulus
+from .materials.prony import Prony
+from .motion.ensemble import ensemble
+from .motion.roll import roll
+
+# --- A dimensionless roller, Scene, and the methods that it shares with a cylinder ---
+
+
+class Methods(Roller):
+    """The functions of the package as methods of a scene and a cylinder: ``vr.contact(roller, V,
+    ...)`` is ``roller.contact(V, ...)``, with the same arguments and results.
+    """
+
+    contact = contact
+    stress = stress
+    steady = steady
+    resistance_extrema = resistance_extrema
+    law = law
+    roll = roll
+    ensemble = ensemble
+    validity = validity
+    temperature = temperature
+    warming = warming
+    heat_limit = heat_limit
+    turning_points = turning_points
+    pair_temperatures = pair_temperatures
+
+
+class Scene(Methods, Parameters):
+    """Dimensionless parameters of a cylinder that rolls on a half-space, as in Sect. 3.1 and Eq.
+    (4) of the paper (Zobova and Goryacheva, 2020).
+
+    Each number may be an array; they broadcast against each other and against speeds.  The
+    functions of the package are its methods too.  The unit of time, T_ref, is T_epsilon where
+    ``alpha`` is given, else that of the material; the unit of length in the contact is l0, the
+    contact length at rest of half-spaces, and that of forces the load P.
+
+    Parameters
+    ----------
+    alpha : T_epsilon/T_sigma, retardation time divided by relaxation time, in [1, 1e12] (1:
+        elastic); the unit of time is T_epsilon.
+    kappa : R/l0 = sqrt(E' R/(32 P)), radius divided by contact length at rest, > 0;
+        the half-space theory requires kappa >> 1.
+    mu : coefficient of friction, > 0.
+    gamma : P T_ref^2/(m R), > 0; it sets the time scale of motions.  roll and ensemble need it,
+        contact, stress and steady do not; validity without it does not check the quasi-steady
+        assumption.
+    j : moment of inertia divided by m R^2, > 0; 1/2 (default) for a solid cylinder.  Not used by
+        contact or stress.
+    material : a :class:`Prony` series, or two (:class:`Bodies`), or n of either, an array parameter
+        (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref,
+        in which a series counts its times.  A law of :func:`viscoroll.load_law` stands for its
+        material, or its alpha.  A :class:`viscoroll.Cover` is a layer of finite thickness.
+    coupled : as of :class:`Cylinder`; of :class:`Bodies` by their ``poisson``.
+
+    Raises
+    ------
+    ParameterError
+        Where a value is not finite or out of range, kappa or mu is missing, mu/kappa is outside
+        1e-290 to 1e290, the shapes do not broadcast, or both or neither of ``alpha`` and
+        ``material`` are given.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.3)
+    >>> bool(scene.contact(0.1, delta=0.5).full_slip)
+    True
+    """
+
+
+# --- A roller in SI units ---
+
+#: Largest relative difference of two thicknesses divided by l0 that count as the same.
+_SAME_THICKNESS = 1e-9
+#: Names of the parameters of the paper's material.
+_SLS = ("E", "nu", "T_epsilon", "T_sigma")
+#: Names of the fields that are numbers.
+_NUMBERS = ("R", "m", *_SLS, "mu", "j", "g", "pressed")
+#: Units of the fields.
+UNITS = {
+    "R": "m",
+    "m": "kg m-1",
+    "E": "Pa",
+    "T_epsilon": "s",
+    "T_sigma": "s",
+    "g": "m s-2",
+    "load": "N m-1",
+}
+
+
+@dataclass(frozen=True, init=False, eq=False, repr=False)
+class Cylinder(Methods):
+    """A viscoelastic cylinder on a half-space (or on or under a layer of finite thickness), in SI
+    units.
+
+    The functions of the package, and its methods of the same names, take and give SI units, per m
+    of its length.  Arguments that carry another unit are converted, or refused
+    (``docs/howto/contact.md``).  :meth:`rollers` is its dimensionless counterpart; ``scale`` gives
+    the SI unit of each quantity of that scene.
+
+    Parameters
+    ----------
+    R : radius, m, > 0.  Each number may be an array (n,) with one value for each cylinder; arrays
+    broadcast.
+    m : mass per unit length, kg/m, > 0.
+    E : long-time Young's modulus of both bodies, Pa, > 0.  E, nu, T_epsilon and T_sigma take the
+    place of ``material``.
+    nu : Poisson's ratio, in (-1, 0.5].
+    T_epsilon : retardation time, s, at least T_sigma.  If it is an array (n,), each cylinder has
+        its own material, and T_ref is the largest T_epsilon.
+    T_sigma : relaxation time, s, > 0.
+    mu : coefficient of friction, > 0; it must be given.
+    j : moment of inertia divided by m R^2, > 0; 1/2 for a solid cylinder.
+    g : gravitational acceleration, m/s^2, > 0; used for the weight.
+    plane : "strain" of a long roller, or "stress" of a thin disc (then E' = pi E).
+    material : a :class:`Material`, in place of E, nu, T_epsilon and T_sigma; or a law of
+        :func:`viscoroll.load_law` of such a material, which brings its ``base`` with it.
+    base : the :class:`Material` of the half-space; default: that of the cylinder.
+    load : normal force P, N/m, > 0; default: the weight m g.
+    coupled : whether states with traction of a layer, and of half-spaces with Dundurs' constant
+        above 0.05, are those of the coupled solution, by a table that is made at first use; False:
+        those of the law without a table.
+
+    Raises
+    ------
+    ParameterError
+        Where a value is not finite or out of range, has a unit of another dimension, both or
+        neither of material and E, nu, T_epsilon, T_sigma are given, shapes do not broadcast, or the
+        bodies do not go together: both are rigid or layers, a layer on the cylinder is thicker than
+        R, or ``material`` is a dimensionless law.  What the scene does not allow is refused at its
+        first use.
+
+    Notes
+    -----
+    Dimensionless times are divided by ``T_ref``: T_epsilon, or T_ref of the materials.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> roller = vr.Cylinder(
+    ...     R=0.1, m=35.5, E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97, mu=0.2
+    ... )
+    >>> round(roller.load, 3), round(float(roller.scene().kappa), 4)
+    (348.255, 2.921)
+    """
+
+    R: Any
+    m: Any
+    E: Any
+    nu: Any
+    T_epsilon: Any
+    T_sigma: Any
+    mu: Any
+    j: Any
+    g: Any
+    plane: Plane
+    material: Material | LawTable | None
+    base: Material | None
+    #: the load as it was given: :meth:`replace` with another m makes the weight anew
+    pressed: Any
+    coupled: bool
+
+    def __init__(
+        self,
+        R: ArrayLike,
+        m: ArrayLike,
+        E: ArrayLike | None = None,
+        nu: ArrayLike | None = None,
+        T_epsilon: ArrayLike | None = None,
+        T_sigma: ArrayLike | None = None,
+        mu: ArrayLike | None = None,
+        j: ArrayLike = 0.5,
+        g: ArrayLike = 9.81,
+        plane: Plane = "strain",
+        *,
+        material: Material | LawTable | None = None,
+        base: Material | None = None,
+        load: ArrayLike | None = None,
+        pressed: ArrayLike | None = None,
+        coupled: bool = True,
+    ) -> None:
+        """Check and freeze the parameters, which the class describes; each number may be an array
+        (n,), or have a unit.
+
+        They become floats or read-only arrays in SI units.
+
+        R: radius, m, > 0.
+        m: mass per length, kg/m, > 0.
+        E: long-time Young's modulus of both bodies, Pa, > 0; None with ``material``.
+        nu: Poisson's ratio, in (-1, 0.5]; None with ``material``.
+        T_epsilon, T_sigma: retardation and relaxation time, s, > 0, T_epsilon >= T_sigma; None with
+        ``material``.
+        mu: coefficient of friction, > 0.
+        j: moment of inertia divided by m R^2, > 0.
+        g: acceleration of gravity, m/s^2, > 0.
+        plane: "strain" or "stress".
+        material: :class:`Material` of the cylinder, or a :class:`LawTable` of one, in place of E to
+        T_sigma.
+        base: :class:`Material` of the half-space; None: that of the cylinder, or of the law.
+        load: force that presses the cylinder on the base, N/m, > 0; None: the weight m g.
+        pressed: the load by its name as a field, for :func:`dataclasses.replace`; not used beside
+        ``load``.
+        coupled: whether states with traction are those of the coupled solution.
+        Raises ParameterError as the class says.
+        """
+        values: dict[str, Any] = {
+            "R": R,
+            "m": m,
+            "E": E,
+            "nu": nu,
+            "T_epsilon": T_epsilon,
+            "T_sigma": T_sigma,
+            "mu": mu,
+            "j": j,
+            "g": g,
+            "plane": plane,
+            "material": material,
+            "base": base,
+            "pressed": pressed if load is None else load,
+            "coupled": check_bool("coupled", coupled),
+        }
+        missing = ", ".join(name for name in _SLS if values[name] is None)
+        solid = ", ".join(name for name in _SLS if values[name] is not None)
+        if material is not None and solid:
+            raise exactly_one_error("material", solid, both=True)
+        if material is None and missing:
+            sentence = (
+                f"give material=, or all of E, nu, T_epsilon and T_sigma: {missing} not given"
+            )
+            raise ParameterError(missing, None, "given, or material", sentence)
+        optional = (*_SLS, "pressed")
+        numbers = [name for name in _NUMBERS if values[name] is not None or name not in optional]
+        for name in numbers:
+            low, high = (-1.0, 0.5) if name == "nu" else (0.0, math.inf)
+            called = "load" if name == "pressed" else name
+            values[name] = read_only(
+                check_array(called, values[name], unit=SI, above=low, high=high)
+            )
+        broadcast_shape(**{name: np.asarray(values[name]) for name in numbers})
+        check_choice("plane", plane, "strain", "stress")
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+        if material is None:
+            if np.ndim(values["T_epsilon"]) > 1:
+                raise shape_error(
+                    "T_epsilon", values["T_epsilon"].shape, "a number or a vector (n,)"
+                )
+            refuse_short_retardation(values["T_epsilon"], values["T_sigma"])
+        if material is not None or base is not None:
+            self._refuse_thick_layer(
+                self.pair.cylinder.thickness
+            )  # the pair refuses what the materials do not allow
+
+    def _refuse_thick_layer(self, thickness: Any) -> None:
+        """Raise ParameterError where a layer on the cylinder is thicker than R, as one whose
+        thickness is in mm.
+
+        thickness: of the layer, m, a number or (n,), which may be equal to R; None: the cylinder
+        has none.
+        Raises ParameterError also where its shape does not broadcast with that of R.
+        """
+        if thickness is None:
+            return
+        broadcast_shape(thickness=np.asarray(thickness), R=np.asarray(self.R))
+        if (np.asarray(thickness) > self.R).any():
+            found = f"of the layer on the cylinder is {format_value(thickness)} m"
+            raise described_error("thickness", found, f"at most R = {format_value(self.R)} m")
+
+    @property
+    def _sls_parameters(self) -> bool:
+        """Whether both bodies are of the paper's material, by its own parameters."""
+        return self.material is None and (self.base is None or self.pair.like)
+
+    @cached_property
+    def pair(self) -> Pair:
+        """Both bodies as :class:`.pair.Pair`, in SI units.
+
+        The cylinder's material is ``material``, or that of the law given in its place, or is made
+        of E to T_sigma; the half-space has ``base``, or that of the law, or the same material.
+        Raises ParameterError where they do not go together: a dimensionless law as ``material``, a
+        ``base`` beside a law that contains one, another ``plane`` than that of a law of two
+        different bodies, two rigid bodies or two layers, a layer in plane stress, a body that is no
+        :class:`Material`; and for arrays among E to T_sigma, of which no Material can be made.
+        """
+        law = self.material
+        if not isinstance(law, LawTable):
+            sls: dict[str, Any] = {name: getattr(self, name) for name in _SLS}
+            return Pair(Material.sls(**sls) if law is None else law, self.base, self.plane)
+        if law.pair is None:
+            raise described_error(
+                "material", "is a dimensionless law", "the law of a Material, in SI units"
+            )
+        if self.base is not None:
+            raise described_error(
+                "base", "is given", "left out: the law already contains both bodies"
+            )
+        if self.plane != law.pair.plane and not law.pair.like:
+            raise ParameterError(
+                "plane", repr(self.plane), f"{law.pair.plane!r}, for which the law was computed"
+            )
+        return Pair(law.pair.cylinder, law.pair.base, self.plane)
+
+    @property
+    def T_ref(self) -> float:
+        """Unit of dimensionless times, s, a float: T_epsilon (of an array the largest), or T_ref of
+        the materials.
+        """
+        if self.T_epsilon is None or not self._sls_parameters:
+            return self.pair.T_ref
+        return (
+            float(np.max(self.T_epsilon, initial=0.0))
+            if np.ndim(self.T_epsilon)
+            else self.T_epsilon
+        )
+
+    def replace(self, **changes: Any) -> Cylinder:
+        """Return a copy with some parameters changed; ``material`` takes the place of E to T_sigma,
+        and the reverse.
+
+        Parameters
+        ----------
+        changes : arguments of :class:`Cylinder` by name, in SI units.  With one of E, nu, T_epsilon
+            and T_sigma the material is dropped, so that all four must be given if the cylinder had
+            a material.
+
+        Returns
+        -------
+        Cylinder
+            A new :class:`Cylinder`.  A load that was given stays; a load that was the weight is the
+            weight of the new m and g; ``load=None`` makes it the weight again.
+
+        Raises
+        ------
+        ParameterError
+            As the class does.
+        TypeError
+            For an unknown name.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.presets.RUBBER_CYLINDER.replace(mu=0.4, load=500.0).load
+        500.0
+        """
+        values = {
+            name: getattr(self, name)
+            for name in (*_NUMBERS, "plane", "material", "base", "coupled")
+        }
+        values["load"] = values.pop("pressed")
+        if changes.get("material") is not None:
+            values |= dict.fromkeys(_SLS)
+        elif changes.keys() & set(_SLS):
+            values["material"] = None
+        return type(self)(**(values | changes))
+
+    @property
+    def numbers(self) -> dict[str, Any]:
+        """The parameters that were given as numbers or arrays, by name, in SI units; "load" only if
+        it was given.
+        """
+        values = {"load" if name == "pressed" else name: getattr(self, name) for name in _NUMBERS}
+        return {name: value for name, value in values.items() if value is not None}
+
+    def on_slope(self, slope: Any) -> Cylinder:
+        """Return the same cylinder under the load P cos(slope), the part of the load normal to a
+        slope.
+
+        Parameters
+        ----------
+        slope : angle in rad, a number or (n,), in (-pi/2, pi/2); None: level.
+
+        Returns
+        -------
+        Cylinder
+            A new one, whose ``load`` counts as given.  The force along the slope, P sin(slope), is
+            not in it.
+
+        Raises
+        ------
+        ParameterError
+            A slope out of this range, not numeric or with a unit that is no angle, or of a shape
+            that does not broadcast with the numbers of the cylinder.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> roller = vr.presets.RUBBER_CYLINDER
+        >>> bool(roller.on_slope(0.1).load < roller.load)
+        True
+        """
+        cosine = slope_tan_cos(slope)[1]
+        broadcast_shape(
+            slope=np.asarray(cosine),
+            **{name: np.asarray(value) for name, value in self.numbers.items()},
+        )
+        return self.replace(load=self.load * cosine)
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return (the title; a list of :class:`SummaryRow`) of the printed report.
+
+        The rows are, in this order, the numbers that were given, with their SI units, the load, the
+        plane, "material" if ``material`` was given, and "base" if ``base`` or a :class:`Material`
+        was: each body by its name, or by modulus and number of modes if it has none, with the
+        thickness of a layer.
+        """
+        values = self.numbers | {"load": self.load, "plane": self.plane}
+        rows = [
+            SummaryRow(name, format_value(value), UNITS.get(name, ""))
+            for name, value in values.items()
+        ]
+        if self.material is not None:
+            rows.append(SummaryRow("material", _describe_body(self.material)))
+        if self.base is not None or isinstance(self.material, Material):
+            same = "of the same material as the cylinder"
+            rows.append(
+                SummaryRow("base", same if self.base is None else _describe_body(self.base))
+            )
+        return "Cylinder, SI units, per m of length", rows
+
+    __repr__ = Result.__repr__
+    _repr_html_ = Result._repr_html_
+
+    @property
+    def load(self) -> Any:
+        """Force P that presses the cylinder on the base, N/m, a number or (n,): as given, or the
+        weight m g.
+        """
+        return self.m * self.g if self.pressed is None else self.pressed
+
+    @property
+    def E_prime(self) -> Any:
+        """Contact modulus E' at long times, Pa, a number or (n,): pi E/(1 - nu^2) in plane strain,
+        pi E in plane stress (Sect. 3.1 of the paper).
+
+        Of two bodies 2/(1/E'_1 + 1/E'_2), on a rigid base twice that of the cylinder alone.
+        """
+        return (
+            effective_modulus(self.E, self.nu, self.plane)
+            if self._sls_parameters
+            else self.pair.E_prime
+        )
+
+    @property
+    def l0(self) -> Any:
+        """Contact length at rest, sqrt(32 R P/E'), m, a number or (n,); of a layer that of
+        half-spaces in its place.
+        """
+        return contact_length(self.R, self.load, self.E_prime)
+
+    @cached_property
+    def scale(self) -> Scale:  # type: ignore[override]
+        """:class:`.Scale`: the SI value of 1 of each quantity of the scene, by name, as
+        ``scale["V"]`` in m/s; a float, or an array (n,) where a parameter in it is one.
+        """
+        return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
+
+    def scene(self) -> Scene:
+        """Return the dimensionless scene of this cylinder: alpha or material, kappa, mu, gamma and
+        j.
+
+        Returns
+        -------
+        Scene
+            Its kappa is R/l0 (Sect. 3.1 of the paper) and its gamma P T_ref^2/(m R) (Eq. (4)), with
+            the load P and l0 = sqrt(32 R P/E'); kappa, gamma, mu and j are numbers or (n,).  E, nu,
+            T_epsilon and T_sigma give alpha = T_epsilon/T_sigma; with an array T_epsilon the scene
+            has a material instead, a series for each cylinder.  Other cylinders have a material
+            too: a series, :class:`Bodies`, a :class:`Cover` or that of the law that was given.  The
+            object is the same at each call.
+
+        Raises
+        ------
+        ParameterError
+            The law of a layer that was computed for another load or radius, a layer too thin, a
+            scene out of range, or materials that have no common law, as one whose times no double
+            holds in units of ``T_ref``.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.presets.RUBBER_CYLINDER.scene().mu
+        0.3
+        """
+        return self._scene
+
+    @cached_property
+    def _scene(self) -> Scene:
+        """The dimensionless :class:`viscoroll.Scene`, computed once.
+
+        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  E, nu, T_epsilon and
+        T_sigma give the number alpha = T_epsilon/T_sigma, an array where T_sigma is one; an array
+        T_epsilon gives a series for each cylinder.  Materials give a series, :class:`Bodies` or a
+        :class:`Cover`; a law that was given stays.
+        Raises ParameterError as :meth:`rollers` states.
+        """
+        law: Any = self.material if isinstance(self.material, LawTable) else None
+        if law is not None and isinstance(law.material, Cover):
+            self._refuse_other_load(law)
+        if self._sls_parameters:
+            slow, fast = (np.asarray(T, np.float64) for T in (self.T_epsilon, self.T_sigma))
+            with np.errstate(all="ignore"):
+                law = (slow / fast)[()]
+            if slow.ndim:
+                slow, fast = np.broadcast_arrays(slow, fast)
+                law = Prony.creep(
+                    (1.0 - fast / slow)[:, np.newaxis],
+                    (slow / self.T_ref)[:, np.newaxis],
+                    alpha=law,
+                )
+        if law is None:
+            law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
+        scene = scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+        return scene.replace(coupled=self.coupled)
+
+    def _refuse_other_load(self, law: LawTable) -> None:
+        """Raise ParameterError where the law of a layer is that of another load or radius, and for
+        several cylinders.
+
+        law: :class:`LawTable` of a layer; it holds for one thickness divided by l0, and l0 follows
+            from load and R.  Thicknesses divided by l0 that agree to 1e-9, relative, count as the
+            same.
+        """
+        cover: Any = law.material
+        own = self.pair.cover(self.l0)
+        if own.shape or abs(own.thickness / cover.thickness - 1.0) > _SAME_THICKNESS:
+            found = f"is the law of a layer with thickness/l0 = {cover.thickness:.6g}"
+            allowed = f"the law for {format_value(own.thickness)}, which follows from load and R"
+            raise described_error("material", found, allowed)
+
+    @cached_property
+    def body_data(self) -> BodyData:
+        """Data of the bodies in SI units, from which validity and warnings are computed, a
+        :class:`.BodyData`.
+        """
+        pair, G = (
+            (None, self.E / (2.0 * (1.0 + self.nu))) if self._sls_parameters else (self.pair, None)
+        )
+        return BodyData(
+            pair=pair,
+            G=G,
+            R=self.R,
+            l0=self.l0,
+            T_ref=self.T_ref,
+            plane=self.plane,
+            scene=self._scene,
+            nu=self.nu,
+            load=self.load,
+        )
+
+    @cached_property
+    def about(self) -> dict[str, Any]:  # type: ignore[override]
+        """Attributes that datasets of results get: "measured_V" -> [lowest, highest speed at which
+        the materials were measured], floats in m/s; {} without measured data, and for an array of
+        l0.
+        """
+        rates = self.body_data.measured_rates
+        return (
+            {}
+            if rates is None or np.ndim(self.l0)
+            else {MEASURED: [rate * self.l0 for rate in rates]}
+        )
+
+
+def _describe_body(body: Any) -> str:
+    """Return a body in a few words for a printed report.
+
+    body: :class:`Material` or :class:`LawTable`.
+    Returns, of a Material, its name, "rigid", or modulus, Poisson's ratio and number of modes, with
+    the thickness of a layer; of a LawTable its ``repr``.
+    """
+    if not isinstance(body, Material):
+        return repr(body)
+    modes = f"{body.prony.E.size} mode{'s' * (body.prony.E.size != 1)}"
+    text = body.name or (
+        "rigid" if body.is_rigid else f"E = {body.E:g} Pa, nu = {body.nu:g}, {modes}"
+    )
+    return text if body.thickness is None else f"{text}, {body.thickness:g} m thick"
+
+
+def contact_length(R: Any, load: Any, E_prime: Any) -> Any:
+    """Return the contact length at rest of half-spaces, l0 = sqrt(32 R P/E') of Sect. 3.1 of the
+    paper.
+
+    R: radius, m, > 0.
+    load: force per length P that presses the cylinder on the base, N/m, > 0.
+    E_prime: contact modulus E' (:attr:`Cylinder.E_prime`; of one material in plane strain pi E/(1 -
+    nu^2)), Pa, > 0.
+    Returns l0, m, in the broadcast shape of the arguments, which are numbers of numpy or arrays and
+    are not checked.
+    """
+    return np.sqrt(32.0 * R * load / E_prime)
+
+
+def scene_of(
+    R: Any, m: Any, load: Any, E_prime: Any, T_ref: Any, law: Any, mu: Any, j: Any
+) -> Scene:
+    """Return the scene of one cylinder or of many; the arguments are numbers or arrays (n,),
+    unchecked.
+
+    :class:`.rollers.Rollers` calls it with an array for ``T_ref``, a unit of time for each
+    cylinder.
+
+    R: radius, m.
+    m: mass per length, kg/m.
+    load: force per length P that presses the cylinder on the base, N/m.
+    E_prime: contact modulus E' (:attr:`Cylinder.E_prime`; of one material in plane strain pi E/(1 -
+    nu^2)), Pa.
+    T_ref: unit of time, s, a number or (n,).
+    law: alpha, a float or an array (n,), no int, or a material of a scene (series, bodies, cover or
+        :class:`LawTable`), with times divided by ``T_ref``.
+    mu, j: coefficient of friction, and moment of inertia divided by m R^2, dimensionless.
+    Returns the dimensionless :class:`viscoroll.Scene`, whose kappa is R/l0 with l0 = sqrt(32 R
+    P/E'), and whose gamma is P T_ref^2/(m R).
+    Raises ParameterError, by the names of the scene's parameters, where these are out of range or
+    overflow, or their shapes do not broadcast; ValueError of numpy where those of R, load and
+    E_prime, or of R, m, load and T_ref, do not.
+    """
+    R, m, load, T = (np.asarray(value, np.float64)[()] for value in (R, m, load, T_ref))
+    # values beyond the range of doubles become 0 or infinite, and are refused with the formula
+    with np.errstate(all="ignore"):
+        kappa = R / contact_length(R, load, E_prime)
+        gamma = load * T**2 / (m * R)
+    check_array("kappa = R/sqrt(32 R P/E')", kappa, above=0.0)
+    check_array("gamma = P T_ref^2/(m R)", gamma, above=0.0)
+    material = "alpha" if isinstance(law, float | np.ndarray) else "material"
+    return Scene(kappa=kappa, mu=mu, gamma=gamma, j=j, **{material: law})

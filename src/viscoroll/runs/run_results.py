@@ -1,0 +1,520 @@
+"""Results of a finished run: check, open, export.
+
+Check of a results store against its records: :func:`run_results`.
+
+A finished store as a result that prints itself and gives datasets, tables and figures:
+:func:`runs.open_run`.
+
+Export of a store to one netCDF-4 file: :func:`runs.export_netcdf`.
+"""
+
+from __future__ import annotations
+
+import math
+import os
+from dataclasses import dataclass
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ..core.errors import FileError, MotionStatus, import_extra
+from ..core.files import fix_texts, replace_file
+from ..core.results import Result, SummaryRow, column_name, unit_of
+from .run_records import RECORDS, Record, read_record, refuse_unreadable
+from .run_store import MOTIONS, problems
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+
+# --- Check of a results store against its records ---
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """Result of :func:`run_results`; ``str`` states it in words.
+
+    Attributes
+    ----------
+    blocks : number of blocks of the run.
+    missing : numbers of the blocks that are missing or damaged, ascending.
+    damaged : paths, below the store, of files that are damaged, and of files of the start that are
+    missing.
+    finished : whether the summaries are complete and undamaged.
+    """
+
+    blocks: int
+    missing: tuple[int, ...]
+    damaged: tuple[str, ...]
+    finished: bool
+
+    @property
+    def ok(self) -> bool:
+        """Whether the store is complete and undamaged."""
+        return self.finished and not self.missing and not self.damaged
+
+    def __str__(self) -> str:
+        """Return the verdict in words.
+
+        It is one line if all is well.  Else there are a line for each damaged file, one with the
+        number of missing blocks, one if the summaries are missing or incomplete, and a last one
+        that names the remedy.
+        """
+        if self.ok:
+            blocks = f"{self.blocks} block" + "s" * (self.blocks != 1)
+            return f"complete: {blocks} and the summaries match their SHA-256"
+        lines = [f"damaged or missing: {name}" for name in self.damaged]
+        lines += [f"{len(self.missing)} of {self.blocks} blocks are missing or incomplete"] * bool(
+            self.missing
+        )
+        lines += ["the summaries are missing or incomplete"] * (not self.finished)
+        return "\n".join([*lines, "the same `viscoroll ensemble` command repairs it"])
+
+
+def verify(path: str | PathLike[str]) -> Verdict:
+    """Read every file of a store and compare it with its SHA-256.
+
+    Parameters
+    ----------
+    path : folder of the results.
+
+    Returns
+    -------
+    Verdict
+        Damaged files, missing blocks, and whether the summaries are complete; its ``ok`` is True if
+        nothing is missing or damaged, ``str`` gives it in words.  A run that is not finished is no
+        error.
+
+    Raises
+    ------
+    FileError
+        If the folder is no results store or may not be read, or the record of its start is damaged.
+
+    Notes
+    -----
+    One flipped bit in any file is found (``tests/runs/test_run_store.py``).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(
+    ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
+    ... )
+    >>> print(vr.runs.verify("results.zarr"))
+    complete: 1 block and the summaries match their SHA-256
+    """
+    root = Path(path)
+    start = start_of(path)
+    motions, size, blocks = (
+        int(start.about[name]) for name in ("motions", "motions_a_block", "blocks")
+    )
+    parts: dict[str | int, int] = {"start": motions}
+    parts |= {block: min(size, motions - block * size) for block in range(blocks)} | {
+        "end": motions
+    }
+    faults = {part: problems(root, part, start.run, count) for part, count in parts.items()}
+    missing = tuple(block for block in range(blocks) if faults[block])
+    # a block or an end without files was not evaluated yet: it is missing, not damaged
+    damaged = (
+        name
+        for part, names in faults.items()
+        for name in names
+        if part == "start" or (root / name).exists()
+    )
+    return Verdict(blocks, missing, tuple(damaged), not faults["end"])
+
+
+def start_of(path: str | PathLike[str]) -> Record:
+    """Return the record "start" of a store, a :class:`Record` that states identity, motions and
+    attributes of the run.
+
+    path: folder of the store.
+    Raises FileError if the folder does not exist, may not be read, or has no such record or a
+    damaged one.
+    """
+    if not Path(path).is_dir():
+        raise FileError(path, "is not a results store: the folder does not exist")
+    refuse_unreadable(Path(path))
+    start = read_record(Path(path) / RECORDS / "start")
+    if start is None:
+        raise FileError(
+            path,
+            "is not a results store, or its record `start` is damaged: run the command that wrote "
+            "it again",
+        )
+    return start
+
+
+# --- A finished store as a result that prints itself and gives datasets ---
+
+#: Moments of a quantity in the summaries, as the ends of their names.
+_MOMENTS = ("mean", "std", "min", "max")
+
+
+class RunResults(Result):
+    """Results of a run in a folder, as :func:`runs.open_run` returns them.
+
+    Attributes
+    ----------
+    path : path of the folder.
+    summaries : dataset over t, quantile and the bins of each quantity, as
+        ``xarray.open_zarr(path)`` gives it (:func:`.summaries.summary_dataset`).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(
+    ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
+    ... )
+    >>> results = vr.runs.open_run("results.zarr")
+    >>> len(results), results.to_pandas().shape[0]
+    (16, 7)
+    """
+
+    def __init__(self, path: Path, summaries: xr.Dataset) -> None:
+        self.path = path
+        self.summaries = summaries
+
+    def __len__(self) -> int:
+        """Number of motions."""
+        return int(self.summaries.attrs["motions"])
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of the summarised quantities."""
+        return tuple(
+            str(name).removesuffix("_mean")
+            for name in self.summaries
+            if str(name).endswith("_mean")
+        )
+
+    @property
+    def run_file(self) -> str:
+        """Text of the run file."""
+        return str(self.summaries.attrs["run_file"])
+
+    @property
+    def _motions_folder(self) -> Path:
+        """Folder of the motions, which exists if they are kept."""
+        return self.path / MOTIONS
+
+    def motions(self) -> xr.Dataset:
+        """Open the dataset of every motion with its inputs, over (motion, t); values are read when
+        they are needed.
+
+        Returns
+        -------
+        xarray.Dataset
+            Over (motion, t) the quantities that ``fields`` of the section [run] names, by default V
+            (speed of the axis), omega (angular velocity) and x (distance travelled); an output that
+            a motion did not reach is NaN.  Over (motion,) each uncertain input by its name,
+            onset_time of partial slip and rest_time (NaN of a motion without), status (code of
+            :class:`MotionStatus`: 0 DONE, 1 RESTED, 2 to 6 stopped before the last output) and flow
+            (1 if the motion was looked up in a flow map, tables of the motions of one scene, 0 if
+            it was integrated).  t is a coordinate, motion has none: motion k is the k-th of the
+            run, from 0.  All are in the units of the run file.
+
+        Raises
+        ------
+        FileError
+            If the run kept summaries alone.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> _ = vr.runs.run_ensemble(
+        ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
+        ... )
+        >>> try:
+        ...     vr.runs.open_run("results.zarr").motions()
+        ... except vr.FileError as error:
+        ...     print(error.problem)
+        contains summaries but no motions: run it with keep = "all"
+        """
+        import xarray as xr
+
+        if not self._motions_folder.is_dir():
+            raise FileError(
+                self.path, 'contains summaries but no motions: run it with keep = "all"'
+            )
+        return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the summaries: moments, quantiles, histograms, and how the motions ended.
+
+        Returns
+        -------
+        xarray.Dataset
+            The dataset ``summaries`` itself, not a copy, in the units of the run file.  For each
+            quantity NAME it has NAME_counted, NAME_mean, NAME_std, NAME_min and NAME_max over t,
+            NAME_quantiles over (quantile, t), NAME_histogram, numbers of motions, over (NAME_bin,
+            t), and the edges NAME_bin_low and NAME_bin_high of the bins; of a quantity that is one
+            number for each motion all are without the axis t.  ``ended`` over status is the number
+            of motions with each :class:`MotionStatus`.  Values that are not finite do not count; at
+            a time without values the moments and quantiles are NaN, and counts 0.  Attributes are
+            failed_motions, motions_from_the_flow_map, and how the run was made
+            (:func:`.run_records.about`): motions, motions_a_block, blocks, seed, design, method,
+            quantities, versions, run_file, title, source and Conventions.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> _ = vr.runs.run_ensemble(
+        ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
+        ... )
+        >>> vr.runs.open_run("results.zarr").to_xarray()["V_mean"].dims
+        ('t',)
+        """
+        return self.summaries
+
+    def to_pandas(self) -> pd.DataFrame:
+        """Return a row for each quantity and time: mean, std, min, max, and a column for each
+        quantile.
+
+        All are over the motions of the run; values that are not finite do not count.
+
+        Returns
+        -------
+        pandas.DataFrame
+            A table of float64, the quantities in the order of ``names`` and the times ascending.
+            The levels of its index are "quantity", the name with its unit as in "V [m s-1]", and
+            the time, named "t" or "t [s]" and NaN for a quantity that is one number per motion.
+            Columns are "mean", "std", "min", "max", then the quantiles in the order of the run
+            file, each labelled by its level, a float in [0, 1].  std is the root of the mean
+            squared difference from the mean (divided by the number of values, not by one less).
+            Quantiles are known to the width of a bin, at most 2^-8 of the value.  At a time at
+            which no motion has a value all entries are NaN.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> _ = vr.runs.run_ensemble(
+        ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
+        ... )
+        >>> list(vr.runs.open_run("results.zarr").to_pandas().index.names)
+        ['quantity', 't']
+        """
+        import pandas as pd
+
+        data = self.summaries
+        tables = []
+        time = column_name("t", unit_of(data["t"].attrs))
+        for name in self.names:
+            columns: dict[Any, Any] = {
+                moment: np.atleast_1d(data[f"{name}_{moment}"].values) for moment in _MOMENTS
+            }
+            quantiles = zip(data["quantile"].values, data[f"{name}_quantiles"].values, strict=True)
+            columns |= {float(level): np.atleast_1d(values) for level, values in quantiles}
+            mean = data[f"{name}_mean"]
+            t = data["t"].values if mean.ndim else [np.nan]
+            rows = [[column_name(name, unit_of(mean.attrs))], t]
+            tables.append(
+                pd.DataFrame(columns, pd.MultiIndex.from_product(rows, names=["quantity", time]))
+            )
+        return pd.concat(tables)
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return the title, with the number of motions and units of a dimensionless run, and the
+        rows that print it.
+
+        Returns (title; list of :class:`SummaryRow`, in this order: "path", the folder; "drawn by",
+        design and seed of the draws; "t", the number of output times and the last one, with its
+        unit; a row for each summarised quantity by its name, with mean, standard deviation and
+        unit, of a quantity over time "at the end", that is at the last output time, nan where no
+        motion has a value; a row "ended" for each status that some motions have, with their number
+        and the status in words; "kept", "every motion" or "summaries").
+        """
+        data = self.summaries
+        t = data["t"]
+        about = data.attrs
+        rows = [
+            SummaryRow("path", str(self.path)),
+            SummaryRow("drawn by", f"{about['design']}, seed {about['seed']}"),
+            SummaryRow(
+                "t", f"{t.size} time{'s' * (t.size != 1)} to {float(t[-1]):.6g}", unit_of(t.attrs)
+            ),
+        ]
+        for name in self.names:
+            mean, std = (data[f"{name}_{moment}"] for moment in ("mean", "std"))
+            at = "at the end: " if mean.ndim else ""
+            last = f"{at}mean {mean.values.flat[-1]:.6g}, std {std.values.flat[-1]:.3g}"
+            rows.append(SummaryRow(name, last, unit_of(mean.attrs)))
+        ended = zip(data["status"].values, data["ended"].values, strict=True)
+        rows += [
+            SummaryRow("ended", f"{count}: {MotionStatus(code).message}")
+            for code, count in ended
+            if count
+        ]
+        kept = "every motion" if self._motions_folder.is_dir() else "summaries"
+        units = (
+            ""
+            if unit_of(t.attrs)
+            else ", dimensionless: speeds in R/T_ref, lengths in R, times in T_ref"
+        )
+        return f"Results of a run of {len(self)} motions{units}", [*rows, SummaryRow("kept", kept)]
+
+
+def open_run(path: str | PathLike[str]) -> RunResults:
+    """Open the results of a finished run.
+
+    Parameters
+    ----------
+    path : folder of the results, of :func:`runs.run_ensemble` or ``viscoroll ensemble``.
+
+    Returns
+    -------
+    RunResults
+        The results.  They print themselves, and have ``to_xarray``, ``to_pandas``, ``plot`` and
+        ``motions``; arrays are read from the folder when they are needed.
+
+    Raises
+    ------
+    FileError
+        If the folder is no results store, is not finished, or its summaries are damaged; the files
+        of the motions are not examined (:func:`run_results` does that).
+    MissingDependencyError
+        If zarr is not installed.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(
+    ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
+    ... )
+    >>> vr.runs.open_run("results.zarr").names
+    ('V', 'omega', 'onset_time', 'x')
+    """
+    import xarray as xr
+
+    import_extra("zarr", "runs")
+    root = Path(path)
+    start = start_of(root)
+    if faults := problems(root, "end", start.run, start.motions):
+        raise FileError(
+            path,
+            f"{faults[0]} is missing or damaged: the same `viscoroll ensemble` command repairs it",
+        )
+    return RunResults(root, xr.open_zarr(root, chunks=None))
+
+
+# --- Export of a store to one netCDF-4 file ---
+
+#: Largest ratio of deflated to plain size, of bytes that cannot be compressed.
+_DEFLATE_RATIO = 1.002
+#: Bytes of a chunk in the index of an array, at most.
+_INDEX_ENTRY = 512
+#: Bytes of the head of an array, and of the file, at most.
+_HEAD = 1 << 16
+#: Bytes written at a time where the system cannot reserve disk space.
+_PIECE = 1 << 24
+
+
+def export_netcdf(store: str | PathLike[str], path: str | PathLike[str]) -> None:
+    """Write a finished store as netCDF-4: summaries at the root, all motions in the group
+    "motions".
+
+    Memory does not grow with the number of motions.  While the file is written it takes the disk
+    space of its uncompressed content, which is reserved first.
+
+    Parameters
+    ----------
+    store : folder of the results.
+    path : file to write; a file of that name is replaced when the new one is complete.
+
+    Raises
+    ------
+    FileError
+        There is no finished store, or a file in it is damaged; the netCDF file cannot be written,
+        or the disk is full.  A file of that name then stays as it was.
+    MissingDependencyError
+        If zarr is not installed.
+
+    Notes
+    -----
+    Values are those of the store, bit for bit (``tests/runs/test_run_store.py``).
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> _ = vr.runs.run_ensemble(
+    ...     vr.runs.read_run(vr.datasets.path("run.toml")), "results.zarr", threads=1
+    ... )
+    >>> vr.runs.export_netcdf("results.zarr", "results.nc")
+    """
+    summaries = open_run(store).summaries
+    verdict = verify(store)
+    if not verdict.ok:
+        raise FileError(store, "; ".join(str(verdict).splitlines()[-2:]))
+    with replace_file(path) as temporary:
+        temporary.write_bytes(bytes(fix_texts(summaries).to_netcdf(engine="h5netcdf")))
+        if (Path(store) / MOTIONS).is_dir():
+            _append_motions(Path(store), temporary)
+
+
+def _append_motions(store: Path, path: Path) -> None:
+    """Copy the motions, chunk by chunk, into the group "motions" of a netCDF-4 file.
+
+    The file is first lengthened by the largest size that the group can take.  Numbers are
+    compressed (gzip), with checksums (Fletcher-32), in the chunks of the store.
+
+    store: path of the folder of the results, which has every motion.
+    path: path of the netCDF-4 file, which is there already.
+    Raises OSError if the disk is full (the file is then incomplete); MissingDependencyError without
+    zarr, which the caller has met before.
+    """
+    import h5netcdf
+
+    zarr = import_extra("zarr", "runs")
+
+    source = zarr.open_group(store, mode="r", path=MOTIONS, use_consolidated=False)
+    arrays = dict(source.arrays())
+    _reserve(path, sum(map(_largest_size, arrays.values())) + _HEAD)
+    with h5netcdf.File(path, "a") as file:
+        target = file.create_group(MOTIONS)
+        target.attrs.update(dict(source.attrs))
+        target.dimensions = {"motion": arrays["status"].shape[0], "t": arrays["t"].shape[0]}
+        for name, array in arrays.items():
+            attrs: dict[str, Any] = dict(array.attrs)
+            dims = attrs.pop("_ARRAY_DIMENSIONS")
+            variable = target.create_variable(
+                name,
+                dims,
+                array.dtype,
+                chunks=array.chunks,
+                compression="gzip",
+                compression_opts=1,
+                shuffle=True,
+                fletcher32=True,
+            )
+            variable.attrs.update(attrs)
+            for start in range(0, array.shape[0], array.chunks[0]):
+                rows = slice(start, start + array.chunks[0])
+                variable[rows] = array[rows]
+
+
+def _largest_size(array: Any) -> int:
+    """Return the bytes that an array of zarr takes in the file at most, whatever its values."""
+    chunk = array.dtype.itemsize * math.prod(array.chunks)
+    return array.nchunks * int(_DEFLATE_RATIO * chunk + _INDEX_ENTRY) + _HEAD
+
+
+def _reserve(path: Path, size: int) -> None:
+    """Lengthen a file, so that HDF5, which may crash on a full disk, does not meet one.
+
+    When HDF5 closes the file it cuts off the bytes that it did not use.  Where the system cannot
+    reserve disk space, zeros are written.
+
+    path: path of the file, which must exist.
+    size: number of bytes to add at its end, > 0.
+    Raises OSError if the disk is full.
+    """
+    with path.open("r+b") as file:
+        start = file.seek(0, os.SEEK_END)
+        if hasattr(os, "posix_fallocate"):
+            os.posix_fallocate(file.fileno(), start, size)
+            return
+        for written in range(0, size, _PIECE):
+            file.write(bytes(min(_PIECE, size - written)))

@@ -1,0 +1,323 @@
+"""Roller and drive of the motions of a block, from sections of a run file whose numbers may be
+arrays.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from pathlib import Path
+from typing import Any, ClassVar
+
+import numpy as np
+
+from ..core.checks import Floats, check_array
+from ..core.drive_arguments import Schedule
+from ..core.errors import ParameterError, described_error
+from ..core.scale import Scale
+from ..heat.shift_curve import shift_curve
+from ..heat.temperature import temperature
+from ..materials.material import Material
+from ..materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
+from ..materials.measured_data import Measured
+from ..materials.pair import Solid
+from ..roller_toml import make_roller
+from ..rollers import Cylinder, Scene, scene_of
+
+
+class Rollers(Cylinder):
+    """Cylinders that have a material each, in SI units; validity and warnings do not examine them.
+
+    Its ``material`` and ``base`` may be a :class:`Solid`, whose numbers are arrays (n,).  If
+    T_epsilon is an array, each motion has its own unit of time.  Times are counted in s then: gamma
+    only scales time in the equations of motion of V and omega, Eq. (22) of the paper, and
+    gamma/T_epsilon in place of gamma makes its unit the second for all motions.
+    """
+
+    body_data = None  # type: ignore[assignment]
+    about: ClassVar[dict[str, Any]] = {}
+
+    @property
+    def seconds(self) -> bool:
+        """Whether times are counted in s."""
+        return np.ndim(self.T_epsilon) > 0
+
+    @property
+    def T_ref(self) -> Any:
+        """Unit of time of the law, s: with ``seconds`` T_epsilon, (n,), else the float of a
+        :class:`Cylinder`.
+        """
+        return self.T_epsilon if self.seconds else super().T_ref
+
+    @cached_property
+    def _scene(self) -> Scene:
+        """The :class:`.Scene` of the motions, computed once.
+
+        Without ``seconds`` it is that of a :class:`Cylinder`.  With ``seconds`` alpha is
+        T_epsilon/T_sigma, (n,), and gamma is P T_epsilon/(m R), 1/s, (n,), so that its motions
+        count time in s; kappa, mu and j are dimensionless.
+        Raises ParameterError where one of them is out of range, or the bodies have no common law.
+        """
+        if not self.seconds:
+            return super()._scene
+        T = self.T_ref
+        scene = scene_of(
+            self.R, self.m, self.load, self.E_prime, T, T / self.T_sigma, self.mu, self.j
+        )
+        return scene.replace(gamma=scene.gamma / T)
+
+    @cached_property
+    def scale(self) -> Scale:  # type: ignore[override]
+        """SI value of 1 of each dimensionless quantity, by its name, as a :class:`.scale.Scale`.
+
+        With ``seconds`` those of t, onset_time and rest_time are the float 1.0, in s; that of x is
+        R/T_epsilon times 1 s, in m, and that of angle 1/T_epsilon times 1 s, in rad, both (n,), as
+        paths are integrals of speeds over s.  All others, and all without ``seconds``, are those of
+        a :class:`Cylinder`: a float where everything in the unit is a number, as 1.0 of a ratio,
+        else an array (n,).
+        """
+        scale = super().scale
+        if self.seconds:
+            scale |= dict.fromkeys(("t", "onset_time", "rest_time"), 1.0) | {
+                "x": scale["V"],
+                "angle": scale["omega"],
+            }
+        return scale
+
+
+def roller_of(path: Path, content: Mapping[str, Any]) -> Scene | Cylinder:
+    """Return the roller of the motions of a block.
+
+    path: path of the run file, for errors and the files that it names.
+    content: name of a section -> keys and values, with numbers or arrays (n,) in place of the
+        uncertain numbers, and the top-level key "preset" -> name, if the file has it.  With
+        "cylinder" that section and "material" and "base" are read (the last two may be a
+        :class:`Material` already); without it "scene" and "preset".
+    Returns a :class:`Scene` without a section [cylinder]; :class:`Rollers` if T_epsilon or the
+    materials differ between motions; else a :class:`Cylinder`.  The other numbers of all three may
+    be arrays (n,).
+    Raises ParameterError for a value out of range or a missing one, shapes that do not broadcast,
+    bodies that do not go together, or an unknown preset; FileError for a material or a series that
+    cannot be read or is wrong; ValueError for arrays of different n in one list of a series,
+    TypeError for an unknown or a missing key of [cylinder] or [scene].
+    """
+    if "cylinder" not in content:
+        return make_roller(path, content, {})
+    numbers = content["cylinder"]
+    bodies = {name: _body(path, name, content[name]) for name in SECTIONS if name in content}
+    if "heat" in content:
+        bodies = _warm_bodies(content, numbers, bodies)
+    differ = np.ndim(numbers.get("T_epsilon", 0.0)) or any(
+        isinstance(body, Solid) for body in bodies.values()
+    )
+    return (Rollers if differ else Cylinder)(**numbers, **bodies)
+
+
+def _warm_bodies(
+    content: Mapping[str, Any], numbers: Mapping[str, Any], bodies: dict[str, Any]
+) -> dict[str, Any]:
+    """Return the bodies of all motions at the temperatures at which their cylinders roll.
+
+    content: sections as of :func:`roller_of`, of which [heat] and [start] are read.
+    numbers: [cylinder], numbers or arrays (n,); bodies: "material" and "base", those that the file
+        has.
+    Returns the bodies, of which those that relax are at the coldest equilibrium: a
+    :class:`Material` of one temperature, a :class:`Solid` of several.
+    Raises ParameterError for a material that is uncertain itself, and as
+    :func:`.temperature.temperature`.
+    """
+    heat = content["heat"]
+    speed = heat.get("speed", content["start"].get("V0"))
+    if speed is None:
+        raise ParameterError("speed", None, "given in [heat] where [start] has no V0")
+    for name, body in bodies.items():
+        if isinstance(body, Solid):
+            allowed = "certain beside [heat]: its temperature follows from the law of one material"
+            raise described_error(name, "has uncertain numbers", allowed)
+    given = {name: heat[name] for name in ("ambient", "conductance")}
+    found = temperature(Cylinder(**numbers, **bodies), speed, **given).temperature
+    if not found.size or np.isnan(found[..., 0]).any():
+        raise described_error(
+            "ambient", "leads to no temperature within the range of the shift", "another"
+        )
+    theta = found[..., 0]
+    warm = dict(bodies)
+    for name, body in bodies.items():
+        if body.prony.alpha > 1.0 and not theta.ndim:
+            warm[name] = body.at(float(theta))
+        elif body.prony.alpha > 1.0:
+            a_T, root_b = shift_curve(body).factors(theta)
+            warm[name] = Solid(
+                E=body.E * root_b**2,
+                nu=body.nu,
+                prony=body.prony.slower(a_T),
+                T_ref=body.T_ref,
+                thickness=body.thickness,
+            )
+    return warm
+
+
+def drive_of(content: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the loads and prescribed speeds of the section [drive] as keywords of
+    :func:`viscoroll.ensemble`.
+
+    content: name of a section -> keys and values, in the units of the file, of which "drive" is
+        read: numbers, or arrays (n,) for n motions; a table within it has the keys times and
+        values, lists of k corners, each a number or (n,).
+    Returns name of the load or speed ("force", "torque", "brake", "slope", "drag", "V" or
+    "omega") -> number, array (n,) or, of a table, :class:`Schedule`, in the units of the file; {}
+    without [drive].  Numbers and arrays are returned themselves and are not checked, nor are the
+    names.
+    Raises ParameterError, which names the load, for a wrong schedule; ValueError as
+    :func:`_schedule` (an empty list, or arrays of different n in one list); TypeError for a table
+    with a key missing or unknown.
+    """
+    drive = content.get("drive", {})
+    return {
+        name: _schedule(name, **load) if isinstance(load, dict) else load
+        for name, load in drive.items()
+    }
+
+
+def _schedule(name: str, times: list[Any], values: list[Any]) -> Schedule:
+    """Make a load, or a prescribed speed, that is piecewise linear in time, from lists by corner.
+
+    name: name of the load or speed, for errors.
+    times, values: times and values of its k >= 1 corners, as many of each, a number or (n,) each,
+        in the units of the file; times >= 0, not descending, none more than twice.
+    Returns the :class:`Schedule`; its times, and likewise its values, are (k,) if all are numbers,
+    else (n, k).
+    Raises ParameterError, which names the load, for what a Schedule refuses; ValueError for an
+    empty list, and for arrays of different n in one list.
+    """
+    try:
+        return Schedule(
+            *(np.stack(np.broadcast_arrays(*corners), axis=-1) for corners in (times, values))
+        )
+    except ParameterError as error:
+        raise ParameterError(name, error.value, error.allowed, f"{name}: {error}") from error
+
+
+def _first_material(path: Path, name: str, section: Any) -> Material:
+    """Return the :class:`Material` of the first motion, which has what does not differ between
+    motions, as T_ref.
+
+    path: path of the run file, for errors, and to which files that the section names are relative.
+    name: "material" or "base".
+    section: dict, the content of that section, SI numbers or arrays (n,), of which the first
+        elements are taken, temperatures in degrees Celsius; or the Material if all of it is
+        certain.
+    Returns that Material itself, else a new one.
+    Raises FileError for a section with a wrong key, a value out of range or a temperature without a
+    shift, and for a file that it names and that cannot be read.
+    """
+    return (
+        section
+        if isinstance(section, Material)
+        else parse_materials(path, {name: _first(section)})[name]
+    )
+
+
+def _body(path: Path, name: str, section: Any) -> Any:
+    """Return the material of all motions: a :class:`Material`, or a :class:`Solid` if it differs
+    between motions.
+
+    A Solid has arrays, so that one call serves all motions.
+
+    path: path of the run file, for errors, and to which files that the section names are relative.
+    name: "material" or "base".
+    section: dict, the content of that section, SI numbers or arrays (n,), temperatures in degrees
+        Celsius; or a Material, which is returned itself.
+    Returns the Material of the first motion if no key of E, nu, thickness, series and temperature
+    is an array; else a Solid, in which those of E, nu, thickness and series that differ have the
+    shape (n,), the others (), and thickness is None of a half-space.  Its T_ref, in s, is that of
+    the first motion; a temperature that differs multiplies the relaxation times, by one factor for
+    each motion.  Whether E, nu, thickness and series have one n is not compared.
+    Raises ParameterError for E or thickness <= 0, E infinite, nu out of (-1, 0.5] or a temperature
+    that the shift does not allow, in an array, and where temperatures and series have different n;
+    FileError as :func:`_first_material`, and for a series out of range; ValueError for arrays of
+    different n in one list of the series.
+    """
+    typical = _first_material(path, name, section)
+    if typical is section:
+        return section
+    series = parse_series(path, name, section) or typical.prony
+    if (factors := _time_factors(path, name, section)) is not None:
+        series = series.slower(factors)
+    E, nu, thickness = (section.get(key, getattr(typical, key)) for key in ("E", "nu", "thickness"))
+    if not (series.shape or np.ndim(E) or np.ndim(nu) or np.ndim(thickness)):
+        return typical
+    if thickness is not None:
+        thickness = check_array("thickness", thickness, above=0.0)
+    E = check_array("E", E, above=0.0) if np.ndim(E) else typical.E
+    return Solid(
+        E=E,
+        nu=check_array("nu", nu, above=-1.0, high=0.5),
+        prony=series,
+        T_ref=typical.T_ref,
+        thickness=thickness,
+    )
+
+
+def measured_bands(path: Path, content: Mapping[str, Any]) -> dict[Measured, tuple[Any, Any]]:
+    """Return the transit frequencies for which the data of each body suffice, at the temperature of
+    each motion.
+
+    path : path of the run file, for errors, and to which files that a section names are relative.
+    content : name of a section -> keys and values, with numbers or arrays (n,) in place of the
+        inputs, of which the sections "material" and "base" are read; either may be a
+        :class:`Material`.
+    Returns record of a measurement, a :class:`Measured` -> its ``transit_band``, lowest and highest
+    transit frequency, 1/s, arrays (n,) where the temperature differs between motions, else floats.
+    Bodies without a record, as a given series is, are left out; of two bodies with equal records
+    the band of "base" is returned; {} if there is no record.
+    Raises FileError as :func:`_first_material`, ParameterError for a temperature that the shift
+    does not allow.
+    """
+    bands: dict[Measured, Any] = {}
+    if "heat" in content:  # the temperatures are known when the rollers are made, which warns
+        return bands
+    for name in SECTIONS:
+        section = content.get(name)
+        if section is None or (record := _first_material(path, name, section).measured) is None:
+            continue
+        factors = None if isinstance(section, Material) else _time_factors(path, name, section)
+        bands[record] = tuple(
+            end if factors is None else end / factors for end in record.transit_band
+        )
+    return bands
+
+
+def _time_factors(path: Path, name: str, section: Mapping[str, Any]) -> Floats | None:
+    """Return the factors of the relaxation times at the temperature of each motion, relative to
+    those of the first.
+
+    path: path of the run file, for errors.
+    name: "material" or "base".
+    section: content of that section, with a key wlf or arrhenius, whose "temperature", in degrees
+        Celsius, may be an array (n,); of other arrays, also in the shift, the first element is
+        taken.
+    Returns the factors, dimensionless, > 0, (n,), of which the first is 1: below 1 where a motion
+    is hotter than the first, so that its material relaxes faster; None if the temperature is a
+    number or not given.
+    Raises KeyError for an array of temperatures without a key wlf or arrhenius, ParameterError for
+    a temperature that the shift does not allow, FileError for a section that is wrong.
+    """
+    if not np.ndim(section.get("temperature", 0.0)):
+        return None
+    shift = parse_shifts(path, {name: _first(section)})[name]
+    return np.array([shift(temperature) for temperature in section["temperature"]])
+
+
+def _first(part: Any) -> Any:
+    """Return a part of a section with the first element of each of its arrays, a float, in place of
+    the array.
+
+    part: a table, list, number or text of the section; arrays are (n,).
+    Returns a new dict or list of a table or list, a float of an array, any other part itself.
+    """
+    if isinstance(part, dict):
+        return {key: _first(member) for key, member in part.items()}
+    if isinstance(part, list):
+        return [_first(member) for member in part]
+    return float(part[0]) if isinstance(part, np.ndarray) else part

@@ -1,0 +1,370 @@
+"""Results store: a zarr hierarchy that any number of processes fill block by block.
+
+    results.zarr/
+      V_mean, V_quantiles, V_histogram, ...             the summaries: xarray.open_zarr(path)
+      motions/V, omega, x, onset_time, status, ...      every motion (keep = "all"): one block is one chunk
+      records/start, 000000000, 000000001, ..., end     the complete parts (see :mod:`run_records`)
+
+Each file is written whole or not at all, its record after it, and no file depends on when, where or
+in which order the blocks were evaluated: two stores of one run consist of the same bytes.
+"""  # noqa: E501
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.errors import FileError
+from ..core.files import as_file_error, write_bytes
+from ..motion.ensemble import Ensemble
+from ..motion.summaries import Summary, merge_summaries, summarise, summary_dataset
+from . import run_records
+from .run_blocks import attributes, roll_block, roll_inputs
+from .run_records import (
+    ADVICE,
+    RECORDS,
+    Record,
+    about,
+    damaged,
+    encoded,
+    identity,
+    make_folder,
+    read_record,
+    refuse_another,
+    refuse_unreadable,
+    write_files,
+)
+from .runfile import Run
+
+#: Group of the motions in a store.
+MOTIONS = "motions"
+#: File in the folder of records that one process locks.
+_LOCK = ".lock"
+#: Columns of one number for each motion that are kept beside the fields.
+_END_COLUMNS = ("onset_time", "rest_time", "status", "flow")
+
+
+@dataclass(frozen=True)
+class Store:
+    """Results of a run in a folder; a part is the start (metadata), a block of motions, or the end
+    (summaries).
+
+    Attributes
+    ----------
+    root : path of the folder, which need not exist yet.
+    run : the :class:`runs.Run` whose results it holds.
+    """
+
+    root: Path
+    run: Run
+
+    def start(self) -> None:
+        """Create the folder and write the metadata of all motions; a store of this run stays as it
+        is.
+
+        The store of the same run with fewer motions is extended: its metadata are written anew, its
+        summaries are removed.  Temporary files of killed processes are removed.  Metadata are those
+        of :func:`metadata`, none if motions are not kept; the record "start" is written in any
+        case.
+
+        Raises
+        ------
+        FileError
+            A folder that holds anything else, or cannot be written; as :func:`metadata`.
+        ParameterError, MissingDependencyError
+            As :func:`metadata`, for medians that a motion does not allow and, with keep = "all",
+            without zarr.
+        """
+        self.refuse_other()
+        make_folder(self.root / RECORDS)
+        self._remove_temporary_files()
+        self._remove_old_end()
+        self._write_part("start", metadata(self.run), about=about(self.run))
+
+    def _write_part(self, name: str | int, files: dict[str, bytes], **more: Any) -> None:
+        """Write the files of a part, then its record, which makes the part complete.
+
+        name: "start", "end" or the number of a block, from 0.
+        files: path below the store -> content; {} of a part without files.
+        more: other fields of the :class:`Record`: ``about`` of the start, ``summary`` of a block.
+        Raises FileError if a file cannot be written; the part is then not complete.
+        """
+        record = Record(
+            identity(self.run), write_files(self.root, files), self._motions(name), **more
+        )
+        write_bytes(_record_path(self.root, name), encoded(record))
+
+    def _motions(self, name: str | int) -> int:
+        """Return the number of motions of a part.
+
+        name: number of a block, of which the last may have fewer motions; "start" and "end" have
+            those of the whole run.
+        """
+        if isinstance(name, str):
+            return self.run.settings.n
+        start, stop = self.run.edges(name)
+        return stop - start
+
+    def _remove_old_end(self) -> None:
+        """Remove the summaries of another number of motions, their record first: the store is then
+        not finished.
+
+        Nothing is removed if there is no readable record of summaries, or it states the number of
+        motions of this run.
+        Raises FileError if a file cannot be removed.
+        """
+        own = _record_path(self.root, "end")
+        end = read_record(own)
+        if end is None or end.motions == self.run.settings.n:
+            return
+        for path in (own, *(self.root / name for name in end.files)):
+            with as_file_error(path, "cannot be removed"):
+                path.unlink(missing_ok=True)
+
+    def refuse_other(self) -> None:
+        """Raise FileError unless the folder is new, or the store of this run, perhaps with fewer
+        motions.
+
+        A folder is new if it does not exist, or has nothing but the folders of records and motions,
+        without a readable record.  Refused are a file, a folder that cannot be read, one with other
+        files, and the store of another run, of a run with more motions, or of one that cannot be
+        extended (:func:`.run_records.refuse_another`).
+        """
+        root = self.root
+        if not root.exists():
+            return
+        if not root.is_dir():
+            raise FileError(root, f"is a file: {ADVICE}")
+        refuse_unreadable(root)
+        blocks = sorted((root / RECORDS).glob("[0-9]*"))
+        records = map(
+            read_record, (_record_path(root, "start"), _record_path(root, "end"), *blocks)
+        )
+        record = next((record for record in records if record is not None), None)
+        if record is not None:
+            refuse_another(root, self.run, record)
+            return
+        others = sorted(path.name for path in root.iterdir() if path.name not in (RECORDS, MOTIONS))
+        if others:
+            raise FileError(
+                root, f"is not a results store, it contains {', '.join(others[:3])}: {ADVICE}"
+            )
+
+    def missing(self) -> Iterator[int]:
+        """Yield the numbers of the blocks that are missing or damaged, ascending.
+
+        A block is read, its record and all its files, when its turn comes, so that the caller may
+        evaluate blocks while it iterates.  Nothing is raised for files that cannot be read: their
+        block counts as missing.
+        """
+        own = identity(self.run)
+        for block in range(self.run.blocks):
+            if problems(self.root, block, own, self._motions(block)):
+                yield block
+
+    def evaluate(self, block: int) -> int:
+        """Roll the motions of a block and store them.
+
+        block: number of the block, from 0 to ``run.blocks - 1``, which is not checked.
+        Returns the number of its motions.
+        Raises what :func:`block_content` raises, and FileError if writing fails; nothing of the
+        block counts as stored then.
+        """
+        files, summary, count = block_content(self.run, block)
+        self._write_part(block, files, summary=summary)
+        return count
+
+    def finish(self) -> None:
+        """Merge the summaries of all blocks and write them with the consolidated metadata; the
+        store is then finished.
+
+        All blocks must be stored.  Their records are read, not their motions, so that memory does
+        not grow with the number of motions.  Temporary files of killed processes are removed.
+        Raises FileError if the record of a block is missing or damaged, or writing fails;
+        MissingDependencyError without zarr; what :func:`metadata` raises.
+        """
+        dataset = summary_dataset(
+            merge_summaries(self._summaries()), self.run.t, self.run.settings.quantiles, self.run.si
+        )
+        files = run_records.dataset_files(dataset.assign_attrs(about(self.run)))
+        files[".zmetadata"] = run_records.consolidated(files | metadata(self.run))
+        self._write_part("end", files)
+        self._remove_temporary_files()
+
+    def _remove_temporary_files(self) -> None:
+        """Remove the files that killed processes, of this call or an earlier one, did not finish
+        writing.
+        """
+        for path in self.root.rglob(".*.tmp-*"):
+            with suppress(OSError):
+                path.unlink()
+
+    def _summaries(self) -> Iterator[Summary]:
+        """Yield the :class:`Summary` of each block in order; raise FileError if its record is
+        missing or damaged.
+        """
+        for block in range(self.run.blocks):
+            record = read_record(_record_path(self.root, block))
+            if record is None or record.summary is None:
+                raise FileError(
+                    self.root,
+                    f"block {block} was damaged during the run: the same command repairs it",
+                )
+            yield record.summary
+
+
+class BlockContent(NamedTuple):
+    """Result of a block, as a store holds it.
+
+    files : path below the store -> content of the chunks of its motions; empty if summaries alone
+    are kept.
+    summary : summary of its motions.
+    motions : number of its motions.
+    """
+
+    files: dict[str, bytes]
+    summary: Summary
+    motions: int
+
+
+def block_content(run: Run, block: int) -> BlockContent:
+    """Roll the motions of a block, and make the files and the summary that the store keeps of it;
+    nothing is written.
+
+    run: :class:`runs.Run`, with inputs and settings; files of motions are made if ``settings.keep``
+    is "all".
+    block: number of the block, from 0 to ``run.blocks - 1``.
+    Returns the :class:`BlockContent`, whose ``files`` are {} if ``settings.keep`` is "summaries".
+    Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a
+    material does not allow, CancelledError if the run was interrupted
+    (:func:`.blocks.cancel_with`), MissingDependencyError if motions are kept and zarr is not
+    installed.
+    """
+    values, motions = roll_block(run, block)
+    files = (
+        _motion_files(run, columns_of(run, values, motions), block)
+        if run.settings.keep == "all"
+        else {}
+    )
+    return BlockContent(files, summarise(motions, run.settings.summaries), len(motions))
+
+
+def metadata(run: Run) -> dict[str, bytes]:
+    """Return the metadata of the group of all motions: path below the store -> content; {} if
+    motions are not kept.
+
+    Names and types of the columns are those of one motion, which is rolled for that, with each
+    input at its median.
+
+    run: :class:`runs.Run`, with its inputs and settings.
+    Raises, if motions are kept, ParameterError for medians that a motion does not allow, FileError
+    for those that a material does not allow, MissingDependencyError if zarr is not installed.
+    """
+    if run.settings.keep == "summaries":
+        return {}
+    values = {name: np.atleast_1d(value) for name, value in run.inputs.medians.items()}
+    return _motion_files(run, columns_of(run, values, roll_inputs(run, values)))
+
+
+def _motion_files(
+    run: Run, columns: dict[str, NDArray], block: int | None = None
+) -> dict[str, bytes]:
+    """Return files of the group of all motions: the chunks of a block, or the metadata.
+
+    It makes the dataset, with attributes and times, that :func:`.run_records.motion_files` encodes.
+
+    run: :class:`runs.Run`, which gives output times, units, number of motions and size of blocks.
+    columns: name -> values over (motion,) or (motion, t), in the units of the run; for the metadata
+        those of any number of motions, of which names, types and the number of times count.
+    block: number of the block whose chunks are returned; None: return the metadata, and the array
+        t, which all motions share.
+    Returns path below the store, as "motions/V/3.0" -> content.
+    Raises MissingDependencyError without zarr.
+    """
+    import xarray as xr
+
+    variables: dict[str, Any] = {
+        name: (("motion", "t")[: values.ndim], values, attributes(name, run.si))
+        for name, values in columns.items()
+    }
+    motions = xr.Dataset(variables, {"t": ("t", run.t, attributes("t", run.si))}, about(run))
+    files = run_records.motion_files(motions, run.settings.n, run.block, block)
+    return {f"{MOTIONS}/{name}": content for name, content in files.items()}
+
+
+def columns_of(run: Run, values: dict[str, Any], motions: Ensemble) -> dict[str, NDArray]:
+    """Return the columns that are kept of motions: inputs, fields and how they ended.
+
+    run: :class:`runs.Run`, whose settings name the fields.
+    values: name of each uncertain input -> values, (n,), in the units of the run file; other names
+    have no effect.
+    motions: :class:`Ensemble`, n motions with these inputs, which have the fields.
+    Returns name -> values in the units of the run: the inputs over (motion,), the fields of
+    ``run.settings.fields`` over (motion, t), then onset_time and rest_time (NaN of a motion
+    without), status (codes of :class:`MotionStatus`: 0 DONE, 1 RESTED, 2 to 6 stopped before) and
+    flow (int8, 1 of a motion from a flow map, else 0) over (motion,).  Outputs that a motion did
+    not reach are NaN.
+    Raises KeyError for an input that ``values`` does not have.
+    """
+    columns = {name: values[name] for name in run.inputs.uncertain}
+    columns |= {name: getattr(motions, name) for name in (*run.settings.fields, *_END_COLUMNS)}
+    return columns | {"flow": columns["flow"].astype(np.int8)}
+
+
+def problems(root: Path, name: str | int, run: str, motions: int) -> list[str]:
+    """Return the paths, below the store, of a part that are missing or damaged: its record, or
+    files that it names.
+
+    root: path of the folder of the store.
+    name: "start", "end" or the number of a block, from 0.
+    run, motions: identity of the run (:func:`.run_records.identity`) and number of motions of the
+        part that the record must state.
+    Returns [] if the part is complete; the path of the record alone if that is missing, damaged, of
+    another run or of another number of motions; else the paths of files that are missing or
+    damaged.
+    """
+    path = _record_path(root, name)
+    record = read_record(path)
+    if record is None or (record.run, record.motions) != (run, motions):
+        return [str(path.relative_to(root))]
+    return damaged(root, record)
+
+
+def _record_path(root: Path, name: str | int) -> Path:
+    """Return the path of the record of a part; name: "start", "end" or the number of a block."""
+    return root / RECORDS / (name if isinstance(name, str) else f"{name:09d}")
+
+
+@contextmanager
+def locked(root: Path) -> Iterator[None]:
+    """Keep other processes from writing to a store; a context manager, which creates the folder.
+
+    The lock ends with the body of the ``with``, or with the process.  The file records/.lock stays.
+
+    root: path of the folder of the store.
+    Yields None.
+    Raises FileError if another process writes to it, the folder cannot be created, or the disk does
+    not allow locks; it does not wait.
+    """
+    from filelock import FileLock, Timeout
+
+    make_folder(root / RECORDS)
+    lock = FileLock(root / RECORDS / _LOCK, timeout=0)
+    try:
+        lock.acquire()
+    except Timeout:
+        raise FileError(root, "another process is writing to it") from None
+    except (OSError, NotImplementedError) as error:  # some network disks
+        raise FileError(
+            root, f"cannot be locked ({getattr(error, 'strerror', None) or error})"
+        ) from error
+    try:
+        yield
+    finally:
+        lock.release()

@@ -1,0 +1,495 @@
+"""Run files: TOML -> :class:`runs.Run`, everything checked before anything is computed.
+
+    preset = "paper-section-5"     # or [scene] or [cylinder]; [scene] may also change a preset
+
+    [start]
+    V0 = { distribution = "uniform", loc = -2.0, scale = 4.0 }
+    omega0 = 0.5
+
+    [drive]                        # optional
+    torque = { times = [0.0, 1e-3, "same"], values = [0.0, 0.02, 0.0] }
+
+    [run]
+    n = 1_000_000
+    seed = 7
+    t = [1e-3, 2e-3, 3e-3]
+
+All numbers are dimensionless, or, with [cylinder] and perhaps [material] and [base], in SI units.
+All keys are in docs/ensembles.md.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass, replace
+from functools import cached_property
+from os import PathLike
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import msgspec
+
+from ..core.checks import Floats
+from ..core.errors import FileError, ParameterError, check_names
+from ..core.toml_sections import as_section_error, read_toml, section_error
+from ..materials.material_toml import material_as_toml, parse_materials
+from ..motion.ensemble import FIELDS
+from ..motion.many_motions import FLOW_PAYS
+from ..motion.motion_arguments import Drive, output_times
+from ..motion.motion_problem import SolverOptions, make_problem
+from ..motion.summaries import LEVELS, QUANTITIES
+from ..roller_toml import check_sections, locate_error
+from ..sampling import Design
+from ..tables import spread
+from .run_rollers import Rollers, drive_of, roller_of
+from .uncertain_inputs import Inputs, correlated, inputs_in, inputs_of
+
+#: Largest number of motions of a block, by method: some seconds of work.
+_MOST_MOTIONS = {"flow": 1 << 20, "integrate": 1 << 16}
+#: Largest size of a block in memory, bytes.
+_MOST_BYTES = 1 << 27
+#: Keys of the section [start].
+START = ("V0", "omega0")
+#: Settings that the digest leaves out: a store may grow with n, and its identity contains the
+#: resulting method and block.
+_NOT_IN_DIGEST = ("n", "method", "block")
+
+#: A positive whole number.
+Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
+#: A list of numbers that is not empty.
+Numbers = Annotated[list[float], msgspec.Meta(min_length=1)]
+#: A number in [0, 1].
+Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
+
+
+class StartSection(msgspec.Struct):
+    """[start]: start speeds; one that [drive] prescribes is left out; an omega0 "rolling" is
+    replaced before.
+    """
+
+    V0: float | None = None
+    omega0: float | None = None
+
+
+class ScheduleSection(msgspec.Struct):
+    """{ times = [...], values = [...] }: a piecewise linear load."""
+
+    times: Numbers
+    values: Numbers
+
+
+class DriveSection(msgspec.Struct):
+    """[drive]: loads, and prescribed speeds."""
+
+    force: float | ScheduleSection | None = None
+    torque: float | ScheduleSection | None = None
+    brake: float | ScheduleSection | None = None
+    slope: float | None = None
+    drag: float | None = None
+    V: float | ScheduleSection | None = None
+    omega: float | ScheduleSection | None = None
+
+
+class HeatSection(msgspec.Struct):
+    """[heat]: the material of a motion is at the temperature at which its cylinder, from cold,
+    rolls at a speed.
+
+    ambient : temperature of the surroundings, degrees Celsius.
+    conductance : heat given off per kelvin, W/(m K).
+    speed : m/s; default: V0 of the motion.
+    """
+
+    ambient: float
+    conductance: float
+    speed: float | None = None
+
+
+class TimesSection(msgspec.Struct):
+    """{ low, high, count, spacing }: equally spaced output times, or logarithms of these."""
+
+    low: float
+    high: float
+    count: int
+    spacing: Literal["linear", "log"] = "linear"
+
+
+class RunSection(msgspec.Struct, frozen=True):
+    """[run].
+
+    n : number of motions, up to 1e12.
+    t : output times, dimensionless; with [cylinder] in s.
+    seed : seed of all random inputs.
+    design : "random" draws inputs independently, "latin" in a Latin hypercube, "sobol" from a Sobol
+    sequence.
+    method : "flow" reads motions of one scene from a flow map, "integrate" integrates each, "auto"
+    chooses.
+    rtol : relative tolerance of the integrator, in [1e-12, 1e-2].
+    rest : speed below which a motion ends at rest, dimensionless; with [cylinder] in m/s.  Default:
+    no such end.
+    unsteady : whether the added mass N of slow speed changes acts.
+    rested : whether the cylinder stood still for long before the start, or the time for which it
+    did.
+    block : number of motions in a block; by default as many as fit the memory.
+    keep : "summaries" stores statistics alone, "all" also every motion with its inputs.
+    fields : quantities of each motion that are stored with keep = "all".
+    summaries : quantities whose statistics are stored.
+    quantiles : probabilities of the quantiles that are stored.
+    """
+
+    n: Whole
+    t: float | list[float] | TimesSection
+    seed: Annotated[int, msgspec.Meta(ge=0, le=2**63 - 1)] = 0
+    design: Design = "random"
+    method: Literal["auto", "flow", "integrate"] = "auto"
+    rtol: float = 1e-8
+    rest: float | None = None
+    unsteady: bool = False
+    rested: bool | float = False
+    block: Whole | None = None
+    keep: Literal["summaries", "all"] = "summaries"
+    fields: tuple[str, ...] = ("V", "omega", "x")
+    summaries: tuple[str, ...] = ("V", "omega", "x", "onset_time")
+    quantiles: tuple[Share, ...] = LEVELS
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A run, as a run file states it.
+
+    Attributes
+    ----------
+    path, text : path and text of the file.
+    settings : its section [run], a :class:`RunSection`.
+    inputs : its other sections, and which of their numbers are uncertain, as
+    :class:`.uncertain_inputs.Inputs`.
+    t : output times, dimensionless or, with [cylinder], in s, (t,).
+    digest : SHA-256 of what the results depend on, apart from the number of motions, the method and
+        the size of
+        blocks: other settings, inputs, samples.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> run = vr.runs.read_run(vr.datasets.path("run.toml"))
+    >>> run.method, run.blocks, run.inputs.uncertain
+    ('integrate', 1, ('mu', 'V0'))
+    """
+
+    path: Path
+    text: str
+    settings: RunSection
+    inputs: Inputs
+    t: Floats
+    digest: str
+
+    @property
+    def method(self) -> Literal["flow", "integrate"]:
+        """Method of all blocks: "flow" or "integrate".
+
+        A flow map is a set of tables of all free motions of one scene, which are looked up there
+        and not integrated.  The method is that of the file, or for "auto" the flow map if one
+        serves (:attr:`mappable`), the run has at least 4096 motions (:data:`.batch.FLOW_PAYS`), and
+        a start speed differs from 0.  It depends on the run as a whole, so that bits do not depend
+        on blocks.
+        """
+        if self.settings.method != "auto":
+            return self.settings.method
+        if not self.mappable:
+            return "integrate"
+        return "flow" if self.settings.n >= FLOW_PAYS and self.fastest > 0.0 else "integrate"
+
+    @property
+    def mappable(self) -> bool:
+        """Whether a flow map serves: start speeds alone are uncertain, [drive] is absent or empty,
+        unsteady false.
+        """
+        driven = self.inputs.content.get("drive") or self.settings.unsteady
+        return not driven and set(self.inputs.uncertain) <= set(START)
+
+    @cached_property
+    def fastest(self) -> float:
+        """Speed up to which the flow map is tabulated: the larger of |V0| and R |omega0|.
+
+        It is a float >= 0 in m/s, or dimensionless, where R is 1; of distributions see
+        :meth:`.uncertain_inputs.Inputs.largest`.  The few faster motions are integrated.  Raises
+        KeyError if [start] lacks one of the two.
+        """
+        R = self.inputs.content["cylinder"]["R"] if self.si else 1.0
+        V0 = self.inputs.largest("V0")
+        return V0 if self.inputs.rolls else max(V0, R * self.inputs.largest("omega0"))
+
+    @property
+    def si(self) -> bool:
+        """Whether the file and the results are in SI units."""
+        return "cylinder" in self.inputs.content
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Fields of the motions that are kept (with keep = "all" only) or summarised, in the order
+        of ``FIELDS``.
+        """
+        needed = {name for wanted in self.settings.summaries for name in QUANTITIES[wanted].fields}
+        kept = set(self.settings.fields) if self.settings.keep == "all" else set()
+        return tuple(name for name in FIELDS if name in needed | kept)
+
+    @property
+    def bytes_a_motion(self) -> int:
+        """Memory that a motion takes while its block is evaluated, bytes, an int: of its fields and
+        inputs.
+        """
+        columns = len(self.fields) * self.t.size + 2 * len(self.inputs.uncertain) + 12
+        return 8 * (columns + self.t.size)  # one output at a time is copied for its summary
+
+    @property
+    def block(self) -> int:
+        """Number of motions in a full block, an int from 1 to n: as the file states, else as many
+        as fit the memory.
+
+        That is the largest power of two of motions that take at most 128 MiB together, but 1 where
+        a single one takes more; not more than 2^20 motions of a flow map or 2^16 that are
+        integrated.  In either case it is n if n is smaller.
+        """
+        if self.settings.block is not None:
+            return min(self.settings.block, self.settings.n)
+        # a power of two suits Sobol's sequence
+        fits = 1 << max(_MOST_BYTES // self.bytes_a_motion, 1).bit_length() - 1
+        return min(_MOST_MOTIONS[self.method], fits, self.settings.n)
+
+    @property
+    def blocks(self) -> int:
+        """Number of blocks."""
+        return -(-self.settings.n // self.block)
+
+    def edges(self, block: int) -> tuple[int, int]:
+        """Return the range of the motions of a block, counted over the run.
+
+        Parameters
+        ----------
+        block : number of the block, from 0 to ``blocks`` - 1, which is not checked.
+
+        Returns
+        -------
+        start, stop : index of the first motion of the block, and of the first one after it; the
+            last block ends at the number of all motions, and may be shorter than the others.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> vr.runs.read_run(vr.datasets.path("run.toml")).edges(0)
+        (0, 16)
+        """
+        return block * self.block, min((block + 1) * self.block, self.settings.n)
+
+
+def read_run(path: str | PathLike[str]) -> Run:
+    """Read and check a run file.
+
+    Parameters
+    ----------
+    path : TOML file; its keys are in docs/ensembles.md.
+
+    Returns
+    -------
+    Run
+        The run, with all of the file checked, the motions of median and extreme inputs for their
+        ranges too; nothing is drawn or rolled yet.
+
+    Raises
+    ------
+    FileError
+        A file that cannot be read or is not TOML, a section [run] or [start] that is missing, a
+        misspelt key (with the nearest), a value of the wrong type or with a unit, a range that
+        exceeds what the input allows, a sample that cannot be read, an unknown quantity, no
+        quantity in ``summaries``, correlations that contradict each other, method "flow" where no
+        flow map serves: each with its line if that is found.
+    MissingDependencyError
+        A sample in a .parquet file, if pyarrow is not installed.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.runs.read_run(vr.datasets.path("run.toml")).settings.n
+    16
+    """
+    content = read_toml(path)
+    path = Path(path)
+    inputs = inputs_of(path, content)
+    medians = inputs.filled(inputs.medians)
+    sections = {
+        "start": StartSection,
+        "drive": DriveSection,
+        "run": RunSection,
+        "correlation": None,
+        "heat": HeatSection,
+    }
+    check_sections(path, medians, sections)
+    for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
+        if name not in content:
+            raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
+    for name in START:
+        if name not in content["start"] and name[:-1] not in content.get("drive", {}):
+            advice = (
+                ': must be a number, or "rolling" for V0/R'
+                if "V0" in content["start"]
+                else ": must be a number"
+            )
+            raise section_error(path, "start", name, f"{name} is missing{advice}")
+    materials = parse_materials(path, medians)
+    # a material without uncertain numbers is read once
+    certain = {
+        name: material
+        for name, material in materials.items()
+        if not inputs_in(inputs.content[name])
+    }
+    inputs = correlated(path, replace(inputs, content=inputs.content | certain))
+    settings = msgspec.convert(content["run"], RunSection)
+    with as_section_error(path, "run", "t"):
+        t = settings.t
+        times = output_times(spread(**msgspec.to_builtins(t)) if isinstance(t, TimesSection) else t)
+    with as_section_error(path, "run"):
+        check_names("fields", settings.fields, FIELDS, "a field")
+        check_names("summaries", settings.summaries, QUANTITIES, "a summary")
+    text = path.read_text(encoding="utf-8-sig")
+    digest = _digest(
+        settings,
+        times,
+        content,
+        [material_as_toml(material) for material in certain.values()],
+        inputs,
+    )
+    run = Run(path=path, text=text, settings=settings, inputs=inputs, t=times, digest=digest)
+    if not settings.summaries:
+        raise section_error(
+            path, "run", "summaries", "summaries = []: must name at least one quantity"
+        )
+    if settings.method == "flow" and not run.mappable:
+        problem = (
+            "method = 'flow': must be 'auto' or 'integrate' with [drive], with unsteady, "
+            "and where scenes differ"
+        )
+        raise section_error(path, "run", "method", problem)
+    _check_inputs(run)
+    return run
+
+
+def _check_inputs(run: Run) -> None:
+    """Raise FileError for values of inputs that a motion refuses, before anything is drawn.
+
+    It checks in turn the medians; the ends of each input with the others at their medians;
+    combinations of ends (:meth:`.uncertain_inputs.Inputs.corners`); and all rows of each file of
+    several columns.
+
+    run: :class:`runs.Run`, with its inputs and settings.
+    The error states the line and the reason: of an end of an input also the range of its draws, and
+    the remedy to truncate; of a wrong setting of [run] that setting; of combinations the first
+    parameter that is refused.
+    """
+    inputs = run.inputs
+    medians = run.inputs.medians
+    _check_motions(run, medians)
+    for number in inputs_in(inputs.content):
+        ends = inputs.ends(number.name)
+        error = _fault_of(run, medians | {number.name: ends})
+        if isinstance(error, ParameterError) and error.name in inputs.content["run"]:
+            raise locate_error(run.path, inputs.content, error) from error
+        if error is not None:
+            problem = getattr(error, "problem", str(error)).rpartition("] ")[2]
+            if any(_fault_of(run, medians | {number.name: end}) for end in ends.tolist()):
+                problem = (
+                    f"draws extend from {ends[0]:.6g} to {ends[1]:.6g}: {problem}; add "
+                    "truncate = [low, high]"
+                )
+            problem = f"{number.name}: {problem}"
+            raise section_error(run.path, number.section, number.key, problem) from error
+    samples = (medians | columns for columns in inputs.joint.values() if len(columns) > 1)
+    for values in (inputs.corners(), *samples):
+        _check_motions(run, values, " in every draw: truncate so that it is")
+
+
+def _check_motions(run: Run, values: dict[str, Any], advice: str = "") -> None:
+    """Raise the error that :func:`_fault_of` returns as FileError with its line; nothing is rolled,
+    None is returned.
+
+    run: :class:`runs.Run`, of which path, inputs, settings and t are read.
+    values: name of an input -> number or (n,), for every input, in the units of the file.
+    advice: last words of the message, which follow it directly, "" for none; not added to the error
+        of a material, which is raised as it is.
+    """
+    error = _fault_of(run, values)
+    if isinstance(error, ParameterError):
+        refusal = ParameterError(error.name, error.value, error.allowed, f"{error}{advice}")
+        raise locate_error(run.path, run.inputs.content, refusal) from error
+    if error is not None:
+        raise error
+
+
+def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | None:
+    """Find out whether motions would be refused, without rolling them.
+
+    run: :class:`runs.Run`, of which path, inputs, the last of t, and of the settings rtol, rest,
+        unsteady and rested are read.
+    values: name of an input -> number or (n,), for every input, in the units of the file.
+    Returns None if the motions are allowed.  Else the error, which is not raised: a ParameterError
+    for a roller, start, drive or setting that a motion refuses, and for ``unsteady`` or ``rested``
+    where T_epsilon differs between motions; a FileError for a material.
+    """
+    content = run.inputs.filled(values)
+    settings = run.settings
+    try:
+        roller = roller_of(run.path, content)
+        for name in ("unsteady", "rested"):
+            if (
+                getattr(settings, name) is not False
+                and isinstance(roller, Rollers)
+                and roller.seconds
+            ):
+                return ParameterError(
+                    name, str(getattr(settings, name)).lower(), "left out if T_epsilon is uncertain"
+                )
+        start = tuple(content["start"].get(name) for name in START)
+        options = SolverOptions(
+            rtol=settings.rtol,
+            rest=settings.rest,
+            max_steps=1,
+            resolve=None,
+            unsteady=settings.unsteady,
+            rested=settings.rested,
+        )
+        make_problem(roller, start, Drive(**drive_of(content)), run.t[-1], options)
+    except (ParameterError, FileError) as error:
+        return error
+    return None
+
+
+def _digest(
+    settings: RunSection,
+    times: Floats,
+    content: dict[str, Any],
+    materials: list[str],
+    inputs: Inputs,
+) -> str:
+    """Return the ``digest`` of a :class:`runs.Run`; comments and the order of keys do not change
+    it.
+
+    settings: :class:`RunSection`, content of the section [run], of which n, method and block do not
+    count.
+    times: output times, (t,), in the unit of the file.
+    content: name of a section, or ``preset`` -> content, as read; [run] is left out.
+    materials: materials without uncertain inputs, as TOML, so that files that they name count too.
+    inputs: :class:`.uncertain_inputs.Inputs`, whose columns of data files, names and numbers,
+    count.
+    Returns a SHA-256, 64 hexadecimal digits.
+    """
+    kept = {
+        name: value
+        for name, value in msgspec.to_builtins(settings).items()
+        if name not in _NOT_IN_DIGEST
+    }
+    sections = {name: section for name, section in content.items() if name != "run"}
+    samples = [
+        [name, hashlib.sha256(values.tobytes()).hexdigest()]
+        for columns in inputs.joint.values()
+        for name, values in columns.items()
+    ]
+    described = [kept, times.tolist(), sections, materials, samples]
+    return hashlib.sha256(msgspec.msgpack.encode(described, order="deterministic")).hexdigest()

@@ -1,0 +1,351 @@
+"""Sobol indices of a run, by which the variance of its motions is attributed to its uncertain
+inputs.
+
+Estimators are those of A. Saltelli et al., Computer Physics Communications 181 (2010) 259-270, on a
+scrambled Sobol sequence; scipy.stats.sobol_indices, which has them too, fails for a single input
+(SciPy 1.17).  The cost of a base point is one motion for every uncertain input and two more.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import msgspec
+import numpy as np
+from numpy.typing import NDArray
+
+from ..core.blocks import run_blocks
+from ..core.checks import Floats, check_bool, check_integer
+from ..core.errors import MotionStatus, ParameterError, described_error
+from ..core.results import column_name, unit_of
+from ..motion.motion_datasets import column_attributes, provenance
+from ..motion.summaries import QUANTITIES
+from ..sampling import points
+from .run_blocks import roll_inputs, warn_of_materials
+from .runfile import Run
+from .uncertain_inputs import Inputs, inputs_in
+
+if TYPE_CHECKING:
+    import pandas as pd
+    import xarray as xr
+
+#: Level of the confidence intervals.
+CONFIDENCE = 0.95
+#: Number of bootstrap resamples: the standard deviation of a half-width is then 7 % of it.
+_RESAMPLES = 100
+#: Largest size of the outcomes of all motions, bytes.
+_MOST_BYTES = 1 << 29
+#: Largest number of motions of a block: about a second where they are integrated.
+_BLOCK = 1 << 14
+#: End of the name of an index or half-width -> its meaning.
+_INDICES = {
+    "S1": "first-order Sobol index",
+    "S1_conf": (
+        f"half-width of the {CONFIDENCE:.0%} confidence interval of the first-order Sobol index"
+    ),
+    "ST": "total Sobol index",
+    "ST_conf": f"half-width of the {CONFIDENCE:.0%} confidence interval of the total Sobol index",
+}
+
+
+def sobol_indices(
+    run: Run, n: int = 4096, *, threads: int | None = None, progress: bool = False
+) -> xr.Dataset:
+    """Estimate first-order and total Sobol indices of the summarised quantities over all uncertain
+    inputs.
+
+    Parameters
+    ----------
+    run : a run of :func:`runs.read_run`; its inputs, seed, t, method, rtol, rest and summaries
+        count, its n, design, keep and quantiles do not.
+    n : number of base points in [16, 65536], rounded up to a power of two.
+    threads : number of threads; None: ``$VISCOROLL_THREADS`` or the number of cores.  The bits do
+    not depend on it.
+    progress : whether to draw a progress bar on standard error if the call takes longer than a
+    second.
+
+    Returns
+    -------
+    xarray.Dataset
+        For every quantity ``NAME_S1``, ``NAME_S1_conf``, ``NAME_ST``, ``NAME_ST_conf`` over (t,
+        input), or over input if the quantity is one number per motion: the indices, dimensionless,
+        and the half-widths of their bootstrap intervals of 95 %.  At a t at which some motions do
+        not have the quantity, or at which its standard deviation is at most rtol times its largest
+        magnitude at all t, it has no indices: its entries are NaN there, and the attribute
+        ``refused`` states which quantity, at which t and why, a line each.  A quantity without
+        indices at any t is left out.  Estimates may lie slightly outside of [0, 1].  Further
+        attributes are those of the run, with ``motions`` their number here, ``asked_base_points``
+        (n), ``base_points``, ``resamples``, ``confidence``, and for each way in which motions ended
+        the number of these, as "ended: reached the last output time".
+
+    Raises
+    ------
+    ParameterError
+        Correlated inputs or a joint sample, which Sobol indices are not defined for; no uncertain
+        input; n out of range, or so many output times that their values would take more than 0.5
+        GB; no quantity left; ``threads`` that is no whole number >= 1, ``progress`` that is no
+        truth value, inputs that a motion does not allow.
+    FileError
+        Inputs that a material does not allow.
+
+    Warns
+    -----
+    ModelWarning
+        Of motions beyond the model or the measured bands of the materials
+        (:func:`.run_blocks.warn_of_materials`).
+
+    Notes
+    -----
+    Variance shares in closed form lie inside the stated intervals
+    (``tests/runs/test_sensitivity.py``).  The bootstrap treats the points as random ones, which are
+    less even: intervals are rather too wide.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> from viscoroll.runs.sensitivity import sobol_indices
+    >>> indices = sobol_indices(vr.runs.read_run(vr.datasets.path("run.toml")), n=16, threads=1)
+    >>> indices["V_ST"].dims, indices["input"].values.tolist()
+    (('t', 'input'), ['mu', 'V0'])
+    """
+    import xarray as xr
+
+    from .run_records import about
+
+    names = _independent_inputs(run.inputs)
+    progress = check_bool("progress", progress)
+    base = (
+        1 << (check_integer("n", n, 16, 1 << 16) - 1).bit_length()
+    )  # Sobol's sequence is even over powers of two only
+    motions = base * (len(names) + 2)
+    summaries = tuple(dict.fromkeys(run.settings.summaries))
+    settings = msgspec.structs.replace(
+        run.settings, n=motions, keep="summaries", summaries=summaries
+    )
+    run = replace(run, settings=settings)
+    warn_of_materials(run)
+    outcomes, status = _outcomes(
+        run, _points(len(names), base, run.settings.seed), threads, progress
+    )
+    refused: list[str] = []
+    data: dict[str, Any] = {}
+    for name, values in outcomes.items():
+        over = ("t",) * QUANTITIES[name].over_time
+        noise = (
+            settings.rtol
+            * np.abs(values, where=np.isfinite(values), out=np.zeros_like(values)).max()
+        )
+        indices, reasons = zip(
+            *(_indices(row.reshape(-1, base), noise, settings.seed) for row in values), strict=True
+        )
+        times = [f" at t = {t:g}" for t in run.t] if over else [""]
+        refused += [
+            f"{name}{time}: {reason}" for time, reason in zip(times, reasons, strict=True) if reason
+        ]
+        if not np.isfinite(indices).any():
+            continue
+        meaning = QUANTITIES[name].about(run.si)["long_name"]
+        for (key, text), rows in zip(_INDICES.items(), np.stack(indices, axis=1), strict=True):
+            attrs = {"long_name": f"{text} of: {meaning}", "units": "1"}
+            data[f"{name}_{key}"] = (*over, "input"), rows if over else rows[0], attrs
+    if not data:
+        raise ParameterError(
+            "summaries",
+            "; ".join(refused),
+            "quantities that each motion has and that differ: choose others, or a later t",
+        )
+    coordinates = {
+        "t": ("t", run.t, column_attributes("t", run.si)),
+        "input": ("input", np.array(names, object), {"long_name": "uncertain input"}),
+    }
+    attrs = about(run) | provenance("Sobol indices of motions of a viscoelastic cylinder")
+    for of_blocks in ("motions_a_block", "blocks"):
+        del attrs[of_blocks]
+    ended = zip(*np.unique(status, return_counts=True), strict=True)
+    return xr.Dataset(data, coordinates, attrs).assign_attrs(
+        design="Saltelli's, on a scrambled Sobol sequence",
+        asked_base_points=n,
+        base_points=base,
+        resamples=_RESAMPLES,
+        confidence=CONFIDENCE,
+        refused="\n".join(refused),
+        **{f"ended: {MotionStatus(code).message}": int(count) for code, count in ended},
+    )
+
+
+def _independent_inputs(inputs: Inputs) -> tuple[str, ...]:
+    """Return the names of the uncertain inputs of a run, if Sobol indices are defined for them.
+
+    inputs: :class:`Inputs` of the run.
+    Returns the names, distributions before columns, in the order of the rows of the cube.
+    Raises ParameterError if there are none, or they are not independent: correlated, or several
+    columns of one file.
+    """
+    if not inputs.uncertain:
+        raise described_error(
+            "the run file", "has no uncertain input", "one in which an input has a distribution"
+        )
+    if inputs.correlated:
+        allowed = "left out: Sobol indices are defined for independent inputs only"
+        raise ParameterError("[correlation]", ", ".join(inputs.correlated), allowed)
+    sections = {
+        number.name: f"[{number.section}] {number.name}" for number in inputs_in(inputs.content)
+    }
+    for file, columns in inputs.joint.items():
+        if len(columns) > 1:
+            allowed = (
+                "distributions, or columns of a file each: Sobol indices are defined for "
+                "independent inputs only"
+            )
+            raise ParameterError(
+                ", ".join(map(sections.__getitem__, columns)), f"rows of {file}", allowed
+            )
+    return inputs.uncertain
+
+
+def _points(count: int, base: int, seed: int) -> Floats:
+    """Return the points of the unit cube at which Saltelli's estimators need the motions.
+
+    A and B are the two halves of the coordinates of one scrambled Sobol sequence of 2 count
+    dimensions.
+
+    count: number of inputs, >= 1.
+    base: number of points of A and of B, a power of two.
+    seed: seed of the sequence, in [0, 2^63).
+    Returns an array (count, (count + 2) base), in (0, 1), a row for each input and a column for
+    each motion: the points of A, those of B, then for each input n the points of A with row n taken
+    from B.
+    """
+    A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
+    mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
+    return np.hstack([A, B, *mixed])
+
+
+def _outcomes(
+    run: Run, cube: Floats, threads: int | None, progress: bool
+) -> tuple[dict[str, Floats], NDArray[np.int8]]:
+    """Roll all motions at points of the unit cube, block by block.
+
+    run: :class:`runs.Run`, whose ``settings.summaries`` name the quantities, each once; inputs, t
+    and block are read too.
+    cube: points of the unit cube, (input, motion), of :func:`_points`.
+    threads: number of threads, on which the motions of one block run; None: ``$VISCOROLL_THREADS``,
+        else all cores available.
+    progress: whether a progress bar is drawn.
+    Raises ParameterError if the values of all motions would take more than 0.5 GB, for a wrong
+    ``threads``, and for inputs that a motion does not allow; FileError for inputs that a material
+    does not allow.
+    Returns (name of a quantity -> values, (t, motion), or (1, motion) of one number per motion, in
+    the units of the run, NaN where a motion does not have it; status of each motion, a code of
+    :class:`MotionStatus` (0 DONE, 1 RESTED, 2 to 6 stopped before), (motion,), int8).
+    """
+    motions = cube.shape[1]
+    times = {
+        name: run.t.size if QUANTITIES[name].over_time else 1 for name in run.settings.summaries
+    }
+    size = 8 * motions * sum(times.values())
+    if size > _MOST_BYTES:
+        allowed = (
+            f"less, or t shorter: {sum(times.values())} quantities and times would take "
+            f"{size / 1e9:.1f} GB"
+        )
+        raise ParameterError("n", motions // (len(cube) + 2), allowed)
+    outcomes = {name: np.empty((count, motions)) for name, count in times.items()}
+    status = np.empty(motions, np.int8)
+
+    def work(start: int, stop: int) -> None:
+        """Roll the motions ``start`` to ``stop`` - 1 of the cube, and write their values into the
+        columns of ``outcomes`` and their codes into ``status``.
+        """
+        rolled = roll_inputs(run, run.inputs.values(cube[:, start:stop]), stop - start, threads)
+        status[start:stop] = rolled.status
+        for name, values in outcomes.items():
+            for k, row in enumerate(values):
+                row[start:stop] = QUANTITIES[name].values(rolled, k)
+
+    # one block at a time, its motions on all threads: a flow map is then made once
+    run_blocks(
+        work,
+        motions,
+        min(_BLOCK, run.block),
+        threads=1,
+        progress="sensitivity" if progress else None,
+    )
+    return outcomes, status
+
+
+def _indices(values: Floats, noise: float, seed: int) -> tuple[Floats, str]:
+    """Estimate the Sobol indices of one quantity at one time, with their bootstrap intervals.
+
+    values: outcomes, (2 + inputs, base points): of the points A, of B, and of A with one input from
+    B each.
+    noise: standard deviation, in the unit of the quantity, up to which the values count as equal:
+    their error by rtol.
+    seed: seed of the bootstrap, whose 100 resamples draw base points with replacement.
+    Returns (array (4, inputs), dimensionless, whose rows are the first-order indices, the
+    half-widths of their 95 % intervals, the total indices and their half-widths; ""), or, where a
+    value is not finite or the values are equal, (such an array of NaN; the reason, in words).
+    """
+    from scipy.special import ndtri
+
+    found = np.full((len(_INDICES), len(values) - 2), np.nan)
+    if missing := np.count_nonzero(~np.isfinite(values)):
+        return found, f"{missing} of {values.size} motions have no value"
+    if not values.std() > noise:
+        return found, "it varies by no more than rtol of its largest value"
+    random = np.random.default_rng(seed)
+    base = values.shape[1]
+    resampled = [_estimated(values[:, random.integers(base, size=base)]) for _ in range(_RESAMPLES)]
+    found[0::2] = _estimated(values)
+    found[1::2] = ndtri(0.5 + 0.5 * CONFIDENCE) * np.std(resampled, axis=0, ddof=1)
+    return found, ""
+
+
+def _estimated(values: Floats) -> Floats:
+    """Return the Sobol indices, dimensionless, (2, inputs): first-order indices in row 0, total
+    ones in row 1.
+
+    :func:`_indices` calls it for all base points and for each resample.
+    With A, B and the mixed outcomes AB_n less the mean of A and B, and the variance v of A and B
+    together, they are mean(B (AB_n - A))/v and mean((AB_n - A)^2)/(2 v), the estimators (b) and (f)
+    of Table 2 of Saltelli et al. (2010).
+
+    values: outcomes, (2 + inputs, base points), as of :func:`_indices`, finite.  Where those of A
+        and B are all equal the indices are NaN or infinite.
+    """
+    A, B, *others = values - values[:2].mean()
+    mixed = np.array(others)
+    return (
+        np.array([(B * (mixed - A)).mean(axis=1), 0.5 * ((mixed - A) ** 2).mean(axis=1)])
+        / values[:2].var()
+    )
+
+
+def table(indices: xr.Dataset) -> pd.DataFrame:
+    """Return a row for each quantity, time and input that has indices, the largest total index
+    first at each t.
+
+    indices: dataset of :func:`sobol_indices`.
+    Returns a :class:`pandas.DataFrame` with the columns "quantity", "t" with its unit as "t [s]",
+    "input", "S1", "S1_conf", "ST", "ST_conf", quantities in the order of ``indices`` and times
+    ascending; equal total indices stay in the order of the inputs.  "t" is NaN in the rows of a
+    quantity that is one number per motion, and the column is missing if all are.  The labels of the
+    rows are numbers that repeat from one quantity to the next.
+    Raises ValueError for a dataset without indices.
+    """
+    import pandas as pd
+
+    tables = []
+    for name in (str(key).removesuffix("_S1") for key in indices if str(key).endswith("_S1")):
+        frame = (
+            pd.DataFrame({key: indices[f"{name}_{key}"].to_series() for key in _INDICES})
+            .dropna()
+            .reset_index()
+        )
+        frame.insert(0, "quantity", name)
+        over = ["t"] * ("t" in frame)
+        tables.append(
+            frame.sort_values([*over, "ST"], ascending=[True] * len(over) + [False], kind="stable")
+        )
+    return pd.concat(tables).rename(columns={"t": column_name("t", unit_of(indices["t"].attrs))})

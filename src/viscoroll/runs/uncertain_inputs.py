@@ -1,0 +1,632 @@
+"""Uncertain inputs of a run file: distributions, columns, correlations, and their values.
+
+Uncertain inputs: values of each input at points of the unit cube, and the sections of a run file
+with these values.
+
+An input is a :class:`Distribution`, or a column of a joint sample.  Each distribution is one
+dimension of the cube, and so is each file: its columns share the row that is drawn.
+
+Sections of a run file -> :class:`Inputs`: distributions, columns of tables of numbers,
+correlations.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from contextlib import suppress
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..core.checks import Floats
+from ..core.errors import FileError, import_extra
+from ..core.scale import si_unit
+from ..core.toml_sections import check_keys, section_error, suggestion
+from ..materials.material_toml import SECTIONS
+from ..measurements.text_table import NO_UNIT, column_in_unit, conversion, named_table
+from ..roller_toml import SCHEMA
+from ..sampling import LARGEST, SMALLEST
+
+# --- Uncertain inputs ---
+
+#: Word in place of a time of a drive: the same time again, so that the value jumps.
+SAME = "same"
+#: Share of the draws at either end that a flow map of the start speeds does not reach: those few
+#: are integrated.
+_TAIL = 1e-6
+
+
+@dataclass(frozen=True)
+class Input:
+    """An uncertain number of a run file.
+
+    Attributes
+    ----------
+    name : name of the input, as in the columns of the results ("mu", "base_E", "tau_2",
+    "drive_torque_time_1").
+    section, key : where it stands in the file; of a number within a table the section is
+    "section.key".
+    """
+
+    name: str
+    section: str
+    key: str
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A distribution of scipy.stats, truncated to an interval.
+
+    Attributes
+    ----------
+    law : frozen distribution.
+    low, high : ends of the interval, which may be infinite.
+    """
+
+    law: Any
+    low: float
+    high: float
+
+    @np.errstate(all="ignore")  # an overflow is infinite, which a motion refuses
+    def ppf(self, u: Floats) -> Floats:
+        """Return the quantiles of the truncated distribution, in the unit of the input.
+
+        If more than half of the whole distribution lies below the interval, it is inverted from
+        above, by the survival function, so that the upper tail keeps its digits.
+
+        u: probabilities in (0, 1), not checked, of any shape.
+        Returns an array of that shape, within [low, high]; where the interval is the support of the
+        law, the quantiles of the law as scipy computes them, which may overflow to an infinity.  A
+        NaN of scipy is passed on.
+        """
+        law = self.law
+        if (self.low, self.high) == law.support():
+            return law.ppf(u)
+        upper = law.cdf(self.low) > 0.5
+        below, inverse = (law.sf, law.isf) if upper else (law.cdf, law.ppf)
+        first, last = (
+            below(end) for end in ((self.high, self.low) if upper else (self.low, self.high))
+        )
+        # ppf and cdf are inverse to rounding only
+        return np.clip(
+            inverse(first + ((1.0 - u) if upper else u) * (last - first)), self.low, self.high
+        )
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """The inputs of a run.
+
+    Attributes
+    ----------
+    content : name of a section of the file -> its content, with an :class:`Input` in place of each
+    uncertain number.
+    random : name -> distribution; one dimension of the unit cube each.
+    joint : file -> name -> its column, (rows,); one dimension for each file: rows are drawn with
+    replacement.
+    correlated : names of the distributions under the Gaussian copula.
+    mixing : Cholesky factor of their correlation matrix, lower triangular, (correlated,
+        correlated); None without correlation.
+    """
+
+    content: dict[str, Any]
+    random: dict[str, Distribution] = field(default_factory=dict)
+    joint: dict[str, dict[str, Floats]] = field(default_factory=dict)
+    correlated: tuple[str, ...] = ()
+    mixing: Floats | None = None
+
+    @property
+    def dimensions(self) -> tuple[str, ...]:
+        """Names of the dimensions of the cube: distributions, then files."""
+        return (*self.random, *self.joint)
+
+    @property
+    def uncertain(self) -> tuple[str, ...]:
+        """Names of the inputs."""
+        return (*self.random, *(name for columns in self.joint.values() for name in columns))
+
+    @property
+    def medians(self) -> dict[str, Any]:
+        """Median of each input, name -> float in the unit of the file; of N rows of a file the row
+        floor(N/2).
+        """
+        middle = self.values(np.full((len(self.dimensions), 1), 0.5))
+        return {name: values.item() for name, values in middle.items()}
+
+    def values(self, points: Floats) -> dict[str, Floats]:
+        """Map points of the unit cube to the values of all inputs.
+
+        Under the copula the coordinates of correlated inputs are first replaced by those of normal
+        variables with the stated correlations.  A distribution takes its quantile at its coordinate
+        u, a file of N rows the row floor(u N) for all its columns.
+
+        points: (dimensions, n), in (0, 1), not checked, a row for each of :attr:`dimensions` in
+            their order; another number of rows raises ValueError.
+        Returns name -> values, (n,), float64, in the units of the file: distributions, then
+        columns.  A quantile that overflows is infinite.
+        """
+        rows = dict(zip(self.dimensions, points, strict=True))
+        if self.mixing is not None:
+            from scipy.special import ndtr, ndtri
+
+            normal = [ndtri(rows[name]) for name in self.correlated]
+            # a sum in a fixed order, so that bits do not depend on the number of points
+            mixed: Any = sum(
+                part[:, np.newaxis] * row for part, row in zip(self.mixing.T, normal, strict=True)
+            )
+            rows |= dict(zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST), strict=True))
+        values = {name: law.ppf(rows[name]) for name, law in self.random.items()}
+        for file, columns in self.joint.items():
+            size = next(iter(columns.values())).size
+            row = np.minimum((rows[file] * size).astype(np.int64), size - 1)
+            values |= {name: column[row] for name, column in columns.items()}
+        return values
+
+    def ends(self, name: str, low: float = SMALLEST, high: float = LARGEST) -> Floats:
+        """Return the ends of the draws of an input.
+
+        name: name of the input; another name raises StopIteration.
+        low, high: probabilities in (0, 1) of the ends of a distribution, by default the smallest
+            and the largest coordinate that a point has, 2^-54 and 1 - 2^-53; ignored for a column
+            of a file.
+        Returns [lower, upper], (2,), in the unit of the file: quantiles of a distribution, which
+        may be infinite; the smallest and the largest number of a column.
+        """
+        if name in self.random:
+            return self.random[name].ppf(np.array([low, high]))
+        column = next(columns[name] for columns in self.joint.values() if name in columns)
+        return np.array([column.min(), column.max()])
+
+    def corners(self) -> dict[str, Floats]:
+        """Return combinations of extreme inputs, for which the checks of a run file make motions.
+
+        With k inputs that are distributions or the only column of their file there are n = 2
+        (k + 1) combinations: each of the k inputs at its upper end with all others at their lower
+        ends; all at their lower ends; then the same with the ends exchanged.
+        Returns name -> values, (n,), in the units of the file.  The columns of a file with several
+        are at their medians, a number each, as their ends need not occur together; if all inputs
+        are such, no value is an array.
+        """
+        names = [
+            *self.random,
+            *(name for columns in self.joint.values() if len(columns) == 1 for name in columns),
+        ]
+        at_low = np.eye(len(names), len(names) + 1, dtype=bool)
+        ends = {
+            name: self.ends(name)[np.r_[row, ~row].astype(int)]
+            for name, row in zip(names, at_low, strict=True)
+        }
+        return self.medians | ends
+
+    def largest(self, name: str) -> float:
+        """Return the largest magnitude of a start speed up to which a flow map, tables of the
+        motions, is made.
+
+        name: "V0" or "omega0"; KeyError if the section [start] does not give it.
+        Returns a float >= 0 in the unit of the file.  A distribution may be unbounded: its
+        quantiles at 1e-6 and 1 - 1e-6 are taken, which two in a million draws exceed.  Of a column
+        of a data file all rows count; of a fixed number its magnitude is returned.  A larger start
+        speed is allowed: its motion is integrated.
+        """
+        start = self.content["start"][name]
+        return float(
+            np.abs(self.ends(name, _TAIL, 1.0 - _TAIL) if isinstance(start, Input) else start).max()
+        )
+
+    def filled(self, values: Mapping[str, Any]) -> dict[str, Any]:
+        """Return the sections of the run file with values in place of the inputs, and omega0 in
+        that of "rolling".
+
+        values: name of an input -> number or (n,), for every input, else KeyError; other names have
+        no effect.
+        Returns name of a section -> content, all of it new but for parts that are neither tables
+        nor lists.  An omega0 "rolling" is V0/R, in a dimensionless file V0; it stays where V0 or R
+        is no number, which checks refuse later.
+        """
+        content = _fill_in(self.content, values)
+        if self.rolls:
+            with suppress(TypeError, KeyError, AttributeError), np.errstate(all="ignore"):
+                R = content["cylinder"]["R"] if "cylinder" in content else 1.0
+                omega0 = np.divide(content["start"]["V0"], R)
+                content["start"]["omega0"] = omega0 if omega0.ndim else omega0.item()
+        return content
+
+    @property
+    def rolls(self) -> bool:
+        """Whether the motions start in pure rolling, by omega0 = "rolling" in the file."""
+        start = self.content.get("start")
+        return isinstance(start, dict) and start.get("omega0") == "rolling"
+
+
+def _fill_in(part: Any, values: Mapping[str, Any]) -> Any:
+    """Return a part of the content with values in place of its inputs; in a list "same" repeats the
+    number before.
+
+    part: an :class:`Input`, or a section, list, number, text or material of the file; it is not
+    changed.
+    values: name of an input -> number or (n,); KeyError for an input that it does not have.
+    Returns the value of an input; a new dict of a section; a new list of a list, in which a first
+    "same" stays as it is; any other part itself.
+    """
+    if isinstance(part, Input):
+        return values[part.name]
+    if isinstance(part, dict):
+        return {key: _fill_in(member, values) for key, member in part.items()}
+    if not isinstance(part, list):
+        return part
+    numbers: list[Any] = []
+    for member in part:
+        numbers.append(numbers[-1] if numbers and member == SAME else _fill_in(member, values))
+    return numbers
+
+
+def inputs_in(part: Any) -> list[Input]:
+    """Return the inputs within a part of the content of a run file, a list of :class:`Input` in the
+    order of the file.
+
+    part: a section, table, list, number or any other value; what is neither table, list nor input
+    gives an empty list.
+    """
+    members = part.values() if isinstance(part, dict) else part if isinstance(part, list) else ()
+    return (
+        [part]
+        if isinstance(part, Input)
+        else [found for member in members for found in inputs_in(member)]
+    )
+
+
+# --- Sections of a run file -> Inputs ---
+
+#: Section -> first letters of the names of its inputs; those of the other sections have none.
+PREFIXES = {"base": "base_", "drive": "drive_"}
+#: Sections that may have uncertain numbers.
+_SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive", "heat")
+#: Key -> the word for it in the name of an input, if that is another; "" is left out.
+_WORDS = {"prony": "", "creep": "", "values": "", "times": "time"}
+#: Keys of a material that may be uncertain.
+_UNCERTAIN_IN_MATERIAL = ("E", "nu", "prony", "creep", "temperature", "thickness")
+#: Keys by which a table of TOML is an uncertain number.
+_KEYS_OF_INPUT = {"distribution", "file", "column"}
+
+
+def inputs_of(path: Path, content: dict[str, Any]) -> Inputs:
+    """Collect the uncertain numbers of a run file; files of samples are read.
+
+    path: path of the run file, to which the paths of samples are relative.
+    content: name of a section, or key outside of sections -> content, as tomllib reads it; not
+    changed.
+    Returns the :class:`Inputs`, without correlations: all of ``content``, with an :class:`Input` in
+    place of each uncertain number of the sections of the roller, [start] and [drive].
+    Raises FileError, with its line, for an uncertain number that is wrong; MissingDependencyError
+    for a .parquet file without pyarrow.
+    """
+    reader = _Reader(path, "cylinder" in content)
+    sections = {name: reader.section(name, content[name]) for name in _SECTIONS if name in content}
+    return Inputs(content=content | sections, random=reader.random, joint=reader.joint)
+
+
+@dataclass
+class _Reader:
+    """Collects the uncertain numbers of a run file, and replaces each by an :class:`Input`.
+
+    path, si: path of the run file, and whether it is in SI units.
+    random, joint: as of :class:`Inputs`; they grow while the sections are read.
+    files: path of a sample -> its first spelling: 'rows.csv' and './rows.csv' share their rows.
+    """
+
+    path: Path
+    si: bool
+    random: dict[str, Distribution] = field(default_factory=dict)
+    joint: dict[str, dict[str, Floats]] = field(default_factory=dict)
+    files: dict[Path, str] = field(default_factory=dict)
+
+    def section(self, name: str, section: Any) -> Any:
+        """Return a section with inputs in place of its uncertain numbers, which are collected.
+
+        name: name of the section.
+        section: content of the section.  What is no table is returned as it is; checks of the file
+        refuse it later.
+        Returns a new dict.  Of a material only the numbers of :data:`_UNCERTAIN_IN_MATERIAL` may be
+        uncertain (E, nu, prony, creep, temperature, thickness); the values of its other keys stay
+        as they are.
+        Raises FileError for an uncertain number that is wrong, or at another key of a material;
+        MissingDependencyError as :meth:`add_column`.
+        """
+        if not isinstance(section, dict):
+            return section
+        keys = _UNCERTAIN_IN_MATERIAL if name in SECTIONS else section
+        for key, value in section.items():
+            if key not in keys and isinstance(value, dict) and "distribution" in value:
+                raise section_error(
+                    self.path, name, key, f"{key} cannot be uncertain; {', '.join(keys)} can"
+                )
+        return {
+            key: self.part(value, name, key, (key,)) if key in keys else value
+            for key, value in section.items()
+        }
+
+    def part(self, value: Any, section: str, key: str, words: tuple[str, ...]) -> Any:
+        """Return a value of the file with an :class:`Input` in place of each uncertain number.
+
+        A table with a key distribution, file or column is an uncertain number; it is collected in
+        ``random`` or ``joint``.  Lists and other tables are searched at any depth.
+
+        value: value at a key of the file.
+        section, key: section and key of the value; of a member of a table "section.key" and its
+        key.
+        words: keys from the section down to it, and positions in lists from "1"; joined by "_",
+            without prony, creep and values and with time for times, they make the name of the
+            input, as "tau_2" of ("prony", "tau", "2"); of sections base and drive it begins with
+            "base_" and "drive_".
+        Returns an Input of an uncertain number, a new list or dict of a list or another table, else
+        ``value``.
+        Raises FileError for an uncertain number that is wrong, or a table whose key is like one of
+        an uncertain number, as a misspelt one is; MissingDependencyError as :meth:`add_column`.
+        """
+        if isinstance(value, list):
+            return [
+                self.part(member, section, key, (*words, str(n)))
+                for n, member in enumerate(value, 1)
+            ]
+        if not isinstance(value, dict):
+            return value
+        if not value.keys() & _KEYS_OF_INPUT:
+            for name in value:
+                if near := suggestion(name, _KEYS_OF_INPUT):
+                    raise section_error(
+                        self.path, section, key, f"{key}: unknown key {name!r}{near}"
+                    )
+            within = f"{section}.{key}"
+            return {
+                name: self.part(member, within, name, (*words, name))
+                for name, member in value.items()
+            }
+        name = "_".join(filter(None, (_WORDS.get(word, word) for word in words)))
+        number = Input(PREFIXES.get(section.partition(".")[0], "") + name, section, key)
+        if "distribution" in value:
+            self.random[number.name] = self.distribution(number, value)
+        else:
+            self.add_column(number, value)
+        return number
+
+    def fault(self, number: Input, problem: str) -> FileError:
+        """Return the error of an uncertain number, with the number of its line.
+
+        number: the uncertain number.
+        problem: words on what is wrong, which end the message.
+        """
+        return section_error(self.path, number.section, number.key, f"{number.name}: {problem}")
+
+    @np.errstate(all="ignore")  # scipy may overflow for parameters that are refused here
+    def distribution(self, number: Input, table: dict[str, Any]) -> Distribution:
+        """Return the distribution of an uncertain number, truncated if the file says so.
+
+        number: the uncertain number, for errors.
+        table: its table of TOML: distribution, parameters of scipy.stats by name, and perhaps
+            truncate = [low, high], either of which may be infinite.
+        Returns the :class:`Distribution`, whose interval is the part of ``truncate`` within the
+        support of the law; without ``truncate`` it is the support.
+        Raises FileError as :meth:`frozen_law`, for a ``truncate`` that is not two numbers or has a
+        NaN, and for an interval that is empty, a point, or of zero probability.
+        """
+        law = self.frozen_law(number, table)
+        low, high = (float(end) for end in law.support())
+        cut = table.get("truncate", [-math.inf, math.inf])
+        if not (
+            isinstance(cut, list)
+            and len(cut) == 2
+            and all(_is_number(end) and end == end for end in cut)
+        ):
+            raise self.fault(
+                number,
+                f"truncate = {cut!r:.40}: must be [low, high]; inf or -inf for an end without "
+                "limit",
+            )
+        low = max(low, float(cut[0]))
+        high = min(high, float(cut[1]))
+        if not (low < high and law.cdf(high) - law.cdf(low) + (law.sf(low) - law.sf(high)) > 0.0):
+            interval = (
+                f"truncate = {cut!r:.40}" if "truncate" in table else f"support [{low:g}, {high:g}]"
+            )
+            raise self.fault(number, f"{interval}: must have low < high and a probability above 0")
+        return Distribution(law, low, high)
+
+    def frozen_law(self, number: Input, table: dict[str, Any]) -> Any:
+        """Return the frozen distribution of scipy.stats that a table names, with its parameters,
+        not truncated.
+
+        number: the uncertain number, for errors.
+        table: its table of TOML: distribution, the name of a continuous distribution of
+            scipy.stats; all of its shape parameters by name; loc and scale, which may be left out
+            (0 and 1); truncate is ignored.
+        Raises FileError for a name that is no continuous distribution, for unknown, missing,
+        non-numeric or infinite parameters, and for some that it does not allow, as those without a
+        finite median.
+        """
+        from scipy import stats
+
+        name = table["distribution"]
+        law = getattr(stats, name, None) if isinstance(name, str) else None
+        if not isinstance(law, stats.rv_continuous):
+            near = suggestion(
+                str(name),
+                [
+                    key
+                    for key, value in vars(stats).items()
+                    if isinstance(value, stats.rv_continuous)
+                ],
+            )
+            raise self.fault(
+                number,
+                f"distribution {name!r:.40} is not a continuous distribution of scipy.stats{near}",
+            )
+        shapes = law.shapes.split(", ") if law.shapes else []
+        keys = ("distribution", *shapes, "loc", "scale", "truncate")
+        check_keys(self.path, f"{number.section}.{number.key}", table, keys)
+        parameters = {
+            key: value for key, value in table.items() if key not in ("distribution", "truncate")
+        }
+        for key, value in parameters.items():
+            if not _is_number(value) or not math.isfinite(value):
+                raise self.fault(
+                    number, f"{key} = {value!r:.40}: must be a finite number without a unit"
+                )
+        if missing := [shape for shape in shapes if shape not in parameters]:
+            raise self.fault(number, f"{name} also needs {', '.join(missing)}")
+        frozen = law(**{key: float(value) for key, value in parameters.items()})
+        if not np.isfinite(frozen.ppf(0.5)):
+            raise self.fault(number, f"scipy.stats.{name} does not allow these parameters")
+        return frozen
+
+    def add_column(self, number: Input, table: dict[str, Any]) -> None:
+        """Read the column of a file that is the sample of an uncertain number, and collect it in
+        ``joint``.
+
+        In SI units the numbers of a CSV are converted to the unit of the key.  Strengths and times
+        of a series and corners of a load, which stand in tables within a section, must be
+        dimensionless there, as must all columns where the run is not in SI units.  Numbers of a
+        .parquet are taken as they are, in the unit of the key, as are those of a .nc without the
+        attribute ``units``.
+        ``joint[FILE][number.name]`` becomes the column, float64, (rows,), with FILE the first
+        spelling of the file.
+
+        number: the uncertain number, whose name the column gets in ``joint``.
+        table: its table of TOML: file, a .csv, .nc or .parquet, relative to the run file, and
+        column.
+        Raises FileError for a table without a text at either key or with an unknown key, for a file
+        or column that cannot be read, for a column that is empty, has several axes, numbers that
+        are not finite or a unit that is unknown or of another dimension, and where its length
+        differs from that of the other columns of the file; MissingDependencyError for .parquet
+        without pyarrow.
+        """
+        check_keys(
+            self.path, f"{number.section}.{number.key}", table, ("file", "column", "distribution")
+        )
+        file = table.get("file")
+        column = table.get("column")
+        if not isinstance(file, str) or not isinstance(column, str):
+            raise self.fault(number, "must name a distribution, or a file and a column")
+        where = f"column {column!r} of {file}"
+        path = self.path.parent / file
+        try:
+            # strengths and times of a series, and corners of drives, have no unit of their own
+            values = read_column(
+                path, column, si_unit(number.key) if self.si and "." not in number.section else "1"
+            )
+        except (OSError, ValueError, KeyError, FileError) as error:
+            text = " ".join(str(error.problem if isinstance(error, FileError) else error).split())
+            raise self.fault(number, f"{where} cannot be read ({text:.200})") from error
+        columns = self.joint.setdefault(self.files.setdefault(path.resolve(), file), {})
+        if columns and next(iter(columns.values())).size != values.size:
+            raise self.fault(number, f"{where}: its length differs from that of the other columns")
+        columns[number.name] = values
+
+
+def _is_number(value: Any) -> bool:
+    """Whether a value of TOML is a number."""
+    return isinstance(value, (int, float)) and not isinstance(value, bool)
+
+
+def read_column(path: Path, column: str, unit: str) -> Floats:
+    """Read a column of finite numbers from a file.
+
+    path: path of a .csv, .nc (netCDF-4) or .parquet file.
+    column: name of the column or variable.
+    unit: unit in pint's spelling, "1" of a ratio, to which the numbers of a CSV, and of a .nc with
+        the attribute ``units``, are converted if it states another.
+    Returns float64, (n,), n >= 1, contiguous.
+    Raises FileError for a CSV that cannot be read, has no such column or several, or cells in it
+    that are no numbers; ParameterError for its unit, if that is unknown or has another dimension;
+    ValueError, OSError or KeyError for other files and suffixes, and for a column that is empty,
+    has several axes or has values that are no finite numbers; MissingDependencyError for .parquet
+    without pyarrow.
+    """
+    if path.suffix == ".csv":
+        values = column_in_unit(named_table(path, (column,)), column, unit)
+    elif path.suffix == ".parquet":
+        import pandas as pd
+
+        import_extra("pyarrow", "parquet")
+        values = pd.read_parquet(path, columns=[column])[column].to_numpy()
+    elif path.suffix == ".nc":
+        import xarray as xr
+
+        with xr.open_dataset(path, engine="h5netcdf") as dataset:
+            values = dataset[column].values
+            given = str(dataset[column].attrs.get("units", ""))
+        factor, offset = (1.0, 0.0) if given in NO_UNIT else conversion(given, unit)
+        values = factor * values + offset
+    else:
+        raise ValueError("a sample must be .csv, .nc or .parquet")
+    if (
+        values.ndim != 1
+        or values.size == 0
+        or values.dtype.kind not in "iuf"
+        or not np.isfinite(values).all()
+    ):
+        raise ValueError("it must contain finite numbers, one in each row")
+    return np.ascontiguousarray(values, np.float64)
+
+
+def correlated(path: Path, inputs: Inputs) -> Inputs:
+    """Return the inputs with the Gaussian copula that the section [correlation] states; without it
+    nothing is added.
+
+    path: path of the run file, for errors.
+    inputs: :class:`Inputs` of the run without correlations; ``content["correlation"]`` has a ->
+        b -> correlation in (-1, 1) of the normal variables of which the inputs a and b are monotone
+        functions.  A pair that is not given has correlation 0; a.b and b.a may both be given if
+        they are equal.
+    Returns new Inputs with ``correlated``, the names in [correlation] in the order of ``random``,
+    and ``mixing``, the Cholesky factor of their matrix; without that section they are () and None.
+    Raises FileError for a section of another form, a name without distribution, a value out of
+    range, a.b that differs from b.a, or a matrix that is not positive definite.
+    """
+    section = inputs.content.get("correlation", {})
+    random = inputs.random
+    if not isinstance(section, dict):
+        raise section_error(
+            path,
+            "",
+            "correlation",
+            "correlation: must be a section [correlation] with lines like V0.mu = 0.5",
+        )
+    pairs: dict[tuple[str, str], Any] = {}
+    for a, row in section.items():
+        if not isinstance(row, dict):
+            raise section_error(
+                path, "correlation", a, f"{a} = {row!r:.40}: must be a line like V0.mu = 0.5"
+            )
+        pairs |= {(a, b): value for b, value in row.items()}
+    names = tuple(name for name in random if any(name in pair for pair in pairs))
+    matrix = np.eye(len(names))
+    for (a, b), value in pairs.items():
+        problem = ""
+        if unknown := [name for name in (a, b) if name not in random]:
+            allowed = f"must be one of the inputs with a distribution, {', '.join(random)}"
+            problem = f"{unknown[0]!r} has none: {allowed}{suggestion(unknown[0], random)}"
+        elif a == b or not _is_number(value) or not -1.0 < value < 1.0:
+            problem = (
+                f"{a}.{b} = {value!r:.40}: must be a number in (-1, 1) for two different inputs"
+            )
+        elif pairs.get((b, a), value) != value:
+            problem = f"{a}.{b} = {value!r}: must be equal to {b}.{a} = {pairs[b, a]!r:.40}"
+        if problem:
+            raise section_error(path, "correlation", a, problem)
+        n = names.index(a)
+        m = names.index(b)
+        matrix[n, m] = matrix[m, n] = value
+    try:
+        mixing: Any = np.linalg.cholesky(matrix) if names else None
+    except np.linalg.LinAlgError:
+        raise section_error(
+            path,
+            "",
+            "correlation",
+            "[correlation] these correlations contradict each other: their matrix must be positive "
+            "definite",
+        ) from None
+    return replace(inputs, correlated=names, mixing=mixing)

@@ -1,0 +1,501 @@
+"""Grids of the contact law: axes and values.
+
+Nodes of the axes of a grid: in equal steps or ratios, and of creepage, for the onset of full
+slip at every speed.
+
+The contact law on a grid, for look-up blocks of other programs.
+
+Fields: beta, length of the stick zone divided by contact length; Q, creep force; lam, contact
+length divided by that at rest; epsilon, shift of the contact in half contact lengths; M, rolling
+moment, and its parts M_half_space and M_cylinder; delta_star, creepage at which full slip begins;
+delta_0, creepage of free rolling, of a layer; zeta, time in which a point passes through half the
+contact.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..contact_mechanics.contact import contact
+from ..contact_mechanics.coupled_tables import coupled_law
+from ..core.checks import Floats, check_array, check_choice, check_integer, check_number
+from ..core.errors import ParameterError, described_error, shape_error
+from ..laws.law_netcdf import bodies_as_toml, law_as_dataset, parse_law
+from ..laws.law_table import LawTable
+from ..materials.checked_netcdf import dataset_content
+from ..materials.prony_forms import HIGHEST_ALPHA
+from ..rollers import Cylinder, Scene
+from . import table_files
+from .interpolate import Interpolant
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# --- Nodes of the axes of a grid ---
+
+#: Largest number of nodes of a grid: 400 MB a field, more than any look-up block reads.
+MAX_NODES = 50_000_000
+#: Largest creepage divided by the largest one at which full slip begins: some nodes lie beyond, so
+#: that the ends of the spline are flat.
+_END_RATIO = 1.1
+
+
+def spread(
+    low: float, high: float, count: int, spacing: Literal["linear", "log"] = "linear"
+) -> Floats:
+    """Return numbers in equal steps or equal ratios between two ends, which are exact.
+
+    Parameters
+    ----------
+    low, high : ends, low < high; with "log" low > 0.
+    count : number of values, both ends among them, 2 to 5e7.
+    spacing : "linear" (equal steps) or "log" (equal ratios).
+
+    Returns
+    -------
+    array of shape (count,)
+        The numbers, ascending; the first is ``low`` and the last is ``high``.  Neighbours may be
+        equal where the steps are below rounding.
+
+    Raises
+    ------
+    ParameterError
+        An unknown spacing, ends that are not finite, low >= high, high - low beyond the doubles, a
+        count out of range or no whole number, or "log" with low <= 0.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.spread(0.01, 1.0, 3, "log")
+    array([0.01, 0.1 , 1.  ])
+    """
+    check_choice("spacing", spacing, "linear", "log")
+    low = check_number("low", low, above=0.0 if spacing == "log" else -np.inf)
+    high = check_number("high", high)
+    if not high > low:
+        raise ParameterError("high", high, f"> low = {low:g}")
+    if high - low == np.inf:
+        raise ParameterError("high", high, f"less than 1.8e308 above low = {low:g}")
+    return (np.geomspace if spacing == "log" else np.linspace)(
+        low, high, check_integer("count", count, 2, MAX_NODES)
+    )
+
+
+def creep_nodes(
+    what: Scene | Cylinder, V: ArrayLike, count: int, *, alpha: ArrayLike | None = None
+) -> Floats:
+    """Return nodes of creepage for a grid, which resolve the partial slip at every speed and alpha.
+
+    Full slip begins at delta = +-delta_star(V, alpha), of a layer at delta_0 +- delta_star.
+
+    Parameters
+    ----------
+    what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, or a law, as of
+    :func:`grid_build`.
+    V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_ref, where
+        T_ref is T_epsilon of a scene with alpha, else the unit of time of its material; of a
+        Cylinder in m/s.
+    count : number of nodes, odd, 5 to 5e7.
+    alpha : values of alpha of the grid, (m,), in [1, 1e12], strictly increasing, in place of that
+        of a Scene without a material; None: the grid has no such axis, and ``what`` its own alpha
+        or material.
+
+    Returns
+    -------
+    array of shape (count,)
+        Creepages, dimensionless, ascending, symmetric about 0, which is one of them.  Half of the
+        nodes lie in equal steps.  The other half are divided equally among all (V, alpha): those of
+        each lie in equal steps within +-1.1 times its delta_star, of a layer its
+        delta_star + |delta_0|.  The ends are +-1.1 times the largest of these
+        values: there the whole contact slips.
+
+    Raises
+    ------
+    ParameterError
+        Where ``what`` is none of these or has arrays; a count that is even, no whole number, or
+        outside of 5 to 5e7; speeds or alphas that are empty, out of range or not increasing;
+        ``alpha`` of a Cylinder or beside a material; what :func:`viscoroll.contact` refuses, as
+        kappa V above 1e300.
+    FileError
+        The dataset of a law that is incomplete or does not state its material.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> scene = vr.presets.PAPER_SECTION_5
+    >>> V = vr.tables.spread(1e-5, 4.0, 160, "log")
+    >>> grid = vr.tables.build(scene, V, delta=vr.tables.creep_nodes(scene, V, 161))
+    """
+    if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
+        raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
+    roller: Any = roller_of(what, alpha)
+    speeds = increasing("V", V, unit=roller.scale, above=0.0)
+    roller = roller if alpha is None else roller.replace(alpha=increasing("alpha", alpha, low=1.0))
+    speeds = speeds if alpha is None else speeds[:, np.newaxis]
+    found = roller.contact(speeds, delta=0.0, fields=("delta_star", "delta_0"))
+    ends = np.sort(_END_RATIO * (found.delta_star + np.abs(found.delta_0)), axis=None)
+    # nodes divided by their number, per creepage; between two ends it is constant
+    density = (1.0 / ends[-1] + np.cumsum(1.0 / ends[::-1])[::-1] / ends.size) / 2.0
+    fraction = np.append(0.0, np.cumsum(density * np.diff(ends, prepend=0.0)))
+    places = np.append(0.0, ends)
+    half = np.interp(np.linspace(0.0, fraction[-1], count // 2 + 1), fraction, places)
+    return np.concatenate([-half[:0:-1], half])
+
+
+def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
+    """Return the roller of a grid: a scene or a cylinder itself, of a law the scene with kappa =
+    mu = 1.
+
+    what: a :class:`Scene`, a :class:`Cylinder`, a :class:`LawTable` of half-spaces, or the dataset
+    of one.
+    alpha: what the caller gave for an axis of alpha; None without.
+    Raises ParameterError for anything else (the law of a layer or of every alpha too), for a roller
+    whose parameters are arrays, for a cylinder whose scene is out of range, and for alpha of a
+    cylinder or beside a material; FileError for a dataset of a law that is incomplete.
+    """
+    if str(getattr(what, "attrs", {}).get(table_files.KIND)) == "law":
+        what = parse_law(dataset_content(what), "law")
+    if isinstance(what, LawTable) and what.cover is None:
+        what = Scene(kappa=1.0, mu=1.0, material=what)
+    if not isinstance(what, Scene | Cylinder):
+        raise ParameterError("what", f"{what!r:.60}", "a Scene, a Cylinder or a law of half-spaces")
+    if shape := (what if isinstance(what, Scene) else what.scene()).shape:
+        raise shape_error("what", shape, "one scene or cylinder whose parameters are numbers")
+    if alpha is not None and (isinstance(what, Cylinder) or what.material is not None):
+        raise described_error("alpha", "is given", "left out: the material determines alpha")
+    return what
+
+
+def increasing(name: str, nodes: Any, **bounds: Any) -> Floats:
+    """Return the nodes of an axis as a new vector.
+
+    name: name of the axis, for messages.
+    nodes: a number, which is an axis of one node, or numbers (n,), as a caller gave them, perhaps
+    with a unit.
+    bounds: keywords of :func:`.check_array`: ``unit``, "1" by default, and the bounds ``low`` (>=),
+        ``above`` (>) and ``high`` (<=) of the values, by default none.
+    Raises ParameterError for nodes that are not numeric, not finite, out of range or not strictly
+    increasing, for none, for more than one axis, and for a unit of another dimension.
+    Returns the nodes, (n,), n >= 1, strictly increasing, float64, in the unit of ``bounds``; always
+    a copy.
+    """
+    axis = np.atleast_1d(check_array(name, nodes, **bounds)).copy()
+    if axis.ndim != 1 or not axis.size or (np.diff(axis) <= 0.0).any():
+        found = "does not increase strictly" if axis.size else "is empty"
+        found = found if axis.ndim == 1 else f"has shape {axis.shape}"
+        raise described_error(name, found, "a number, or a vector that increases strictly")
+    return axis
+
+
+# --- The contact law on a grid, for look-up blocks of other programs ---
+
+#: Random points over which a stated error is the largest.
+SAMPLE_SIZE = 100_000
+#: Seed of these points, so that the error can be reproduced.
+SEED = 20260102
+#: Fields whose difference of two methods is relative at every node.  The printed forms of other
+#: fields lose relative digits where they are small beside their largest value
+#: (kernels/law/printed_law.py), which is their scale.
+RELATIVE_FIELDS = ("lam", "zeta", "delta_star")
+#: Attributes with the parameters of a scene.
+_SCENE_NUMBERS = ("alpha", "kappa", "mu")
+#: Attributes with the parameters of a cylinder.
+_CYLINDER_NUMBERS = ("R", "m", "mu", "load")
+
+
+def build(
+    what: Scene | Cylinder | LawTable | xr.Dataset,
+    V: ArrayLike | None = None,
+    *,
+    delta: ArrayLike | None = None,
+    alpha: ArrayLike | None = None,
+    method: Literal["table", "direct", "coupled"] = "table",
+    nodes: tuple[int, int] | None = None,
+    progress: bool = False,
+    command: str | None = None,
+) -> xr.Dataset:
+    """Compute a table of the contact over (V, delta) or (V, delta, alpha), and its errors of
+    interpolation.
+
+    Parameters
+    ----------
+    what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or the law of
+        half-spaces, of :func:`viscoroll.load_law` or the dataset of
+        :func:`viscoroll.tables.law_dataset`.  A law is taken with kappa = mu =
+        1: the axis V then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa
+        M.  The law of a layer has no such scale, since delta_0 does not vary with mu: it is
+        refused, as is the law of every alpha.  All parameters are numbers, no arrays.
+    V : speeds of the axis, (n,), > 0, strictly increasing, divided by R/T_ref (T_ref is T_epsilon
+        of a scene with alpha) or in m/s; for V < 0 the attribute ``comment`` states which fields
+        change their sign.  A number, here and below, is an axis of one node.
+    delta : creepages, (n,), dimensionless, any sign, strictly increasing.
+    alpha : values of alpha, (n,), in [1, 1e12], strictly increasing, in place of that of a scene
+        without a material;
+        None: no such axis.
+    method : "table": fields are evaluated from the rows of the law.  "direct": they are found by
+        root solves of the equations as the paper prints them, which have one relaxation time; the
+        rows are evaluated too, and the attribute ``difference_from_rows`` of each field is the
+        largest difference (:func:`differences`).  "coupled": pressure and shear are solved
+        together, at nodes of speed and creepage that the package chooses, so that V, delta and
+        alpha are left out; the table is a law at this mu, which :func:`viscoroll.load_law` reads.
+    nodes : of method "coupled", numbers of nodes over speed and over creepage, the second odd;
+        None: 32 for each five decades between the rates of the bodies, and 33.
+    progress : of method "coupled", whether to draw a progress bar on standard error, after one
+    second.
+    command : recorded in ``history``; default: the command line of this process.
+
+    Returns
+    -------
+    xarray.Dataset
+        beta and Q over (V, delta) or (V, delta, alpha); lam, epsilon, M, its parts in both bodies,
+        delta_star and zeta over V (and alpha), and of a layer delta_0; units, symbols, equations in
+        the attributes.  Nodes have the bits of :func:`contact` by this method.
+
+        ``spline_error`` of a field is the largest absolute error of :func:`interpolate`,
+        ``linear_error`` that of linear interpolation in the untransformed axes, over 10^5 random
+        points in random cells; ``spline_error_at`` and ``linear_error_at`` name the point, as in
+        "V = 0.31, delta = 0.0042".  Attributes of the dataset are those of a CF file, ``method``,
+        the parameters of the roller (of a scene alpha, kappa and mu, of a cylinder R, m, mu and
+        load) and, unless the scene has an alpha alone, ``material``, the bodies as TOML.
+
+    Raises
+    ------
+    ParameterError
+        Where ``what`` is none of these or has arrays; an axis is out of range or does not increase
+        strictly; there are more than 5e7 nodes; ``alpha`` is given for a cylinder or for a scene
+        with a material; an unknown method, or "direct" of a material; what
+        :func:`viscoroll.contact` refuses, as kappa V above 1e300.
+    FileError
+        The dataset of a law that is incomplete or does not state its material.
+    ConvergenceError
+        Method "direct": an iteration reached its limit.
+
+    Warns
+    -----
+    ModelWarning
+        As :func:`viscoroll.contact`, of a Cylinder.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> grid = vr.tables.build(
+    ...     vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1]
+    ... )
+    >>> grid["Q"].dims
+    ('V', 'delta')
+
+    Notes
+    -----
+    For programs that look up tables.  The file of a law is smaller and exact
+    (:func:`viscoroll.tables.law_dataset`).
+    """
+    import xarray as xr
+
+    if method == "coupled":
+        for name, given in {"V": V, "delta": delta, "alpha": alpha}.items():
+            if given is not None:
+                raise described_error(
+                    name, "is given", "left out: the method 'coupled' has nodes of its own"
+                )
+        return _coupled_dataset(roller_of(what, None), nodes, progress)
+    for name, given in {"V": V, "delta": delta}.items():
+        if given is None:
+            raise ParameterError(name, None, "given: the nodes of the axis")
+    what = roller_of(what, alpha)
+    si = isinstance(what, Cylinder)
+    axes = {
+        "V": increasing("V", V, unit=what.scale, above=0.0),
+        "delta": increasing("delta", delta),
+    }
+    if alpha is not None:
+        axes["alpha"] = increasing("alpha", alpha, low=1.0, high=HIGHEST_ALPHA)
+    if (size := math.prod(axis.size for axis in axes.values())) > MAX_NODES:
+        raise described_error(
+            "the grid", f"has {size:g} nodes", f"a grid of at most {MAX_NODES:g} nodes"
+        )
+    plane = tuple(name for name in axes if name != "delta")
+    data = {
+        name: table_files.variable(
+            name, plane if name in table_files.PLANE else tuple(axes), values, si
+        )
+        for name, values in _evaluate_nodes(what, axes, method).items()
+    }
+    coordinates = {
+        name: table_files.variable(name, (name,), axis, si) for name, axis in axes.items()
+    }
+    units = "in SI units, per m of length" if si else "dimensionless"
+    title = f"Contact of a viscoelastic cylinder rolling with partial slip, {units}"
+    grid = ", ".join(
+        f"{name} {axis.size} in [{axis[0]:g}, {axis[-1]:g}]" for name, axis in axes.items()
+    )
+    table = xr.Dataset(
+        data, coordinates, table_files.global_attributes(title, grid, command) | {"method": method}
+    )
+    numbers = _CYLINDER_NUMBERS if si else _SCENE_NUMBERS
+    table.attrs |= {name: float(getattr(what, name)) for name in numbers if name not in axes}
+    material = what.pair if isinstance(what, Cylinder) else what.material
+    if material is not None:
+        table.attrs["material"] = bodies_as_toml(material)
+    _state_errors(table, what)
+    if method == "direct":
+        for name, difference in differences(table, what).items():
+            table[name].attrs["difference_from_rows"] = difference
+    return table
+
+
+def _coupled_dataset(
+    roller: Scene | Cylinder, nodes: tuple[int, int] | None, progress: bool
+) -> xr.Dataset:
+    """Return the table of the coupled solution of one roller; arguments as of
+    :func:`grid_build`.
+    """
+    law = coupled_law(roller.scene(), nodes=nodes, progress=progress)
+    if isinstance(roller, Cylinder):
+        law = replace(law, T_ref=roller.T_ref, pair=roller.pair)
+    return law_as_dataset(law, {})
+
+
+def _evaluate_nodes(
+    roller: Scene | Cylinder, axes: dict[str, Floats], method: str
+) -> dict[str, Floats]:
+    """Return all fields on the nodes of a grid; those over V alone are not computed for each delta.
+
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
+    axes: "V", "delta" and perhaps "alpha" -> nodes, (n,), in the units of the roller.
+    method: "table" (rows of the law) or "direct" (root solves of the printed equations).
+
+    Returns field -> values in the units of the roller: "beta" and "Q" of shape (V, delta) or (V,
+    delta, alpha); lam, epsilon, M, M_half_space, M_cylinder, delta_star, zeta and, of a layer,
+    delta_0, which do not depend on the creepage, (V,) or (V, alpha).
+    Raises as :func:`_evaluate`.
+    """
+    grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
+    plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
+    scene = roller.scene() if isinstance(roller, Cylinder) else roller
+    names = tuple(
+        name for name in table_files.PLANE if name != "delta_0" or scene.cover is not None
+    )
+    fields = _evaluate(roller, plane, names, method)
+    volume = _evaluate(roller, grid, table_files.VOLUME, method)
+    return volume | {name: np.take(values, 0, axis=1) for name, values in fields.items()}
+
+
+def _evaluate(
+    roller: Scene | Cylinder,
+    points: dict[str, Floats],
+    names: tuple[str, ...],
+    method: Any = "table",
+) -> dict[str, Floats]:
+    """Return fields of the contact: name -> values in the broadcast shape of the points, in the
+    units of the roller.
+
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid.
+    points: "V", and perhaps "delta" and "alpha" -> arrays that broadcast; without "delta" fields
+        are at delta = 0 as an array (1,), which broadcasts too; without "alpha" the roller has its
+        own.
+    names: names of the fields, as of :func:`viscoroll.contact`.
+    method: "table" (rows of the law) or "direct" (root solves of the printed equations).
+    Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out
+    of range; ConvergenceError where an iteration of "direct" reaches its limit.  A Cylinder may
+    warn with ModelWarning.
+    """
+    own = roller.replace(alpha=points["alpha"]) if "alpha" in points else roller
+    creep = points.get("delta", np.zeros(1))
+    return contact(own, points["V"], delta=creep, fields=names, method=method).as_dict()
+
+
+def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
+    """Add the largest errors of both interpolations, and where they occur, to the attributes of the
+    fields of a grid.
+
+    table: the grid, which is changed.  Each field gets the attributes spline_error and
+        linear_error, the largest absolute error of cubic splines and of linear interpolation over
+        :data:`SAMPLE_SIZE` random points, in the unit of the field; and spline_error_at and
+        linear_error_at, the first such point as text, as "V = 0.31, delta = 0.0042", of the axes
+        that the field depends on.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, for the exact values at random
+    points.
+    """
+    points = random_points(table, SAMPLE_SIZE, SEED)
+    for key, linear in (("spline_error", False), ("linear_error", True)):
+        for name, errors in errors_at(table, roller, points, linear).items():
+            worst = int(errors.argmax())
+            table[name].attrs[key] = float(errors[worst])
+            table[name].attrs[f"{key}_at"] = ", ".join(
+                f"{dim} = {points[str(dim)][worst]:.6g}" for dim in table[name].dims
+            )
+
+
+def errors_at(
+    table: xr.Dataset, roller: Scene | Cylinder, points: dict[str, Floats], linear: bool = False
+) -> dict[str, Floats]:
+    """Return the absolute errors of interpolation in a grid: field -> errors, (n,), in the unit of
+    the field.
+
+    table: :class:`xr.Dataset`, the grid.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, for the values from the rows of
+        the law with which the interpolated ones are compared.
+    points: each axis of the grid -> coordinates, (n,), finite, within the axis, in the units of the
+    grid.
+    linear: whether interpolation is linear in V, delta and alpha, else by cubic splines in ln V,
+    delta and ln alpha.
+    Raises OutOfTableError for a point outside of an axis.
+    """
+    exact = _evaluate(roller, points, table_files.fields_of(table))
+    found = Interpolant(table, linear)(**points)
+    return {name: np.abs(found[name] - exact[name]) for name in table_files.fields_of(table)}
+
+
+def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
+    """Return random points in random cells of a grid; along an axis of one node they all have its
+    coordinate.
+
+    A cell is drawn with equal probability for each axis, then the place in it evenly in the
+    coordinate itself.
+
+    table: the grid, dataset of :func:`grid_build`; also an atlas.
+    count: number of points, >= 0.
+    seed: seed of the generator, >= 0.
+    Returns axis -> coordinates, (count,), in the units of the grid.
+    """
+    random = np.random.default_rng(seed)
+    points = {}
+    for name in table_files.axes_of(table):
+        nodes = table[name].values
+        if nodes.size == 1:
+            points[name] = np.full(count, nodes[0])
+            continue
+        cell = random.integers(nodes.size - 1, size=count)
+        points[name] = nodes[cell] + random.random(count) * (nodes[cell + 1] - nodes[cell])
+    return points
+
+
+def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
+    """Return the largest difference of each field between the nodes of a grid and the rows of the
+    law.
+
+    table: :class:`xr.Dataset`, the grid, by whatever method it was computed, which is not changed.
+    roller: :class:`Scene` or :class:`Cylinder`, roller of the grid, with all of its fields (else
+    KeyError).
+    Returns field -> largest difference over all nodes, a float >= 0: for :data:`RELATIVE_FIELDS`
+    divided by the magnitude in the rows at the same node, for other fields by the largest magnitude
+    in the rows.  Both are dimensionless.  Where that magnitude is 0, as of M of elastic bodies, the
+    difference itself is taken, in the unit of the field.
+    """
+    rows = _evaluate_nodes(
+        roller, {name: table[name].values for name in table_files.axes_of(table)}, "table"
+    )
+    found = {}
+    for name in table_files.fields_of(table):
+        size = np.abs(rows[name])
+        scale = size if name in RELATIVE_FIELDS else size.max()
+        found[name] = float(
+            np.max(np.abs(table[name].values - rows[name]) / np.where(scale > 0.0, scale, 1.0))
+        )
+    return found

@@ -1,0 +1,501 @@
+"""The law of a material, a pair or every alpha as a dataset, and checks of tables.
+
+The law of one material or pair, or of every alpha, as a dataset with its measured errors.
+
+kappa is the radius divided by the contact length at rest; zeta is the time in which a point passes
+through half the contact, eta that through half the stick zone, in units of T_ref.  At a speed V:
+lam = 2 kappa V zeta is the contact length divided by that at rest, epsilon the shift of the contact
+in half contact lengths, H(zeta) = (zeta/lam)^2 and F(zeta) = zeta (1 + epsilon).  M is the rolling
+moment, N that of M + N dV/dt at slow speed changes, delta_star the creepage at which full slip
+begins, and delta_0 that of free rolling, which is 0 but for a layer.
+
+Checks of tables: the file of a law against the formulas of its modes, a grid against the rows of
+the law.
+
+The rows of a law are its polynomials, one for each octave of speed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from .. import __version__
+from ..contact_mechanics.contact_table import evaluate_law
+from ..contact_mechanics.coupled_pair import CoupledPair
+from ..contact_mechanics.coupled_tables import measure_errors
+from ..core.checks import Floats, check_integer
+from ..core.errors import FileError, ParameterError, check_one_given
+from ..laws import law_table
+from ..laws.cover_rows import solve_at_speed
+from ..laws.law_netcdf import law_as_dataset, law_table_of, parse_axis, parse_law
+from ..laws.law_rows import Rows, evaluate_by_modes
+from ..laws.law_table import LawTable
+from ..laws.row_layout import AXIS_FUNCTIONS, COVER_FUNCTIONS, FUNCTIONS
+from ..materials.checked_netcdf import (
+    AXIS,
+    COUPLED,
+    COVER,
+    KIND,
+    LAW,
+    dataset_content,
+    stated_errors,
+)
+from ..rollers import Cylinder, Scene
+from . import table_files
+from .grid_build import RELATIVE_FIELDS, differences, errors_at, random_points
+from .table_files import is_law
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+# --- The law of one material or pair, or of every alpha ---
+
+#: Points at which a table of the coupled solution is compared with states.
+COUPLED_POINTS = 80
+#: Fields of a cover that are compared with its solve.
+_COVER_FIELDS = "lam", "delta_star", "epsilon", "M_half_space", "M_cylinder"
+#: Speeds at which they are compared.
+_COVER_SPEEDS = 40
+#: Terms of the pressure in that solve: half as many again as for the rows.
+_COVER_TERMS = 60
+#: Number of functions of kappa |V|, the first in FUNCTIONS; the others are functions of v =
+#: 1/F(eta).
+_SPEED_FUNCTIONS = 5
+#: Points in every octave at which errors are measured.
+_POINTS_PER_OCTAVE = 8
+#: Random alphas in every octave of alpha at which errors are measured.
+_ALPHAS_PER_OCTAVE = 16
+#: Seed of these points and alphas, so that the errors can be reproduced.
+_SEED = 20250701
+
+
+def law(
+    material: Any = None, base: Any = None, *, alpha: tuple[float, float] | None = None
+) -> xr.Dataset:
+    r"""Return the contact law of one material or pair for other programs: polynomials, one for each
+    octave of speed.
+
+    Parameters
+    ----------
+    material : a :class:`viscoroll.Prony`, a :class:`viscoroll.Bodies`, a
+        :class:`viscoroll.Material` without a thickness, a :class:`viscoroll.Cylinder`, of which the
+        bodies are taken, or a number alpha in [1, 1e12], of a solid with T_epsilon = 1.
+    base : the :class:`viscoroll.Material` of the half-space where it differs from that of the
+        cylinder; only beside a Material.
+    alpha : in place of a material, (lowest, highest) alpha of the law of every alpha between, of
+        one relaxation time with T_epsilon = 1; both in [1, 1e12], the first below the second.  The
+        range is extended to whole octaves [2^n, 2^(n+1)).
+
+    Returns
+    -------
+    xarray.Dataset
+        Of half-spaces the coefficients of lam, epsilon, m_half_space, m_cylinder (M of either body
+        divided by V) and N over ``kappa |V|``, of share = eta/F(eta) and press = H(eta)/F(eta)^2
+        over v = 1/F(eta), where eta is half the transit time of the stick zone; each is a variable
+        over (octave, power), and has its ``largest_relative_error`` as an attribute
+        (:func:`measured_errors`).  Further variables are the fast limits and both forms of the
+        series; attributes are the material as TOML and ``comment``, which describes the evaluation.
+        The law holds for any speed, creepage, kappa, mu, load and radius.
+
+        Of a cylinder with a layer (a thickness) the law holds at its ratio of l0 to thickness
+        alone, that is at its load and radius, and at any speed, creepage and mu.  It has no N and
+        no series, and in addition functions of ``kappa |V|`` alone: limit = 2 kappa delta_star/mu,
+        and what shear does (``comment``).
+
+        With ``alpha`` the polynomials are of ln alpha too, one for each octave of alpha, of lam,
+        epsilon/c, M/(V c), N/c, share and press with c = (alpha - 1)/alpha, over (octave_of_alpha,
+        degree, octave, power).
+
+    Raises
+    ------
+    ParameterError
+        An argument that is no material, or materials in an array; alphas out of range, or not two
+        in ascending order; both or neither of ``material`` and ``alpha``; a ``base`` beside
+        anything but a Material; a Material with a thickness, as its law depends on load and radius:
+        give the Cylinder; a layer too thin for its law.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> table = vr.tables.law(vr.presets.RUBBER_CYLINDER)
+    >>> table.attrs["viscoroll_table"]
+    'law'
+    """
+    check_one_given(material=material, alpha=alpha)
+    table: LawTable | law_table.LawAxis
+    if alpha is not None:
+        if base is not None or np.shape(alpha) != (2,):
+            raise ParameterError(
+                "alpha", f"{alpha!r:.60}", "the lowest and the highest value, for example (1, 4096)"
+            )
+        table = law_table.law_axis(*alpha)
+    elif isinstance(material, Cylinder):
+        pair = material.pair
+        table = law_table_of(pair if pair.covered is None else material.scene().material, base)
+        if (
+            pair.covered is not None
+        ):  # a layer, which the scene of the cylinder has in units of its l0
+            table = replace(table, T_ref=material.T_ref, pair=pair)
+    else:
+        table = law_table_of(material, base)
+    return law_as_dataset(table, measured_errors(table))
+
+
+def measured_errors(
+    table: LawTable | law_table.LawAxis, count: int | None = None, seed: int = _SEED
+) -> dict[str, float]:
+    """Compare a tabulated law with exact values at random points, and return the largest error of
+    each function.
+
+    There are three cases:
+
+    - Half-spaces: no equation is solved.  A random zeta (half the transit time of the contact, in
+      T_ref) gives, by the closed formulas of the modes, the functions and the speed ``kappa |V|``
+      or v = 1/F at which they have these values.  Points in the fast limit, beyond the last row of
+      the table, are left out.
+    - Every alpha: 16 random alphas for each octave of alpha; the law of each is compared as one of
+      half-spaces.
+    - A table of the coupled solution: states that are no nodes are solved, and errors are absolute.
+    - A cover, a layer of finite thickness: at each random speed the contact is solved with more
+      terms of the pressure than the table was made with (:func:`_measured_errors_of_cover`).
+
+    Parameters
+    ----------
+    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.alpha_axis.LawAxis`, the law
+        of every alpha.
+    count : number of points.  Of every alpha the laws of the random alphas share it, with at least
+        one point each.
+        None or 0: eight for each octave of zeta (of each alpha), or 40 speeds for a cover.
+    seed : seed of the points and alphas, >= 0.
+
+    Returns
+    -------
+    dict of str to float
+        Name of a function -> largest error, >= 0, dimensionless; 0.0 of a function that is 0 at all
+        points, as epsilon of elastic bodies.
+
+        - Half-spaces, names :data:`FUNCTIONS`: relative to the exact value at the point; of
+          m_half_space and m_cylinder relative to their sum there, of N to the largest |N| at one
+          zeta in each octave.
+        - Every alpha, names :data:`AXIS_FUNCTIONS`: the largest of these over the alphas; "m" has
+          the sum of the largest errors of both parts of M.
+        - A cover: names and scales of :func:`_measured_errors_of_cover`, without N.
+
+    Raises
+    ------
+    ParameterError
+        A cover whose solve at one of the speeds finds no contact length that carries the load.
+    """
+    if isinstance(table, LawTable) and table.coupled is not None:
+        pair = CoupledPair.of_scene(Scene(material=table, kappa=1.0, mu=table.coupled.mu))
+        return measure_errors(table.coupled, pair, count or COUPLED_POINTS, seed)
+    random = np.random.default_rng(seed)
+    if isinstance(table, law_table.LawAxis):
+        octaves = len(table.rows)
+        alphas = np.exp2(
+            table.first + octaves * random.random(_ALPHAS_PER_OCTAVE * octaves)
+        ).tolist()
+        found = [
+            measured_errors(table.at(alpha), count and 1 + count // len(alphas), seed)
+            for alpha in alphas
+        ]
+        worst = {name: max(errors[name] for errors in found) for name in FUNCTIONS}
+        worst["m"] = worst["m_half_space"] + worst["m_cylinder"]
+        return {name: worst[name] for name in AXIS_FUNCTIONS}
+    if table.cover is not None:
+        return _measured_errors_of_cover(table, count or _COVER_SPEEDS, random)
+    rows = table.coefficients.shape[0]
+    e0 = table.e0
+    # kappa |V| = 1/(2 sqrt(H)) and v = 1/F lie within [1/(2 zeta sqrt(alpha)), 1/zeta].
+    octaves = rows + np.log2(table.alpha) / 2.0 + 3.0
+    zeta = np.exp2(2.0 - e0 - octaves * random.random(count or int(_POINTS_PER_OCTAVE * octaves)))
+    (shift, growth, half_space, cylinder), _, N = evaluate_by_modes(table.material, zeta)
+    root = np.sqrt(1.0 + 2.0 * growth)
+    F = 1.0 + shift
+    M = half_space + cylinder
+    exact = 1.0 / root, shift, half_space, cylinder, N, 1.0 / F, (root / F) ** 2
+    # of a few points the largest |N| may be far below that of the law
+    largest = np.abs(
+        evaluate_by_modes(table.material, np.exp2(2.0 - e0 - np.arange(octaves))).N
+    ).max()
+    scales = exact[0], exact[1], M, M, np.full(zeta.size, largest), exact[5], exact[6]
+    errors = {}
+    for n, name in enumerate(FUNCTIONS):
+        x = 0.5 / (zeta * root) if n < _SPEED_FUNCTIONS else 1.0 / (zeta * F)
+        inside = (x < np.ldexp(1.0, e0 + rows - 1)) & (scales[n] > 0.0)
+        error = (
+            np.abs(_evaluate_polynomial(table, n, x[inside]) - exact[n][inside]) / scales[n][inside]
+        )
+        errors[name] = float(np.max(error, initial=0.0))
+    return errors
+
+
+def _measured_errors_of_cover(
+    table: LawTable, count: int, random: np.random.Generator
+) -> dict[str, float]:
+    """Compare the law of a layer at random speeds with solves of the contact, which have 60 terms
+    of the pressure.
+
+    Each speed takes a solve by the secant method (:func:`.cover_rows.solve_at_speed`).
+
+    table: :class:`LawTable` of a cover.
+    count: number of speeds u = kappa |V|, >= 1, drawn evenly in ln u at random, from a tenth of the
+        slowest rate of the bodies (at most 0.1) to ten times the fastest (at least 10), rates
+        multiplied by T_ref.
+    random: numpy Generator, which draws the speeds and is advanced.
+    Returns function -> error, >= 0, dimensionless.  Largest relative errors: "lam", "epsilon",
+    "limit" (of L = 2 kappa delta_star/mu), "m_half_space" and "m_cylinder" (relative to their sum
+    M; 0 where M = 0).  Those that shear
+    has: the largest error divided by L at the same speed.  Not measured but bounded, to first
+    order, by share = lam/L and press = 1/L^2: "share" has the sum of the errors of lam and L,
+    "press" twice the error of L.
+    Raises ParameterError where a solve finds no contact length that carries the load.
+    """
+    cover: Any = table.material
+    assert table.cover is not None
+    slow = 0.1 / table.retardation_time.max(initial=1.0)
+    fast = 10.0 / table.relaxation_time.min(initial=1.0)
+    u = slow * (fast / slow) ** random.random(count)
+    exact = np.array([solve_at_speed(cover, each, orders=_COVER_TERMS) for each in u.tolist()]).T
+    lam, L, epsilon, *moments = exact[: len(_COVER_FIELDS)]
+    M = u * sum(moments)
+    by_shear = exact[len(_COVER_FIELDS) :]
+    if len(table.steady_coefficients) > 1:
+        found = Rows(table.e0, len(table.steady_coefficients)).read(table.cover.creep[1:], u)[0]
+    else:
+        found = table.cover.creep[1:, 0, :1]
+    errors = dict(zip(COVER_FUNCTIONS[1:], (found - by_shear) / L, strict=True))
+    # at the creepage of free rolling there is no traction
+    free = 0.5 * (found[0] + found[1])
+    values = evaluate_law(table, [1.0, 1.0, 1.0, u, free], u.shape, False, _COVER_FIELDS)
+    errors |= {"lam": values[0] / lam - 1.0, "limit": 2.0 * values[1] / L - 1.0}
+    errors["epsilon"] = np.divide(
+        values[2] - epsilon, epsilon, out=np.zeros(count), where=epsilon > 0.0
+    )
+    for name, value, moment in zip(_COVER_FIELDS[3:], values[3:], moments, strict=True):
+        errors[name.replace("M", "m")] = np.divide(
+            value - u * moment, M, out=np.zeros(count), where=M > 0.0
+        )
+    largest = {name: float(np.abs(error).max(initial=0.0)) for name, error in errors.items()}
+    return largest | {"share": largest["lam"] + largest["limit"], "press": 2.0 * largest["limit"]}
+
+
+def _evaluate_polynomial(table: LawTable, function: int, x: Floats) -> Floats:
+    """Evaluate one function of a law by its rows of polynomials.
+
+    table: :class:`LawTable`, the law.
+    function: index in :data:`FUNCTIONS`: 0 lam, 1 epsilon, 2 m_half_space, 3 m_cylinder, 4 N, 5
+        share, 6 press.
+    x: kappa |V| for functions 0 to 4, v = 1/F(eta) for the others, (n,), dimensionless, > 0 and
+        below the end of the last row, 2^(e0 + rows - 1); the fast limit beyond it is not evaluated.
+    Returns values, (n,), dimensionless.
+    """
+    m, e = np.frexp(x)
+    row = np.maximum(e - table.e0, 0)
+    t = np.where(row == 0, np.ldexp(x, -table.e0), 4.0 * m - 3.0)
+    return np.asarray(
+        np.polynomial.polynomial.polyval(t, table.coefficients[row, :, function].T, tensor=False)
+    )
+
+
+# --- Checks of tables ---
+
+#: Largest allowed difference of a node of a grid from the rows, relative or divided by the largest
+#: value of its field: M as printed has an error of 9e-14 at kappa V = 100
+#: (kernels/law/printed_law.py).
+NODES_ALLOWED = 1e-12
+#: Ratio by which the error in a random sample may exceed the stated error, which is the largest of
+#: another sample.
+SAMPLE_RATIO = 2.0
+#: Largest allowed error of the splines of a grid, divided by the largest value of the field,
+#: whatever the grid states: a bound beyond the range of the field would allow anything.
+_MOST_ALLOWED = 0.5
+#: The same of a table of the coupled solution, whose stated errors are those of some tens of
+#: points.
+_COUPLED_RATIO = 8.0
+#: Kind of the file of a law -> points at which it is checked, and the reference.
+_REFERENCES = {
+    LAW: "points, against the formulas of the modes",
+    AXIS: "points shared by the alphas, against the formulas of the modes",
+    COVER: "speeds, against solves with more terms",
+    COUPLED: "points, against states of the coupled solution",
+}
+#: Rounding error of a value, added to the stated error.
+ROUNDING = 2e-15
+
+
+class Check(NamedTuple):
+    """A largest difference and its bound.
+
+    name : name of the check.
+    measured, allowed : largest difference and its bound, in the unit that ``meaning`` states.
+    meaning : words: relative or absolute, at which points, against which reference.
+    """
+
+    name: str
+    measured: float
+    allowed: float
+    meaning: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether the difference is within the bound; a NaN is not."""
+        return bool(self.measured <= self.allowed)
+
+
+@dataclass(frozen=True)
+class Report:
+    """All checks of a validation, and the settings it ran with.
+
+    checks : the checks, :class:`Check` each, at least one.
+    settings : name of a setting, as "seed" -> number; only printed.
+    """
+
+    checks: tuple[Check, ...]
+    settings: dict[str, int]
+
+    @property
+    def ok(self) -> bool:
+        """Whether every check passed."""
+        return all(check.passed for check in self.checks)
+
+    def __str__(self) -> str:
+        """Return a table in words: a heading, a line for each check, a blank line, the verdict,
+        version and settings.
+
+        The line of a check has its name, the measured and the allowed difference, "ok" or
+        "EXCEEDED", and the meaning.  The verdict is the number of checks whose difference is beyond
+        what is allowed or NaN, or that there is none.
+        Raises ValueError without checks.
+        """
+        width = max(len(check.name) for check in self.checks)
+        lines = [
+            f"{c.name:<{width}} {c.measured:9.2e} {c.allowed:9.2e}  "
+            f"{'ok' if c.passed else 'EXCEEDED':<8}  {c.meaning}"
+            for c in self.checks
+        ]
+        failed = sum(not check.passed for check in self.checks)
+        verdict = (
+            f"{failed} beyond what is allowed"
+            if failed
+            else "every difference is within what is allowed"
+        )
+        settings = ", ".join(f"{name} {value}" for name, value in self.settings.items())
+        return "\n".join(
+            [
+                f"{'check':<{width}}  measured   allowed            of what",
+                *lines,
+                "",
+                f"{len(self.checks)} checks: {verdict}.",
+                f"viscoroll {__version__}; {settings}",
+            ]
+        )
+
+
+def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
+    """Check a table by numbers that were not used to make it, and return a :class:`Check` for each
+    difference.
+
+    The law of half-spaces, or the laws of random alphas, are compared with the formulas of the
+    modes at random speeds; the law of a layer with solves of the contact
+    (:func:`measured_errors`).  Of a grid every node is compared with the rows of the law, and
+    the splines at random points in random cells.
+
+    Parameters
+    ----------
+    table : dataset of :func:`viscoroll.tables.law_dataset`, of :func:`viscoroll.tables.grid_build`
+        for a scene of one relaxation time, or of :func:`viscoroll.tables.load`.
+    count : number of random points, >= 1; of a layer that of the speeds, of every alpha as of
+        :func:`measured_errors`.
+    seed : seed of the random points, >= 0.
+
+    Returns
+    -------
+    list of Check
+        Of a law one for each function: the largest error, dimensionless, of the kind that
+        :func:`measured_errors` states; allowed are the error that the file states times
+        :data:`SAMPLE_RATIO` plus :data:`ROUNDING`.  Of a grid two for each field: its nodes, then
+        its splines (:func:`_check_grid`).
+
+    Raises
+    ------
+    ParameterError
+        A count or seed out of range or no whole number; the law of a layer whose solve finds no
+        contact length.
+    FileError
+        A grid of a material or a cylinder, a dataset that is no table, or a law that is incomplete.
+    KeyError
+        A law without a title or a stated error, or a field of a grid without the attribute
+        ``spline_error``.
+    """
+    count = check_integer("n", count, 1)
+    seed = check_integer("seed", seed, 0)
+    source = table.encoding.get("source", "table")
+    if not is_law(table):
+        return _check_grid(table, count, seed, source)
+    content = dataset_content(table)
+    kind = content.attributes[KIND]
+    read = parse_axis if kind == AXIS else parse_law
+    count = min(count, COUPLED_POINTS) if kind == COUPLED else count
+    ratio = _COUPLED_RATIO if kind == COUPLED else SAMPLE_RATIO
+    errors = measured_errors(read(content, source), count, seed)
+    meaning = f"{'absolute' if kind == COUPLED else 'relative'}; {count} {_REFERENCES[kind]}"
+    return [
+        Check(f"{table.attrs['title']}: {name}", errors[name], ratio * stated + ROUNDING, meaning)
+        for name, stated in stated_errors(table).items()
+    ]
+
+
+def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
+    """Compare a grid with the rows of the law: two checks for each field, of its nodes and of the
+    splines between them.
+
+    table: dataset of a grid; attributes kappa and mu, and alpha unless it is an axis.
+    count: number of random points, >= 1.
+    seed: seed of these points, >= 0.
+    source: path of the grid, for messages.
+    Returns a flat list of 2 times as many :class:`Check` as the grid has fields: nodes and splines
+    of the first field ("beta"), nodes and splines of the second, and so on.
+
+    - "grid: NAME, nodes": the largest difference over all nodes (:func:`.grid_build.differences`),
+      dimensionless: of lam, zeta and delta_star relative at each node, of the other fields divided
+      by their largest magnitude.  Allowed are 1e-12.
+    - "grid: NAME, splines": the largest error at ``count`` random points, absolute, in the unit of
+      the field.  Allowed are 2 times the ``spline_error`` that the grid states, plus 2e-15, and at
+      most half of the largest magnitude of the field at the nodes, unless that is 0.
+
+    Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a
+    cylinder, a material, or of version 0.1.0); KeyError for a field without ``spline_error``.
+    """
+    table_files.check_grid(table, source)
+    if (
+        table.attrs[table_files.KIND] != "grid"
+        or not {"kappa", "mu"} <= table.attrs.keys()
+        or "material" in table.attrs
+    ):
+        raise FileError(
+            source,
+            "is not a grid of a scene with an alpha: only such grids can be compared with the law",
+        )
+    scene = Scene(
+        alpha=table.attrs.get("alpha", 1.0), kappa=table.attrs["kappa"], mu=table.attrs["mu"]
+    )
+    nodes = differences(table, scene)
+    splines = errors_at(table, scene, random_points(table, count, seed))
+    checks = []
+    for name in table_files.fields_of(table):
+        kind = "relative" if name in RELATIVE_FIELDS else "divided by the largest"
+        checks.append(
+            Check(f"grid: {name}, nodes", nodes[name], NODES_ALLOWED, f"{kind}; all, against rows")
+        )
+        most = _MOST_ALLOWED * float(np.abs(table[name]).max()) or np.inf
+        allowed = min(SAMPLE_RATIO * float(table[name].attrs["spline_error"]) + ROUNDING, most)
+        meaning = f"absolute; {count} points, against rows"
+        checks.append(
+            Check(f"grid: {name}, splines", float(np.max(splines[name])), allowed, meaning)
+        )
+    return checks

@@ -1,0 +1,338 @@
+"""Export of laws and grids: netCDF, C, JSON, CSV, Modelica, MATLAB."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Callable
+from importlib.resources import files
+from os import PathLike
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import __version__
+from ..core.checks import Floats
+from ..core.errors import ParameterError, described_error
+from ..core.files import as_path, replace_file, write_text
+from ..core.scale import PAPER
+from ..laws.law_netcdf import parse_law
+from ..materials.checked_netcdf import CHECKSUM, dataset_content
+from . import table_files
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+#: Attributes of a grid with the parameters of its roller.
+_PARAMETERS = ("alpha", "kappa", "mu", "R", "m", "load")
+
+
+def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
+    """Write a law or a grid for another program, whole or not at all.
+
+    Parameters
+    ----------
+    table : dataset of :func:`law_dataset`, :func:`grid_build` or :func:`tables.load`.
+    path : file to write, whose suffix, also in capitals, selects the format; a file of that name is
+        replaced.  For a law and a grid: .nc (netCDF-4), or .cdf (netCDF-3, for readers without
+        HDF5).  For a law: .h (C99 and C++: table and evaluator in one header) or .json.  For a
+        grid: .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or .mat (MATLAB, Simulink).
+
+    Raises
+    ------
+    ParameterError
+        Another suffix; for C a file name that, without its suffix, is no identifier; for Modelica a
+        grid over several alphas or an atlas (a grid of version 0.1.0, over three axes), as its
+        tables have two inputs.
+    FileError
+        If it is no path or cannot be written there; ``table`` is neither a law nor a grid, is
+        incomplete, of another major version of the schema, or a law whose numbers differ from their
+        checksum; for C the law of every alpha.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> vr.tables.export(vr.tables.law(11.0), "rubber.h")
+
+    Notes
+    -----
+    The numbers in a file have the same bits as in ``table`` (``tests/tables/test_grids.py``,
+    ``tests/tables/test_law.py``).  netCDF has all variables and attributes; CSV has the variables
+    alone, Modelica Q and M alone; a header of C has the polynomials and their limits; JSON has all
+    variables, and of the attributes title, viscoroll_table, bodies, material, comment, references,
+    source, license, the checksum and law_schema.
+    """
+    path = as_path(path)
+    table_files.check_content(table, "export")
+    formats = LAW if table_files.is_law(table) else GRID
+    suffix = path.suffix.lower()
+    if suffix not in formats:
+        kind = "law" if table_files.is_law(table) else "grid"
+        raise ParameterError("path", path, f"a name that ends in {', '.join(formats)} for a {kind}")
+    formats[suffix](table, path)
+
+
+def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
+    """Write a law or a grid in the 64-bit offset format (CDF-2), which every netCDF library since
+    2004 reads.
+
+    table: dataset of the law or grid.
+    path: file to write; it is replaced if it exists.
+    Raises FileError if it cannot be written.
+    """
+    with replace_file(path) as temporary:
+        encoding = {name: {"_FillValue": None} for name in table.variables}
+        table.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT", encoding=encoding)
+
+
+def _write_csv(table: xr.Dataset, path: Path) -> None:
+    """Write a grid as CSV: a row of names, then one for every node, the first axis slowest.
+
+    Columns are the axes, then the fields; a field that does not depend on the creepage is repeated
+    for each delta.  The digits read back to the same bits.
+
+    table: dataset of the grid.
+    path: file to write; it is replaced if it exists.
+    Raises FileError if it cannot be written.
+    """
+    fields = table[list(table_files.fields_of(table))]
+    with replace_file(path) as temporary:
+        fields.to_dataframe(dim_order=list(table_files.axes_of(table))).to_csv(temporary)
+
+
+def _write_modelica(table: xr.Dataset, path: Path) -> None:
+    """Write tables of a grid for Modelica: Q over (V, delta) for CombiTable2D, M over V for
+    CombiTable1D blocks.
+
+    The file is text: "#1", comments, then "double Q(n+1,m+1)", whose first column is V and first
+    row delta with 0 in the corner, and "double M(n,2)" with the columns V and M, in the units of
+    the grid.  Other fields are left out.
+
+    table: dataset of a grid over V and delta with Q and M (else KeyError); an axis alpha must have
+    one node.
+    path: file to write; it is replaced if it exists.
+    Raises ParameterError for a grid over several alphas, and for an atlas; FileError if the file
+    cannot be written; KeyError as :func:`_modelica_header`.
+    """
+    plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
+    if table_files.axes_of(plane) != ("V", "delta"):
+        allowed = (
+            "a grid on V and delta, the two inputs of a Modelica table: select one alpha by "
+            "table.sel(alpha=...)"
+        )
+        raise described_error(
+            "table", f"has the axes {', '.join(table_files.axes_of(table))}", allowed
+        )
+    V = table["V"].values
+    delta = table["delta"].values
+    matrices = {
+        "Q": np.block(
+            [[np.zeros((1, 1)), delta[np.newaxis]], [V[:, np.newaxis], plane["Q"].values]]
+        ),
+        "M": np.column_stack([V, plane["M"].values]),
+    }
+    lines = ["#1", *(f"# {line}" for line in _modelica_header(table))]
+    for name, matrix in matrices.items():
+        lines += [f"double {name}({matrix.shape[0]},{matrix.shape[1]})"]
+        lines += [" ".join(map(repr, row)) for row in matrix.tolist()]
+    write_text(path, "\n".join([*lines, ""]))
+
+
+def _modelica_header(table: xr.Dataset) -> list[str]:
+    """Return the lines that describe a grid and its use in Modelica, without marks of a comment.
+
+    table: dataset of the grid.
+    Returns texts of one line, in this order: version and title; the paper; a line for each
+    parameter of the roller that the grid states, and the material as TOML; axes and units; use of Q
+    and of M; signs for V < 0; the absolute errors of linear interpolation in Q and M, with the
+    point where each occurs if the grid states it (NaN if it states none).
+    Raises KeyError for a grid without the attributes title and grid, or without units of V, Q and
+    M.
+    """
+    units = {name: table[name].attrs["units"] for name in ("V", "Q", "M")}
+    stated = ", ".join(
+        f"{name}: {'dimensionless' if unit == '1' else unit}" for name, unit in units.items()
+    )
+    errors = []
+    for name in ("Q", "M"):
+        point = table[name].attrs.get("linear_error_at")
+        errors.append(
+            f"error_{name} = {linear_error(table[name]):.3g}" + (f" at {point}" if point else "")
+        )
+    return [
+        f"viscoroll {__version__}: {table.attrs['title']}",
+        PAPER,
+        *(f"{name} = {table.attrs[name]!r}" for name in _PARAMETERS if name in table.attrs),
+        *str(table.attrs.get("material", "")).splitlines(),
+        f"{table.attrs['grid']}; {stated}",
+        "Q: CombiTable2D (CombiTable2Ds from Modelica 4.0 on), u1 = V, u2 = delta",
+        "M: CombiTable1Ds, u = V; CombiTimeTable reads the same layout",
+        "For V < 0 look up |V| and change the sign of Q and M.  Do not extrapolate "
+        "(Extrapolation.NoExtrapolation).",
+        "Absolute error with Smoothness.LinearSegments, the largest at random points between the "
+        "nodes:",
+        *errors,
+    ]
+
+
+def linear_error(field: xr.DataArray) -> float:
+    """Return the stated error of linear interpolation in a field, absolute, in its unit.
+
+    field: variable of a grid.  Its attribute "linear_error" is returned; files of version 0.1.0
+        state that error as "interpolation_error".
+    Returns the error; NaN if the field states none, and of an atlas, whose errors are of another
+    interpolation.
+    """
+    spline = field.attrs.get("interpolation_error", np.nan) if "V" in field.dims else np.nan
+    return float(field.attrs.get("linear_error", spline))
+
+
+def _write_matlab(table: xr.Dataset, path: Path) -> None:
+    """Write a grid as one struct ``viscoroll`` of MATLAB: breakpoints, tables, linear errors,
+    dimensions, parameters.
+
+    Its fields are each axis and each field of the grid by name, arrays whose axes of one node are
+    dropped (such an axis itself is a number); structs ``dimensions`` (names of the axes of each
+    field, as "V, delta"), ``linear_error`` (NaN where none is stated) and ``linear_error_at`` (""
+    where none is stated), each with an entry for every field of the grid; a text ``about``; and a
+    struct ``given`` with those of alpha, kappa, mu, R, m, load and material that the grid states.
+    All is in one struct because alpha and beta are functions of MATLAB, which variables of these
+    names would hide.
+
+    table: dataset of the grid, with the attributes title and comment (else KeyError).
+    path: file to write; it is replaced if it exists.
+    Raises FileError if it cannot be written.
+    """
+    from scipy.io import savemat
+
+    names = table_files.fields_of(table)
+    arrays = {name: table[name].values.squeeze() for name in (*table_files.axes_of(table), *names)}
+    content: dict[str, Any] = arrays | {
+        "dimensions": {name: ", ".join(map(str, table[name].squeeze().dims)) for name in names},
+        "linear_error": {name: linear_error(table[name]) for name in names},
+        "linear_error_at": {name: table[name].attrs.get("linear_error_at", "") for name in names},
+        "about": f"viscoroll {__version__}. {table.attrs['title']}. {PAPER}. Breakpoints and "
+        "tables for n-D lookup; "
+        "dimensions names the breakpoints of each table. linear_error: absolute error of linear "
+        "interpolation in all "
+        f"breakpoints; linear_error_at: the point where it is largest. {table.attrs['comment']}",
+        "given": {
+            name: table.attrs[name] for name in (*_PARAMETERS, "material") if name in table.attrs
+        },
+    }
+    with replace_file(path) as temporary:
+        savemat(temporary, {"viscoroll": content}, do_compression=True)
+
+
+def _write_header(dataset: xr.Dataset, path: Path) -> None:
+    """Write the rows of a law and their evaluator as one header of C.
+
+    The header contains title, source, T_ref, checksum and material as a comment, the evaluator
+    (``c/vr_law.h``), an array ``static const double NAME_coefficients`` (octave, power, function),
+    of a cover ``NAME_creep`` too, and a variable ``static const vr_law NAME``, which refers to
+    them.
+
+    dataset : dataset of a law, of half-spaces or of a cover.
+    path : file to write, replaced if it exists; its stem becomes the name of the variable.
+    Raises ParameterError for a stem that is no identifier of C; FileError for the law of every
+    alpha, which has no such evaluator, for a law that is incomplete, and if the file cannot be
+    written.
+    """
+    name = path.stem
+    if not re.fullmatch(r"[A-Za-z_]\w*", name, re.ASCII):
+        raise ParameterError(
+            "path", path, "a file name that is a valid C identifier, for example rubber.h"
+        )
+    from ..kernels.law.cover_law import COVER_FRONT_SIZE
+
+    table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))
+    if table.coupled is not None:
+        allowed = (
+            "a name that ends in .nc, .cdf or .json for a table of the coupled solution, or "
+            "a law without it"
+        )
+        raise ParameterError("path", path, allowed)
+    front = table.record.rows[:8]
+    arrays = {f"{name}_coefficients": table.coefficients}
+    fields = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays]
+    of_cover = ["0", "{0.0}"]
+    if table.cover is not None:
+        arrays[f"{name}_creep"] = np.moveaxis(table.cover.creep, 0, -1)
+        of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:COVER_FRONT_SIZE])]
+    constants = "".join(
+        f"static const double {array}[{len(rows)}][VR_TERMS][{rows.shape[-1]}] = "
+        f"{_initializer(rows)};\n"
+        for array, rows in arrays.items()
+    )
+    evaluator = files("viscoroll.tables").joinpath("c/vr_law.h").read_text(encoding="utf-8")
+    material = "\n".join(
+        f" * {line}".rstrip() for line in dataset.attrs["material"].splitlines()
+    ).replace("*/", "* /")
+    write_text(
+        path,
+        f"""/* {dataset.attrs["title"].replace("*/", "* /")}
+ *
+ * Written by {dataset.attrs["source"]}; T_ref = {table.T_ref!r} s; {CHECKSUM} {dataset.attrs[CHECKSUM]}
+ *
+{material}
+ */
+{evaluator}
+#ifndef VR_LAW_{name}
+#define VR_LAW_{name}
+{constants}static const vr_law {name} = {{{len(table.coefficients)}, {table.e0}, {", ".join(fields + of_cover)}}};
+#endif
+""",  # noqa: E501
+    )
+
+
+def _initializer(values: Floats) -> str:
+    """Return an array as a nested initializer of C, with digits that read back to the same bits;
+    NaN becomes NAN.
+    """
+    text = json.dumps(values.tolist(), separators=(",", ":")).replace("],", "],\n")
+    return text.translate(str.maketrans("[]", "{}")).replace("NaN", "NAN")
+
+
+def _write_json(dataset: xr.Dataset, path: Path) -> None:
+    """Write the variables, as nested lists of numbers, and some attributes of a law as one JSON
+    object.
+
+    The object has the attributes title, viscoroll_table, bodies, material, comment, references,
+    source, license and sha256_of_numbers, the checksum, as far as the dataset has them; law_schema
+    as an integer; and each variable by its name, a number if it has no axes.  Digits read back to
+    the same bits; a NaN is written as NaN, which is no JSON.
+
+    dataset: dataset of the law, of any kind.
+    path: file to write; it is replaced if it exists.
+    Raises FileError if it cannot be written.
+    """
+    numbers = {str(name): variable.values.tolist() for name, variable in dataset.variables.items()}
+    about = (
+        "title",
+        "viscoroll_table",
+        "bodies",
+        "material",
+        "comment",
+        "references",
+        "source",
+        "license",
+        CHECKSUM,
+    )
+    content = (
+        {name: dataset.attrs[name] for name in about if name in dataset.attrs}
+        | {"law_schema": int(dataset.attrs["law_schema"])}
+        | numbers
+    )
+    write_text(path, json.dumps(content, separators=(",", ":")))
+
+
+#: Suffix -> function that writes a law or a grid.
+_EITHER: dict[str, Callable[[xr.Dataset, Path], None]] = {
+    ".nc": table_files.save,
+    ".cdf": _write_netcdf3,
+}
+#: Suffix -> function that writes a law.
+LAW = _EITHER | {".h": _write_header, ".json": _write_json}
+#: Suffix -> function that writes a grid.
+GRID = _EITHER | {".csv": _write_csv, ".txt": _write_modelica, ".mat": _write_matlab}
