@@ -104,7 +104,7 @@ def pair_temperatures(
     for at, curve in zip(around, curves, strict=True):
         check_ambient(at, curve)
     load = roller.load  # type: ignore[attr-defined]
-    kappa = scene.kappa  # type: ignore[attr-defined]
+    kappa = scene.kappa
 
     def losses(theta: Floats) -> Floats:
         """Return the loss of each body, W/m, at temperatures of both, (2, m)."""
