@@ -57,6 +57,7 @@ numbers: setup figures benchmark ## measure again what README and docs state, an
 	-$(RUN) -m pipeline.evidence.measure.outside
 	-$(RUN) -m pipeline.evidence.measure.identification
 	$(RUN) -m pipeline.evidence.measure.fits
+	$(RUN) -m pipeline.evidence.measure.covers
 	$(RUN) -m pipeline.evidence.document
 	for name in geometry rolling-equilibria wheel-spin reversal slope; do cp out/figures/$$name.png docs/figures/; done
 	$(BIN)/viscoroll sensitivity src/viscoroll/datasets/sensitivity.toml -o out/sensitivity.nc

@@ -26,6 +26,8 @@ MATERIALS = {
     "elastic bodies": {"material": vr.Bodies(vr.Prony.elastic(), vr.Prony.elastic(), 0.3)},
     "a cover": {"material": vr.Cover(SERIES, nu=0.3, thickness=1.0, on="base"), "coupled": False},
 }
+#: what the C function writes
+NUMBERS = ctypes.c_double * len(LoadsAndSlopes._fields)
 BAD = [(np.nan, 0.1), (0.1, np.nan), (np.inf, 0.1), (0.1, -np.inf), (1e299, 1e299)]
 
 
@@ -60,7 +62,7 @@ def called(law, V, omega):
 
 def test_law_is_contact_to_the_bit(law):
     (function, scene) = law.ctypes
-    out = (ctypes.c_double * 8)()
+    out = NUMBERS()
     for V, omega in states(law.scene):
         state = vr.contact(law.scene, V, omega=omega, slopes=True, fields=LoadsAndSlopes._fields)
         expected = bits([getattr(state, name) for name in LoadsAndSlopes._fields])
@@ -88,13 +90,13 @@ def test_arrays_are_those_of_contact(law):
 
 def test_what_is_no_number_is_an_error_or_nan(law):
     (function, scene) = law.ctypes
-    out = (ctypes.c_double * 8)()
+    out = NUMBERS()
     for V, omega in BAD:
         with pytest.raises(vr.ParameterError):
             law(V, omega)
         with pytest.raises(vr.ParameterError):
             law(np.array([V, V]), omega)
-        out[:] = [0.0] * 8
+        out[:] = [0.0] * len(out)
         assert function(V, omega, out, scene) != 0
         assert np.isnan(out[:]).all()
         assert np.isnan(called(law.jitted, V, omega)).all()
@@ -113,7 +115,7 @@ def test_a_law_lasts_as_long_as_somebody_holds_a_part_of_it():
     expected = vr.law(scene)(0.3, 0.3001)
     (function, data) = vr.law(scene).ctypes
     jitted = vr.law(scene).jitted
-    out = (ctypes.c_double * 8)()
+    out = NUMBERS()
     others = [vr.law(scene.replace(mu=mu, material=SERIES.slower(mu))) for mu in (0.3, 0.4)]
     function(0.3, 0.3001, out, data)
     assert tuple(out[:4]) == jitted(0.3, 0.3001)[:4] == expected

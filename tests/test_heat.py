@@ -382,6 +382,50 @@ def test_strain_of_the_contact():
     assert ROLLER.validity(1.0).strain.holds is None
 
 
+def test_fit_at_the_strain_of_the_contact():
+    """Of moduli that fall with a power of the strain the fit has the strain that its own contact
+    has.
+    """
+    omega = np.geomspace(1e-2, 1e5, 60)
+
+    def record(strain, power=-0.3):
+        moduli = [part(omega) * (strain / 0.01) ** power for part in (RUBBER.storage, RUBBER.loss)]
+        return vr.DynamicModuli(omega, *moduli, strain=np.full(omega.size, strain), source="a test")
+
+    sets = [record(0.001), record(0.1)]
+    fit = vr.fit_at_strain(sets, ROLLER, 3.0)
+    own = fit.material(0.49)
+    strain = ROLLER.replace(material=own).validity(3.0).strain
+    assert close(fit.strain, strain.value, tol.STRAIN_FIXED)
+    assert strain.holds
+    assert close(
+        own.storage(1.0) / RUBBER.storage(1.0), (fit.strain / 0.01) ** -0.3, tol.STRAIN_FIT
+    )
+    assert "between the sets at 0.001 and 0.1" in own.measured.source
+    columns = (
+        np.concatenate(each)
+        for each in zip(*((each.omega, each.storage, each.loss) for each in sets))
+    )
+    whole = vr.DynamicModuli(*columns, strain=np.repeat([0.001, 0.1], omega.size), source="a test")
+    assert vr.fit_at_strain(whole, ROLLER, 3.0).E == fit.E
+    assert vr.fit_at_strain(sets[:1], ROLLER, 3.0).E == vr.fit_prony(sets[0]).E
+    small = vr.fit_at_strain([record(1e-6, 0.0), record(1e-5, 0.0)], ROLLER, 3.0)
+    assert small.source == "a test, the set at a strain of 1e-05"
+
+
+def test_fit_divides_by_a_vertical_shift():
+    """Curves of a rubber with an entropic shift give its moduli and its shift factors."""
+    omega = np.geomspace(1e-2, 1e4, 40)
+    at = [0.0, 20.0, 40.0]
+    hot = [dataclasses.replace(RUBBER, vertical_shift="entropic").at(T) for T in at]
+    moduli = [body.storage(omega) for body in hot], [body.loss(omega) for body in hot]
+    fit = vr.fit_prony(
+        [omega] * 3, *moduli, temperature=at, reference=20.0, vertical_shift="entropic"
+    )
+    assert close(fit.material().at(40.0, WLF).storage(10.0), hot[2].storage(10.0), tol.STRAIN_FIT)
+    assert close(fit.shifts.a_T, [WLF(T) / WLF(20.0) for T in at], tol.STRAIN_FIT)
+
+
 def test_heat_of_a_motion():
     """A free motion that loses nearly all of its energy warms a body by that over the capacity."""
     motion = ROLLER.roll(3.0, 30.0, [1.0, 2000.0])

@@ -25,7 +25,11 @@ def public_calls():
 
 
 def parameters(call):
-    if not (inspect.isfunction(call) or inspect.ismethod(call) or inspect.isclass(call)):
+    if not (
+        inspect.isfunction(call)
+        or inspect.ismethod(call)
+        or inspect.isfunction(getattr(call, "__init__", None))
+    ):
         return []
     found = inspect.signature(call).parameters.values()
     if any(each.kind is each.VAR_KEYWORD for each in found):

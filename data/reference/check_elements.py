@@ -219,16 +219,19 @@ _ON_ELEMENT = 4
 class OnLayer(NamedTuple):
     """What the elements find.
 
-    H, g, m : as of :class:`Boundary`.  star : delta_star/(mu V).  strain : of the surface by the
-    pressure, beyond that of a half-space, weighted with the pressure.  d, Q : delta/(mu V) and Q/mu
-    of the stick zone, without coupling.  least : of the inequalities, over their scales.
+    H, g, m : as of :class:`Boundary`.  star : delta_star/(mu V).  free : delta/V of free rolling
+    with stick, by the strain of the surface by the pressure beyond that of a half-space.  mirrored
+    : mean of that strain, mirrored about the middle of the contact and weighted with the pressure.
+    d, Q : delta/(mu V) and Q/mu of the stick zone, without coupling.  least : of the inequalities,
+    over their scales.
     """
 
     H: float
     g: float
     m: float
     star: float
-    strain: float
+    free: float
+    mirrored: float
     d: float
     Q: float
     least: float
@@ -315,11 +318,25 @@ class Layer:
         result: Floats = np.imag((np.exp(1j * at[:, None] * self.k) * factor) @ self.hats)
         return result
 
-    def strain(self, pressure: Floats, load: float, limit: float) -> float:
-        """Of the surface by the pressure, weighted with it, by C less its limit for short waves."""
-        power = np.abs(self.hats @ pressure) ** 2
-        whole = np.sum((self.C - limit) * self.weights / self.h * self.compliance.real * power)
-        return float(-whole / (math.pi * load))
+    def strain(self, pressure: Floats, limit: float, at: Floats) -> Floats:
+        """Strains of the surface at places by a pressure at the inner nodes, by C less its limit
+        for short waves.
+        """
+        factor = (self.C - limit) * self.weights * self.compliance / (math.pi * self.h)
+        result: Floats = -np.real(
+            np.exp(1j * at[:, None] * self.k) @ (factor * (self.hats @ pressure))
+        )
+        return result
+
+    def mirrored(self, pressure: Floats, load: float, limit: float) -> float:
+        """Mean of these strains, mirrored about 0, with the pressure as weight."""
+        whole = (
+            (self.C - limit)
+            * self.weights
+            / self.h
+            * (self.compliance * (self.hats @ pressure) ** 2).real
+        )
+        return float(-np.sum(whole) / (math.pi * load))
 
 
 def contact_on_layer(
@@ -351,13 +368,19 @@ def contact_on_layer(
     least = min(
         min(pressure.min(), rest[count:].min(), shear.min()) / pressure.max(), slip.min() / d
     )
-    strain = layer.strain(pressure, load, (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu))
+    limit = (1.0 - 2.0 * nu) / (2.0 - 2.0 * nu)
+    # stick without slip: the traction balances the strain by the pressure, and is 0 at both edges
+    strain = layer.strain(pressure, limit, middle)
+    stick = np.linalg.solve(np.column_stack([slopes, -np.ones(middle.size)]), -strain)
+    free = float(stick[-1]) - 0.5 * star * elements.moments(stick[:-1])[0] / load
+    mirrored = layer.mirrored(pressure, load, limit)
     return OnLayer(
         2.0 * load / math.pi,
         g,
         g + moment / load,
         star,
-        strain,
+        free,
+        mirrored,
         d,
         elements.moments(shear)[0] / load,
         least,
@@ -427,7 +450,8 @@ def cover_states(random: np.random.Generator, is_free: bool) -> Iterator[dict[st
         p = MATERIALS[n % 2]
         given = {"nu": nu, "thickness": thickness, "on": on, "part": part}
         scene = vr.Scene(material=vr.Cover(p, **given), kappa=KAPPA, mu=MU)
-        lam = float(vr.contact(scene, u / KAPPA, delta=0.0, fields="lam").lam)
+        free = vr.contact(scene, u / KAPPA, delta=0.0, fields="delta_0").delta_0
+        lam = float(vr.contact(scene, u / KAPPA, delta=free, fields="lam").lam)
         z = 0.5 * lam / u
         truth = extrapolated_on_layer(p, nu, z, 0.5 * lam / thickness, share * z, part)
         series = {"E": p.E.tolist(), "tau": p.tau.tolist()}

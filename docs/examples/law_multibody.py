@@ -36,7 +36,7 @@ def jacobian(t, y):
     _, V, omega = y.reshape(3, -1)
     n = V.size
     f = [law(*state, slopes=True) for law, *state in zip(laws, V, omega)]
-    dQ_dV, dQ_domega, dM_half_space, dM_cylinder = np.transpose(f)[4:]
+    dQ_dV, dQ_domega, dM_half_space, dM_cylinder = np.transpose(f)[4:8]
     one, to_rope = np.eye(n), np.eye(n) - np.eye(n, k=1)  # of the pull
     to_V = -to_rope.T  # of the closing speeds
     return np.block(

@@ -54,6 +54,7 @@ from .measurements.identify import identify as identify
 from .measurements.measurement_records import Coastdown as Coastdown
 from .measurements.measurement_records import Resistance as Resistance
 from .measurements.measurement_records import Traction as Traction
+from .measurements.strain_sets import fit_at_strain as fit_at_strain
 from .motion.ensemble import Ensemble as Ensemble
 from .motion.ensemble import ensemble as ensemble
 from .motion.motion_result import Motion as Motion

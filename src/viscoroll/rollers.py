@@ -215,7 +215,7 @@ class Cylinder(Methods):
         base: Material | None = None,
         load: ArrayLike | None = None,
         pressed: ArrayLike | None = None,
-        coupled: bool = True,
+        coupled: bool = False,
     ) -> None:
         """Check and freeze the parameters, which the class describes; each number may be an array
         (n,), or have a unit.

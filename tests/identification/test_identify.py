@@ -375,12 +375,17 @@ class Slow:
     high = np.array([6.0])
     start = np.array([0.0])
     active = np.array([0])
+    points = 1
+    columns = ()
 
     def __init__(self, rate):
         self.rate = rate
 
     def weighted(self, u):
         return np.zeros(1), np.ones((1, 1))
+
+    def noise(self, u):
+        return {}
 
     def minimize(self, u, *_):
         far = abs(u[0])

@@ -5,8 +5,10 @@ from importlib import import_module
 from types import SimpleNamespace
 
 import numpy as np
+import pandas as pd
 import pytest
 import tolerances as tol
+import xarray as xr
 from closeness import close
 from refusals import refused
 from run_files import run_of
@@ -19,7 +21,7 @@ from viscoroll.laws.cover_rows import cover_rows
 from viscoroll.motion.summaries import QUANTITIES, Histogram, merge_summaries, summarise
 from viscoroll.runs import estimate, run_store
 from viscoroll.runs.run_blocks import roll_block
-from viscoroll.runs.uncertain_inputs import Distribution, Inputs
+from viscoroll.runs.uncertain_inputs import Distribution, Inputs, read_column
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
@@ -215,7 +217,17 @@ t = 0.1
         "nu = 0.49", 'nu = { distribution = "uniform", loc = 0.4, scale = 0.1 }'
     )
     words = (
-        "[material] nu: E or nu of a body differs from motion to motion: must be",
+        "[material] nu: E or nu of a body has several values: must be",
         "or make the other body rigid (E = inf)",
     )
     assert "truncate" not in refused(lambda: run_of(text, tmp_path), *words, error=vr.FileError)
+
+
+def test_columns_of_parquet_and_netcdf_state_their_unit_or_warn(tmp_path):
+    values = {"E": [2.0, 3.0], "E [MPa]": [2.0, 3.0]}
+    pd.DataFrame(values).to_parquet(tmp_path / "x.parquet")
+    xr.Dataset({"E": ("n", values["E"])}).to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
+    for name in ("x.parquet", "x.nc"):
+        with pytest.warns(vr.ModelWarning, match="column 'E' has no unit, and is taken in Pa"):
+            assert read_column(tmp_path / name, "E", "Pa").tolist() == values["E"]
+    close(read_column(tmp_path / "x.parquet", "E [MPa]", "Pa"), [2e6, 3e6], rel=tol.UNIT_CONVERTED)

@@ -65,7 +65,13 @@ def test_data_over_the_band_determine_M(growth, thickness):
     )
     low, high = true.body_data.measured_speeds
     V = np.array([low, 5.0 * low, high / 5.0, high, 3.0 * high])
-    error = np.abs(found.contact(V, delta=0.0).M / true.contact(V, delta=0.0).M - 1.0)
+    # where a cover rolls freely: at delta = 0 its traction is a part of M that the data do not
+    # determine less
+    moments = [
+        each.contact(V, delta=each.contact(V, delta=0.0, fields="delta_0").delta_0).M
+        for each in (found, true)
+    ]
+    error = np.abs(moments[0] / moments[1] - 1.0)
     assert max(error[0], error[3]) < tol.MEASURED_END
     assert max(error[1], error[2]) < tol.MEASURED_INSIDE
     assert error[4] > tol.MEASURED_BEYOND
@@ -208,3 +214,13 @@ def test_a_run_file_beyond_what_was_measured(tmp_path, monkeypatch, E, spread):
     assert len(said) == (spread == 9.0)
     assert not said or "% of the motions" in said[0]
     assert not said or "measured from 0.06 to 1.88e+03" in said[0]
+
+
+def test_a_layer_in_millimetres_gives_one_warning():
+    rubber = vr.Material(E=2e6, nu=0.49, prony=vr.Prony([1.0], [1.0]), T_ref=0.01, thickness=8.0)
+    roller = vr.Cylinder(
+        R=0.0795, m=20.0, material=vr.Material.rigid(), base=rubber, mu=0.5, load=2e3, coupled=False
+    )
+    with pytest.warns(vr.ModelWarning, match="divide those in mm by 1000") as found:
+        roller.contact(1.0, delta=0.0, fields="M")
+    assert len(found) == 1

@@ -19,19 +19,23 @@ from .claim import Found, Proof, at
 
 _KAPPA = 10.0
 _MU = 0.5
+#: Friction, and creepage of full slip, far above all others.
+_MUCH = 1e3
+_FAR = 1e6
 
 
 def placed(truth: dict[str, Any]) -> tuple[vr.Scene, Any, str]:
-    """Return the scene of a state of the file, its contact without creep, and where it is, in
+    """Return the scene of a state of the file, its contact in free rolling, and where it is, in
     words.
 
     truth: series, cover, V, half lengths, and what the elements find.
     """
     cover = vr.Cover(vr.Prony(**truth["series"]), **truth["cover"])
     scene = vr.Scene(material=cover, kappa=_KAPPA, mu=_MU)
+    free = vr.contact(scene, truth["V"], delta=0.0, fields="delta_0").delta_0
     return (
         scene,
-        vr.contact(scene, truth["V"], delta=0.0),
+        vr.contact(scene, truth["V"], delta=free),
         at(V=truth["V"], eta=truth["eta"]) + f", {cover!r}",
     )
 
@@ -61,14 +65,26 @@ def states(_: np.random.Generator, count: int) -> Found:
 
 
 def free_creep(_: np.random.Generator, count: int) -> Found:
-    """Yield errors of delta_0 where nu = 1/2: then all strain by the pressure comes of the finite
-    thickness.
+    """Yield errors of delta_0 and delta_0* where nu = 1/2: all strain by the pressure comes of the
+    finite thickness.
 
     count: how many states of the file, the first ones.
     """
     for truth in read_elements("free_creep")[:count]:
-        _, state, where = placed(truth)
-        yield where, {"": abs(truth["V"] * truth["strain"] / state.delta_0 - 1.0)}
+        (scene, state, where) = placed(truth)
+        V = truth["V"]
+        # in full slip, with so much friction that the law does not limit delta_0* - delta_0
+        forth, back = (
+            vr.contact(scene.replace(mu=_MUCH), V, delta=each).M_half_space
+            for each in (_FAR, -_FAR)
+        )
+        yield (
+            where,
+            {
+                "free": abs(V * truth["free"] / state.delta_0 - 1.0),
+                "mirrored": abs(V * truth["mirrored"] / (0.5 * (back - forth) / _MUCH) - 1.0),
+            },
+        )
 
 
 _BOUND = 2e-6
@@ -95,7 +111,16 @@ PROOFS = [
         "covers",
         "cover_states",
         "one and three modes, ν = 0.5, h/l0 0.2 to 20, κV 0.05 to 4",
-        {"": ("δ0 of a cover against boundary elements, relative", _BOUND)},
+        {
+            "free": (
+                "δ0 of a cover, free rolling with stick, against boundary elements, relative",
+                _BOUND,
+            ),
+            "mirrored": (
+                "δ0* of a cover, the mirrored strain, against boundary elements, relative",
+                _BOUND,
+            ),
+        },
         free_creep,
         "free creep",
     ),

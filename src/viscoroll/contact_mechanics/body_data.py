@@ -36,6 +36,8 @@ from .strain import assess_strain
 _GRAVITY = 9.81
 #: Largest radius of a wheel or roller, m: none is larger, but those in mm are.
 _LARGEST_R = 10.0
+#: Largest thickness of a layer, m: no cover or belt is thicker, but those in mm are.
+_LARGEST_THICKNESS = 1.0
 #: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness
 #: matter.
 _LEAST_SHARE = 0.01
@@ -162,8 +164,16 @@ class BodyData:
 
     @cached_property
     def in_metres(self) -> bool:
-        """Whether no radius is above 10 m, as one that was given in mm."""
-        return float(np.max(self.R, initial=0.0)) <= _LARGEST_R
+        """Whether no radius is above 10 m and no layer above 1 m, as those that were given in
+        mm.
+        """
+        layers = (
+            []
+            if self.pair is None
+            else [self.pair.cylinder.thickness, self.pair.half_space.thickness]
+        )
+        limits = [(self.R, _LARGEST_R), *((h, _LARGEST_THICKNESS) for h in layers if h is not None)]
+        return all(float(np.max(length, initial=0.0)) <= limit for length, limit in limits)
 
     @cached_property
     def covered_speeds(self) -> tuple[float, float] | None:

@@ -43,7 +43,6 @@ from ..laws.law_rows import series_record
 from ..materials.bodies import Cover, total_series
 from .assumptions import moment_error, transit_frequency
 from .contact_table import ACCURACY, evaluate_contact, field_names
-from .coupled_contact import coupled_stress, evaluate_coupled
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
 
@@ -204,7 +203,8 @@ def contact(
     (:mod:`.law_table`), which are computed at first use, in some milliseconds for
     half-spaces, and kept.  The result of a state does not depend on other states of the call.
 
-    Method "coupled" is good to 2e-4 mu P in Q, 3e-5 in kappa M, 3e-4 in lam and epsilon
+    Method "coupled" is good to 3e-4 mu P in Q, 2e-5 in kappa M and 1e-4 in lam and epsilon, where
+    alpha is above 100 and u T/alpha is short beside the contact to 5e-5 and 5e-4
     (``tests/contact_law/test_coupled.py``).  It takes some 2 ms a state, and 50 ms for each
     kappa |V|.
 
@@ -229,6 +229,8 @@ def contact(
         speed = divide_by_unit("V", speed, scale["V"])
         creep = divide_by_unit(creep_name, creep, scale[creep_name])
     if method == "coupled":
+        from .coupled_contact import evaluate_coupled
+
         found = evaluate_coupled(scene, speed, creep, delta is None, names)
     else:
         found = evaluate_contact(scene, speed, creep, delta is None, names, method)
@@ -356,6 +358,8 @@ def stress(
             speed = divide_by_unit("V", speed, scale["V"])
             creep = divide_by_unit(creep_name, creep, scale[creep_name])
     if method == "coupled":
+        from .coupled_contact import coupled_stress
+
         both = coupled_stress(scene, position, speed, creep, creep_name == "omega")
         parts = {name: scale["p"] * value for name, value in zip(("p", "tau"), both, strict=True)}
         parts = {name: value if value.ndim else value.item() for name, value in parts.items()}

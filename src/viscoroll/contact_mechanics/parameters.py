@@ -30,7 +30,6 @@ from ..laws.law_table import LawTable, coupled_table, law_table
 from ..materials.bodies import Bodies, Cover
 from ..materials.prony import Prony
 from ..materials.prony_forms import HIGHEST_ALPHA
-from .coupled_pair import CoupledPair
 
 #: Names of the dimensionless numbers of a scene.
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
@@ -167,7 +166,7 @@ class Parameters(Roller):
     gamma: Any = None
     j: Any = 0.5
     material: Prony | Bodies | LawTable | None = None
-    coupled: bool = True
+    coupled: bool = False
     _law: ClassVar[LawTable | None] = None
     shape: ClassVar[tuple[int, ...]] = ()
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
@@ -361,6 +360,7 @@ class Parameters(Roller):
             return self._law.coupled is not None
         if not self.coupled or not isinstance(self.material, Bodies):
             return False
+        from .coupled_pair import CoupledPair
         from .coupled_tables import is_coupled
 
         several = bool(self.material.shape)
@@ -380,6 +380,7 @@ class Parameters(Roller):
         """
         if not self.tabulated or self._law is not None:
             return self.table
+        from .coupled_pair import CoupledPair
         from .coupled_tables import SECONDS, stored_rows
 
         mus = np.unique(self.mu)
@@ -593,4 +594,4 @@ def _refuse_ratio(mu: Floats, kappa: Floats) -> None:
         ratio = np.asarray(mu / kappa)
     wrong = ratio[~((low <= ratio) & (ratio <= high))]
     if wrong.size:
-        raise ParameterError("mu/kappa", f"{wrong.flat[0]:g}", f"in [{low:g}, {high:g}]")
+        raise ParameterError("mu/kappa", f"{wrong.flat[0]}", f"in [{low:g}, {high:g}]")

@@ -337,12 +337,10 @@ _THICKNESS = (0.2, 0.3, 0.5, 1.0, 2.0, 5.0)
 #: coupling, for every nu, material, speed and creepage (held by
 #: ``pipeline/evidence/prove/cover.py``).
 _ERROR = (0.064, 0.058, 0.046, 0.029, 0.018, 0.011)
-#: Error of Q divided by mu P, divided by |delta_0|/delta_star, by which shear acts back on the
-#: pressure more than the law has it: of coupled boundary elements at seven scenes 0.29 where the
-#: assumption ``traction`` holds, 0.36 else.
-_SHEAR_ERROR = 0.3
-#: The same of kappa M, dimensionless.
-_SHEAR_ERROR_OF_M = 0.01
+#: Error of Q divided by mu P, beside those, divided by the value of the assumption ``traction``: no
+#: more in any of the scenes of ``pipeline/evidence/measure/covers.py``, beside the coupled
+#: solution.
+_SHEAR_ERROR = 0.7
 #: Creepage far above any delta_star, for full slip.
 _FULL_SLIP = 1e6
 
@@ -389,7 +387,7 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
         f"{float(np.max(theta, initial=0.0)):.2g} times the "
         f"thickness; up to {np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is "
         "allowed, where the contact "
-        "sticks in front and slips behind; the error of Q is up to "
+        f"sticks in front and slips behind (beyond: method='coupled'); the error of Q is up to "
         f"{100.0 * stated_error(thickness):.1f} % of mu P"
     )
     return ContactLengths.of(state["lam"], state["epsilon"], scene.kappa), Assumption(
@@ -403,7 +401,11 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
 
     With delta_0* the mean strain mirrored about the middle of the contact (docs/theory_covers.md),
     it holds where
-    |delta_0* - delta_0| is at most delta_star/2; beyond, both ends of the contact slip.
+    |delta_0* - delta_0| is at most delta_star/2; beyond, both ends of the contact slip.  The
+    sentence states the largest errors of Q and M beside the coupled solution, where it holds
+    (docs/validity_covers.md; tested in tests/contact_law/test_fast_law.py).  That of Q is that
+    without coupling and 0.7 mu P times the value; that of M follows, as M has the terms Q delta_0
+    and Q (delta_0* - delta_0).
 
     scene: dimensionless parameters of a roller with a cover, or with an array of covers.
     V: speeds, dimensionless, any sign, an array of any shape; broadcasts with the scene.
@@ -411,6 +413,8 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     shape.
     Raises ParameterError as :func:`assess_cover`.
     """
+    cover = scene.cover
+    assert cover is not None
     names = ("delta_0", "delta_star", "M_half_space", "M_cylinder")
     forth, back = (
         evaluate_contact(scene, np.abs(V), np.full((), slip), False, names)
@@ -424,15 +428,17 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     limited = np.minimum(2.0 * np.abs(excess) / star, 1.0)
     with np.errstate(divide="ignore"):
         value = limited / (1.0 - limited**4) ** 0.25
-    part = float(np.max(np.abs(free) / star, initial=0.0))
+    error = stated_error(float(np.min(cover.thinnest))) + _SHEAR_ERROR * np.minimum(value, 1.0)
+    levers = np.abs(free) + 0.5 * star * np.minimum(value, 1.0)
+    error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
+    largest = float(np.max(value, initial=0.0))
+    beyond = "both ends slip, and the law does not hold: use method='coupled'"
     sentence = (
-        f"shear acts back on the pressure: delta_0 is up to {part:.2g} delta_star, and the error "
-        "of Q some "
-        f"{100.0 * _SHEAR_ERROR * part:.2g} % of mu P, that of M {_SHEAR_ERROR_OF_M * part:.1g} P "
-        "l0; "
-        f"both ends slip where this value, up to {float(np.max(value, initial=0.0)):.2g}, is above "
-        "1: "
-        "use method='coupled' there"
+        f"shear acts back on the pressure: compared with method='coupled' the error of Q is up to "
+        f"{100.0 * np.max(error, initial=0.0):.2g} % of mu P and that of M up to "
+        f"{np.max(error_of_M, initial=0.0):.1g} "
+        f"P l0 where this value, up to {largest:.2g}, is at most 1"
+        + ("; above, " + beyond if largest > 1.0 else "")
     )
     return Assumption(value <= 1.0, value, sentence)
 

@@ -16,8 +16,6 @@ from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
 from .errors import FileError
 
 if TYPE_CHECKING:
@@ -195,6 +193,8 @@ def fix_texts(dataset: xr.Dataset) -> xr.Dataset:
 
     Octave, Fortran and ``nccopy -k classic`` read no others; readers of Python get them as ``str``.
     """
+    import numpy as np
+
     fixed = dataset.copy()
     for attributes in (fixed.attrs, *(variable.attrs for variable in fixed.variables.values())):
         attributes |= {

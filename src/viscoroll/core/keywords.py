@@ -44,7 +44,7 @@ def suggest_arguments(owner: Any, names: tuple[str, ...] | None = None) -> None:
     """
     for name in names or [name for name in vars(owner) if name == "__init__" or name[0] != "_"]:
         value = vars(owner).get(name)
-        function = value.__func__ if isinstance(value, classmethod) else value
+        function = value.__func__ if isinstance(value, classmethod | staticmethod) else value
         if inspect.ismodule(value):
             suggest_arguments(value, tuple(value.__all__))
         for base in value.__mro__ if inspect.isclass(value) else ():

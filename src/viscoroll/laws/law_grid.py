@@ -50,9 +50,12 @@ _ROUNDING = 1e-5
 #: fraction of the largest |Q| by which Q may fall where delta grows: other programs iterate to
 #: about this
 _NOISE = 1e-3
-#: moduli of what programs write where they have no value: the default of netCDF, and habits.  -9999
-#: and the like need no place here: no field but Q is negative, and Q has a limit.
-_FILL_VALUES = np.array([9.969209968386869e36, 1e20, np.float32(1e20), 1e30, 1e35])
+#: moduli of what programs write where they have no value: the default of netCDF, and habits
+_FILL_VALUES = np.array(
+    [9.969209968386869e36, 1e20, np.float32(1e20), 1e30, 1e35, 9999.0, 99999.0, 999999.0]
+)
+#: moments, which of a layer depend on the traction and have either sign
+_MOMENTS = "M", "M_half_space", "M_cylinder"
 #: field -> lowest and highest value that a contact has
 _BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(
     ("lam", "delta_star", "M", "M_half_space", "M_cylinder"), (0.0, np.inf)
@@ -153,9 +156,9 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
     ----------
     path : file with variables V(V) > 0, delta(delta), Q over both and M over V or both, each with
         an attribute ``units`` ("1" for none); all over alpha too where there is an axis of that
-        name.  In place of M there may be M_half_space and
-        M_cylinder; one that is missing is half of M.  Its global attributes are mu (without it Q
-        has no bound), and where V has a unit R in m and, beside mu, the load in N/m; all > 0.
+        name.  In place of M there may be M_half_space and M_cylinder; one that is missing is half
+        of M.  Its global attributes are mu (without it Q has no bound), and where V has a unit R in
+        m and, beside mu, the load in N/m; all > 0.
     alpha : required where the grid has an axis alpha, whose nodes must be > 0 and ascend; between
         them a spline in ln alpha is used.  It must be left out, or None, for a grid without that
         axis.
@@ -265,9 +268,11 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
     Allowed are |Q| <= mu P, Eq. (15), a Q that does not fall where delta grows and that has the
     sign of delta (of delta
     - delta_0 where the grid has delta_0) at both ends of its axis, 0 <= beta <= 1, and values >= 0
-      of M and its parts,
-    lam and delta_star; all to the digits of a file, 1e-5 of the largest value.  Missing values are
-    not sought: :func:`refuse_filled`.
+      of lam and
+    delta_star, and of M and its parts where they are over V.  Where M is over V and delta, as of a
+    layer, on whose M shear acts back, the power of force and torque is >= 0: M + delta (R Q +
+    M_cylinder) >= 0.  All are checked to the digits of a file, 1e-5 of the largest value.  Missing
+    values are not sought: :func:`refuse_filled`.
 
     table: dataset of a grid, in SI units or dimensionless, whose values are finite.
     path: path of its file, for messages.
@@ -275,7 +280,7 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
     """
     limit = friction_limit(table.attrs)
     for name, (low, high) in _BOUNDS.items():
-        if name in table.variables:
+        if name in table.variables and not (name in _MOMENTS and "delta" in table[name].dims):
             values = table[name].values
             rounding = _ROUNDING * np.abs(values).max()
             bad = (values < low - rounding) | (values > high + _ROUNDING)
@@ -300,6 +305,15 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
             path,
             "of the sign of delta: a wheel that spins faster than it rolls is driven",
         )
+        if "M" in table.variables and "delta" in table["M"].dims:
+            M = table["M"].transpose(*Q.dims)
+            of_cylinder = table.get("M_cylinder", 0.5 * M).transpose(*Q.dims)
+            R = float(table.attrs.get("R", 1.0))
+            lost = (M + table["delta"] * (R * Q + of_cylinder)).transpose(*Q.dims)
+            made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), R * noise / _NOISE)
+            _refuse_nodes(
+                M, made, path, ">= -delta (R Q + M_cylinder), as the contact makes no power"
+            )
         falls = np.diff(Q.values, prepend=-np.inf) < -noise
         _refuse_nodes(
             Q,

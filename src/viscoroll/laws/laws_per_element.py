@@ -289,10 +289,10 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
                 thin = covers.thickness.min()
                 allowed = 2.0 ** (exponent + 1.0)
                 reason = (
-                    f"at least {allowed:g} where covers differ: the laws of thinner ones are "
+                    f"at least {allowed} where covers differ: the laws of thinner ones are "
                     "not interpolated"
                 )
-                raise ParameterError("thickness/l0", f"{thin:.3g}", reason) from error
+                raise ParameterError("thickness/l0", f"{thin}", reason) from error
     octaves = [(laws[n][0].ctypes.data, laws[n][1].marks[ROW_COUNT]) for n in octave.tolist()]
     records = [record for _, record in laws.values()]
     rows, marks = allocate_rows(max(record.marks[ROW_COUNT] for record in records))

@@ -177,7 +177,22 @@ class Bodies(OneOrMany):
         """Return the series of one body of a single pair, its Poisson's ratio, and None: it is a
         half-space.
 
+        Parameters
+        ----------
         name : "cylinder" or "base".
+
+        Returns
+        -------
+        tuple
+            The :class:`Prony`; Poisson's ratio, 0.5 where ``poisson`` is None; None, in place of a
+            thickness.
+
+        Examples
+        --------
+        >>> vr.Bodies(vr.Prony.elastic(), vr.Prony([2.0], [1.0]), poisson=(0.3, 0.5)).body(
+        ...     "cylinder"
+        ... )[1]
+        0.3
         """
         nu = 0.5 if self.poisson is None else self.poisson[name == "base"]
         return getattr(self, name), nu, None
@@ -362,7 +377,7 @@ class Cover(Bodies):
         thickness: thickness divided by l0, in (0, 1e15], a number or (n,).
         on: body that has the layer, "cylinder" or "base".
         part: part of the layer in the long-time compliance of both bodies as half-spaces, in (0,
-        1].
+            1].
         other_nu: Poisson's ratio of the other body, in [0, 0.5]; without effect if ``part`` is 1.
         other: series of the other body, times in units of T_ref; None: elastic.
         other_thickness: thickness of the other body divided by l0, in (0, 1e15], of the shape of
@@ -464,7 +479,20 @@ class Cover(Bodies):
         """Return the series of one body, its Poisson's ratio, and its thickness divided by l0, None
         of a half-space.
 
+        Parameters
+        ----------
         name : "cylinder" or "base"; of a rigid body series and Poisson's ratio have no meaning.
+
+        Returns
+        -------
+        tuple
+            The :class:`Prony`; Poisson's ratio, dimensionless; the thickness divided by l0, or
+            None.
+
+        Examples
+        --------
+        >>> vr.Cover(11.0, nu=0.5, thickness=2.0, on="base").body("base")[1:]
+        (0.5, 2.0)
         """
         if name == self.on:
             return self.layer, self.nu, self.thickness
@@ -473,9 +501,20 @@ class Cover(Bodies):
     def elastic(self, share: float) -> Cover:
         """Return the same bodies without relaxation.
 
+        Parameters
+        ----------
         share : the cylinder's part of the compliance of both bodies, in [0, 1], that of the layer
-        above 0.
-        Returns a new :class:`Cover`; where the other body becomes rigid it has no thickness.
+            above 0.
+
+        Returns
+        -------
+        Cover
+            Where the other body becomes rigid it has no thickness.
+
+        Examples
+        --------
+        >>> vr.Cover(11.0, nu=0.5, thickness=2.0, on="base").elastic(0.0).alpha
+        1.0
         """
         part = share if self.on == "cylinder" else 1.0 - share
         thickness = self.other_thickness if part < 1.0 else None
@@ -496,7 +535,7 @@ class Cover(Bodies):
         Parameters
         ----------
         thickness : thickness divided by l0, in (0, 1e15], a number or (n,); that of another layer
-        stays in proportion.
+            stays in proportion.
         nu : Poisson's ratio of the layer, in [0, 0.5], a number or, beside an array of thicknesses,
             (n,); None: that of this cover, which must then fit.
 

@@ -394,9 +394,11 @@ def read_law(path: str | PathLike[str]) -> Content:
         raise
     except Exception as error:  # libraries raise many kinds
         if not Path(path).read_bytes().startswith(_HDF5):
-            raise FileError(
-                path, "is not netCDF: must be the .nc file of a law or a grid"
-            ) from error
+            problem = (
+                "is no netCDF file: give that of a law, as `viscoroll tables law` writes "
+                "it, or of a grid"
+            )
+            raise FileError(path, problem) from error
         raise FileError(
             path, f"is damaged ({' '.join(str(error).split()):.120}): {REMEDY}"
         ) from error

@@ -16,7 +16,7 @@ import tomllib
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
 import numpy as np
 
@@ -93,7 +93,7 @@ class WLF:
         above = check_celsius("temperature", temperature) - self.T0
         if self.C2 + above <= 0.0:
             allowed = (
-                f"> T0 - C2 = {self.T0 - self.C2:g}, where the WLF shift is infinite, in "
+                f"> T0 - C2 = {self.T0 - self.C2}, where the WLF shift is infinite, in "
                 "degrees Celsius"
             )
             raise ParameterError("temperature", temperature, allowed)
@@ -248,6 +248,9 @@ class Arrhenius:
 
 
 _Law = TypeVar("_Law", WLF, Arrhenius)
+#: b_T, by which moduli are multiplied: a function of a temperature in degrees Celsius, or the
+#: absolute temperature
+VerticalShift = Callable[[float], float] | Literal["entropic"] | None
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -301,8 +304,8 @@ class ShiftFactors:
         high = self.temperature[-1]
         if not low - NEAR <= found <= high + NEAR:
             allowed = (
-                f"within [{low:g}, {high:g}], where factors were found; beyond them use "
-                "wlf() or arrhenius()"
+                f"within [{low}, {high}], where factors were found; beyond them use wlf() "
+                "or arrhenius()"
             )
             raise ParameterError("temperature", temperature, allowed)
         if low == high:
@@ -499,9 +502,7 @@ def relative_shift(
     return check_number("a_T", factor / unit, above=0.0)
 
 
-def vertical_factor(
-    shift: Callable[[float], float] | str | None, temperature: float, reference: float | None
-) -> float:
+def vertical_factor(shift: VerticalShift, temperature: float, reference: float | None) -> float:
     """Return the ratio of moduli at a temperature to those at a reference,
     b_T(temperature)/b_T(reference).
 
@@ -531,7 +532,7 @@ def vertical_factor(
         )
         raise ParameterError("temperature", None, allowed)
     b_T = (lambda at: at - ABSOLUTE_ZERO) if shift == "entropic" else shift
-    factor, unit = (check_number("b_T", b_T(at), above=0.0) for at in (temperature, reference))  # type: ignore[operator]
+    factor, unit = (check_number("b_T", b_T(at), above=0.0) for at in (temperature, reference))
     return factor / unit
 
 
@@ -649,7 +650,7 @@ class Measured:
         check_fields(self, "rad s-1", low=0.0, high=0.0)
         object.__setattr__(self, "misfit", check_number("misfit", self.misfit, low=0.0))
         if self.low > self.high:
-            raise ParameterError("high", self.high, f">= low = {self.low:g}")
+            raise ParameterError("high", self.high, f">= low = {self.low}")
         check_text("source", self.source)
         pairs = check_array("M_error", self.M_error, low=0.0).reshape(-1, 2)
         if not (np.diff(pairs[:, 0]) > 0.0).all():

@@ -229,17 +229,17 @@ class Pair:
             else (self.half_space, self.cylinder)
         )
         parts = self.share if on == "cylinder" else 1.0 - np.asarray(self.share)
-        found = "differs from motion to motion"
+        found = "has several values"
         if layer.prony.shape:
             allowed = (
-                "the same in all of them: thickness, load and R may differ, and beside a "
+                "one for all cylinders: thickness, load and R may differ, and beside a "
                 "rigid body E and nu"
             )
             raise described_error(f"the series of the {on}, which is a cover,", found, allowed)
         if np.ptp(parts) > 0.0:
             allowed = (
-                "the same in all of them for a cover beside an elastic body: let thickness, load "
-                "or R alone differ, or "
+                "one for all cylinders where a cover lies beside an elastic body: let thickness, "
+                "load or R differ, or "
                 "make the other body rigid (E = inf)"
             )
             raise described_error("E or nu of a body", found, allowed)

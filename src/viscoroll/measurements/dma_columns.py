@@ -288,7 +288,13 @@ def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> 
     ways.sort(key=lambda each: each.unit in NO_UNIT)
     if name not in overruling and _POWER_OF_TEN.search(heading):
         return [ways[0]._replace(unit=heading)]
-    stated = [each for each in ways if each.sure and each.unit not in NO_UNIT]
+    spelled = {
+        each.unit for each in known if each.name == name
+    }  # as bpm of "freq_bpm", not "prime" of "G_prime"
+    behind = spelled if spelled.isdisjoint(NO_UNIT) else set()
+    stated = [
+        each for each in ways if (each.sure or each.unit in behind) and each.unit not in NO_UNIT
+    ]
     return [each for each in ways if not stated or each.unit not in NO_UNIT]
 
 

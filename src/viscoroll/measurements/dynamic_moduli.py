@@ -323,6 +323,14 @@ class DynamicModuli(Result):
         """Whether all points are of one temperature, as far as the file says: within 1 K."""
         return self.temperature is None or float(np.ptp(self.temperature)) <= SAME_TEMPERATURE
 
+    @property
+    def mean_strain(self) -> float | None:
+        """Geometric mean of the strains, dimensionless; None where the strain of a point is not
+        known.
+        """
+        known = self.strain is not None and bool((self.strain > 0.0).all())
+        return float(np.exp(np.log(self.strain).mean())) if known else None  # type: ignore[arg-type]
+
     def __iter__(self) -> Iterator[Floats]:
         """Return an iterator over omega, storage and loss, (n,) each, so that ``omega, storage,
         loss = read_dma(path)`` works.

@@ -33,7 +33,7 @@ from ..core.plots.result_figures import series_fit
 from ..core.results import Result, SummaryRow
 from ..materials.importers import check_poisson
 from ..materials.material import Material
-from ..materials.measured_data import WLF, Measured
+from ..materials.measured_data import WLF, Measured, VerticalShift
 from ..materials.prony import Prony
 from .dynamic_moduli import UNITS, Curve, KramersKronig, Relaxation
 from .master_curve import Shifts, undetermined_shifts
@@ -94,6 +94,8 @@ def _rows(fit: Any) -> Iterator[tuple[str, str]]:
     yield "T_ref", f"{fit.T_ref:.6g} s (the longest time)"
     if fit.temperature is not None:
         yield "temperature", f"{fit.temperature:g} C, the temperature of these times"
+    if getattr(fit, "strain", None) is not None:
+        yield "strain", f"{fit.strain:.3g}, the amplitude of the test"
     if fit.points > fit.data[0].size:
         yield (
             "thinned",
@@ -368,7 +370,8 @@ class SeriesFit(Result):
         """
         source = self.source or f"{self.points} points"
         errors = zip(self.admissible.rate.tolist(), self.admissible.error.tolist(), strict=True)
-        return Measured(*self.band, self.largest_misfit, source, tuple(errors))
+        strain = getattr(self, "strain", None)
+        return Measured(*self.band, self.largest_misfit, source, tuple(errors), strain=strain)
 
     def material(
         self,
@@ -434,6 +437,7 @@ class SeriesFit(Result):
             thickness=thickness,
             measured=measured,
             temperature=self.temperature,
+            vertical_shift=getattr(self, "vertical_shift", None),
         )
 
     def validity(self, cylinder: Cylinder, V: Numbers) -> Assumption:
@@ -560,6 +564,10 @@ class Fit(SeriesFit):
         data.
     shifts : shift factors (:class:`.master_curve.Shifts`) where temperatures were given, else None.
     omega, storage, loss : the data, sorted and shifted, (n,) each; rad/s and the unit given.
+    strain : amplitude of the strain of the test, dimensionless, of a record the geometric mean;
+    None: not known.
+    vertical_shift : b_T by which the moduli were divided, as of :class:`viscoroll.Material`; None:
+    they were not.
 
     Examples
     --------
@@ -576,6 +584,8 @@ class Fit(SeriesFit):
     omega: Floats
     storage: Floats
     loss: Floats
+    strain: float | None = None
+    vertical_shift: VerticalShift = None
 
     @property
     def data(self) -> Curve:

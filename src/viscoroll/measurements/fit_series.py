@@ -7,7 +7,7 @@ from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 from ..core.checks import Numbers, check_choice, check_integer, check_number
 from ..core.errors import ParameterError, described_error
-from ..materials.measured_data import check_celsius
+from ..materials.measured_data import VerticalShift, check_celsius
 from ..materials.prony import Prony
 from ..materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
 from .dma_reader import RelaxationModulus
@@ -39,6 +39,7 @@ class _Options(TypedDict, total=False):
     on: Literal["both", "storage"]
     mode: Mode | None
     source: str
+    vertical_shift: VerticalShift
 
 
 @overload
@@ -66,6 +67,7 @@ def fit_prony(
     on: Literal["both", "storage"] = "both",
     mode: Mode | None = None,
     source: str = "",
+    vertical_shift: VerticalShift = None,
 ) -> Fit:
     """Fit a Prony series to storage and loss modulus.
 
@@ -105,6 +107,10 @@ def fit_prony(
     mode : "tension" (default) or "shear", where the moduli are G' and G'';
         :meth:`fit_results.Fit.material` makes E of them.
     source : source of the data, in words; it stays with the material.
+    vertical_shift : b_T by which the moduli of each curve are divided, relative to the reference,
+        before they are
+        shifted: "entropic", the absolute temperature, or a function of a temperature in degrees
+        Celsius; it stays with the material.  None: moduli are not changed.
 
     Returns
     -------
@@ -145,8 +151,10 @@ def fit_prony(
     More than 1000 points are thinned to the means of 500 logarithmic bins; ``points`` and the
     report say so.
     """
+    strain = None
     if isinstance(omega, DynamicModuli):
         record = omega
+        strain = record.mean_strain
         for name, given in (("storage", storage), ("loss", loss)):
             if given is not None:
                 allowed = (
@@ -171,7 +179,11 @@ def fit_prony(
     check_choice("on", on, "both", "storage")
     mode = _mode("tension" if mode is None else mode)
     if temperature is None:
-        for name, value in (("reference", reference), ("shift", shift)):
+        for name, value in (
+            ("reference", reference),
+            ("shift", shift),
+            ("vertical_shift", vertical_shift),
+        ):
             if value is not None:
                 raise described_error(
                     name, "is given, but temperature is not", "left out, or temperature given too"
@@ -179,7 +191,9 @@ def fit_prony(
         curve = data_of(Curve, omega, storage, loss)
         shifts = None
     else:
-        curve, shifts = master_curve(omega, storage, loss, temperature, reference, shift, on)
+        curve, shifts = master_curve(
+            omega, storage, loss, temperature, reference, shift, on, vertical_shift
+        )
     data, fields, errors = _fit_series(curve, modes, misfit)
     return Fit(
         **fields,
@@ -189,6 +203,8 @@ def fit_prony(
         mode=mode,
         temperature=None if shifts is None else shifts.reference,
         source=source,
+        strain=strain,
+        vertical_shift=vertical_shift,
     )
 
 

@@ -22,7 +22,15 @@ from numpy.typing import ArrayLike
 from ..core.checks import Floats, Integers, check_array
 from ..core.errors import ModelWarning, ParameterError, caller_level, described_error, shape_error
 from ..core.quantities import to_unit
-from ..materials.measured_data import NEAR, USUAL_RANGE, ShiftFactors, check_celsius, relative_shift
+from ..materials.measured_data import (
+    NEAR,
+    USUAL_RANGE,
+    ShiftFactors,
+    VerticalShift,
+    check_celsius,
+    relative_shift,
+    vertical_factor,
+)
 from .dynamic_moduli import SAME_TEMPERATURE, UNITS, Curve, data_of, thinned
 
 # --- Sweeps at several temperatures ---
@@ -172,7 +180,7 @@ def nearest(base: float, temperatures: Floats) -> int:
     low = temperatures[0]
     high = temperatures[-1]
     if not low - LEAST_DISTANCE <= base <= high + LEAST_DISTANCE:
-        raise ParameterError("reference", base, f"within [{low:g}, {high:g}]")
+        raise ParameterError("reference", base, f"within [{low}, {high}]")
     return int(np.argmin(np.abs(temperatures - base)))
 
 
@@ -211,7 +219,7 @@ def listed_factors(shift: Any, sets: Sets, base: float | None) -> tuple[Floats, 
         base = default_reference(temperatures, temperatures[np.abs(found - 1.0) <= _ONE].tolist())
     index = nearest(base, temperatures)
     if abs(temperatures[index] - base) > LEAST_DISTANCE:
-        listed = ", ".join(f"{T:g}" for T in temperatures)
+        listed = ", ".join(map(str, temperatures))
         allowed = (
             f"{listed}, whose factors shift lists; for another one give shift as a function "
             "of the temperature"
@@ -279,6 +287,7 @@ def master_curve(
     reference: float | None,
     shift: ArrayLike | Callable[[float], float] | None,
     on: Literal["both", "storage"] = "both",
+    vertical_shift: VerticalShift = None,
 ) -> tuple[Curve, Shifts]:
     """Shift the curves of several temperatures to one, by frequencies times a_T.
 
@@ -296,6 +305,8 @@ def master_curve(
         All are divided by that of the reference.
     on : "both" or "storage": the moduli by whose overlap shifts are found; not used where shifts
     are given.
+    vertical_shift : b_T by which moduli are divided, relative to the reference, as of
+    :class:`viscoroll.Material`.
 
     Returns
     -------
@@ -335,6 +346,12 @@ def master_curve(
         "temperature", temperatures[-1] if temperatures[-1] > USUAL_RANGE[1] else temperatures[0]
     )
     base = None if reference is None else check_celsius("reference", reference)
+    coldest = float(temperatures[0])
+    if vertical_shift is not None:
+        b_T = np.array(
+            [vertical_factor(vertical_shift, T, coldest) for T in temperatures.tolist()]
+        )[sets.of_point]
+        whole = [whole[0], whole[1] / b_T, whole[2] / b_T]
     mismatch = freedom = np.full(temperatures.size - 1, math.nan)
     if callable(shift):
         base = (
@@ -359,7 +376,7 @@ def master_curve(
         found = ShiftFactors(
             temperature=tuple(temperatures.tolist()), a_T=tuple(np.exp(logs).tolist()), T0=base
         )
-        factor = np.exp(logs) / found(base)
+        factor = np.exp(logs) / (found(base) if logs.size > 1 else 1.0)
     shifts = Shifts(
         temperature=tuple(temperatures.tolist()),
         a_T=tuple(factor.tolist()),
@@ -399,7 +416,8 @@ def master_curve(
             ModelWarning,
             stacklevel=caller_level(),
         )
-    return data_of(Curve, whole[0] * factor[sets.of_point], *whole[1:]), shifts
+    moduli = [each * vertical_factor(vertical_shift, base, coldest) for each in whole[1:]]
+    return data_of(Curve, whole[0] * factor[sets.of_point], *moduli), shifts
 
 
 def undetermined_shifts(shifts: Shifts) -> list[str]:

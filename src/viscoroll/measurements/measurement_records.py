@@ -474,7 +474,7 @@ class Coastdown(Record):
             raise shape_error(self.label("t"), t.shape, "a vector, in ascending order")
         if (falls := np.flatnonzero(np.diff(t) < 0.0)).size:
             n = falls[0]
-            at = f"{t[n]:g}, {t[n + 1]:g} at rows {n}, {n + 1}"
+            at = f"{t[n]}, {t[n + 1]} at rows {n}, {n + 1}"
             raise ParameterError(self.label("t"), at, "a vector, in ascending order")
         t0 = check_array(self.label("t0"), self.t0, unit="s")
         if t0.shape not in ((), (2,)):

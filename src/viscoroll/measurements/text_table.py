@@ -688,12 +688,30 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     found = readings(table.headings[index], table.units[index])
     named = [each for each in found if each.name == name]
     unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
-    if unit in NO_UNIT and wanted not in ("", "1"):
-        heading = table.headings[index]
-        advice = f"write its unit in the heading, as in '{heading} [{wanted}]'"
-        text = f"{table.path}: column {heading!r} has no unit, and is taken in {wanted}: {advice}"
-        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+    heading = table.headings[index]
+    warn_without_unit(
+        table.path,
+        heading,
+        unit,
+        wanted,
+        f"write its unit in the heading, as in '{heading} [{wanted}]'",
+    )
     factor, offset = (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)
     values = table.numbers(index).values
     base = found[0].log if found else 0.0
     return factor * (base**values if base else values) + offset
+
+
+def warn_without_unit(path: Any, column: str, unit: str, wanted: str, advice: str) -> None:
+    """Give a :class:`ModelWarning` of a column without a unit, whose numbers are taken to be in the
+    wanted one.
+
+    path: path of the file.
+    column: name of the column.
+    unit: its unit, a text of :data:`NO_UNIT` where it has none.
+    wanted: unit in which it is taken; "" and "1" give no warning.
+    advice: how the file states the unit.
+    """
+    if unit in NO_UNIT and wanted not in ("", "1"):
+        text = f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}"
+        warnings.warn(text, ModelWarning, stacklevel=caller_level())

@@ -376,7 +376,8 @@ def integrate_single(
     arrays.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
     batch = law.unsteady_record if problem.unsteady else law.record, law.unlike, *arrays
     out, info = integrate(1, batch, problem.kernel_drive(), times, problem.limits, _ALL_ROWS, notes)
-    refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
+    if law.coupled is not None:
+        refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
     return out[:, 0], info[0].tolist()
 
 

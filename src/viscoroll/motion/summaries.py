@@ -173,6 +173,8 @@ def edges_of(bins: NDArray[np.int32]) -> tuple[Any, Any]:
 
 # --- Summaries of motions ---
 
+#: Bins of the histogram of an ensemble's figure.
+_MOST_BARS = 80
 #: Levels of the quantiles that are computed where no others are given.
 LEVELS = (0.05, 0.25, 0.5, 0.75, 0.95)
 #: Quantities of an ensemble that are drawn.
@@ -371,12 +373,24 @@ def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
         summarised, at its t; status and flow are read too; an attribute R tells that it is in SI
         units.
     Returns the dataset of :func:`summary_dataset`, with the quantiles of :data:`LEVELS`, in the
-    units of ``ensemble``; its attributes also are ``motions``, their number.  A dataset without
-    status or flow raises AttributeError.
+    units of ``ensemble``, and histograms of the last time alone, of even bins between the least and
+    the largest value;
+    its attributes also are ``motions``, their number.  A dataset without status or flow raises
+    AttributeError.
     """
     names = [name for name in _DRAWN if name in ensemble]
     summary = summarise(ensemble, names, exact=True)
     dataset = summary_dataset(summary, ensemble["t"].values, LEVELS, si="R" in ensemble.attrs)
+    for name in names:  # values that differ by less than a bin of the summary
+        last: Any = summary.histograms[name][-1]
+        edges = np.unique(np.linspace(last.low, last.high, _MOST_BARS + 1))
+        if edges.size == _MOST_BARS + 1:
+            counts = np.histogram(last.values, edges)[0]
+            bin_ = f"{name}_bin"
+            parts = {"bin_low": edges[:-1], "bin_high": edges[1:], "histogram": counts}
+            dataset = dataset.drop_dims(bin_).assign(
+                {f"{name}_{part}": (bin_, x) for part, x in parts.items()}
+            )
     return dataset.assign_attrs(motions=ensemble.sizes["motion"])
 
 

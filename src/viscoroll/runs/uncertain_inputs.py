@@ -26,7 +26,14 @@ from ..core.errors import FileError, import_extra
 from ..core.scale import si_unit
 from ..core.toml_sections import check_keys, section_error, suggestion
 from ..materials.material_toml import SECTIONS
-from ..measurements.text_table import NO_UNIT, column_in_unit, conversion, named_table
+from ..measurements.text_table import (
+    NO_UNIT,
+    column_in_unit,
+    conversion,
+    named_table,
+    readings,
+    warn_without_unit,
+)
 from ..roller_toml import SCHEMA
 from ..sampling import LARGEST, SMALLEST
 
@@ -485,13 +492,11 @@ class _Reader:
         """Read the column of a file that is the sample of an uncertain number, and collect it in
         ``joint``.
 
-        In SI units the numbers of a CSV are converted to the unit of the key.  Strengths and times
-        of a series and corners of a load, which stand in tables within a section, must be
-        dimensionless there, as must all columns where the run is not in SI units.  Numbers of a
-        .parquet are taken as they are, in the unit of the key, as are those of a .nc without the
-        attribute ``units``.
-        ``joint[FILE][number.name]`` becomes the column, float64, (rows,), with FILE the first
-        spelling of the file.
+        In SI units numbers are converted to the unit of the key.  Strengths and times of a series
+        and corners of a load, which stand in tables within a section, must be dimensionless there,
+        as must all columns where the run is not in SI units.  A column without a unit is taken in
+        that of the key, with a warning.  ``joint[FILE][number.name]`` becomes the column, float64,
+        (rows,), with FILE the first spelling of the file.
 
         number: the uncertain number, whose name the column gets in ``joint``.
         table: its table of TOML: file, a .csv, .nc or .parquet, relative to the run file, and
@@ -535,8 +540,9 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
     path: path of a .csv, .nc (netCDF-4) or .parquet file.
     column: name of the column or variable.
-    unit: unit in pint's spelling, "1" of a ratio, to which the numbers of a CSV, and of a .nc with
-        the attribute ``units``, are converted if it states another.
+    unit: unit in pint's spelling, "1" of a ratio, to which the numbers are converted if the heading
+        of a CSV or a .parquet, or the attribute ``units`` of a .nc, states another; without one it
+        is taken, with a warning.
     Returns float64, (n,), n >= 1, contiguous.
     Raises FileError for a CSV that cannot be read, has no such column or several, or cells in it
     that are no numbers; ParameterError for its unit, if that is unknown or has another dimension;
@@ -551,16 +557,21 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
 
         import_extra("pyarrow", "parquet")
         values = pd.read_parquet(path, columns=[column])[column].to_numpy()
+        given = next((each.unit for each in readings(column) if each.unit), "")
+        advice = f"name the column '{column} [{unit}]', or with the unit that it has"
     elif path.suffix == ".nc":
         import xarray as xr
 
         with xr.open_dataset(path, engine="h5netcdf") as dataset:
             values = dataset[column].values
             given = str(dataset[column].attrs.get("units", ""))
-        factor, offset = (1.0, 0.0) if given in NO_UNIT else conversion(given, unit)
-        values = factor * values + offset
+        advice = f"give the variable the attribute units, as '{unit}'"
     else:
         raise ValueError("a sample must be .csv, .nc or .parquet")
+    if path.suffix != ".csv":
+        warn_without_unit(path, column, given, unit, advice)
+        factor, offset = (1.0, 0.0) if given in NO_UNIT else conversion(given, unit)
+        values = factor * values + offset
     if (
         values.ndim != 1
         or values.size == 0

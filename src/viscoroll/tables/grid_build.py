@@ -322,7 +322,7 @@ def build(
     plane = tuple(name for name in axes if name != "delta")
     data = {
         name: table_files.variable(
-            name, plane if name in table_files.PLANE else tuple(axes), values, si
+            name, tuple(axes) if values.ndim == len(axes) else plane, values, si
         )
         for name, values in _evaluate_nodes(what, axes, method).items()
     }
@@ -372,17 +372,18 @@ def _evaluate_nodes(
 
     Returns field -> values in the units of the roller: "beta" and "Q" of shape (V, delta) or (V,
     delta, alpha); lam, epsilon, M, M_half_space, M_cylinder, delta_star, zeta and, of a layer,
-    delta_0, which do not depend on the creepage, (V,) or (V, alpha).
+    delta_0, (V,) or (V, alpha) where they do not depend on the creepage: of a layer delta_star and
+    delta_0 alone.
     Raises as :func:`_evaluate`.
     """
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
     scene = roller.scene() if isinstance(roller, Cylinder) else roller
-    names = tuple(
-        name for name in table_files.PLANE if name != "delta_0" or scene.cover is not None
-    )
+    of_traction = () if scene.cover is None else table_files.OF_TRACTION
+    names = tuple(name for name in table_files.PLANE if name not in of_traction)
+    names = names if scene.cover is not None else tuple(name for name in names if name != "delta_0")
     fields = _evaluate(roller, plane, names, method)
-    volume = _evaluate(roller, grid, table_files.VOLUME, method)
+    volume = _evaluate(roller, grid, (*table_files.VOLUME, *of_traction), method)
     return volume | {name: np.take(values, 0, axis=1) for name, values in fields.items()}
 
 

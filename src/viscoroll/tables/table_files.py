@@ -45,6 +45,8 @@ KINDS = ("grid", "atlas", "literal", "material")
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
 #: Fields over V and delta (and alpha).
 VOLUME = ("beta", "Q")
+#: Fields over V that of a layer are over V and delta: there they depend on the traction.
+OF_TRACTION = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "zeta")
 #: Fields of a file of kind "atlas".
 _ATLAS_FIELDS = ("beta", "Q_over_mu", "lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
 

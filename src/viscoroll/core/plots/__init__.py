@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from os import PathLike
+from textwrap import fill
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -39,6 +40,8 @@ _GREYS = ("0.85", "0.65", "0.45")
 #: Width of every figure, inches.  On a screen 390 pixels wide the smallest text, of 8.3 points, is
 #: then 7 pixels high.
 WIDTH = 6.4
+#: Characters in a line of the words of an axis: two panels stand beside each other.
+_LABEL_WIDTH = 26
 #: Style of lines of reference, such as zero.
 THIN = {"color": "0.7", "linewidth": 0.6}
 
@@ -201,7 +204,23 @@ def axis_label(name: str, units: str = "1", symbol: str = "") -> str:
 
 
 def variable_label(variable: Any) -> str:
-    """Return the label of an axis for a ``variable`` of a dataset."""
+    """Return the label of an axis for a ``variable`` of a dataset: its long name up to a comma,
+    symbol and unit.
+    """
+    label = symbol_label(variable)
+    name = str(variable.name).replace("_", " ")
+    words = fill(str(variable.attrs.get("long_name", "")).partition(",")[0], _LABEL_WIDTH)
+    return (
+        label.replace(name, words, 1)
+        if words and label.startswith(name)
+        else f"{words}\n{label}".lstrip()
+    )
+
+
+def symbol_label(variable: Any) -> str:
+    """Return the symbol and the unit of a ``variable`` of a dataset, as :func:`axis_label` writes
+    them.
+    """
     return axis_label(
         str(variable.name), variable.attrs.get("units", "1"), variable.attrs.get("symbol", "")
     )

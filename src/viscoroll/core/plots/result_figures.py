@@ -178,8 +178,11 @@ def identification(fit: Any) -> Figure:
 _MOST_BARS = 80
 #: Fraction of the motions in one bar above which a histogram has a logarithmic axis of counts.
 _ONE_BAR = 0.9
-#: Fraction of the motions at each end that a histogram leaves out.
+#: Fraction of the motions at each end that a histogram leaves out where they would make it much
+#: wider.
 _TAIL = 1e-3
+#: Widest axis that shows all motions, in widths of the axis without these tails.
+_WIDER = 2.0
 #: Smallest width of an axis that matplotlib draws.
 _MIN_WIDTH = 1e-280
 #: Largest number that matplotlib draws.
@@ -234,7 +237,7 @@ def distributions(data: xr.Dataset) -> Figure:
             _draw_histogram(axes, data, name)
         for axes in (left, *right):
             linear = "x" if axes.get_yscale() == "log" else "both"
-            axes.locator_params(nbins=6, axis=linear)
+            axes.locator_params(nbins=6 if axes is left else 4, axis=linear)
             axes.ticklabel_format(style="sci", scilimits=(-2, 5), axis=linear)
     return figure
 
@@ -242,10 +245,11 @@ def distributions(data: xr.Dataset) -> Figure:
 def _draw_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
     """Draw the histogram of a quantity at the last time.
 
-    The tails, a thousandth of the motions at either end, are left out; the title states how many
-    motions that are, if any.  Where one of several bars has more than 90 % of the motions that are
-    shown, the axis of counts is logarithmic.  If no motion has a value the panel is empty and its
-    title is "no values".
+    The tails, a thousandth of the motions at either end, are left out where the axis would be more
+    than twice as wide with them; the title states how many motions that are, if
+    any.  Where one of several bars has more than 90 % of the motions that are shown, the axis of
+    counts is logarithmic.  If no motion has a value the panel is empty and its title is "no
+    values".
 
     axes: axes of matplotlib, drawn into.
     data: summaries of motions, with NAME_histogram (bins,) or (bins, times), NAME_bin_low and
@@ -271,7 +275,8 @@ def _draw_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
 
 
 def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, NDArray]:
-    """Combine bins to bars of equal width, without a thousandth of the motions at either end.
+    """Combine bins to bars of equal width, without a thousandth of the motions at either end if
+    these lie far out.
 
     low, high: ends of the bins, ascending, (bins,), in the unit of the quantity.
     counts: motions in each bin, (bins,), at least one in all; a bar gets the fraction of a bin that
@@ -285,6 +290,9 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
     reached = np.cumsum(counts) / max(counts.sum(), 1)
     first, last = np.searchsorted(reached, [_TAIL, 1.0 - _TAIL])
     last = min(last, counts.size - 1)
+    if high[-1] - low[0] <= _WIDER * (high[last] - low[first]):
+        first = 0
+        last = counts.size - 1
     start, end = np.clip([low[first], high[last]], -_MAX_NUMBER, _MAX_NUMBER)
     if end - start < _MIN_WIDTH:
         return start + max(1.0, abs(start)) * np.array([-0.5, 0.5]), counts[first : last + 1].sum(

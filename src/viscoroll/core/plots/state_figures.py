@@ -17,6 +17,7 @@ from . import (
     plot_measured_range,
     small_legend,
     spaced_by_factors,
+    symbol_label,
     variable_label,
     zero_line,
 )
@@ -44,9 +45,13 @@ _FIELDS = (
 _PARTS = ("M_half_space", "M_cylinder")
 #: Largest number of fields in a figure.
 _MAX_PANELS = 6
-#: Code of the regime of full slip.
-_FULL_SLIP = 0
-#: Grey of full slip in a motion.
+#: Codes of the regimes in which the contact slides: full slip, and a wheel that is locked (at rest
+#: it is held).
+_SLIDING = (0, 3)
+#: Fastest speed of an axis in m/s: no roller is faster, though equilibria are, where shear waves
+#: forbid them.
+_FASTEST = 100.0
+#: Grey of sliding in a motion.
 _SHADE = "0.87"
 #: An output nearer to a jump than this fraction of the last time has the value of one of its sides.
 _JUMP_RTOL = 1e-9
@@ -73,7 +78,7 @@ def field_curves(data: xr.Dataset) -> Figure:
     fields that depend on the first axis.  Its axis is logarithmic if the values are spaced by
     factors.
     """
-    data = data.squeeze(drop=True)
+    data = _in_millimetres(data.squeeze(drop=True), "length")
     first, *others = varied_axes(data)
     title = str(data.attrs.get("title", "Contact"))
     band = data.attrs.get(MEASURED) if first == "V" else None
@@ -95,7 +100,7 @@ def field_curves(data: xr.Dataset) -> Figure:
             label = _value_label(data, second[0], index) if second else None
             plot_measured_range(axes, x, values, band, label=label, **line)
         axes.set(xlabel=variable_label(data[first]), ylabel=variable_label(data[name]))
-        if name == "C_rr" or (name == "M" and data[name].attrs.get("units", "1") == "1"):
+        if name == "M" and data[name].attrs.get("units", "1") == "1":
             axes.set_title("coefficient of rolling resistance", fontsize="small")
         if spaced_by_factors(x):
             axes.set_xscale("log")
@@ -115,16 +120,17 @@ def stresses(data: xr.Dataset) -> Figure:
         the first that x varies along, the first is drawn.
     Returns the :class:`matplotlib.figure.Figure`, with the curves in one panel.
     """
+    data = _in_millimetres(data, "x")
     names = [name for name in ("p", "tau") if name in data]
     figure, axes = new_figure(f"Pressure{' and shear stress' * ('tau' in names)} along the contact")
     x = data["x"]
     along = next((dim for n, dim in enumerate(x.dims) if np.diff(x.values, axis=n).any()), None)
     data = data.isel(dict.fromkeys(set(data.dims) - {along}, 0))
     for name, line in zip(names, LINES, strict=False):
-        axes.plot(data["x"].values, data[name].values, label=variable_label(data[name]), **line)
+        axes.plot(data["x"].values, data[name].values, label=symbol_label(data[name]), **line)
     zero_line(axes)
     labels = (variable_label(data[name]) for name in names)
-    axes.set(xlabel=variable_label(data["x"]), ylabel=", ".join(labels))
+    axes.set(xlabel=variable_label(data["x"]), ylabel="\n".join(labels))
     axes.legend(frameon=False)
     return figure
 
@@ -167,45 +173,59 @@ def equilibria(data: xr.Dataset) -> Figure:
     speeds = speeds[speeds > 0.0]
     if speeds.max(initial=0.0) > 100.0 * speeds.min(initial=np.inf):
         axes.set_yscale("symlog", linthresh=speeds.min())  # it has a place for rest, V = 0
+    if data["V"].attrs.get("units", "1") != "1" and speeds.max(initial=0.0) > _FASTEST:
+        axes.set_ylim(*np.clip(axes.get_ylim(), -_FASTEST, _FASTEST))
     axes.legend(frameon=False)
     return figure
 
 
 def motion(data: xr.Dataset) -> Figure:
-    """Draw V and omega, the distance x, and force and torque of a motion over time; full slip is
+    """Draw V and omega, the distance x, and force and torque of a motion over time; sliding is
     shaded.
 
-    data: dataset of one motion, with ``t``, ``V``, ``omega``, ``x`` and ``regime``, whose code 0 is
-        full slip; ``force`` and ``torque`` are left out where they are missing or 0 at all times;
-        corners of a schedule of NAME are in ``drive_NAME_time`` and ``drive_NAME``; the attribute
-        ``status``, if it is there, is in the title.  In SI units, those of V, each quantity has its
-        own panel, else V and omega share one, as force and torque do.
+    data: dataset of one motion, with ``t``, ``V``, ``omega``, ``x`` and ``regime``, whose codes 0
+        and 3 are full slip and a locked wheel;
+        ``force`` and ``torque`` are left out where they are missing or 0 at all times; corners of a
+        schedule of NAME are in ``drive_NAME_time`` and ``drive_NAME``; the attribute ``status``, if
+        it is there, is in the title.  In SI units, those of V, each quantity has its own panel,
+        else V and omega share one, as force and torque do.
     Returns the :class:`matplotlib.figure.Figure`.
     """
     loads = [name for name in ("force", "torque") if name in data and data[name].values.any()]
     rows = [["V", "omega"], ["x"], *([loads] if loads else [])]
     if data["V"].attrs.get("units", "1") != "1":  # quantities of different units have an axis each
         rows = [[name] for row in rows for name in row]
-    status = f": {data.attrs['status']}; full slip is grey" if "status" in data.attrs else ""
+    status = f": {data.attrs['status']}; sliding is grey" if "status" in data.attrs else ""
     figure, grid = new_figure(
         f"Motion{status}", len(rows), 1, 1.0 + 1.7 * len(rows), sharex=True, squeeze=False
     )
     t = data["t"].values
-    slips = np.concatenate(([0], data["regime"].values == _FULL_SLIP, [0]))
+    slips = np.concatenate(([0], data["regime"].isin(_SLIDING).values, [0]))
     ends = np.flatnonzero(np.diff(slips)).reshape(-1, 2)
     for axes, names in zip(grid.flat, rows, strict=True):
         for name, line in zip(names, LINES, strict=False):
-            axes.plot(*_add_corners(data, name), label=variable_label(data[name]), **line)
+            axes.plot(*_add_corners(data, name), label=symbol_label(data[name]), **line)
         for start, stop in ends.tolist():
             axes.axvspan(t[start], t[min(stop, t.size - 1)], color=_SHADE, linewidth=0.0, zorder=0)
         zero_line(axes)
-        axes.set_ylabel(", ".join(variable_label(data[name]) for name in names))
+        axes.set_ylabel("\n".join(variable_label(data[name]) for name in names))
         if len(names) > 1:
             small_legend(axes)
     grid[-1, 0].set(
         xlabel=variable_label(data["t"]), xlim=(t[0], t[-1] if t[-1] > t[0] else t[0] + 1.0)
     )
     return figure
+
+
+def _in_millimetres(data: xr.Dataset, name: str) -> xr.Dataset:
+    """Return a dataset with a length of the contact in mm, where it has it in m, and without lam,
+    its ratio to l0.
+    """
+    if name not in data.variables or data[name].attrs.get("units") != "m":
+        return data
+    return data.drop_vars("lam", errors="ignore").assign(
+        {name: (1e3 * data[name]).assign_attrs(units="mm")}
+    )
 
 
 def _add_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
@@ -259,4 +279,4 @@ def _finite(values: xr.DataArray) -> NDArray[Any]:
 def _value_label(data: xr.Dataset, name: str, index: int) -> str:
     """Return a value of the axis ``name`` of ``data``, at an ``index``, in words."""
     values = data[name].values
-    return f"{variable_label(data[name])} = {values[index]:{'.4g' if has_numbers(values) else ''}}"
+    return f"{symbol_label(data[name])} = {values[index]:{'.4g' if has_numbers(values) else ''}}"

@@ -319,10 +319,10 @@ def traction_on_moments(position, u, functions, Q, state, cover_rows):
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces: all changes are 0.
     """
-    if cover_rows is None:
+    if cover_rows is None:  # a sum with -0.0 keeps the sign of a zero
         return MomentChange(
-            half_space=0.0,
-            cylinder=0.0,
+            half_space=-0.0,
+            cylinder=-0.0,
             half_space_dQ=0.0,
             cylinder_dQ=0.0,
             half_space_du=0.0,
@@ -550,22 +550,24 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     change_dQ = change.half_space_dQ + change.cylinder_dQ
     write_field(to.dM_ddelta, moment_slope(change_dQ, over_delta), n, request)
     write_field(to.dM_domega, moment_slope(change_dQ, over_omega), n, request)
-    change_du = change.half_space_du + change.cylinder_du
-    write_field(
-        to.dM_dV,
-        functions.d_um + moment_slope_over_V(change_du, change_dQ, over_V, state),
-        n,
-        request,
-    )
+    slope = functions.d_um
+    if _is_cover(law.cover_rows):
+        slope += moment_slope_over_V(
+            change.half_space_du + change.cylinder_du, change_dQ, over_V, state
+        )
+    write_field(to.dM_dV, slope, n, request)
     if bodies:
         factor = moment_factor(position, u, functions.scale, state)
         half_space, cylinder, half_space_slope, cylinder_slope = body_moments(position, u, law)
         write_field(to.M_half_space, factor * half_space + change.half_space, n, request)
         write_field(to.M_cylinder, factor * cylinder + change.cylinder, n, request)
-        half_space_slope += moment_slope_over_V(
-            change.half_space_du, change.half_space_dQ, over_V, state
-        )
-        cylinder_slope += moment_slope_over_V(change.cylinder_du, change.cylinder_dQ, over_V, state)
+        if _is_cover(law.cover_rows):
+            half_space_slope += moment_slope_over_V(
+                change.half_space_du, change.half_space_dQ, over_V, state
+            )
+            cylinder_slope += moment_slope_over_V(
+                change.cylinder_du, change.cylinder_dQ, over_V, state
+            )
         write_field(to.dM_half_space_dV, half_space_slope, n, request)
         write_field(to.dM_cylinder_dV, cylinder_slope, n, request)
         write_field(

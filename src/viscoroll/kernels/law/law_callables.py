@@ -1,6 +1,6 @@
 """The law of one scene as a function of C and of jitted code.
 
-The law of one scene as a C function: ``int law(double V, double omega, double out[8],
+The law of one scene as a C function: ``int law(double V, double omega, double out[10],
 void *scene)``.
 
 The function is compiled once; ``scene`` is its user data, a :data:`SCENE`.  It writes Q, M, and the
@@ -80,9 +80,9 @@ def _half_space_law(V, omega, out, scenes):
     without a cover.
 
     V, omega : floats, speed and angular velocity in the units of the caller, of any sign.
-    out, scenes : pointers to RESULTS = 8 doubles, written in the units of the caller as by
-        :func:`_evaluate` (without slopes numbers 4 and 5 keep their values and 6 and 7 have no
-        meaning), and to a SCENE record.
+    out, scenes : pointers to RESULTS = 10 doubles, written in the units of the caller as by
+        :func:`_evaluate` (without slopes numbers 4 and 5 keep their values and those after them
+        have no meaning), and to a SCENE record.
     Returns the status, an int: 0; or 1, with all results NaN, if the dimensionless V or omega is
     not finite or kappa
     |V| exceeds MAX_U.
@@ -96,10 +96,10 @@ def _cover_law(V, omega, out, scenes):
     function, which calls :func:`_evaluate` with the numbers that only a cover has.
 
     V, omega : floats, speed and angular velocity in the units of the caller, of any sign.
-    out, scenes : pointers to RESULTS = 8 doubles, written in the units of the caller as by
-        :func:`_evaluate` (without slopes numbers 4 and 5 keep their values and 6 and 7 have no
-        meaning), and to a SCENE record, whose ``cover_rows`` is the address of COVER_FRONT_SIZE +
-        COVER_ROW_SIZE (row_count - 1) doubles that exist during the call.
+    out, scenes : pointers to RESULTS = 10 doubles, written in the units of the caller as by
+        :func:`_evaluate` (without slopes numbers 4 and 5 keep their values and those after them
+        have no meaning), and to a SCENE record, whose ``cover_rows`` is the address of
+        COVER_FRONT_SIZE + COVER_ROW_SIZE (row_count - 1) doubles that exist during the call.
     Returns the status, an int: 0; or 1, with all results NaN, if the dimensionless V or omega is
     not finite or kappa
     |V| exceeds MAX_U.
@@ -119,9 +119,8 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
         sign.
     pointer : address of RESULTS doubles, written: Q, M, M_half_space, M_cylinder; then, if
         ``scene.slopes``, dQ/dV at fixed omega, dQ/domega at fixed V, dM_half_space/dV,
-         dM_cylinder/dV, dM_half_space/domega, dM_cylinder/domega.  Without slopes numbers 4 and 5
-         stay as
-        they were, and the others are overwritten by numbers without meaning.
+        dM_cylinder/dV, dM_half_space/domega, dM_cylinder/domega.  Without slopes numbers 4 and 5
+        stay as they were, and the others are overwritten by numbers without meaning.
     scene : a SCENE record, of which all fields but ``function`` and ``cover_rows`` are read: rows
         and marks of the law, kappa, mu > 0 and the units of the caller.
     cover_rows : vector of the numbers that only a cover has, as in :class:`Law`; None of
@@ -131,9 +130,9 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     not finite or kappa |V| exceeds MAX_U.
 
     If ``scene.unlike`` is 0, each body has half of M and of its slope.  At V = 0 M is 0 but for
-    that by traction on a cover; there omega other than 0 is
-    full slip, with the slopes of Q 0.  At V = omega = 0 dQ/domega and dQ/dV are infinite, but 0 in
-    full slip (a cover).
+    that by traction on a cover; there omega other than 0 is full slip, with the slopes of Q 0.  At
+    V = omega = 0
+    dQ/domega and dQ/dV are infinite, but 0 in full slip (a cover).
     """
     out = carray(pointer, RESULTS)
     rows = floats_at(scene.rows, scene.row_count * ROW_SIZE)
@@ -170,10 +169,11 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
         out[3] = factor * cylinder + change.cylinder
     if scene.slopes:
         out[4], _, out[5] = Q_slopes(u, functions.L, functions.dL, D, state, law)
-        out[6] += moment_slope_over_V(change.half_space_du, change.half_space_dQ, out[4], state)
-        out[7] += moment_slope_over_V(change.cylinder_du, change.cylinder_dQ, out[4], state)
-        out[8] = moment_slope(change.half_space_dQ, out[5]) * scene.M / scene.omega
-        out[9] = moment_slope(change.cylinder_dQ, out[5]) * scene.M / scene.omega
+        if cover_rows is not None:
+            out[6] += moment_slope_over_V(change.half_space_du, change.half_space_dQ, out[4], state)
+            out[7] += moment_slope_over_V(change.cylinder_du, change.cylinder_dQ, out[4], state)
+            out[8] = moment_slope(change.half_space_dQ, out[5]) * scene.M / scene.omega
+            out[9] = moment_slope(change.cylinder_dQ, out[5]) * scene.M / scene.omega
         out[4] = out[4] * scene.Q / scene.V
         out[5] = out[5] * scene.Q / scene.omega
         for n in range(6, 8):

@@ -339,8 +339,8 @@ def holding_margin(load, scene):
     must leave V constant, and omega too, which a brake may help with.  Of half-spaces:
 
     - no speed prescribed: the smaller of mu - |force| and of the torque of the brake less |force +
-      torque|, which counts as 0 up to 1e-75.  Without a brake the margin is at most 0, and 0 only
-      where this modulus counts as 0;
+      torque|, which counts as 0 up to 1e-75, of a cover up to 4e-15 of either.  Without a brake the
+      margin is at most 0, and 0 only where this modulus counts as 0;
     - V prescribed to stay 0: mu plus the torque of the brake, less the modulus of the torque of the
       motor;
     - omega prescribed to stay 0: mu - |force|.
@@ -369,7 +369,9 @@ def holding_margin(load, scene):
     if load.inverse_inertia == 0.0:
         return mu - Q
     rest = abs(np.copysign(torque, load.force) + load.torque)
-    margin = min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE else 0.0))
+    # of half-spaces loads in balance cancel to 0
+    noise = 0.0 if by_value(scene.law).cover_rows is None else _HOLDING_ROUNDING * torque
+    margin = min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE + noise else 0.0))
     return balance_of_table(load, scene.kappa, mu, margin, by_value(scene.law).table)
 
 

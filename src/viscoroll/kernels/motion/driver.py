@@ -462,9 +462,9 @@ def integrate_motion(V0, omega0, record):
     t = 0 to the last output time.
 
     Where something drives or will, two speeds below 1e-75 count as 0; where nothing does, two
-    speeds below 1e-150 are both replaced by those of free rolling with the same V0 + j omega0.  V0
-    counts as 0 up to 1e-150 of |omega0|.  From V = omega = 0 the cylinder stays at rest until the
-    drive moves it.
+    speeds below 1e-150 are replaced by those of the free rolling in which sliding ends
+    (:func:`.motion_law.speeds_after_sliding`).  V0 counts as 0 up to 1e-150 of |omega0|.  From V =
+    omega = 0 the cylinder stays at rest until the drive moves it.
 
     V0, omega0: float, initial speeds of either sign, dimensionless.
     record: Workspace, by value; ``nodes`` are 0 on entry, but for the row of ones, and the matrices

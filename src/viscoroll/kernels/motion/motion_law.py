@@ -150,6 +150,14 @@ def unsteady_loop(law, kappa, V, out):
 
 # --- The contact law at a state of a motion ---
 
+#: Rule of Gauss and Legendre on [0, 1]: places and weights of four points, exact to degree 7.
+_GAUSS = (
+    (0.06943184420297371, 0.17392742256872679),
+    (0.33000947820757187, 0.3260725774312732),
+    (0.6699905217924281, 0.3260725774312732),
+    (0.9305681557970262, 0.17392742256872679),
+)
+
 
 @inline_kernel
 def evaluate_moments(u, scene):
@@ -370,6 +378,47 @@ def free_decay(work):
     else:
         rate = (on_spin * (half_space - force) + on_axis * (cylinder - torque)) / inertia
     return FreeDecay(rate, inertia, spin_inertia * (half_space - force) - cylinder + torque)
+
+
+@kernel
+def speeds_after_sliding(V, omega, scene):
+    """Return V and omega of the free rolling in which undriven sliding at the least speeds ends,
+    dimensionless.
+
+    It ends within a time of the order of the speeds, in which nothing but the traction acts: a Q on
+    the axis and b Q on the cylinder, with a = 1 + a_b + e_b q, b = 1 - a_c - e_c q, q = |Q|/mu
+    (:class:`.cover_law.Reaction`), 1 of half-spaces.  In full slip, q = 1, V b + j omega a is
+    constant.  From |d| = 1 to 0, q = |d| (2 - |d|), d(ln V)/dy = -a/(b/j + a y) with y = omega/V,
+    which has the rule of Gauss with four points.
+
+    V, omega : floats, of either sign, not both 0.
+    scene : Scene, of which ``law``, kappa, mu and j are read.
+    """
+    L, delta_0 = rest_limits(scene)
+    free = 1.0 + delta_0
+    j = scene.j
+    if by_value(scene.law).cover_rows is None:
+        V = (V + j * omega) / (1.0 + j * free)
+        return V, V * free
+    reaction = reaction_at_rest(scene)
+    limit = 0.5 * L * scene.mu / scene.kappa
+    left = abs(omega - free * V) / (limit * abs(V)) if V != 0.0 else np.inf
+    side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0  # a product of both would be 0
+    if left > 1.0:
+        left = 1.0
+        on_axis = 1.0 + reaction.half_space + reaction.half_space_excess
+        on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess
+        kept = V * on_spin + j * omega * on_axis
+        side = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
+        V = kept / (on_spin + j * on_axis * (free + side * limit))
+    for place, weight in _GAUSS:
+        d = left * place
+        q = d * (2.0 - d)
+        on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * q
+        on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * q
+        y = free + side * limit * d
+        V *= np.exp(left * weight * side * limit * on_axis / (on_spin / j + on_axis * y))
+    return V, V * free
 
 
 @inline_kernel

@@ -38,7 +38,7 @@ from ..records import (
 )
 from .collocation import DELTA_ZERO, OMEGA_ZERO, ROW_V, STICK_EDGE, V_ZERO, change_slip, row_range
 from .drive import current_load, has_brake, is_undriven, prescribed_speed
-from .motion_law import critical_creepage, excess_slip, rest_limits
+from .motion_law import critical_creepage, excess_slip, speeds_after_sliding
 from .rhs import applied_forces, current_rates
 
 #: V at the event divided by V at the left end of the step, below which V is 0, as rounding leaves
@@ -333,9 +333,8 @@ def initial_regime(V, omega, step_state, work):
     2e-14 of the larger speed, it is partial slip with d = +-1 if |d| would fall from there, else
     full slip.  From V = 0 it is full slip.
 
-    If nothing drives and both speeds are below 1e-150, both are first replaced by those of free
-    rolling with the same V
-    + j omega, to which sliding brings them at once.
+    If nothing drives and both speeds are below 1e-150, they are replaced first by those of the free
+    rolling in which sliding ends (:func:`.motion_law.speeds_after_sliding`).
 
     V, omega: float, initial speeds of either sign, dimensionless.
     step_state: StepState, at the start.
@@ -346,10 +345,7 @@ def initial_regime(V, omega, step_state, work):
     brake; ``stick_formed``, a bool, True only for a start in partial slip with d = +-1.
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
-        # Sliding ends within a time of that order, at constant V + j omega.
-        omega_over_V = 1.0 + rest_limits(work.scene)[1]
-        V = (V + work.scene.j * omega) / (1.0 + work.scene.j * omega_over_V)
-        omega = V * omega_over_V
+        V, omega = speeds_after_sliding(V, omega, work.scene)
     direction = 1.0 if V > 0.0 or (V == 0.0 and omega >= 0.0) else -1.0
     V = direction * V
     omega = direction * omega

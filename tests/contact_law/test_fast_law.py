@@ -1,0 +1,130 @@
+"""The law of a cover without the coupled solve: energy of any state, both names of a nip, rest, and
+stated errors.
+"""
+
+import re
+
+import numpy as np
+import pytest
+import tolerances as tol
+from closeness import close
+
+import viscoroll as vr
+from pipeline.evidence.measure import covers
+from viscoroll.laws.cover_rows import solve_at_speed
+
+ONE, THREE, ELASTIC = (covers.MATERIALS[name] for name in ("one", "three", "elastic"))
+
+
+def random_scene(rng):
+    """A layer on either body beside a rigid body, a half-space or another layer."""
+    kind = rng.integers(3)
+    one, other = (covers.MATERIALS[name] for name in rng.choice(list(covers.MATERIALS), 2))
+    more = (
+        {}
+        if kind == 0
+        else {"part": rng.uniform(0.2, 0.9), "other": other, "other_nu": rng.uniform(0.3, 0.5)}
+    )
+    if kind == 2:
+        more["other_thickness"] = 10.0 ** rng.uniform(-0.5, 0.7)
+    cover = vr.Cover(
+        one,
+        nu=rng.uniform(0.0, 0.5),
+        thickness=10.0 ** rng.uniform(-0.5, 0.7),
+        on=str(rng.choice(["base", "cylinder"])),
+        **more,
+    )
+    return vr.Scene(material=cover, kappa=rng.uniform(3.0, 30.0), mu=10.0 ** rng.uniform(-1.7, 0.0))
+
+
+def test_no_state_makes_energy():
+    rng = np.random.default_rng(50)
+    for _ in range(8):
+        scene = random_scene(rng)
+        s = vr.steady(
+            scene,
+            V=np.logspace(-4.0, 1.0, 6)[:, None],
+            torque=scene.mu * np.linspace(-0.99, 0.99, 23),
+        )
+        parts = np.stack([s.loss.slip, s.loss.half_space, s.loss.cylinder])
+        assert np.nanmin(parts) >= -tol.COVER_ENERGY
+        assert close(
+            parts.sum(axis=0), s.force * s.V + s.torque * s.omega, rel=tol.COVER_ENERGY, scale=1.0
+        )
+        assert np.nanmax(s.loss.efficiency) <= 1.0
+
+
+def test_the_same_nip_has_the_same_losses():
+    """Named from the other side V and omega change places; speeds of both names differ by creepage,
+    here 1e-6.
+    """
+    nip = {"nu": 0.45, "thickness": 0.5, "other_nu": 0.3, "other_thickness": 0.8, "part": 0.6}
+    one, two = (
+        vr.Scene(material=vr.Cover(THREE, on=on, other=ONE, **nip), kappa=1e6, mu=0.3)
+        for on in ("base", "cylinder")
+    )
+    V = np.array([[1e-8], [1e-7], [1e-6]])
+    s = vr.steady(one, V=V, torque=0.3 * np.linspace(-0.9, 0.9, 7))
+    turned = vr.steady(two, V=s.omega[..., 0], torque=s.force[..., 0])
+    swapped = turned.loss.slip, turned.loss.cylinder, turned.loss.half_space
+    for mine, other in zip((s.loss.slip, s.loss.half_space, s.loss.cylinder), swapped, strict=True):
+        assert close(mine / V[..., None], other / V[..., None], rel=tol.COVER_NAMES, scale=1e-6)
+
+
+def test_the_line_of_rest():
+    """f + (1 + delta_0 + ...) q = 0, by the moment that Q has at rest; beside it the roller departs
+    along the force.
+    """
+    belt = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
+    scene = vr.Scene(material=belt, kappa=4.0, mu=0.3, gamma=0.5)
+    limit = vr.contact(scene, 0.0, delta=0.0, fields=("delta_0", "delta_star"))
+    state = vr.contact(
+        scene, 0.0, delta=limit.delta_0 + limit.delta_star * np.array([-0.6, -0.01, 0.01, 0.5])
+    )
+    lever = state.M_half_space / -state.Q
+    assert close(lever[1:3], limit.delta_0, rel=tol.COVER_REST_LEVER, scale=1.0)
+    for force, torque, own in zip(state.M_half_space - state.Q, state.Q, lever, strict=True):
+        assert close(force + (1.0 + own) * torque, 0.0, rel=tol.COVER_ENERGY, scale=1.0)
+        still = vr.roll(scene, 0.0, 0.0, 5.0, force=float(force), torque=float(torque))
+        assert not np.any([still.V, still.omega])
+        for push in (-0.01, 0.01):
+            moved = vr.roll(scene, 0.0, 0.0, 5.0, force=float(force) + push, torque=float(torque))
+            assert push * moved.V[-1] > 0.0
+
+
+@pytest.mark.parametrize("nu", [0.3, 0.5])
+def test_the_mirrored_strain_of_elastic_covers(nu):
+    """It is the mean strain, of another program; and the limit of slow rolling, and of fast with a
+    longer layer.
+    """
+
+    def mirrored(series, thickness, u):
+        return sum(solve_at_speed(vr.Cover(series, nu=nu, thickness=thickness, on="base"), u)[5:9])
+
+    if nu == 0.5:
+        assert close(mirrored(ELASTIC, 0.5, 1.0), 0.2008148, rel=tol.COVER_PRINTED)
+    assert close(
+        mirrored(ONE, 0.5, 1e-7), mirrored(ELASTIC, 0.5, 1.0), rel=tol.COVER_ENDS, scale=1.0
+    )
+    stiff = 11.0**0.5
+    assert close(
+        mirrored(ONE, 0.5, 1e7),
+        mirrored(ELASTIC, 0.5 * stiff, 1.0) / stiff,
+        rel=tol.COVER_ENDS,
+        scale=1.0,
+    )
+
+
+@pytest.mark.parametrize("index", [4, 10, 13])
+def test_the_stated_errors_bound_those_beside_the_coupled_solution(index):
+    """Where they are largest; where both ends slip, the other method is named."""
+    _, scene, u = covers.scenes()[index]
+    found = covers.compared(scene, u, 7)
+    told = scene.validity(u / covers.KAPPA).traction
+    Q, M = map(
+        float, re.search(r"Q is up to (\S+) % .* M up to (\S+) P l0", told.sentence).groups()
+    )
+    assert found.Q <= 0.01 * Q
+    assert found.kM <= M
+    assert told.holds == (found.value <= 1.0)
+    assert ("both ends slip" in told.sentence) == (index == 13)
