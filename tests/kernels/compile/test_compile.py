@@ -376,7 +376,7 @@ def test_an_unwritable_folder_only_warns(tmp_path, monkeypatch):
     assert fresh() == 0  # once is enough
 
 
-@pytest.mark.parametrize("name", ["rows/contact_states.py", "bessel/ratios.npy", "compile/jit.py"])
+@pytest.mark.parametrize("name", ["law/law_record.py", "law/ratios.npy", "numerics/jit.py"])
 def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, name):
     """numba's own cache would not notice a change in a function called from another module."""
     copy = tmp_path / "kernels"
