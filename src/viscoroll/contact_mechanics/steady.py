@@ -461,12 +461,13 @@ def steady(
     law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
     elastic = law.alpha == 1.0
-    gained = bool(loads.gains.V or loads.gains.omega)
+    gained_by_omega = loads.gains.omega
+    gained = bool(loads.gains.V or gained_by_omega)
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
         moving = np.flatnonzero(loads.V)
         speed = loads.V[moving]
         rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
-    elif loads.gains.omega:
+    elif gained_by_omega:
         if law.coupled is not None:
             raise described_error(
                 "a gain on omega", "is given", "left out for a table of the coupled solution"
@@ -506,9 +507,12 @@ def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
-    rests = (
-        rests_on_table(law, loads) if law.coupled is not None else is_balanced_at_rest(law, loads)
-    )
+    if law.coupled is not None:
+        rests = rests_on_table(law, loads)
+    elif law.cover is not None:
+        rests = is_balanced_at_rest(law, loads)
+    else:
+        rests = loads.force + loads.torque == 0.0
     return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 

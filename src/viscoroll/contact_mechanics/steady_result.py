@@ -321,11 +321,12 @@ class Steady(Equilibria):
         R, P = (append_axis(self.scale[name]) for name in ("R", "P"))
         moving = V != 0.0
         slip = np.where(moving, V, R * omega) * np.where(moving, delta, 1.0) * Q
-        half_space = V * self._free[0] / R
-        cylinder = omega * self._free[1]
+        free_half_space, free_cylinder = self._free * append_axis(self.scale["M"])
+        half_space = V * free_half_space / R
+        cylinder = omega * free_cylinder
         # what shear changes in the moments is taken from friction
         slip = slip + (
-            V * (M_half_space - self._free[0]) / R + omega * (M_cylinder - self._free[1])
+            V * (M_half_space - free_half_space) / R + omega * (M_cylinder - free_cylinder)
         )
         whole = slip + half_space + cylinder
         speed = np.where(moving, np.abs(V), 1.0)
@@ -469,5 +470,4 @@ def pack_result(
             name: labels.apply(name, each, *axes_after.get(name, ("equilibrium",)))
             for name, each in found.items()
         }
-    free_moments = rows[len(_FIELDS) : len(_FIELDS) + 2] * append_axis(scale["M"])
-    return Steady(found, free_moments, reasons, scale, labels)
+    return Steady(found, rows[len(_FIELDS) : len(_FIELDS) + 2], reasons, scale, labels)

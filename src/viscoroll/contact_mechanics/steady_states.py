@@ -255,8 +255,9 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
     a, b, d_half_space, d_cylinder, half_space_b, cylinder_b = slopes
     unit = np.minimum(j, 1.0)
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-        on_axis = 1.0 - np.where(half_space_b == 0.0, 0.0, half_space_b / b)
-        on_spin = 1.0 + np.where(cylinder_b == 0.0, 0.0, cylinder_b / b)
+        divisor = b + (b == 0.0)  # where Q does not depend on omega, neither do the moments
+        on_axis = 1.0 - half_space_b / divisor
+        on_spin = 1.0 + cylinder_b / divisor
         d_half_space = d_half_space - (1.0 - on_axis) * a
         d_cylinder = d_cylinder - (on_spin - 1.0) * a
         det = on_spin * d_half_space + on_axis * d_cylinder
@@ -387,12 +388,19 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
         rows[Field.DELTA, rest != 0.0] = np.nan
         rows[Field.Q] += rest
         return States.of(loads, load, sign, rows, losses)
-    delta_0 = free_creep(law, kappa, mu, V)
+    delta_0 = 0.0 if law.cover is None else free_creep(law, kappa, mu, V)
     free = contact_fields_at(
         law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
     )
     if law.cover is None:
-        Q, moments = _tractions_of_half_spaces(loads.given, force, torque, free[:2])
+        M = free[0] + free[1]
+        share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
+        if loads.given is None:  # V is such that both loads balance M
+            M = force + torque
+            Q = share * torque - (1.0 - share) * force
+        else:
+            Q = torque - (1.0 - share) * M if loads.given == "torque" else share * M - force
+        moments: Any = (share * M, (1.0 - share) * M)
     else:
         shear = shear_at(law, kappa, mu, V)
         if loads.given == "torque":
@@ -405,7 +413,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
     (star, lam, rise) = free[2:]
     faster = V / root
-    rolling = free_creep(law, kappa, mu, faster)
+    rolling = delta_0 if law.cover is None else free_creep(law, kappa, mu, faster)
     less_star, less_lam = contact_fields_at(law, kappa, mu, faster, rolling, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
     rows = state_rows(law, kappa, mu, V, np.copysign(size, Q) + delta_0)
@@ -421,25 +429,3 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
         rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], (~exists).nonzero()[0]] = 0.0
         rows[Field.DELTA, ~exists] = np.nan
     return States.of(loads, load, sign, rows, None if law.cover is None else free[:2])
-
-
-def _tractions_of_half_spaces(
-    given: str | None, force: Floats, torque: Floats, free: Floats
-) -> tuple[Floats, Floats]:
-    """Return the traction that balances the loads on half-spaces at given speeds, and the moments
-    of both bodies.
-
-    given : name of the load that was given beside V, "force" or "torque"; None: V is such that both
-        balance M.
-    force, torque : loads in the frame where V > 0, (n,); the one that is not given has no meaning.
-    free : M_half_space and M_cylinder of the law, (2, n).
-    Returns (Q, (n,); M_half_space and M_cylinder, (2, n)), dimensionless.
-    """
-    M = free[0] + free[1]
-    share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
-    if given is None:
-        M = force + torque
-        Q = share * torque - (1.0 - share) * force
-    else:
-        Q = torque - (1.0 - share) * M if given == "torque" else share * M - force
-    return Q, np.stack([share * M, (1.0 - share) * M])
