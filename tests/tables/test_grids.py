@@ -316,7 +316,7 @@ WRONG = [
     ),
     ("Q", np.s_[7, 5], lambda Q: -9999.0, "V[7], delta[5]"),
     ("Q", np.s_[0, 0], lambda Q: 1e20, "V[0], delta[0]"),
-    ("M", np.s_[20], lambda M: -9999.0, "M = -9999.0 at V[20]: must be >= 0"),
+    ("M", np.s_[20], lambda M: -9999.0, "M = -9999.0 at V[20]: must be given"),
     ("M", np.s_[3], lambda M: -M, "at V[3]: must be >= 0"),
     ("M", np.s_[3], lambda M: np.nan, "M = nan at V[3]: must be finite"),
     ("Q", np.s_[:], lambda Q: -Q, "of the sign of delta"),
@@ -423,8 +423,10 @@ def test_modelica(name, table, tmp_path):
     unit = table.V.attrs["units"]
     assert f"; V: {'dimensionless' if unit == '1' else unit}, Q: " in text
     Q = np.column_stack([V, table.Q.values.reshape(V.size, DELTA.size)])
-    M = np.column_stack([V, table.M.values.ravel()])
-    for field, exact in (("Q", np.vstack([np.append(0.0, DELTA), Q])), ("M", M)):
+    M = np.column_stack([V, table.M.values.reshape(V.size, -1)])
+    head = np.append(0.0, DELTA)
+    M = M if M.shape[1] == 2 else np.vstack([head, M])  # of a cover M is over V and delta
+    for field, exact in (("Q", np.vstack([head, Q])), ("M", M)):
         body = text.partition(f"double {field}({exact.shape[0]},{exact.shape[1]})")[2]
         found = re.sub("#.*", "", body).split()[: exact.size]
         assert np.array_equal(np.array(found, dtype=float).reshape(exact.shape), exact)

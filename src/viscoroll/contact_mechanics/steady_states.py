@@ -394,7 +394,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     )
     if law.cover is None:
         M = free[0] + free[1]
-        share = np.divide(free[0], M, out=np.full(M.size, 0.5), where=M > 0.0)
+        share = np.divide(free[0], M, out=0.5 + 0.0 * M, where=M > 0.0)
         if loads.given is None:  # V is such that both loads balance M
             M = force + torque
             Q = share * torque - (1.0 - share) * force

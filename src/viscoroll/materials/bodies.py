@@ -97,10 +97,10 @@ class Bodies(OneOrMany):
             if not isinstance(body, Prony):
                 raise ParameterError(name, f"{body!r:.60}", "a Prony series, or one for each pair")
         if self.poisson is not None:
-            values = [
-                check_number("poisson", value, above=-1.0, high=0.5) for value in self.poisson
-            ]
-            object.__setattr__(self, "poisson", tuple(values))
+            values = check_array("poisson", self.poisson, above=-1.0, high=0.5)
+            if values.shape != (2,):
+                raise shape_error("poisson", values.shape, "(2,): of the cylinder and the base")
+            object.__setattr__(self, "poisson", tuple(values.tolist()))
         share = check_array("share", self.share, low=0.0, high=1.0)
         if share.ndim > 1:
             raise shape_error("share", share.shape, "a number, or one for each pair, (n,)")

@@ -106,8 +106,8 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
     CombiTable1D blocks.
 
     The file is text: "#1", comments, then "double Q(n+1,m+1)", whose first column is V and first
-    row delta with 0 in the corner, and "double M(n,2)" with the columns V and M, in the units of
-    the grid.  Other fields are left out.
+    row delta with 0 in the corner, and "double M(n,2)" with the columns V and M, or as Q for a
+    layer, in the units of the grid.  Other fields are left out.
 
     table: dataset of a grid over V and delta with Q and M (else KeyError); an axis alpha must have
     one node.
@@ -126,11 +126,12 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
         )
     V = table["V"].values
     delta = table["delta"].values
+    head = np.append(0.0, delta)
     matrices = {
-        "Q": np.block(
-            [[np.zeros((1, 1)), delta[np.newaxis]], [V[:, np.newaxis], plane["Q"].values]]
-        ),
-        "M": np.column_stack([V, plane["M"].values]),
+        name: np.vstack([head, np.column_stack([V, plane[name].values])])
+        if "delta" in plane[name].dims
+        else np.column_stack([V, plane[name].values])
+        for name in ("Q", "M")
     }
     lines = ["#1", *(f"# {line}" for line in _modelica_header(table))]
     for name, matrix in matrices.items():
@@ -167,7 +168,9 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
         *str(table.attrs.get("material", "")).splitlines(),
         f"{table.attrs['grid']}; {stated}",
         "Q: CombiTable2D (CombiTable2Ds from Modelica 4.0 on), u1 = V, u2 = delta",
-        "M: CombiTable1Ds, u = V; CombiTimeTable reads the same layout",
+        "M: as Q"
+        if "delta" in table["M"].dims
+        else "M: CombiTable1Ds, u = V; CombiTimeTable reads the same layout",
         "For V < 0 look up |V| and change the sign of Q and M.  Do not extrapolate "
         "(Extrapolation.NoExtrapolation).",
         "Absolute error with Smoothness.LinearSegments, the largest at random points between the "
