@@ -43,8 +43,6 @@ def suggest_arguments(owner: Any, names: tuple[str, ...] | None = None) -> None:
         whose names in ``__all__`` are; None: all.
     """
     for name in names or [name for name in vars(owner) if name == "__init__" or name[0] != "_"]:
-        if name == "__init__" and hasattr(owner, "_summary"):
-            continue  # results are made by the package alone
         value = vars(owner).get(name)
         function = value.__func__ if isinstance(value, classmethod | staticmethod) else value
         if inspect.ismodule(value):
