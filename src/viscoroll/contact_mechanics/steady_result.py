@@ -453,9 +453,10 @@ def pack_result(
     rows = pad(rows, number, count, loads.shape)
     found: dict[str, Any] = dict(zip(_FIELDS, rows, strict=False))
     if scale.si:
-        found |= {
-            name: found[name] * append_axis(scale[name]) for name in found if name in DIMENSIONS
-        }
+        for name in found.keys() & DIMENSIONS.keys():
+            unit = scale[name]
+            per_load = isinstance(unit, np.ndarray)
+            found[name] = found[name] * (unit[..., np.newaxis] if per_load else unit)
     fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)
     eigenvalues.real[..., 0] = fast
