@@ -156,8 +156,9 @@ class Cylinder(Methods):
     base : the :class:`Material` of the half-space; default: that of the cylinder.
     load : normal force P, N/m, > 0; default: the weight m g.
     coupled : whether states with traction of a layer, and of half-spaces with Dundurs' constant
-        above 0.05, are those of the coupled solution, by a table that is made at first use; False:
-        those of the law without a table.
+        above 0.05, are those of the coupled solution, by a table that is made at first use; None
+        (default): they are.  False: those of the fast law, which takes coupling to first order
+        (:func:`viscoroll.validity` states its error).
 
     Raises
     ------
@@ -196,7 +197,7 @@ class Cylinder(Methods):
     base: Material | None
     #: the load as it was given: :meth:`replace` with another m makes the weight anew
     pressed: Any
-    coupled: bool
+    coupled: bool | None
 
     def __init__(
         self,
@@ -215,7 +216,7 @@ class Cylinder(Methods):
         base: Material | None = None,
         load: ArrayLike | None = None,
         pressed: ArrayLike | None = None,
-        coupled: bool = False,
+        coupled: bool | None = None,
     ) -> None:
         """Check and freeze the parameters, which the class describes; each number may be an array
         (n,), or have a unit.
@@ -238,7 +239,8 @@ class Cylinder(Methods):
         load: force that presses the cylinder on the base, N/m, > 0; None: the weight m g.
         pressed: the load by its name as a field, for :func:`dataclasses.replace`; not used beside
         ``load``.
-        coupled: whether states with traction are those of the coupled solution.
+        coupled: whether states with traction are those of the coupled solution; None: where shear
+        acts on pressure.
         Raises ParameterError as the class says.
         """
         values: dict[str, Any] = {
@@ -255,7 +257,7 @@ class Cylinder(Methods):
             "material": material,
             "base": base,
             "pressed": pressed if load is None else load,
-            "coupled": check_bool("coupled", coupled),
+            "coupled": coupled if coupled is None else check_bool("coupled", coupled),
         }
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)

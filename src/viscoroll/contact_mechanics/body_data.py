@@ -288,7 +288,9 @@ class BodyData:
         return report._replace(
             quasistatic=assess_inertia(*self.wave_ratio(fastest, density)),
             bodies=assess_coupling(
-                *(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like
+                *(pair.dundurs if pair else (0.0, 0.0)),
+                like=pair is None or pair.like,
+                solved=self.scene.tabulated,
             ),
             measured=assess_measured_band(transit_frequency(V, length), self.records),
             plane=Assumption(

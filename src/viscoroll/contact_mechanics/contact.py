@@ -364,6 +364,8 @@ def stress(
         parts = {name: scale["p"] * value for name, value in zip(("p", "tau"), both, strict=True)}
         parts = {name: value if value.ndim else value.item() for name, value in parts.items()}
         return Values(parts, given, si=scale.si, title="Stresses", labels=labels)
+    # no table of the coupled solution has stresses: they are of the law without one
+    scene = scene.uncoupled
     lam, epsilon, beta, zeta, delta = evaluate_contact(
         scene, speed, creep, creep_name == "omega", _FIELDS
     ).values()
