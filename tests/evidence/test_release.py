@@ -37,7 +37,7 @@ def test_planted_faults_are_told(packages):
     texts = packages.texts | {"CITATION.cff": "version: 0.0.1\n", "data/materials/README.md": ""}
     wrong = packages._replace(
         texts=texts,
-        wheel=[name for name in packages.wheel if not name.endswith("viscoroll/scene.py")]
+        wheel=[name for name in packages.wheel if not name.endswith("viscoroll/rollers.py")]
         + ["viscoroll/x.tmp"],
         sdist=packages.sdist | {"docs/_build/html/index.html": 1, "big.csv": 10**8},
     )
@@ -46,7 +46,7 @@ def test_planted_faults_are_told(packages):
     assert "CITATION.cff has no date-released" in told
     told = problems("contents", wrong)
     for each in (
-        "lacks viscoroll/scene.py",
+        "lacks viscoroll/rollers.py",
         "ships viscoroll/x.tmp",
         "ships docs/_build/html/index.html",
         "100.0 MB",

@@ -47,11 +47,9 @@ from .parameters import Roller, refuse_arrays, refuse_cover, resolve_model, scal
 from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
 from .steady_loads import (
     Loads,
-    find_speeds_of_cover,
-    find_speeds_on_table,
+    find_speeds,
     is_balanced_at_rest,
     loads_of,
-    rests_on_table,
 )
 from .steady_result import Diagnosis, Steady, pack_result
 from .steady_states import (
@@ -507,12 +505,7 @@ def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
-    if law.coupled is not None:
-        rests = rests_on_table(law, loads)
-    elif law.cover is not None:
-        rests = is_balanced_at_rest(law, loads)
-    else:
-        rests = loads.force + loads.torque == 0.0
+    rests = is_balanced_at_rest(law, loads)
     return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 
@@ -536,11 +529,8 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
     if not gain and law.alpha == 1.0:
         return States.none()
-    if law.coupled is not None:
-        load, sign, V = find_speeds_on_table(law, loads)
-        return states_at(law, loads, load, sign, V)
-    if law.cover is not None:
-        load, sign, V = find_speeds_of_cover(law, loads)
+    if law.coupled is not None or law.cover is not None:
+        load, sign, V = find_speeds(law, loads)
         return states_at(law, loads, load, sign, V)
     load, sign, u = find_crossings(law, gain, total)
     return states_at(law, loads, load, sign, u / loads.kappa[load])

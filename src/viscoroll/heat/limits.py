@@ -41,10 +41,8 @@ from .heat_balance import FARTHEST, NODES, kept_curve, refine
 from .heated_bodies import HeatStates, check_ambient, heat_states
 from .temperature import HOTTEST
 
-#: Film coefficient of a turning roller in still to moving air, W/(m2 K): the range of forced
-#: convection and radiation at surface speeds of 0.5 to 10 m/s; the default is near its geometric
-#: mean.
-FILM_RANGE = 10.0, 50.0
+#: Film coefficient of a turning roller in still to moving air, W/(m2 K): near the geometric mean of
+#: the range 10 to 50 of forced convection and radiation at surface speeds of 0.5 to 10 m/s.
 DEFAULT_FILM = 20.0
 #: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab
 #: with an insulated side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
