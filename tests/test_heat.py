@@ -17,7 +17,9 @@ WLF = vr.WLF(C1=8.86, C2=101.6, T0=0.0)
 RUBBER = vr.Material(
     3e6, 0.49, vr.Prony([2.0, 40.0], [1.0, 1e-2]), 0.02, temperature=20.0, shift=WLF
 )
-ROLLER = vr.Cylinder(R=0.1, m=60.0, material=RUBBER, base=vr.Material.rigid(), mu=0.6, load=2e4, coupled=False)
+ROLLER = vr.Cylinder(
+    R=0.1, m=60.0, material=RUBBER, base=vr.Material.rigid(), mu=0.6, load=2e4, coupled=False
+)
 COLD = {"ambient": -30.0, "conductance": 6.0}
 
 

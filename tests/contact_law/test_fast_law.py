@@ -34,7 +34,12 @@ def random_scene(rng):
         on=str(rng.choice(["base", "cylinder"])),
         **more,
     )
-    return vr.Scene(material=cover, kappa=rng.uniform(3.0, 30.0), mu=10.0 ** rng.uniform(-1.7, 0.0), coupled=False)
+    return vr.Scene(
+        material=cover,
+        kappa=rng.uniform(3.0, 30.0),
+        mu=10.0 ** rng.uniform(-1.7, 0.0),
+        coupled=False,
+    )
 
 
 def test_no_state_makes_energy():
@@ -60,7 +65,9 @@ def test_the_same_nip_has_the_same_losses():
     """
     nip = {"nu": 0.45, "thickness": 0.5, "other_nu": 0.3, "other_thickness": 0.8, "part": 0.6}
     one, two = (
-        vr.Scene(material=vr.Cover(THREE, on=on, other=ONE, **nip), kappa=1e6, mu=0.3, coupled=False)
+        vr.Scene(
+            material=vr.Cover(THREE, on=on, other=ONE, **nip), kappa=1e6, mu=0.3, coupled=False
+        )
         for on in ("base", "cylinder")
     )
     V = np.array([[1e-8], [1e-7], [1e-6]])
