@@ -16,6 +16,7 @@ import tomllib
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal, TypeVar
 
 import numpy as np
@@ -219,8 +220,6 @@ class ShiftFactors:
         converted.
         Raises ParameterError and warns as the class states.
         """
-        from scipy.interpolate import PchipInterpolator
-
         found = check_celsius("temperature", temperature)
         low = self.temperature[0]
         high = self.temperature[-1]
@@ -232,7 +231,14 @@ class ShiftFactors:
             raise ParameterError("temperature", temperature, allowed)
         if low == high:
             return self.a_T[0]
-        return math.exp(PchipInterpolator(self.temperature, np.log(self.a_T))(found))
+        return math.exp(self._ln(found))
+
+    @cached_property
+    def _ln(self) -> Any:
+        """The interpolated ln a_T, a function of the temperature."""
+        from scipy.interpolate import PchipInterpolator
+
+        return PchipInterpolator(self.temperature, np.log(self.a_T))
 
     def wlf(self) -> WLF:
         """Fit the law of Williams, Landel and Ferry to the factors, so that other temperatures need
