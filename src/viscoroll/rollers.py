@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from .contact_mechanics.body_data import BodyData
+from .contact_mechanics.assumptions import DUNDURS_LIMIT
 from .contact_mechanics.bound_law import law
 from .contact_mechanics.contact import contact, stress
 from .contact_mechanics.parameters import Parameters, Roller
@@ -33,7 +34,7 @@ from .heat.limits import heat_limit, turning_points
 from .heat.temperature import temperature
 from .heat.warming import warming
 from .laws.law_table import LawTable
-from .materials.bodies import Cover
+from .materials.bodies import Bodies, Cover
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
@@ -549,8 +550,22 @@ class Cylinder(Methods):
                 )
         if law is None:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
+            self._refuse_coupled_ratios(law)
         scene = scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
         return scene.replace(coupled=self.coupled)
+
+    def _refuse_coupled_ratios(self, law: Prony | Bodies | Cover) -> None:
+        """Raise ParameterError where half-spaces with an array of nu need the coupled solution.
+
+        law: of the bodies; :class:`Bodies` have no Poisson's ratios where one of them is an array.
+        Returns nothing for bodies whose Dundurs' constants are at most 0.05, and where ``coupled``
+        is False.
+        """
+        if self.coupled is False or type(law) is not Bodies or law.poisson is not None:
+            return
+        if self.pair.most_coupled > DUNDURS_LIMIT:
+            found = "is an array, and would need a table of the coupled solution for each value"
+            raise described_error("nu", found, "one number; or coupled=False, for the fast law")
 
     def _refuse_other_load(self, law: LawTable) -> None:
         """Raise ParameterError where the law of a layer is that of another load or radius, and for
