@@ -250,11 +250,11 @@ class Shear(NamedTuple):
             return on_axis, on_spin, half_space, cylinder
         limit, free = creep_at_rest(law)
         part = np.where(used < 1.0, used, 0.0)
-        delta = (
-            0.5 * (limit * self.mu * np.sign(Q) * (1.0 - np.sqrt(1.0 - part)) + free) / self.kappa
-        )
+        still = np.zeros(Q.size)
+        creep = 0.5 * limit * self.mu / self.kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
+        delta = creep_beyond_free(law, self.kappa, self.mu, still, creep) + 0.5 * free / self.kappa
         names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
-        state = [1.0, self.kappa, self.mu, np.zeros(Q.size), delta]
+        state = [1.0, self.kappa, self.mu, still, delta]
         half_space, cylinder, over_V = evaluate_law(law, state, Q.shape, False, names)
         return (
             on_axis,
@@ -285,6 +285,20 @@ def creep_at_rest(law: LawTable) -> tuple[float, float]:
         return 1.0, 0.0
     limit, half_space, cylinder = law.cover.creep[:3, 0, 0]
     return float(limit), float(half_space + cylinder)
+
+
+def creep_beyond_free(law: LawTable, kappa: Any, mu: Any, V: Floats, creep: Floats) -> Floats:
+    """Return delta - delta_0 = delta_star (d + c d^2) of d delta_star, (n,), dimensionless.
+
+    law : table of the material; of half-spaces the result is ``creep``.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    V, creep : speeds, >= 0, and d delta_star, of either sign, (n,).
+    """
+    if law.cover is None:
+        return creep
+    names = "delta_minus", "delta_plus", "delta_star", "delta_0"
+    low, high, star, free = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, names)
+    return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
 
 
 def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:

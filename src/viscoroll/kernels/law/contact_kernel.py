@@ -449,10 +449,11 @@ def _write_other_fields(n, c, law, scratch, request):
         rows of the requested quantities are written, dimensionless.
 
     Returns nothing.  The quantities: delta_star (critical creepage), delta (creepage), delta_0
-    (creepage of free rolling), full_slip (1.0 or 0.0), grip (1 - |Q|/mu), lam (contact length
-    divided by l0), zeta (half the transit time divided by T_ref), epsilon (shift of the contact
-    ahead of the axis, in half contact lengths), beta (stick zone divided by the contact length),
-    dQ_dV, dQ_ddelta, dQ_domega, dM_dV, and M of half-space and cylinder with their slopes in V.
+    (creepage of free rolling), delta_minus and delta_plus (onsets of full slip),
+    full_slip (1.0 or 0.0), grip (1 - |Q|/mu), lam (contact length divided by l0), zeta (half the
+    transit time divided by T_ref), epsilon (shift of the contact ahead of the axis, in half contact
+    lengths), beta (stick zone divided by the contact length), dQ_dV, dQ_ddelta, dQ_domega, dM_dV,
+    and M of half-space and cylinder with their slopes in V.
 
     At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta
     and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded
@@ -469,6 +470,12 @@ def _write_other_fields(n, c, law, scratch, request):
     write_field(to.delta_star, 0.5 * state.mu / state.kappa * L, n, request)
     write_field(to.delta, slip_and_creepage(state)[1], n, request)
     write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
+    if max(to.delta_minus, to.delta_plus) >= 0:
+        middle = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
+        star = 0.5 * state.mu / state.kappa * L
+        shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
+        write_field(to.delta_minus, middle + star * (shift - 1.0), n, request)
+        write_field(to.delta_plus, middle + star * (shift + 1.0), n, request)
     write_field(to.full_slip, 1.0 if abs(D) == np.inf else 0.0, n, request)
     if to.grip >= 0:
         write_field(to.grip, friction_reserve(stick_position, v, L, abs(D), law), n, request)
