@@ -16,8 +16,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contact_mechanics.body_data import BodyData
 from .contact_mechanics.assumptions import DUNDURS_LIMIT
+from .contact_mechanics.body_data import BodyData
 from .contact_mechanics.bound_law import law
 from .contact_mechanics.contact import contact, stress
 from .contact_mechanics.parameters import Parameters, Roller
