@@ -233,6 +233,29 @@ class Shear(NamedTuple):
         """Return the Q with Q (1 - a_c - e_c |Q|/mu) = ``rest``, (n,)."""
         return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.mu, rest)
 
+    def traction_of_both(
+        self, on_axis: Floats, on_spin: Floats, of_force: float, of_torque: float
+    ) -> Floats:
+        """Return the Q of both balances without omega, (n,): ``of_torque`` times Q (1 + a_b + e_b
+        |Q|/mu) plus ``of_force`` times Q (1 - a_c - e_c |Q|/mu) is the same sum of loads.
+
+        on_axis, on_spin : moment less force on the axis, torque less moment on the cylinder, at
+            omega = 0 or at any other speed, (n,).
+        of_force, of_torque : gains on omega of force and torque.
+        Raises ParameterError where more than one Q balances.
+        """
+        factor = of_torque * (1.0 + self.half_space) + of_force * (1.0 - self.cylinder)
+        excess = of_torque * self.half_space_excess - of_force * self.cylinder_excess
+        if np.any(np.abs(factor) <= 2.0 * np.abs(excess)):
+            raise described_error(
+                "gains on omega of force and torque",
+                f"{of_force:g} and {of_torque:g} nearly cancel",
+                "a sum farther from 0 for a layer, on which they leave the traction open",
+            )
+        side = np.sign(factor)
+        rest = side * (of_torque * on_axis + of_force * on_spin)
+        return _solve_quadratic(np.abs(factor), side * excess / self.mu, rest)
+
     def slopes_at_rest(self, law: LawTable, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return how a small speed changes the balance of a cylinder at rest under a traction.
 
