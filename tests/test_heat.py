@@ -63,12 +63,12 @@ def test_infinite_conductance_is_the_law_at_ambient(base):
 
 
 def test_against_a_dense_scan():
-    """None of the equilibria of 300 random rollers at 60,000 temperatures is missed; they balance,
+    """None of the equilibria of 80 random rollers at 60,000 temperatures is missed; they balance,
     and alternate.
     """
     rng = np.random.default_rng(5)
     several = 0
-    for k in range(300):
+    for k in range(80):
         n = rng.integers(1, 5)
         shift = vr.WLF(C1=rng.uniform(6, 18), C2=rng.uniform(40, 120), T0=rng.uniform(-60, 20))
         shift = shift if k % 3 else vr.Arrhenius(energy=rng.uniform(3e4, 2e5), T0=20.0)
@@ -102,7 +102,7 @@ def test_against_a_dense_scan():
         positive = loss > G * (theta - A)
         assert found.count >= np.count_nonzero(positive[1:] != positive[:-1])
         several += found.count > 1
-    assert several > 10
+    assert several > 3
 
 
 def test_found_factors_and_arrays():
@@ -395,7 +395,7 @@ def test_fit_at_the_strain_of_the_contact():
     """Of moduli that fall with a power of the strain the fit has the strain that its own contact
     has.
     """
-    omega = np.geomspace(1e-2, 1e5, 60)
+    omega = np.geomspace(1e-2, 1e5, 30)
 
     def record(strain, power=-0.3):
         moduli = [part(omega) * (strain / 0.01) ** power for part in (RUBBER.storage, RUBBER.loss)]
