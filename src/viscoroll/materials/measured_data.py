@@ -669,6 +669,9 @@ class Measured:
 
     def __str__(self) -> str:
         source = f" ({self.source})" if self.source else ""
+        errors = [100.0 * error for _, error in self.M_error]
+        accuracy = f", M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""
         return (
-            f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %{source}"
+            f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %"
+            f"{accuracy}{source}"
         )
