@@ -69,6 +69,7 @@ prove: setup ## law and motions against enclosures and extended precision: data/
 	$(RUN) -m pipeline.evidence.prove.unsteady
 	$(RUN) -m pipeline.evidence.prove.figures
 	$(RUN) -m pipeline.evidence.prove.layer
+	$(RUN) -m pipeline.evidence.prove.formulas
 	$(RUN) -m pipeline.evidence.measure.large
 	$(RUN) -m pipeline.evidence.document
 

@@ -661,6 +661,18 @@ COUPLED_LENGTH = 2.5e-4
 #: (alpha 457, one mode).
 COUPLED_RANDOM_MOMENT = 5e-5
 COUPLED_RANDOM_LENGTH = 5e-4
+#: CONTACT's carter2d has 50 cells: 0.648 where Carter has 0.64, and prints four digits of p_max.
+CARTER_CELLS = 8.1e-3
+CARTER_PEAK = 5e-4
+#: Formulas of others beside the law: derivations in their limits.  One part in a thousand is what
+#: the lowest speed leaves (9.0e-4 in Persson's, 1.1e-4 in Hunter's).
+FORMULA_SLOW = 1e-3
+#: Persson's integrals as Bessel functions, against quadrature up to k = 600, where 1e-7 is left.
+FORMULA_QUADRATURE = 1e-6
+#: Three modes over 7 decades: 7.7e-3 of C_rr and 1.3e-2 of the length measured.
+PERSSON_THREE = 1.3e-2
+#: A thin layer of nu = 0.3 tends to springs; 1.6e-2 of M is left at h/l0 = 0.1.
+SPRINGS_THIN = 1.7e-2
 #: CONTACT prints four digits.
 BENTALL = 2e-3
 #: Half-spaces against the rows of the law, Q over P and kappa M: second order in the elements.

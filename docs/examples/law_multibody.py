@@ -12,7 +12,11 @@ import viscoroll as vr
 
 warm = vr.presets.RUBBER_ROLLER
 cold = warm.replace(material=warm.material.slower(10.0))
-laws, gamma, j = [vr.law(scene) for scene in (warm, cold)], warm.gamma, warm.j
+laws, gamma, j = (
+    [vr.law(scene) for scene in (warm, cold)],
+    warm.gamma,
+    warm.j,
+)
 speed = 0.5  # of the tractor
 stiffness, damping = 0.02, 0.05  # force over P, by distance and by speed
 
@@ -22,12 +26,17 @@ def rates(t, y):
     stretch, V, omega = y.reshape(3, -1)
     closing = np.append(speed, V[:-1]) - V
     rope = stiffness * stretch + damping * closing
-    pull = rope - np.append(rope[1:], 0.0)  # of the rope ahead less that of the one behind
+    # of the rope ahead less that of the one behind
+    pull = rope - np.append(rope[1:], 0.0)
     Q, _, M_half_space, M_cylinder = np.transpose(
         [law(*state) for law, *state in zip(laws, V, omega)]
     )
     return np.concatenate(
-        [closing, gamma * (Q - M_half_space + pull), gamma / j * (-Q - M_cylinder)]
+        [
+            closing,
+            gamma * (Q - M_half_space + pull),
+            gamma / j * (-Q - M_cylinder),
+        ]
     )
 
 
@@ -44,7 +53,11 @@ def jacobian(t, y):
             [0.0 * one, to_V, 0.0 * one],
             [
                 gamma * stiffness * to_rope,
-                gamma * (np.diag(dQ_dV - dM_half_space) + damping * to_rope @ to_V),
+                gamma
+                * (
+                    np.diag(dQ_dV - dM_half_space)
+                    + damping * to_rope @ to_V
+                ),
                 gamma * np.diag(dQ_domega),
             ],
             [
@@ -56,7 +69,10 @@ def jacobian(t, y):
     )
 
 
-slack = np.array([0.0, 0.0, 0.1, 0.1, 0.1, 0.1])  # ropes; speeds; angular velocities
-found = solve_ivp(rates, (0.0, 20.0), slack, "Radau", jac=jacobian, rtol=1e-8, atol=1e-10)
+# ropes; speeds; angular velocities
+slack = np.array([0.0, 0.0, 0.1, 0.1, 0.1, 0.1])
+found = solve_ivp(
+    rates, (0.0, 20.0), slack, "Radau", jac=jacobian, rtol=1e-8, atol=1e-10
+)
 stretch, V, omega = found.y[:, -1].reshape(3, -1)
 print(f"forces in the ropes {stiffness * stretch}, speeds {V}")

@@ -13,7 +13,10 @@ import viscoroll as vr
 
 @numba.njit
 def rolled(law, gamma, j, V, omega, force, h):
-    """Speeds after every step of length h under the force on the axis, over P, in that step."""
+    """Speeds after every step of length h.
+
+    The force on the axis in each step is divided by P.
+    """
     found = np.empty((force.size, 2))
     for n in range(force.size):
         f = law(V, omega)
@@ -36,4 +39,7 @@ scene = vr.presets.RUBBER_ROLLER
 law = vr.law(scene).jitted  # any other law takes the same machine code
 gusts = np.repeat(np.random.default_rng(1).uniform(0.0, 0.01, 20), 5000)
 speeds = rolled(law, scene.gamma, scene.j, 0.5, 0.5, gusts, 1e-5)
-print(f"V = {speeds[-1, 0]:.6f}, omega = {speeds[-1, 1]:.6f} after {gusts.size} steps")
+print(
+    f"V = {speeds[-1, 0]:.6f}, omega = {speeds[-1, 1]:.6f} "
+    f"after {gusts.size} steps"
+)

@@ -25,16 +25,27 @@ def jacobian(t, y):
     f = law(*y, slopes=True)
     return [
         [gamma * (f.dQ_dV - f.dM_half_space_dV), gamma * f.dQ_domega],
-        [gamma / j * (-f.dQ_dV - f.dM_cylinder_dV), -gamma / j * f.dQ_domega],
+        [
+            gamma / j * (-f.dQ_dV - f.dM_cylinder_dV),
+            -gamma / j * f.dQ_domega,
+        ],
     ]
 
 
 t = np.linspace(0.0, 5.0, 101)
 found = solve_ivp(
-    rates, (0.0, 5.0), [0.5, 0.0], "Radau", t, jac=jacobian, rtol=1e-8, atol=1e-10
+    rates,
+    (0.0, 5.0),
+    [0.5, 0.0],
+    "Radau",
+    t,
+    jac=jacobian,
+    rtol=1e-8,
+    atol=1e-10,
 )
 V, omega = found.y
 print(
-    f"V = {V[-1]:.6f}, omega = {omega[-1]:.6f} after {found.nfev} calls of the law and "
+    f"V = {V[-1]:.6f}, omega = {omega[-1]:.6f} "
+    f"after {found.nfev} calls of the law and "
     f"{found.njev} of its slopes"
 )

@@ -5,10 +5,8 @@ import shlex
 import tomllib
 from pathlib import Path
 
-import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 from pages import HOWTO, LONG, blocks, run_page
 from places import ROOT
 from processes import made
@@ -34,11 +32,31 @@ PAGES = [
 FMUS = ROOT / "docs/loading/fmu_variables.md"
 
 
+#: Characters of a line of code that the site shows unclipped in a window of 1,200 px.
+WIDEST = 76
+
+
+def test_lines_of_code_are_as_wide_as_the_site_shows():
+    """Blocks of every language; the style of the site wraps what programs print."""
+    style = (ROOT / "docs/_static/viscoroll.css").read_text()
+    wrapped = ", ".join(f".highlight-{each} pre" for each in ("text", "console", "default"))
+    assert f"{wrapped} {{ white-space: pre-wrap; }}" in style
+    for page in PAGES:
+        for language, code in re.findall(r"^```(\w*)\n(.*?)^```$", page.read_text(), re.S | re.M):
+            if language not in ("text", "console"):
+                assert max(map(len, code.splitlines())) <= WIDEST, (page, code)
+    for path in (ROOT / "docs/examples").rglob("*.py"):
+        code = re.sub(r'^"""(.*?)"""$|^#.*$', "", path.read_text(), flags=re.S | re.M)  # the prose
+        assert max(map(len, code.splitlines())) <= WIDEST, path
+
+
 @pytest.mark.filterwarnings("error")
 def test_readme_block_runs(capsys):
-    """Without a warning."""
-    code, _ = blocks(ROOT / "README.md", "python")
-    assert len([line for line in code.splitlines() if line.strip()]) <= 12
+    """Without a warning; the page has one screen of text for each thing that it says."""
+    assert len((ROOT / "README.md").read_text().splitlines()) <= 120
+    (code,) = blocks(ROOT / "README.md", "python")
+    lines = [line for line in code.splitlines() if line.strip() and not line.startswith("#")]
+    assert len(lines) <= 13
     exec(compile(code, "README.md", "exec"), {})
     printed = capsys.readouterr().out
     assert "slides for 0.04 s, then rolls to 2.8 m" in printed
@@ -57,21 +75,6 @@ def test_variables_of_fmus_are_listed(model):
     ]
     head = f"| `{model}` | causality | unit | start | meaning |\n| --- | --- | --- | --- | --- |\n"
     assert head + "\n".join(rows) + "\n\n" in FMUS.read_text()
-
-
-def test_readme_grid(tmp_path, monkeypatch, capsys):
-    """The lines on a grid, of one that holds the points which they name."""
-    monkeypatch.chdir(tmp_path)
-    scene = vr.presets.PAPER_SECTION_5_ROUNDED
-    V = np.geomspace(0.1, 1.0, 31)
-    grid = vr.tables.build(scene, V, delta=np.linspace(-0.01, 0.01, 41), alpha=[7.0, 11.0, 16.0])
-    (tmp_path / "data/tables").mkdir(parents=True)
-    vr.tables.save(grid, "data/tables/grid.nc")
-    _, code = blocks(ROOT / "README.md", "python")
-    assert len(code.splitlines()) == 3
-    exec(compile(code, "README.md", "exec"), {"xr": xr})
-    Q = vr.contact(scene, 0.3, delta=0.004, fields="Q").Q
-    assert abs(float(capsys.readouterr().out) - Q) <= grid.Q.attrs["linear_error"]
 
 
 @pytest.mark.parametrize("page", ["index", "validity"])

@@ -20,6 +20,8 @@ BOUNDS = {
         "width, cells": tol.WANG_KNOTHE_CELLS,
         "width of the stick zone, cells": tol.WANG_KNOTHE_CELLS,
     },
+    "bentall": {"creep, relative": tol.BENTALL},
+    "carter": {"Q/μ, absolute": tol.CARTER_CELLS, "p_max, relative": tol.CARTER_PEAK},
     "half_space": {
         "Q/μ, absolute": tol.HALF_SPACE_Q,
         "λ, absolute": tol.HALF_SPACE_LENGTH,

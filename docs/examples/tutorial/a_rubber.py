@@ -11,7 +11,8 @@ import numpy as np
 
 import viscoroll as vr
 
-data = vr.datasets.path("dma.csv")  # a sample file that is installed with the package
+# a sample file that is installed with the package
+data = vr.datasets.path("dma.csv")
 print("\n".join(data.read_text().splitlines()[:5]))
 omega, storage, loss = vr.read_dma(data)  # rad/s, Pa, Pa
 
@@ -61,9 +62,15 @@ for temperature, style in ((20.0, "-"), (40.0, "--"), (60.0, "-.")):
     name, band = f"{temperature:g} °C", speed[inside]
     (line,) = axes.semilogx(speed, 100.0 * share, ":")
     color = line.get_color()
-    axes.semilogx(band, 100.0 * share[inside], style, color=color, label=name)
+    axes.semilogx(
+        band, 100.0 * share[inside], style, color=color, label=name
+    )
     print(f"{name}: measured from {band[0]:.1g} to {band[-1]:.1g} m/s")
-axes.set(xlabel="speed, m/s", ylabel="rolling resistance, % of the load", ylim=(0.0, None))
+axes.set(
+    xlabel="speed, m/s",
+    ylabel="rolling resistance, % of the load",
+    ylim=(0.0, None),
+)
 axes.legend(frameon=False)
 
 # %%

@@ -39,15 +39,28 @@ for V, stable in zip(s.V, s.stable, strict=True):
 #
 # The roller is launched at 2 m/s without rotation.  It slides until friction has accelerated the
 # rotation, and then approaches its terminal speed slowly.
-t = np.unique(np.concatenate([np.linspace(0.0, 0.3, 151), np.linspace(0.3, 120.0, 240)]))
+t = np.unique(
+    np.concatenate(
+        [np.linspace(0.0, 0.3, 151), np.linspace(0.3, 120.0, 240)]
+    )
+)
 m = roller.roll(V0=2.0, omega0=0.0, t=t, slope=slope)
-figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(6.4, 3.4), layout="constrained"
+)
 for axes, end in ((left, 0.3), (right, 120.0)):
     axes.plot(m.t, m.V, label="$V$")
     axes.plot(m.t, roller.R * m.omega, "--", label=r"$\omega R$")
-    axes.set(xlabel="$t$, s", ylabel="speed, m/s", xlim=(0.0, end), ylim=(0.0, None))
+    axes.set(
+        xlabel="$t$, s",
+        ylabel="speed, m/s",
+        xlim=(0.0, end),
+        ylim=(0.0, None),
+    )
 right.axhline(s.V[0], color="0.6", linewidth=0.8)
-right.annotate("terminal speed", (60.0, s.V[0]), (0, -14), textcoords="offset points")
+right.annotate(
+    "terminal speed", (60.0, s.V[0]), (0, -14), textcoords="offset points"
+)
 left.legend(frameon=False)
 print(f"it slides for {m.onset_time:.3f} s")
 
@@ -55,6 +68,7 @@ print(f"it slides for {m.onset_time:.3f} s")
 # The energy balance, in J per metre of length: losses by slip and by rolling resistance, work of
 # gravity.
 print(
-    f"slip {m.slip_loss[-1]:.0f}, rolling {m.rolling_loss[-1]:.0f}, from the slope "
+    f"slip {m.slip_loss[-1]:.0f}, rolling {m.rolling_loss[-1]:.0f}, "
+    "from the slope "
     f"{m.work_force[-1]:.0f}"
 )

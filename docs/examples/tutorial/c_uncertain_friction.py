@@ -33,13 +33,22 @@ draw = vr.sampling.sample(
 )  # the slope in degrees, from 0.45 to 0.55; friction from 0.3 to 0.7
 rollers = roller.replace(mu=draw["mu"])  # one for each draw
 e = rollers.ensemble(
-    2.0, 0.0, [1.0, 120.0], slope=np.radians(draw["slope"]), rtol=1e-6, fields="V"
+    2.0,
+    0.0,
+    [1.0, 120.0],
+    slope=np.radians(draw["slope"]),
+    rtol=1e-6,
+    fields="V",
 )
 sliding, late = e.onset_time, e.V[:, -1]  # s, m/s
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(6.4, 3.4), layout="constrained"
+)
 left.plot(draw["mu"][:3000], sliding[:3000], ".", markersize=2)
-left.set(xlabel=r"coefficient of friction $\mu$", ylabel="duration of sliding, s")
+left.set(
+    xlabel=r"coefficient of friction $\mu$", ylabel="duration of sliding, s"
+)
 right.plot(draw["slope"][:3000], late[:3000], ".", markersize=2)
 right.set(xlabel="slope, degrees", ylabel="speed after 120 s, m/s")
 print(

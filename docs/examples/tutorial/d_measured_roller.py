@@ -12,8 +12,12 @@ import numpy as np
 
 import viscoroll as vr
 
-V, M = np.loadtxt(vr.datasets.path("drum.csv"), delimiter=",", skiprows=1).T  # m/s, N m/m
-t, speed = np.loadtxt(vr.datasets.path("launch.csv"), delimiter=",", skiprows=1).T  # s, m/s
+# m/s, N m/m
+V, M = np.loadtxt(vr.datasets.path("drum.csv"), delimiter=",", skiprows=1).T
+# s, m/s
+t, speed = np.loadtxt(
+    vr.datasets.path("launch.csv"), delimiter=",", skiprows=1
+).T
 data = [
     vr.Resistance(V, M, sigma=0.01, name="drum"),
     vr.Coastdown(t, speed, omega0=0.0, sigma=5e-3, name="coast-down"),
@@ -22,9 +26,16 @@ data = [
 # %%
 # The given parameters, and an initial guess of the unknown ones, with one relaxation time.
 # ``unknown`` names the unknown parameters and their ranges.
-rubber = vr.Material(E=2e6, nu=0.49, prony=vr.Prony([5.0], [1.0]), T_ref=2e-3)
+rubber = vr.Material(
+    E=2e6, nu=0.49, prony=vr.Prony([5.0], [1.0]), T_ref=2e-3
+)
 guess = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=0.4)
-of_rubber = {"mu": (0.1, 1.0), "E": (3e5, 3e7), "E_1": (0.9, 90.0), "T_ref": (1e-4, 1e-2)}
+of_rubber = {
+    "mu": (0.1, 1.0),
+    "E": (3e5, 3e7),
+    "E_1": (0.9, 90.0),
+    "T_ref": (1e-4, 1e-2),
+}
 
 # %%
 # First a fit without the bearing.  Read its report from the top.
@@ -52,11 +63,20 @@ figure, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 axes.semilogx(V, M, "k.", markersize=4, label="measured, with bearing")
 bare = fit.cylinder.contact(fine, delta=0.0, fields="M").M
 with_bearing = fit.predict(vr.Resistance(fine)).M
-axes.fill_between(fine, with_bearing.low, with_bearing.high, color="0.8", label="95 % band")
+axes.fill_between(
+    fine,
+    with_bearing.low,
+    with_bearing.high,
+    color="0.8",
+    label="95 % band",
+)
 axes.semilogx(fine, with_bearing.value, "C0", label="fit")
 axes.semilogx(fine, bare, "C0--", label="fit, without bearing")
 axes.semilogx(
-    fine, wrong.predict(vr.Resistance(fine)).M.value, "C1:", label="model without bearing"
+    fine,
+    wrong.predict(vr.Resistance(fine)).M.value,
+    "C1:",
+    label="model without bearing",
 )
 axes.set(xlabel="speed, m/s", ylabel="moment, N m/m", ylim=(0.0, 1.3))
 axes.legend(frameon=False)

@@ -161,9 +161,9 @@ def mutants(results: Results) -> str:
     noticed = "all of them" if killed == len(outcomes) else f"{killed}"
     return (
         "Line coverage cannot be measured in compiled kernels.  Instead "
-        f"[{len(outcomes)} defects](pipeline/evidence/mutate/mutants.toml) were planted in the "
+        f"[{len(outcomes)} defects](../pipeline/evidence/mutate/mutants.toml) were planted in the "
         "kernels, one at a time. "
-        f" The test suite detected {noticed} ([results](data/results/mutants.json)).\n"
+        f" The test suite detected {noticed} ([results](../data/results/mutants.json)).\n"
     )
 
 

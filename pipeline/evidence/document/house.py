@@ -93,7 +93,7 @@ def _commands(program: Any) -> Iterator[tuple[str, str]]:
         action for action in program._actions if isinstance(action, argparse._SubParsersAction)
     ]
     if not below:
-        program.formatter_class = partial(program.formatter_class, width=118)
+        program.formatter_class = partial(program.formatter_class, width=76)
         program.color = False
         _, _, said = program.format_help().partition("\n\n")
         yield program.prog, f"## {program.prog}\n\n```text\n{said}```\n"

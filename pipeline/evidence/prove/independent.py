@@ -4,8 +4,9 @@
     python -m pipeline.evidence.prove.independent [-o FILE]
 
 The files of data/reference, whose README says where each comes from: six cases of Wang & Knothe,
-114 states and three profiles of a half-space code, an implicit integration of the motion, and the
-numbers that the paper prints.  Deviations are this package's value less the other's.
+two examples of CONTACT, 114 states and three profiles of a half-space code, an implicit integration
+of the motion, and the numbers that the paper prints.  Deviations are this package's value less the
+other's.
 tests/evidence/test_independent.py says how large they may be; pipeline/evidence/document/ puts the
 tables into docs/accuracy_independent.md.
 """
@@ -21,6 +22,7 @@ from numpy.typing import NDArray
 from scipy.optimize import brentq
 
 import viscoroll as vr
+from viscoroll.contact_mechanics.coupled_pair import CoupledPair, CoupledRow
 
 from ...stage import ROOT, read_rows
 from ..results import run
@@ -32,6 +34,12 @@ PROFILES_KAPPA = 29.1
 #: share of the half-length on which p is compared: at its ends p falls like a square root within
 #: one cell
 INNER = 0.97
+#: Two elastic cylinders of bentall.csv, the base and the cylinder: shear modulus, MPa, and nu.
+STEEL = (82000.0, 0.28)
+ALUMINIUM = (23000.0, 0.31)
+#: radius on a plane and half-length of its contact, mm
+BENTALL_R = 25.0
+BENTALL_HALF_LENGTH = 0.1
 SYMBOLS = {"lam": "λ", "epsilon": "ε", "beta": "β"}
 
 
@@ -79,6 +87,50 @@ def wang_knothe_case(case: dict[str, float]) -> dict[str, float]:
             state.beta * width - case["stick_fraction"] * case["width_mm"]
         )
         / case["cell_mm"],
+    }
+
+
+# --- examples of CONTACT ---
+
+
+def bentall() -> dict[str, NDArray]:
+    """Creepage at a given traction of unlike elastic bodies, pressure and shear together, relative.
+
+    Creepage is 2 kappa delta, which times half the contact length over R is delta.  The row of an
+    infinite friction is left out: no state of this package has one.
+    """
+    rows = [row for row in read_rows(REFERENCE / "bentall.csv") if math.isfinite(row["mu"])]
+    base, cylinder = ((1.0 - nu) / G for G, nu in (STEEL, ALUMINIUM))
+    elastic = vr.Prony.elastic()
+    pair = vr.Bodies(
+        elastic, elastic, share=base / (base + cylinder), poisson=(STEEL[1], ALUMINIUM[1])
+    )
+    kernels = CoupledPair.of_scene(vr.Scene(material=pair, kappa=1.0, mu=1.0))
+    off = []
+    for row in rows:
+        states = CoupledRow(kernels, 1.0, row["mu"])
+        creep = brentq(
+            lambda creep, states=states, row=row: (
+                float(states.states([creep]).Q_over_mu[0]) - row["Q_over_mu_P"]
+            ),
+            *states.onsets(),
+        )
+        off.append(abs(creep) * BENTALL_HALF_LENGTH / BENTALL_R / row["creep"] - 1.0)
+    return {"creep, relative": np.array(off)}
+
+
+def carter() -> dict[str, NDArray]:
+    """Q and largest pressure of like elastic bodies at a given creepage; Carter's theory."""
+    (case,) = read_rows(REFERENCE / "carter2d.csv")
+    # half-length = R/(2 kappa); E' = pi E/(1 - nu^2) of two like bodies
+    kappa = case["R_mm"] / (2.0 * case["half_length_mm"])
+    scene = vr.Scene(1.0, kappa, case["mu"])
+    Q = vr.contact(scene, 1.0, delta=case["creep"], fields="Q").Q / case["mu"]
+    E_prime = 2.0 * math.pi * case["G_MPa"] / (1.0 - case["nu"])
+    peak = E_prime * vr.stress(scene, 0.0, 1.0, delta=case["creep"]).p
+    return {
+        "Q/μ, absolute": np.array([Q - case["Q_over_mu_P"]]),
+        "p_max, relative": np.array([peak / case["p_max_MPa"] - 1.0]),
     }
 
 
@@ -217,6 +269,8 @@ def paper() -> list[dict[str, Any]]:
 
 SOURCES = {
     "Wang & Knothe": wang_knothe,
+    "CONTACT, bentall": bentall,
+    "CONTACT, carter2d": carter,
     "half-space code, states": half_space,
     "half-space code, profiles": profiles,
     "implicit integration": section_5,

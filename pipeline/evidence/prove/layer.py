@@ -55,7 +55,7 @@ def springs(p: vr.Prony, z: float, h: float, nu: float) -> NDArray[np.float64]:
     return np.array([2.0 / np.pi * load, b - z, weights @ (x * pressure(x, b)) / load])
 
 
-def _springs_moment(u: float, h: float, nu: float) -> float:
+def springs_moment(u: float, h: float, nu: float) -> float:
     """kappa M of the foundation at kappa V = u, for a thickness over l0."""
     z = brentq(
         lambda z: springs(MATERIAL, z, h / u, nu)[0] * 4.0 * u * u - 1.0,
@@ -85,7 +85,7 @@ def compared(nu: float, thickness: float) -> dict[str, Any]:
     }
     if nu < 0.5 and thickness <= 1.0:
         found = minimize_scalar(
-            lambda log_u: -_springs_moment(math.exp(log_u), thickness, nu),
+            lambda log_u: -springs_moment(math.exp(log_u), thickness, nu),
             bounds=np.log(_SPEEDS),
             method="bounded",
         )

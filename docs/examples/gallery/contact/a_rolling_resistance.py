@@ -14,7 +14,9 @@ import viscoroll as vr
 
 V = np.geomspace(1e-3, 1e2, 400)  # in units of R/T_epsilon
 figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
-for alpha, style in zip((1.5, 3.0, 11.0, 81.5), (":", "-.", "--", "-"), strict=True):
+for alpha, style in zip(
+    (1.5, 3.0, 11.0, 81.5), (":", "-.", "--", "-"), strict=True
+):
     scene = vr.Scene(alpha=alpha, kappa=10.0, mu=0.3)
     M = vr.contact(scene, V, delta=0.0, fields="M").M
     axes.semilogx(V, M, style, label=rf"$\alpha = {alpha:g}$")
@@ -33,6 +35,7 @@ axes.legend(frameon=False)
 for alpha in (1.5, 3.0, 11.0, 81.5):
     top = vr.resistance_extrema(vr.Scene(alpha=alpha, kappa=10.0, mu=0.3))
     print(
-        f"alpha = {alpha:4g}: maximum at kappa V = {10.0 * top.V[0]:.3f}, kappa M = "
+        f"alpha = {alpha:4g}: maximum at "
+        f"kappa V = {10.0 * top.V[0]:.3f}, kappa M = "
         f"{10.0 * top.M[0]:.4f}"
     )

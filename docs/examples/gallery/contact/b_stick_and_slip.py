@@ -27,13 +27,20 @@ for axes, share in zip(panels, (0.2, 0.6, 1.0), strict=True):
     s = vr.stress(scene, x, V=0.05, delta=share * limit)
     axes.plot(x, 1e3 * scene.mu * s.p, "--", color="0.4", label=r"$\mu p$")
     axes.plot(x, 1e3 * s.tau, label=r"shear stress $\tau$")
-    axes.axvspan(front - c.beta * c.lam, front, color="0.92", label="stick zone")
+    axes.axvspan(
+        front - c.beta * c.lam, front, color="0.92", label="stick zone"
+    )
     axes.set(
-        title=rf"$\delta = {share:g}\,\delta^*$, $Q = {c.Q / scene.mu:.2f}\,\mu P$",
+        title=rf"$\delta = {share:g}\,\delta^*$, "
+        rf"$Q = {c.Q / scene.mu:.2f}\,\mu P$",
         xlabel="$x/l_0$",
     )
 panels[0].set_ylabel(r"stress$/E'\times 10^3$")
-figure.legend(*panels[0].get_legend_handles_labels(), loc="outside lower center", ncols=3)
+figure.legend(
+    *panels[0].get_legend_handles_labels(),
+    loc="outside lower center",
+    ncols=3,
+)
 
 # %%
 # The cylinder moves to the right.  The pressure centre is shifted to the leading edge, because the

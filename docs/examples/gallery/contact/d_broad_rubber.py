@@ -13,8 +13,13 @@ import viscoroll as vr
 
 
 def broad(modes: int, decades: float) -> vr.Prony:
-    """Instantaneous modulus eleven times the long-time one; equal modes, times evenly spaced."""
-    return vr.Prony(np.full(modes, 10.0 / modes), np.logspace(0.0, -decades, modes))
+    """Instantaneous modulus eleven times the long-time one; equal modes.
+
+    Their times are evenly spaced.
+    """
+    return vr.Prony(
+        np.full(modes, 10.0 / modes), np.logspace(0.0, -decades, modes)
+    )
 
 
 materials = {
@@ -30,9 +35,15 @@ SYMBOLS = {
     "delta_star": r"$\kappa\delta^*/\mu$",
     "M": r"$\kappa M$",
 }
-figure, panels = plt.subplots(2, 2, figsize=(6.4, 5.5), sharex=True, layout="constrained")
-for (name, material), style in zip(materials.items(), ("k-", "--", "-.", ":"), strict=True):
-    c = vr.contact(vr.Scene(material=material, kappa=1.0, mu=1.0), V, delta=0.0)
+figure, panels = plt.subplots(
+    2, 2, figsize=(6.4, 5.5), sharex=True, layout="constrained"
+)
+for (name, material), style in zip(
+    materials.items(), ("k-", "--", "-.", ":"), strict=True
+):
+    c = vr.contact(
+        vr.Scene(material=material, kappa=1.0, mu=1.0), V, delta=0.0
+    )
     for axes, field in zip(panels.flat, SYMBOLS, strict=True):
         axes.semilogx(V, getattr(c, field), style, label=name)
         axes.set(ylabel=SYMBOLS[field], ylim=(0.0, None))
@@ -46,9 +57,15 @@ panels[0, 1].legend(frameon=False, fontsize="small")
 #
 # Stresses of the material with ten relaxation times over ten decades, at four speeds and half the
 # critical creepage, divided by the largest static pressure:
-scene = vr.Scene(material=materials["10 modes, 10 decades"], kappa=1.0, mu=1.0)
-stresses, (pressure, shear) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
-for speed, style in zip((1e-2, 1.0, 1e3, 1e7), ("k-", "--", "-.", ":"), strict=True):
+scene = vr.Scene(
+    material=materials["10 modes, 10 decades"], kappa=1.0, mu=1.0
+)
+stresses, (pressure, shear) = plt.subplots(
+    1, 2, figsize=(6.4, 3.4), layout="constrained"
+)
+for speed, style in zip(
+    (1e-2, 1.0, 1e3, 1e7), ("k-", "--", "-.", ":"), strict=True
+):
     c = vr.contact(scene, speed, delta=0.0)
     x = 0.5 * c.lam * (c.epsilon - np.cos(np.linspace(0.0, np.pi, 801)))
     s = vr.stress(scene, x, speed, delta=0.5 * c.delta_star)
@@ -57,9 +74,15 @@ for speed, style in zip((1e-2, 1.0, 1e3, 1e7), ("k-", "--", "-.", ":"), strict=T
             x,
             8.0 * np.pi * values,
             style,
-            label=rf"$\kappa V = {speed:g}$" if speed < 1e4 else r"$\kappa V = 10^7$",
+            label=rf"$\kappa V = {speed:g}$"
+            if speed < 1e4
+            else r"$\kappa V = 10^7$",
         )
-pressure.set(xlabel="$x/l_0$", ylabel=r"pressure $p/p_{\mathrm{static}}$", ylim=(0.0, None))
+pressure.set(
+    xlabel="$x/l_0$",
+    ylabel=r"pressure $p/p_{\mathrm{static}}$",
+    ylim=(0.0, None),
+)
 shear.set(
     xlabel="$x/l_0$",
     ylabel=r"shear stress $\tau/(\mu p_{\mathrm{static}})$",

@@ -15,9 +15,13 @@ import viscoroll as vr
 
 # relaxation times two decades apart: one maximum of M for each
 times = 100.0 ** -np.arange(5.0)
-rubber = vr.Scene(material=vr.Prony(2.0 ** np.arange(5), times), kappa=10.0, mu=0.2)
+rubber = vr.Scene(
+    material=vr.Prony(2.0 ** np.arange(5), times), kappa=10.0, mu=0.2
+)
 
-figure, panels = plt.subplots(1, 2, figsize=(6.4, 3.6), layout="constrained")
+figure, panels = plt.subplots(
+    1, 2, figsize=(6.4, 3.6), layout="constrained"
+)
 for axes, scene, title, unit in zip(
     panels,
     (vr.presets.PAPER_SECTION_5, rubber),
@@ -27,7 +31,9 @@ for axes, scene, title, unit in zip(
 ):
     extrema = vr.resistance_extrema(scene)
     V = np.geomspace(extrema.V[0] / 20.0, 20.0 * extrema.V[-1], 801)
-    axes.semilogx(V, vr.contact(scene, V, delta=0.0, fields="M").M, "k", label="M")
+    axes.semilogx(
+        V, vr.contact(scene, V, delta=0.0, fields="M").M, "k", label="M"
+    )
     for pull in (0.35, 0.7, 0.95):  # of the largest M
         slope = np.arctan(pull * extrema.M.max())
         s = vr.steady(scene, slope=slope)
@@ -42,7 +48,9 @@ for axes, scene, title, unit in zip(
             fontsize="small",
         )
         axes.plot(s.V[s.stable], s.M[s.stable], "o", color="C0")
-        axes.plot(s.V[~s.stable], s.M[~s.stable], "o", color="C0", mfc="white")
+        axes.plot(
+            s.V[~s.stable], s.M[~s.stable], "o", color="C0", mfc="white"
+        )
     axes.set(
         xlabel=rf"speed $V {unit}/R$",
         title=title,
@@ -52,7 +60,8 @@ for axes, scene, title, unit in zip(
     axes.xaxis.set_minor_formatter(NullFormatter())
 panels[0].set_ylabel("rolling resistance $M/(PR)$; tan(slope)")
 figure.suptitle(
-    "Steady speeds on three slopes: stable (filled) and unstable (open)", fontsize="medium"
+    "Steady speeds on three slopes: stable (filled) and unstable (open)",
+    fontsize="medium",
 )
 
 # %%
@@ -64,4 +73,7 @@ s = roller.steady(slope=np.radians(0.3))
 share = roller.validity(s.V).quasistatic.value
 for V, stable, part in zip(s.V, s.stable, share, strict=True):
     word = "stable" if stable else "unstable"
-    print(f"{V:10.3g} m/s, {word}, {100.0 * part:.0f} % of the shear wave speed")
+    print(
+        f"{V:10.3g} m/s, {word}, "
+        f"{100.0 * part:.0f} % of the shear wave speed"
+    )

@@ -16,7 +16,9 @@ scene = vr.presets.PAPER_SECTION_5
 grip = (1.0 + scene.j) * scene.mu
 times = np.array([0.0, 5.0, 8.0, 8.0]) / scene.gamma
 torque = np.array([0.0, 2.0, 2.0, 0.25]) * grip
-t = np.unique(np.concatenate([np.linspace(0.0, 16.0 / scene.gamma, 801), times]))
+t = np.unique(
+    np.concatenate([np.linspace(0.0, 16.0 / scene.gamma, 801), times])
+)
 m = vr.roll(scene, 0.0, 0.0, t, torque=vr.Schedule(times, torque))
 
 figure, (top, bottom) = plt.subplots(
@@ -34,9 +36,13 @@ for switch, end in zip(m.switches, ends, strict=True):
     if switch.regime == "full slip":
         for axes in (top, bottom):
             axes.axvspan(switch.t, end, color="0.87", linewidth=0.0)
-top.set(ylabel=r"$V T_\varepsilon/R$, $\omega T_\varepsilon$", xlim=(0.0, t[-1]))
+top.set(
+    ylabel=r"$V T_\varepsilon/R$, $\omega T_\varepsilon$", xlim=(0.0, t[-1])
+)
 bottom.set(
-    xlabel=r"$t/T_\varepsilon$", ylabel="$Q/P$, torque$/(PR)$", ylim=(None, 2.15 * grip)
+    xlabel=r"$t/T_\varepsilon$",
+    ylabel="$Q/P$, torque$/(PR)$",
+    ylim=(None, 2.15 * grip),
 )
 for axes in (top, bottom):
     axes.legend(loc="upper left")

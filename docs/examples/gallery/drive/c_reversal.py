@@ -16,11 +16,15 @@ torque = -0.85 * (1.0 + scene.j) * scene.mu
 end = 3.0 * V0 / (scene.gamma * abs(torque))
 turn = vr.roll(scene, V0, V0, end, torque=torque).reversals[0]
 apart = turn * np.geomspace(1e-9, 0.5, 200)
-t = np.unique(np.concatenate([turn - apart, turn + apart, np.linspace(0.0, end, 801)]))
+t = np.unique(
+    np.concatenate([turn - apart, turn + apart, np.linspace(0.0, end, 801)])
+)
 m = vr.roll(scene, V0, V0, t, torque=torque)
 Q = m.contact("Q").Q
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.6), layout="constrained")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(6.4, 3.6), layout="constrained"
+)
 left.plot(t, m.V, "k", label="$V$")
 left.plot(t, m.omega, "--", label=r"$\omega$")
 left.axvline(turn, color="0.7", linewidth=0.6)

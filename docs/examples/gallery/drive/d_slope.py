@@ -27,7 +27,9 @@ guess = saddle + scene.j * (s.omega[1] - across)
 low, high = guess - saddle, guess + saddle
 for _ in range(40):
     middle = 0.5 * (low + high)
-    end = vr.ensemble(scene, middle, across, 30.0 / rate, slope=slope, rtol=1e-6)
+    end = vr.ensemble(
+        scene, middle, across, 30.0 / rate, slope=slope, rtol=1e-6
+    )
     runs_away = end.V[:, 0] > saddle
     low, high = (
         np.where(runs_away, low, middle),
@@ -40,19 +42,32 @@ separatrix = 0.5 * (low + high)
 V = np.linspace(*plane, 801)
 band = vr.contact(scene, V, delta=0.0).delta_star * np.abs(V)
 end = 150.0 / scene.gamma
-starts = [(V0, omega0) for V0 in np.linspace(*plane, 11)[1:-1] for omega0 in plane]
+starts = [
+    (V0, omega0) for V0 in np.linspace(*plane, 11)[1:-1] for omega0 in plane
+]
 starts += [(share * saddle, share * s.omega[1]) for share in (0.999, 1.001)]
-motions = [vr.roll(scene, *start, end, rtol=1e-6, slope=slope).course for start in starts]
+motions = [
+    vr.roll(scene, *start, end, rtol=1e-6, slope=slope).course
+    for start in starts
+]
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.7), layout="constrained")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(6.4, 3.7), layout="constrained"
+)
 for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
     axes.set_facecolor("0.87")
-    axes.fill_between(V, tilt * V - unit * band, tilt * V + unit * band, color="white")
+    axes.fill_between(
+        V, tilt * V - unit * band, tilt * V + unit * band, color="white"
+    )
     for m in motions:
         fine = m.at(np.unique(np.linspace(m.t[:-1], m.t[1:], 6)))
         height = tilt * fine.V + unit * (fine.omega - fine.V)
         axes.plot(
-            fine.V, height, "C0", lw=0.9, label="motions" if m is motions[0] else None
+            fine.V,
+            height,
+            "C0",
+            lw=0.9,
+            label="motions" if m is motions[0] else None,
         )
     axes.plot(
         separatrix,
@@ -61,13 +76,26 @@ for axes, tilt, unit in ((left, 1.0, 1.0), (right, 0.0, 1e3)):
         lw=2.0,
         label="separatrix",
     )
-    for n, face, name in ((0, "black", "stable speed"), (1, "white", "unstable speed")):
+    for n, face, name in (
+        (0, "black", "stable speed"),
+        (1, "white", "unstable speed"),
+    ):
         height = tilt * s.V[n] + unit * (s.omega[n] - s.V[n])
-        axes.plot(s.V[n], height, "o", color="black", mfc=face, zorder=4, label=name)
+        axes.plot(
+            s.V[n],
+            height,
+            "o",
+            color="black",
+            mfc=face,
+            zorder=4,
+            label=name,
+        )
     axes.set(xlabel=r"$V T_\varepsilon/R$", box_aspect=1.0)
 left.set(xlim=plane, ylim=plane, ylabel=r"$\omega T_\varepsilon$")
 room = 1.2e3 * band[(V > -0.2 * saddle) & (V < 1.6 * saddle)].max()
 right.set(xlim=(-0.2 * saddle, 1.6 * saddle), ylim=(-room, room))
 right.set_ylabel(r"$(\omega T_\varepsilon - V T_\varepsilon/R)\times 10^3$")
-figure.legend(*left.get_legend_handles_labels(), loc="outside lower center", ncols=4)
+figure.legend(
+    *left.get_legend_handles_labels(), loc="outside lower center", ncols=4
+)
 figure.suptitle("White: partial slip; grey: full slip")

@@ -43,7 +43,16 @@ def jacobian(t, y):
 
 t = np.linspace(0.0, 40.0, 801)
 start = [0.0, 0.25, 0.25]
-found = solve_ivp(rates, (0.0, 40.0), start, "Radau", t, jac=jacobian, rtol=1e-6, atol=1e-8)
+found = solve_ivp(
+    rates,
+    (0.0, 40.0),
+    start,
+    "Radau",
+    t,
+    jac=jacobian,
+    rtol=1e-6,
+    atol=1e-8,
+)
 figure, (top, bottom) = plt.subplots(
     2, 1, figsize=(6.4, 4.6), sharex=True, layout="constrained"
 )
@@ -51,7 +60,9 @@ top.plot(t, 0.1 * found.y[1])
 top.set(ylabel="speed, m/s")
 bottom.plot(t, 100.0 * stiffness * found.y[0])
 resistance = 100.0 * law(speed, speed).M
-bottom.axhline(resistance, color="0.4", linewidth=0.8, label="rolling resistance")
+bottom.axhline(
+    resistance, color="0.4", linewidth=0.8, label="rolling resistance"
+)
 bottom.set(xlabel="$t$, s", ylabel="spring force, % of the load")
 bottom.legend(frameon=False)
 print(f"{found.nfev} calls of the law, {found.njev} of its slopes")

@@ -20,7 +20,11 @@ from viscoroll import fmu
 roller = vr.presets.RUBBER_CYLINDER
 drive = np.array(
     [(0.0, 0.0, 5.0), (1.0, 0.0, 5.0), (1.0, 0.0, 0.0), (3.0, 0.0, 0.0)],
-    dtype=[("time", float), ("drive_force", float), ("drive_torque", float)],
+    dtype=[
+        ("time", float),
+        ("drive_force", float),
+        ("drive_torque", float),
+    ],
 )  # s, N, N m
 with tempfile.TemporaryDirectory() as folder:
     path = Path(folder) / "roller.fmu"
@@ -37,7 +41,9 @@ with tempfile.TemporaryDirectory() as folder:
 
 figure, axes = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
 axes.plot(found["time"], found["v"], label="$v$")
-axes.plot(found["time"], roller.R * found["omega"], "--", label=r"$\omega R$")
+axes.plot(
+    found["time"], roller.R * found["omega"], "--", label=r"$\omega R$"
+)
 axes.set(xlabel="$t$, s", ylabel="speed, m/s")
 axes.legend(frameon=False)
 print(f"v = {found['v'][-1]:.6f} m/s after 3 s")

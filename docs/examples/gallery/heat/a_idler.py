@@ -21,14 +21,23 @@ rubber = vr.Material(
     shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
 )
 idler = vr.Cylinder(
-    R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=20e3
+    R=0.1,
+    m=60.0,
+    material=rubber,
+    base=vr.Material.rigid(),
+    mu=0.6,
+    load=20e3,
 )
 
 ambient = np.array([-20.0, 0.0, 20.0])  # degrees Celsius
 t = np.linspace(0.0, 9000.0, 181)
-course = idler.warming(5.0, t, ambient=ambient, conductance=6.0, capacity=9e3)
+course = idler.warming(
+    5.0, t, ambient=ambient, conductance=6.0, capacity=9e3
+)
 
-figure, panels = plt.subplots(1, 2, figsize=(6.4, 3.2), layout="constrained")
+figure, panels = plt.subplots(
+    1, 2, figsize=(6.4, 3.2), layout="constrained"
+)
 for n, start in enumerate(ambient):
     panels[0].plot(t / 60.0, course.temperature[n], label=f"{start:g} °C")
     panels[1].plot(t / 60.0, 100.0 * course.C_rr[n])

@@ -22,7 +22,12 @@ rubber = vr.Material(
     shift=vr.WLF(C1=8.86, C2=101.6, T0=0.0),
 )
 roller = vr.Cylinder(
-    R=0.1, m=60.0, material=rubber, base=vr.Material.rigid(), mu=0.6, load=20e3
+    R=0.1,
+    m=60.0,
+    material=rubber,
+    base=vr.Material.rigid(),
+    mu=0.6,
+    load=20e3,
 )
 
 V = np.geomspace(0.02, 10.0, 400)  # m/s
@@ -31,10 +36,17 @@ ends = roller.turning_points(ambient=-20.0, conductance=6.0)
 
 figure, axes = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
 speed = np.broadcast_to(V[:, np.newaxis], found.temperature.shape)
-for stable, style, label in ((True, "C0.", "stable"), (False, "C1.", "unstable")):
+for stable, style, label in (
+    (True, "C0.", "stable"),
+    (False, "C1.", "unstable"),
+):
     shown = found.stable == stable
     axes.semilogx(
-        speed[shown], found.temperature[shown], style, markersize=2.0, label=label
+        speed[shown],
+        found.temperature[shown],
+        style,
+        markersize=2.0,
+        label=label,
     )
 axes.plot(ends.V, ends.temperature, "ko", label="a branch ends")
 axes.set(xlabel="speed, m/s", ylabel="temperature, °C")

@@ -29,14 +29,23 @@ wheel = vr.Cylinder(
     mu=0.5,
     load=1500.0 / WIDTH,
 )
-conductance = vr.conductance(R=0.1, film=20.0, thickness=0.015, conductivity=0.22)
+conductance = vr.conductance(
+    R=0.1, film=20.0, thickness=0.015, conductivity=0.22
+)
 
 load = np.linspace(500.0, 3000.0, 6)  # N
 ambient = np.array([[10.0], [20.0], [35.0]])  # degrees Celsius
-limit = wheel.heat_limit(70.0, load=load / WIDTH, ambient=ambient, conductance=conductance)
+limit = wheel.heat_limit(
+    70.0, load=load / WIDTH, ambient=ambient, conductance=conductance
+)
 
 figure, axes = plt.subplots(figsize=(6.4, 3.6), layout="constrained")
 for at, V in zip(ambient.ravel(), limit.V, strict=True):
     axes.plot(V, load, "o-", label=f"{at:g} °C")
-axes.set(xlabel="speed, m/s", ylabel="load, N", xlim=(0.0, None), ylim=(0.0, None))
+axes.set(
+    xlabel="speed, m/s",
+    ylabel="load, N",
+    xlim=(0.0, None),
+    ylim=(0.0, None),
+)
 axes.legend(title="ambient")

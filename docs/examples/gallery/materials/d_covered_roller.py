@@ -20,7 +20,9 @@ rubber = vr.Material(
     name="rubber",
 )
 steel = vr.Material.rigid()
-roller = vr.Cylinder(R=0.05, m=9.0, material=rubber, base=steel, mu=0.6, load=2000.0)
+roller = vr.Cylinder(
+    R=0.05, m=9.0, material=rubber, base=steel, mu=0.6, load=2000.0
+)
 speed = np.geomspace(1e-3, 1e3, 300)  # m/s
 figure, (left, right) = plt.subplots(
     1, 2, figsize=(6.4, 3.4), sharex=True, layout="constrained"
@@ -32,8 +34,14 @@ for thickness, style in styles.items():
     name = "half-space" if thickness is None else f"{1e3 * thickness:g} mm"
     left.semilogx(speed, 100.0 * c.C_rr, style, label=name)
     right.semilogx(speed, 1e3 * c.length, style, label=name)
-left.set(xlabel="speed, m/s", ylabel="rolling resistance $M/(PR)$, %", ylim=(0.0, None))
-right.set(xlabel="speed, m/s", ylabel="contact length, mm", ylim=(0.0, None))
+left.set(
+    xlabel="speed, m/s",
+    ylabel="rolling resistance $M/(PR)$, %",
+    ylim=(0.0, None),
+)
+right.set(
+    xlabel="speed, m/s", ylabel="contact length, mm", ylim=(0.0, None)
+)
 right.legend(frameon=False, title="cover", loc="lower left")
 
 # %%
@@ -43,6 +51,7 @@ for thickness in (10e-3, 5e-3, 2.5e-3):
     covered = roller.replace(material=replace(rubber, thickness=thickness))
     c = covered.contact(1.0, delta=0.0)
     print(
-        f"{1e3 * thickness:4g} mm: delta_0 = {100 * c.delta_0:.2f} %, delta_star = "
+        f"{1e3 * thickness:4g} mm: delta_0 = {100 * c.delta_0:.2f} %, "
+        "delta_star = "
         f"{100 * c.delta_star:.2f} %"
     )

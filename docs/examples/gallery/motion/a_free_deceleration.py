@@ -17,19 +17,34 @@ rubber = vr.fit_prony(vr.read_dma(vr.datasets.path("dma.csv"))).material(
 )
 roller = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=0.5)
 t = np.unique(
-    np.concatenate([np.linspace(0.0, 0.5, 201), np.linspace(0.5, 60.0, 201)])
+    np.concatenate(
+        [np.linspace(0.0, 0.5, 201), np.linspace(0.5, 60.0, 201)]
+    )
 )  # s
 m = roller.roll(V0=2.0, omega0=0.0, t=t)
-figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(6.4, 3.4), layout="constrained"
+)
 for axes, end in ((left, 0.5), (right, 60.0)):
     axes.plot(m.t, m.V, label="$V$")
     axes.plot(m.t, roller.R * m.omega, "--", label=r"$\omega R$")
-    axes.set(xlabel="$t$, s", ylabel="speed, m/s", xlim=(0.0, end), ylim=(0.0, None))
+    axes.set(
+        xlabel="$t$, s",
+        ylabel="speed, m/s",
+        xlim=(0.0, end),
+        ylim=(0.0, None),
+    )
 left.axvline(m.onset_time, color="0.6", linewidth=0.8)
-left.annotate("onset of stick", (m.onset_time, 0.3), (6, 0), textcoords="offset points")
+left.annotate(
+    "onset of stick",
+    (m.onset_time, 0.3),
+    (6, 0),
+    textcoords="offset points",
+)
 right.legend(frameon=False)
 print(
-    f"onset of stick at {m.onset_time:.3f} s; after {m.t[-1]:g} s it has rolled {m.x[-1]:.1f} m"
+    f"onset of stick at {m.onset_time:.3f} s; "
+    f"after {m.t[-1]:g} s it has rolled {m.x[-1]:.1f} m"
 )
 
 # %%

@@ -18,15 +18,27 @@ figure, axes = plt.subplots(figsize=(6.4, 4.0), layout="constrained")
 for n, (name, start) in enumerate(vr.presets.PAPER_STARTS.items()):
     m = vr.roll(scene, *start, t)
     axes.plot(1e4 * t, m.V, f"C{n}", label="$V$" if n == 0 else None)
-    axes.plot(1e4 * t, m.omega, f"C{n}--", label=r"$\omega$" if n == 0 else None)
-    axes.annotate(name, (7.0, m.V[350]), (0, 9), textcoords="offset points", color=f"C{n}")
-    axes.axvline(1e4 * m.onset_time, color=f"C{n}", linewidth=0.9, linestyle=":")
+    axes.plot(
+        1e4 * t, m.omega, f"C{n}--", label=r"$\omega$" if n == 0 else None
+    )
+    axes.annotate(
+        name,
+        (7.0, m.V[350]),
+        (0, 9),
+        textcoords="offset points",
+        color=f"C{n}",
+    )
+    axes.axvline(
+        1e4 * m.onset_time, color=f"C{n}", linewidth=0.9, linestyle=":"
+    )
 axes.set(
     xlabel=r"$t/T_\varepsilon\times 10^4$",
     ylabel=r"$V T_\varepsilon/R$, $\omega T_\varepsilon$",
     xlim=(0.0, 40.0),
 )
-axes.set_title("Fig. 5 of the paper; vertical lines: onset of stick", fontsize="medium")
+axes.set_title(
+    "Fig. 5 of the paper; vertical lines: onset of stick", fontsize="medium"
+)
 axes.legend(frameon=False)
 
 # %%
@@ -44,13 +56,23 @@ SYMBOLS = {
     "beta": r"$\beta$",
 }
 contact, (near, whole) = plt.subplots(
-    1, 2, figsize=(6.4, 3.6), sharey=True, width_ratios=(1.0, 1.6), layout="constrained"
+    1,
+    2,
+    figsize=(6.4, 3.6),
+    sharey=True,
+    width_ratios=(1.0, 1.6),
+    layout="constrained",
 )
 for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
     for n, name in enumerate(SYMBOLS):
-        for motion, style in ((m, ("-", "--", "-.", ":")[n]), (marked, "o")):
+        for motion, style in (
+            (m, ("-", "--", "-.", ":")[n]),
+            (marked, "o"),
+        ):
             values = (
-                motion.delta if name == "delta" else getattr(motion.contact(name), name)
+                motion.delta
+                if name == "delta"
+                else getattr(motion.contact(name), name)
             )
             axes.plot(
                 1e4 * motion.t,
@@ -60,8 +82,12 @@ for axes, end in ((near, 1.25 * onset), (whole, t[-1])):
                 label="_" if motion is marked else SYMBOLS[name],
             )
     axes.set(
-        xlim=(0.0, 1e4 * end), ylim=(-0.75, 1.1), xlabel=r"$t/T_\varepsilon\times 10^4$"
+        xlim=(0.0, 1e4 * end),
+        ylim=(-0.75, 1.1),
+        xlabel=r"$t/T_\varepsilon\times 10^4$",
     )
 near.set_ylabel("contact state")
 whole.legend(frameon=False)
-contact.suptitle("Fig. 6 of the paper; circles: times of Fig. 7", fontsize="medium")
+contact.suptitle(
+    "Fig. 6 of the paper; circles: times of Fig. 7", fontsize="medium"
+)

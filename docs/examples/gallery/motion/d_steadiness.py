@@ -21,15 +21,27 @@ roller = vr.Cylinder(R=0.1, m=35.5, material=rubber, mu=0.5)
 scene, V = roller.scene(), np.geomspace(1e-4, 10.0, 4000)  # m/s
 c = vr.contact(scene, V / roller.scale["V"], delta=0.0, fields=("M", "N"))
 unsteady = scene.gamma * c.N / (1.0 + scene.j)
-bound = 0.084 * (1.0 - 1.0 / scene.alpha) * roller.g * roller.l0**2 / (roller.R * 1.5)
+bound = (
+    0.084
+    * (1.0 - 1.0 / scene.alpha)
+    * roller.g
+    * roller.l0**2
+    / (roller.R * 1.5)
+)
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
-(line,) = left.loglog(V, abs(unsteady), label=f"longest time {rubber.T_ref:.0f} s")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(6.4, 3.4), layout="constrained"
+)
+(line,) = left.loglog(
+    V, abs(unsteady), label=f"longest time {rubber.T_ref:.0f} s"
+)
 cold = roller.replace(material=rubber.at(0.0, lambda temperature: 1e3))
 colder = cold.validity(V).steady
 slow = cold.T_ref * cold.scene().material.tau[0]
 left.loglog(V, colder.value, "--", label=f"longest time {slow:.0f} s")
-left.loglog(V, bound / V**2, color="0.5", linestyle=":", label="upper bound")
+left.loglog(
+    V, bound / V**2, color="0.5", linestyle=":", label="upper bound"
+)
 for reach, height in (
     (roller.validity(1.0).steady.ten_percent, 0.1),
     (roller.validity(1.0).steady.one_percent, 0.01),
@@ -44,13 +56,22 @@ for inertia, style, name in (
     (0.0, "-", "quasi-steady law"),
     (1.0, "k--", "with the correction N"),
 ):
-    rate = (1.0 + inertia * unsteady) * (1.0 + scene.j) / (scene.gamma * c.M)
-    t = cumulative_trapezoid(rate[:start], V[:start] / roller.scale["V"], initial=0.0)
+    rate = (
+        (1.0 + inertia * unsteady) * (1.0 + scene.j) / (scene.gamma * c.M)
+    )
+    t = cumulative_trapezoid(
+        rate[:start], V[:start] / roller.scale["V"], initial=0.0
+    )
     fast = V[:start] > roller.validity(1.0).steady.ten_percent.speed
     right.semilogy(
-        (t[-1] - t)[fast] * roller.scale["t"], V[:start][fast], style, label=name
+        (t[-1] - t)[fast] * roller.scale["t"],
+        V[:start][fast],
+        style,
+        label=name,
     )
-right.set(xlabel="$t$, s", ylabel="speed, m/s", title="free rolling from 1 m/s")
+right.set(
+    xlabel="$t$, s", ylabel="speed, m/s", title="free rolling from 1 m/s"
+)
 right.legend(frameon=False)
 print(roller.validity(1.0).steady.sentence)
 print(cold.validity(1.0).steady.sentence)

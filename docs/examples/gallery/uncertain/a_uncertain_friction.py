@@ -14,12 +14,18 @@ import viscoroll as vr
 
 roller = vr.presets.RUBBER_CYLINDER
 draw = vr.sampling.sample(
-    10_000, seed=1, design="sobol", mu=stats.norm(0.3, 0.03), V0=stats.uniform(1.8, 0.4)
+    10_000,
+    seed=1,
+    design="sobol",
+    mu=stats.norm(0.3, 0.03),
+    V0=stats.uniform(1.8, 0.4),
 )  # V0 in m/s, from 1.8 to 2.2
 rollers = roller.replace(mu=draw["mu"])  # one for each draw
 e = rollers.ensemble(draw["V0"], 0.0, [0.1, 10.0], rtol=1e-6, fields="V")
 
-figure, (left, right) = plt.subplots(1, 2, figsize=(6.4, 3.4), layout="constrained")
+figure, (left, right) = plt.subplots(
+    1, 2, figsize=(6.4, 3.4), layout="constrained"
+)
 left.hist(e.onset_time, bins=60, color="0.6")
 left.set(xlabel="time of the onset of stick, s", ylabel="motions")
 right.plot(draw["mu"][:2000], e.V[:2000, -1], ".", markersize=2)

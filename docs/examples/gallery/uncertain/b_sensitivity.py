@@ -16,7 +16,7 @@ Path("launch.toml").write_text(
     """
 preset = "rubber-roller"
 [scene]
-mu = { distribution = "norm", loc = 0.3, scale = 0.03, truncate = [0.2, 0.4] }
+mu = {distribution = "norm", loc = 0.3, scale = 0.03, truncate = [0.2, 0.4]}
 j = { distribution = "uniform", loc = 0.45, scale = 0.1 }
 [start]
 V0 = { distribution = "uniform", loc = 18.0, scale = 4.0 }

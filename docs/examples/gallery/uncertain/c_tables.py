@@ -38,17 +38,29 @@ int main(void) {
 }
 """
 )
-for command in (["cc", "-std=c99", "-O2", "state.c", "-o", "state", "-lm"], ["./state"]):
-    result = subprocess.run(command, cwd=folder, capture_output=True, text=True, check=True)
+for command in (
+    ["cc", "-std=c99", "-O2", "state.c", "-o", "state", "-lm"],
+    ["./state"],
+):
+    result = subprocess.run(
+        command, cwd=folder, capture_output=True, text=True, check=True
+    )
 print(result.stdout)
 
 # %%
 # In Octave, by ``read_law.m`` (:doc:`/loading/README`).
 vr.tables.save(law, folder / "rubber.nc")
 here = Path.cwd().resolve()
-root = next(path for path in (here, *here.parents) if (path / "docs/loading").exists())
+root = next(
+    path
+    for path in (here, *here.parents)
+    if (path / "docs/loading").exists()
+)
 shutil.copy(root / "docs/loading/read_law.m", folder)
-code = "s = read_law('rubber.nc')(20, 0.5, 3, 3.01 - 3); printf('%.15f %.15f', s.Q, s.M)"
+code = (
+    "s = read_law('rubber.nc')(20, 0.5, 3, 3.01 - 3); "
+    "printf('%.15f %.15f', s.Q, s.M)"
+)
 if shutil.which("octave-cli"):
     result = subprocess.run(
         ["octave-cli", "--eval", code],
@@ -71,7 +83,9 @@ figure, (top, bottom) = plt.subplots(
     2, 1, figsize=(6.4, 5.0), sharex=True, layout="constrained"
 )
 top.semilogx(speeds, truth, label="law")
-top.semilogx(speeds, looked_up, "--", label="linear interpolation in the grid")
+top.semilogx(
+    speeds, looked_up, "--", label="linear interpolation in the grid"
+)
 bottom.loglog(speeds, np.abs(looked_up - truth), color="0.3")
 top.set(ylabel="$Q/P$")
 top.legend(frameon=False)
