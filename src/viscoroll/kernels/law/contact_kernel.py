@@ -40,10 +40,12 @@ from ..numerics.intrinsics import bits_to_float, float_to_bits
 from ..numerics.jit import inline_kernel, kernel
 from .cover_law import (
     MomentChange,
-    asymmetry_at,
-    free_creep_at,
+    PairOverSpeed,
+    asymmetry_of,
     length_change,
     moment_change,
+    pairs_at,
+    reaction_of,
     shear_reaction,
     sliding_creep,
     slope_over_speed,
@@ -99,6 +101,9 @@ _T = np.uint64(TOGETHER)
 _DT_DX = np.uint64(2 * TOGETHER)
 #: Place in the scratch of :func:`contact_loop` of the asymmetry c of a cover.
 _ASYMMETRY = np.uint64(16 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of f_b of a cover; f_c, g_b and g_c follow, each
+#: TOGETHER further.
+_PAIRS = np.uint64(17 * TOGETHER)
 
 
 @inline_kernel
@@ -494,6 +499,9 @@ def _write_other_fields(n, c, law, scratch, request):
     _write_reaction(n, position, u, state, law, law.cover_rows, request)
     if slopes or bodies:
         slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
+        of_M = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dM_half_space_dV, to.dM_cylinder_dV)
+        of_M = max(of_M, to.dM_half_space_domega, to.dM_cylinder_domega)
+        slopes_of_Q = slopes_of_Q or (_is_cover(law.cover_rows) and of_M >= 0)
         _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
 
 
@@ -540,8 +548,7 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
 
     n, c, law, scratch, request : as of :func:`_write_other_fields`.
     bodies : bool, whether a quantity of one body is requested.
-    slopes_of_Q : bool, whether a slope of Q is requested; the moments of a cover need them in any
-    case.
+    slopes_of_Q : bool, whether a slope of Q is requested, or of a moment of a cover.
     Returns nothing.  Of half-spaces M depends on the speed alone: its slopes in delta and omega are
     0.
     """
@@ -554,7 +561,7 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     over_V = 0.0
     over_delta = 0.0
     over_omega = 0.0
-    if slopes_of_Q or _is_cover(law.cover_rows):
+    if slopes_of_Q:
         over_V, over_delta, over_omega = Q_slopes(
             u, functions.L, functions.dL, scratch[_D + c], state, law
         )
@@ -601,25 +608,33 @@ def _is_cover(cover_rows):
 
 
 @inline_kernel
-def _write_asymmetry(c, position, functions, cover_rows, scratch):
-    """Store the asymmetry c of a state on a cover in the scratch.
+def _write_creep(c, position, functions, cover_rows, scratch):
+    """Store in the scratch what a cover has besides at the speed of a state: 2 kappa delta_0, the
+    asymmetry and the pairs f and g.
 
     c, scratch : as of :func:`_write_other_fields`.
     position, functions : :class:`RowPosition` of u, and :class:`LengthAndMoment` there.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
-    half-spaces, of which nothing is written.
+    half-spaces, of which delta_0 = 0 alone is written.
     Returns nothing.
     """
-    if cover_rows is not None:
-        scratch[_ASYMMETRY + c] = asymmetry_at(
-            position,
-            scratch[_U + c],
-            scratch[_MU + c],
-            functions.L,
-            functions.dL,
-            functions.ddL,
-            cover_rows,
-        ).value
+    if cover_rows is None:
+        scratch[_FREE_CREEP + c] = 0.0
+    else:
+        free, excess = pairs_at(position, scratch[_U + c], cover_rows)
+        scratch[_FREE_CREEP + c] = free.first + free.second
+        scratch[_PAIRS + c] = free.first
+        scratch[_PAIRS + _T + c] = free.second
+        scratch[_PAIRS + _DT_DX + c] = excess.first
+        scratch[_PAIRS + _DT_DX + _T + c] = excess.second
+        mu = scratch[_MU + c]
+        scratch[_ASYMMETRY + c] = asymmetry_of(excess, mu, functions.L, 0.0, 0.0).value
+
+
+@inline_kernel
+def _values(first, second):
+    """Return two functions of speed without their slopes, as :class:`.cover_law.PairOverSpeed`."""
+    return PairOverSpeed(first, second, 0.0, 0.0, 0.0, 0.0)
 
 
 @inline_kernel
@@ -651,13 +666,17 @@ def _write_moment_of_cover(Q, n, c, law, cover_rows, scratch, request):
     """
     if cover_rows is not None:
         scratch[_Q + c] = Q
-        state = _state(c, scratch, request)
-        u = scratch[_U + c]
-        position = _position(_POSITION, c, scratch)
-        functions = length_and_moment(position, u, law)
-        change = traction_on_moments(position, u, functions, Q, state, cover_rows)
-        M = moment_factor(position, u, functions.scale, state) * functions.m
-        write_field(request.to.M, M + (change.half_space + change.cylinder), n, request)
+        if request.to.M >= 0:
+            state = _state(c, scratch, request)
+            u = scratch[_U + c]
+            position = _position(_POSITION, c, scratch)
+            functions = length_and_moment(position, u, law)
+            free = _values(scratch[_PAIRS + c], scratch[_PAIRS + _T + c])
+            excess = _values(scratch[_PAIRS + _DT_DX + c], scratch[_PAIRS + _DT_DX + _T + c])
+            reaction = reaction_of(free, excess, state.kappa, state.mu, functions.L, 0.0)
+            change = moment_change(Q, state.mu, reaction)
+            M = moment_factor(position, u, functions.scale, state) * functions.m
+            write_field(request.to.M, M + (change.half_space + change.cylinder), n, request)
 
 
 @kernel
@@ -712,8 +731,7 @@ def contact_loop(laws, request, scratch, count):
                 position = _position(_POSITION, c, scratch)
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
-                scratch[_FREE_CREEP + c] = free_creep_at(position, u, law.cover_rows)[0]
-                _write_asymmetry(c, position, functions, law.cover_rows, scratch)
+                _write_creep(c, position, functions, law.cover_rows, scratch)
                 _write_moment_of_half_space(
                     _index(first + k, request),
                     c,

@@ -285,7 +285,22 @@ def asymmetry_at(position, u, mu, L, dL, ddL, cover_rows):
     """
     if cover_rows is None:
         return OverSpeed(0.0, 0.0, 0.0)
-    excess = _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
+    return asymmetry_of(pairs_at(position, u, cover_rows)[1], mu, L, dL, ddL)
+
+
+@inline_kernel
+def pairs_at(position, u, cover_rows):
+    """Return (f_b and f_c; g_b and g_c) of a cover at one speed, two :class:`PairOverSpeed`.
+
+    position, u, cover_rows : as of :func:`asymmetry_at`, of a cover alone.
+    """
+    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
+    return free, _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
+
+
+@inline_kernel
+def asymmetry_of(excess, mu, L, dL, ddL):
+    """Return the asymmetry c, as :class:`OverSpeed`; arguments as of :func:`_relative_excess`."""
     r = _relative_excess(excess, mu, L, dL, ddL)
     square = 4.0 * r.value * r.value
     power = square * square * square
@@ -399,8 +414,15 @@ def shear_reaction(position, u, kappa, mu, L, dL, cover_rows):
             half_space_excess_slope=0.0,
             cylinder_excess_slope=0.0,
         )
-    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
-    excess = _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
+    free, excess = pairs_at(position, u, cover_rows)
+    return reaction_of(free, excess, kappa, mu, L, dL)
+
+
+@inline_kernel
+def reaction_of(free, excess, kappa, mu, L, dL):
+    """Return the :class:`Reaction` of :func:`shear_reaction` from the :class:`PairOverSpeed` of f
+    and g at the speed.
+    """
     on_base = 0.5 / kappa
     on_cylinder = 1.0 / (2.0 * kappa + free.first + free.second)
     on_cylinder_slope = -on_cylinder * on_cylinder * (free.first_slope + free.second_slope)
