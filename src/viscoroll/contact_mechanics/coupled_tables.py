@@ -38,7 +38,7 @@ from ..kernels.numerics.jit import sources_digest
 from ..laws.coupled_rows import FIELDS, CoupledRows, grade
 from ..laws.law_table import LawTable, coupled_table
 from ..materials.prony import lock_array
-from .coupled_pair import CoupledPair, CoupledRow, CoupledStates, growth
+from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth
 
 # --- Tables of the coupled solution ---
 
@@ -247,7 +247,11 @@ def _free_place(t: Floats, Q: Floats) -> float:
 
 
 def measure_errors(
-    rows: CoupledRows, pair: CoupledPair, count: int = _CHECKED, seed: int = _SEED
+    rows: CoupledRows,
+    pair: CoupledPair,
+    count: int = _CHECKED,
+    seed: int = _SEED,
+    elements: int = ELEMENTS,
 ) -> dict[str, float]:
     """Compare a table with states at random points that are no nodes: a third near the middle
     creep, others anywhere.
@@ -256,6 +260,7 @@ def measure_errors(
     pair: its bodies.
     count: number of points, in rows of eight at one speed.
     seed: of the random points.
+    elements: of the states that it is compared with.
     Returns field -> largest absolute error, with 2 kappa times that of the work.
     """
     from ..kernels.law.spline_law import look_up
@@ -266,7 +271,7 @@ def measure_errors(
 
     def compare(start: int, stop: int) -> None:
         for u, draw in zip(speeds[start:stop], draws[start:stop], strict=True):
-            row = CoupledRow(pair, float(u), rows.mu)
+            row = CoupledRow(pair, float(u), rows.mu, elements)
             low, high = row.onsets()
             middle = np.interp(math.log(u), np.log(rows.u), rows.edges[1:-1, 0])
             near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)

@@ -42,7 +42,7 @@ _MOST_CENTRINGS = 6
 #: largest number of half lengths that are tried for one load
 _MOST_LENGTHS = 20
 #: relative error of the load, for which lam is then corrected to first order
-_LOAD_ERROR = 2e-5
+_LOAD_ERROR = 5e-6
 #: relative error of the load where only zones are asked
 _ROUGH_LOAD = 1e-3
 #: least change of ln(c) from which a secant is taken: that of a new mesh is smaller
