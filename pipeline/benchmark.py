@@ -38,9 +38,20 @@ TRUTH_RTOL = 1e-11
 TIMES = 20
 
 
+class Coupled(msgspec.Struct, forbid_unknown_fields=True):
+    """[benchmark.coupled]: the file of a roller, numbers of nodes of its tables of the coupled
+    solution, and how many states are timed.
+    """
+
+    roller: str
+    nodes: list[tuple[int, int]]
+    states: int
+
+
 class Benchmark(msgspec.Struct, forbid_unknown_fields=True):
     """[benchmark]: the file of rows; sizes of the grids, of n by n nodes, and ends of their V;
-    tolerances of all, and of root solves; random starts, even in [-speed, speed], and their seed.
+    tolerances of all, and of root solves; random starts, even in [-speed, speed], and their seed;
+    tables of the coupled solution.
     """
 
     law: str
@@ -51,6 +62,7 @@ class Benchmark(msgspec.Struct, forbid_unknown_fields=True):
     motions: int
     speed: float
     seed: int
+    coupled: Coupled | None = None
 
 
 class Law(NamedTuple):
@@ -114,6 +126,25 @@ def ways(
         yield Law("vr.roll", None, settings.rtol), rtol, partial(rolled, rtol)
 
 
+def coupled_rows(settings: Coupled, seed: int) -> Iterator[dict[str, Any]]:
+    """Tables of the coupled solution: time of making one and of Q and M of a state, and errors."""
+    scene = read_roller(stage.ROOT / settings.roller).scene()
+    random = np.random.default_rng(seed)
+    for nodes in settings.nodes:
+        law, seconds = least_seconds(partial(coupled_law, scene, nodes=nodes), False)
+        u = np.exp(random.uniform(*np.log(law.coupled.u[[0, -1]]), settings.states))
+        creep = random.uniform(*law.coupled.edges[1, 1:3], settings.states)
+        table = replace(scene, material=law)
+        states = u / scene.kappa, 0.5 * creep / scene.kappa
+        ask = partial(vr.contact, table, states[0], delta=states[1], fields=("Q", "M"), threads=1)
+        _, time = least_seconds(ask, True)
+        yield {
+            "nodes": "{} by {}".format(*nodes),
+            "s to make": seconds,
+            "ns a state": 1e9 * time / settings.states,
+        } | {name: law.coupled.errors[name] for name in ("Q_over_mu", "M_half_space", "epsilon")}
+
+
 def draw(rows: list[dict[str, Any]], path: Path) -> None:
     """Time against error of motions, and size against error of the tables."""
     figure, (left, right) = new_figure(
@@ -167,7 +198,14 @@ def work(settings: Benchmark, out: Path) -> stage.Outcome:
     draw(rows, picture)
     said = "{law by}, rtol {rtol:g}", "{ms a motion:.3g} ms, error {error, random:.2g}"
     headline = {said[0].format_map(row): said[1].format_map(row) for row in rows}
-    return stage.Outcome([out / "benchmark.csv", picture], headline)
+    files = [out / "benchmark.csv", picture]
+    if settings.coupled is not None:
+        tables = list(coupled_rows(settings.coupled, settings.seed))
+        files.append(out / "benchmark_coupled.csv")
+        stage.write_rows(files[-1], tables)
+        text = "{s to make:.3g} s, {ns a state:.3g} ns a state, error of Q/mu {Q_over_mu:.2g}"
+        headline |= {f"coupled table, {row['nodes']}": text.format_map(row) for row in tables}
+    return stage.Outcome(files, headline)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
 """Offline: the law of every alpha -> data/tables/law.nc, those of the materials of [tables] ->
-data/tables/NAME.nc, and lam, epsilon, beta, Q and M on a grid of V, delta and alpha, by root
-solves -> data/tables/grid.nc.
+data/tables/NAME.nc, as those of the coupled solution of its rollers, and lam, epsilon, beta, Q and M
+on a grid of V, delta and alpha, by root solves -> data/tables/grid.nc.
 
 python -m pipeline.offline [--config FILE] [--tables FOLDER] [-o FOLDER]
 
@@ -23,7 +23,7 @@ import viscoroll as vr
 from viscoroll.core.errors import FileError
 from viscoroll.materials.checked_netcdf import stated_errors
 from viscoroll.materials.material_toml import SECTIONS, parse_materials
-from viscoroll.roller_toml import preset
+from viscoroll.roller_toml import preset, read_roller
 
 from . import stage
 
@@ -53,9 +53,16 @@ class Grid(msgspec.Struct, forbid_unknown_fields=True):
     allowed: float
 
 
+class Coupled(msgspec.Struct, forbid_unknown_fields=True):
+    """[tables.coupled.NAME]: the file of a roller, and the largest error of fields of its table."""
+
+    roller: str
+    allowed: dict[str, float]
+
+
 class Tables(msgspec.Struct, forbid_unknown_fields=True):
     """[tables]: the largest errors allowed; lowest and highest alpha of law.nc; the materials by
-    name; the grid.
+    name; the grid; tables of the coupled solution by name.
     """
 
     allowed: float
@@ -63,6 +70,7 @@ class Tables(msgspec.Struct, forbid_unknown_fields=True):
     alpha: tuple[float, float]
     laws: dict[str, Law]
     grid: Grid
+    coupled: dict[str, Coupled] = {}
 
 
 def build_all(config: Path, folder: Path) -> stage.Outcome:
@@ -74,8 +82,20 @@ def build_all(config: Path, folder: Path) -> stage.Outcome:
         build(
             outcome, folder / f"{name}.nc", settings, partial(vr.tables.law, *bodies(config, law))
         )
+    for name, coupled in settings.coupled.items():
+        build_coupled(outcome, folder / f"{name}.nc", coupled)
     build_grid(outcome, folder / "grid.nc", settings.grid)
     return outcome
+
+
+def build_coupled(outcome: stage.Outcome, path: Path, settings: Coupled) -> None:
+    """Build the table of the coupled solution of a roller, save and report it."""
+    roller = read_roller(stage.ROOT / settings.roller)
+    made(outcome, path, partial(vr.tables.build, roller, method="coupled"))
+    rows = vr.load_law(path).coupled
+    for name, allowed in settings.allowed.items():
+        outcome.headline[f"{path.stem}: error of {name} (allowed {allowed:g})"] = rows.errors[name]
+        outcome.failed |= not rows.errors[name] <= allowed
 
 
 def build_grid(outcome: stage.Outcome, path: Path, settings: Grid) -> None:

@@ -25,8 +25,11 @@ from numpy.typing import NDArray
 import viscoroll as vr
 from pipeline.validation import validate
 from pipeline.validation.direct_motion import roll_direct
+from viscoroll.contact_mechanics.coupled_pair import CoupledPair
+from viscoroll.contact_mechanics.coupled_tables import measure_errors
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_dataset, write_text
+from viscoroll.roller_toml import read_roller
 from viscoroll.tables.law_dataset import Check
 from viscoroll.tables.table_files import is_law
 
@@ -45,9 +48,21 @@ HEADLINE = {
 Count = Annotated[int, msgspec.Meta(ge=1)]
 
 
+class Coupled(msgspec.Struct, forbid_unknown_fields=True):
+    """[validate.coupled]: the file of a table of the coupled solution, that of its roller; points
+    that are no nodes, elements of the solver there, and the largest error of fields.
+    """
+
+    table: str
+    roller: str
+    points: Count
+    elements: Count
+    allowed: dict[str, float]
+
+
 class Validate(msgspec.Struct, forbid_unknown_fields=True):
-    """[validate]: files of laws, the arguments of :func:`pipeline.validation.validate`, and what
-    motions from the file may be off by.
+    """[validate]: files of laws, the arguments of :func:`pipeline.validation.validate`, what
+    motions from the file may be off by, and a table of the coupled solution.
     """
 
     tables: list[str]
@@ -57,6 +72,22 @@ class Validate(msgspec.Struct, forbid_unknown_fields=True):
     times: Annotated[int, msgspec.Meta(ge=2)]
     seed: Annotated[int, msgspec.Meta(ge=0)]
     runtime: float
+    coupled: Coupled | None = None
+
+
+def coupled_checks(settings: Coupled | None, seed: int) -> list[Check]:
+    """Hold a table of the coupled solution against the solver; none without settings."""
+    if settings is None:
+        return []
+    rows = vr.load_law(stage.ROOT / settings.table).coupled
+    pair = CoupledPair.of_scene(read_roller(stage.ROOT / settings.roller).scene())
+    found = measure_errors(rows, pair, settings.points, seed, settings.elements)
+    meaning = f"against {settings.elements} elements at {settings.points} points that are no nodes"
+    name = Path(settings.table).stem
+    return [
+        Check(f"{name}: {field}", found[field], allowed, meaning)
+        for field, allowed in settings.allowed.items()
+    ]
 
 
 def direct(t: NDArray) -> xr.Dataset:
@@ -91,6 +122,7 @@ def work(settings: Validate, out: Path) -> stage.Outcome:
     sizes = msgspec.structs.asdict(settings)
     allowed = sizes.pop("runtime")
     names = sizes.pop("tables")
+    del sizes["coupled"]
     of_file = loaded(out / "runtime.nc")
     truth = direct(of_file.t.values)
     write_dataset(truth, out / "direct.nc", stage.plain_encoding(truth))
@@ -101,6 +133,7 @@ def work(settings: Validate, out: Path) -> stage.Outcome:
         Check(f"runtime {start}", error, allowed, meaning)
         for start, error in errors(of_file, truth).items()
     ]
+    rows += coupled_checks(settings.coupled, settings.seed)
     report = replace(report, checks=(*report.checks, *rows))
     files = [out / "validation.csv", out / "validation.txt", out / "direct.nc"]
     stage.write_rows(

@@ -417,7 +417,7 @@ def build(arguments: Namespace) -> None:
         type=int,
         nargs=2,
         metavar=("SPEEDS", "CREEPS"),
-        help="numbers of nodes (default: 32 for five decades of speed, 33)",
+        help="numbers of nodes (default: 4 to 11 a decade of speed, 33)",
     ),
     output(".nc", ".cdf"),
 )

@@ -24,7 +24,7 @@ strain along x:
 from __future__ import annotations
 
 import math
-from functools import cache
+from functools import cache, lru_cache
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -121,35 +121,44 @@ def _half_space(
     return normal, coupling
 
 
-def _layer(
-    nu: float, thickness: float, instant: float, modes: list[tuple[float, float]], size: Floats
-) -> Floats:
-    """Return what a bonded layer adds to the kernels of a half-space.
+@lru_cache(maxsize=4)
+def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
+    """Return what kernels of a bonded layer have in common at all speeds.
 
-    nu, thickness: of the layer.  instant, modes: as of :func:`_half_space`.  size: |x|, (n,).
-    Returns (2 signs of x, 3 kernels, n); what is linear in x is left out.
+    nu, thickness: of the layer, the latter over l0.
+    Returns (wave numbers times l0, (m,); even and odd parts of (e^iy - 1 - iy)/y^2 at y = |x| k,
+    for all |x| of :func:`_fit`, (2, BINS, DEGREE + 1, m); weights of the three kernels, (3, m)).
+    Each bin is a matrix of its own, so that BLAS takes no threads beside those of the rows.
     """
     nodes = layer_nodes(nu)
     k = nodes.u / thickness
-    compliance = np.full(k.size, complex(instant))
-    for strength, length in modes:
-        compliance += strength / (1.0 - 1j * k * length)
+    size, _ = _fit()
     phase = size[:, np.newaxis] * k
     small = phase < _SMALL_PHASE
     safe = np.where(small, 1.0, phase)
     even = np.where(small, 0.5 - phase**2 / 24.0, 2.0 * (np.sin(0.5 * safe) / safe) ** 2)
     odd = np.where(small, phase / 6.0 - phase**3 / 120.0, (safe - np.sin(safe)) / safe**2)
     excess = np.array([nodes.L, nodes.L + nodes.shear, nodes.C]) * nodes.u
-    weights = (excess * compliance / (np.pi * thickness)).T
-    e_real = even @ weights.real
-    e_imag = even @ weights.imag
-    o_real = odd @ weights.real
-    o_imag = odd @ weights.imag
-    found = np.empty((2, 3, size.size))
-    for row, sign in enumerate((1.0, -1.0)):
-        found[row, :2] = (e_imag[:, :2] + sign * o_real[:, :2]).T
-        found[row, 2] = e_real[:, 2] - sign * o_imag[:, 2]
-    return found * size**2
+    phases = np.array([even, odd]).reshape(2, BINS, DEGREE + 1, k.size)
+    return k, phases, excess / (np.pi * thickness)
+
+
+def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float, float]]) -> Floats:
+    """Return what a bonded layer adds to the kernels of a half-space.
+
+    nu, thickness: of the layer.  instant, modes: as of :func:`_half_space`.
+    Returns (2 signs of x, 3 kernels, n) at all |x| of :func:`_fit`; what is linear in x is left
+    out.
+    """
+    k, phases, excess = _phases(nu, thickness)
+    compliance = np.full(k.size, complex(instant))
+    for strength, length in modes:
+        compliance += strength / (1.0 - 1j * k * length)
+    weights = np.concatenate([excess * compliance.real, excess * compliance.imag]).T
+    even, odd = (phases @ weights).reshape(2, -1, 6).transpose(0, 2, 1)
+    sign = np.array([1.0, -1.0])[:, np.newaxis, np.newaxis]
+    found = np.concatenate([even[3:5] + sign * odd[:2], even[2:3] - sign * odd[5:]], axis=1)
+    return found * _fit()[0] ** 2
 
 
 class BodyKernels(NamedTuple):
@@ -186,7 +195,7 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
         values[row, 0] = values[row, 1] = normal
         values[row, 2] = local * coupling
     if math.isfinite(body.thickness):
-        values += _layer(body.nu, body.thickness, instant, modes, size)
+        values += _layer(body.nu, body.thickness, instant, modes)
     values[:, 2] *= 1.0 if body.side == "base" else -1.0
     table = values.reshape(2, 3, BINS, DEGREE + 1) @ fit.T
     sign = body.share if body.side == "base" else -body.share
@@ -194,6 +203,22 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
     return BodyKernels(
         body.share * table.transpose(2, 0, 1, 3), body.share * instant, np.array(parts)
     )
+
+
+def growth(bodies: Any, times: Floats) -> Floats:
+    """Return d ln J/d ln t of the summed compliance of bodies at times, (n,).
+
+    bodies: :class:`CoupledBody` of each.  times: of a load, in units of T_ref, > 0, (n,).
+    """
+    compliance = np.zeros_like(times)
+    rate = np.zeros_like(times)
+    for body in bodies:
+        compliance += body.share * max(1.0 - math.fsum(body.J), 0.0)
+        for strength, time in zip(body.J, body.T, strict=True):
+            x = times / time
+            compliance -= body.share * strength * np.expm1(-x)
+            rate += body.share * strength * x * np.exp(-x)
+    return rate / compliance
 
 
 def edge_layer(bodies: Any, u: float) -> float:
@@ -206,15 +231,7 @@ def edge_layer(bodies: Any, u: float) -> float:
     """
     if u == 0.0 or math.isinf(u):
         return math.inf
-    compliance = np.zeros_like(_SCALES)
-    growth = np.zeros_like(_SCALES)
-    for body in bodies:
-        compliance += body.share * max(1.0 - math.fsum(body.J), 0.0)
-        for strength, time in zip(body.J, body.T, strict=True):
-            x = _SCALES / (time * u)
-            compliance -= body.share * strength * np.expm1(-x)
-            growth += body.share * strength * x * np.exp(-x)
-    steep = _SCALES[growth > _GROWTH * compliance]
+    steep = _SCALES[growth(bodies, _SCALES / u) > _GROWTH]
     return float(steep[0]) if steep.size else math.inf
 
 
@@ -288,6 +305,8 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
 
 #: Elements of a state.
 ELEMENTS = 72
+#: Elements of states of which only the zones are asked.
+_ROUGH_ELEMENTS = 40
 #: Error of the creep of free rolling, times 2 kappa.
 _FREE_CREEP_ERROR = 1e-9
 #: Length of an edge layer, over l0, from which on elements are added, as many as gather in it.
@@ -448,13 +467,15 @@ class CoupledRow:
         )
         self._full = np.zeros((2, coupled_states.COLUMNS))
         length = 0.5 * math.sqrt(max(instant, 1e-3))
-        self._ends = [
+        ends = [
             coupled_states.full_slip(self._row, mu, sign, self.n, length, out)
             for sign, out in zip((-1.0, 1.0), self._full, strict=True)
         ]
+        self._ends = [onset for onset, _ in ends]
 
-        # a guess that is the same for bodies that are swapped
+        # guesses that are the same for bodies that are swapped
         self._length = 0.5 * float(self._full[0, 9] + self._full[1, 9])
+        self._slope = 0.5 * float(ends[0][1] + ends[1][1])
 
     @property
     def full_slip_status(self) -> Floats:
@@ -474,13 +495,17 @@ class CoupledRow:
         from ..kernels.law import coupled_states
 
         return 2.0 * float(
-            coupled_states.touch_creep(self._row, self.mu, *self._ends, self.n, self._length)
+            coupled_states.touch_creep(
+                self._row, self.mu, *self._ends, _ROUGH_ELEMENTS, self._length, self._slope
+            )
         )
 
-    def states(self, creeps: Any, apart: bool = False) -> CoupledStates:
-        """Return the states at creeps 2 kappa delta, in any order, (n,); beyond the onsets of full
-        slip.
+    def states(self, creeps: Any, at: Any = None, apart: bool = False) -> CoupledStates:
+        """Return the states at creeps 2 kappa delta, in any order, (n,), also beyond the onsets of
+        full slip.
 
+        at: places in a coordinate over which states are smooth, ascending with creep, (n,); None:
+            the creeps themselves.
         apart: whether each is solved from nothing; else from its neighbour, in half the time and to
         some 1e-5.
         """
@@ -495,7 +520,15 @@ class CoupledRow:
         found[given >= high] = self._full[1]
         out = np.zeros((inside.size, coupled_states.COLUMNS))
         coupled_states.states_loop(
-            self._row, self.mu, 0.5 * given[inside], self.n, self._length, apart, out
+            self._row,
+            self.mu,
+            0.5 * given[inside],
+            (given if at is None else at)[inside],
+            self.n,
+            self._length,
+            self._slope,
+            apart,
+            out,
         )
         found[inside] = out
         lam, epsilon, Q, moment, work, own_moment, own_work, beta, status = found.T[:9].copy()
@@ -531,7 +564,9 @@ class CoupledRow:
         out = np.zeros(coupled_states.COLUMNS)
         sign = 1.0 if creep >= high else -1.0
         d = np.inf if slips else 0.5 * creep
-        found = coupled_states.solve_one(self._row, self.mu, d, self.n, self._length, sign, out)
+        found = coupled_states.solve_one(
+            self._row, self.mu, d, self.n, self._length, self._slope, sign, out
+        )
         p, q = (np.concatenate([[0.0], each, [0.0]]) for each in (found.p, found.q))
         load = np.trapezoid(p, found.nodes)
         shift = 0.5 * out[0] * out[1]

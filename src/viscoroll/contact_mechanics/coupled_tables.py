@@ -35,18 +35,21 @@ from ..core.errors import ConvergenceError, ParameterError
 from ..core.files import seal, seal_matches
 from ..kernels.numerics.cache_folder import cache_root, is_quiet, read_private, write_private
 from ..kernels.numerics.jit import sources_digest
-from ..laws.coupled_rows import FIELDS, CoupledRows
+from ..laws.coupled_rows import FIELDS, CoupledRows, grade
 from ..laws.law_table import LawTable, coupled_table
 from ..materials.prony import lock_array
 from .assumptions import DUNDURS_LIMIT
-from .coupled_pair import CoupledPair, CoupledRow, CoupledStates
+from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth
 
 # --- Tables of the coupled solution ---
 
-#: Nodes over speed for five decades, and over creep.
-NODES = (32, 33)
-#: Decades of speed that the nodes of :data:`NODES` cover.
-_DECADES = 5.0
+#: Nodes over creep.
+NODES = 33
+#: Nodes in a decade of speed: of bodies whose compliance changes little, and what is added where it
+#: grows like time.
+_PER_DECADE = (4.0, 6.5)
+#: Places in a decade at which the growth of the compliance is looked at.
+_LOOKS = 8
 #: First node of speed times the longest retardation time, and last node times the shortest
 #: relaxation time.
 _SPEED_RANGE = (1e-3, 10.0)
@@ -55,10 +58,10 @@ _ELASTIC = np.array([0.5, 1.0, 2.0])
 #: Points beside the nodes at which the error of a table is measured, and their seed.
 _CHECKED = 64
 _SEED = 20260103
-#: Rows among which the middle creep of a row must be, and its largest distance from their median
-#: over the distance of the onsets: it changes by a twentieth in half a decade.
+#: Rows among which the place of the middle creep between the onsets must be, and its largest
+#: distance from their median: it changes by a hundredth in half a decade.
 _NEIGHBOURS = 9
-_FAR = 0.06
+_FAR = 0.02
 
 
 def coupled_law(
@@ -67,8 +70,8 @@ def coupled_law(
     """Compute the table of the coupled solution of one scene, as a law.
 
     scene: dimensionless parameters of one material, alpha, kappa and mu, numbers.
-    nodes: numbers of nodes over speed and over creep, the second odd; None: 32 for each five
-        decades of speed between the rates of the bodies, and 33.
+    nodes: numbers of nodes over speed and over creep, the second odd; None: 4 to 11 a decade of
+        speed between the rates of the bodies, the more the faster their compliance grows, and 33.
     progress: whether a progress bar is drawn on standard error, after one second.
     Returns the :class:`LawTable`, whose ``coupled`` rows state their errors.
     Raises ConvergenceError for a state that is not solved, and ParameterError for too few nodes.
@@ -87,8 +90,12 @@ def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
     shortest = min(min(body.T) * (1.0 - math.fsum(body.J)) for body in pair.bodies if body.T)
     low = _SPEED_RANGE[0] / times.max()
     high = _SPEED_RANGE[1] / shortest
-    default = math.ceil(NODES[0] * max(math.log10(high / low) / _DECADES, 1.0))
-    return np.geomspace(low, high, default if count is None else count)
+    if count is None:
+        decades = math.log10(high / low)
+        looked = np.geomspace(1.0 / high, 1.0 / low, math.ceil(_LOOKS * decades))
+        steepest = float(growth(pair.bodies, looked).max())
+        count = math.ceil(decades * (_PER_DECADE[0] + _PER_DECADE[1] * steepest))
+    return np.geomspace(low, high, count)
 
 
 def tabulate(
@@ -102,7 +109,7 @@ def tabulate(
     Returns :class:`CoupledRows` with ``errors``.
     Raises ConvergenceError for a state that is not solved, and ParameterError for ``nodes``.
     """
-    count, across = (None, NODES[1]) if nodes is None else nodes
+    count, across = (None, NODES) if nodes is None else nodes
     if count is not None:
         check_integer("nodes", count, 4, 1000)
     if check_integer("nodes", across, 9, 1001) % 2 == 0:
@@ -138,11 +145,6 @@ def tabulate(
     return made
 
 
-def grade(t: Any) -> Any:
-    """Return w = 1 - (1 - t^2)^(3/2), the place at t of a graded table."""
-    return 1.0 - (1.0 - np.square(t)) ** 1.5
-
-
 def _without_outliers(edges: Floats) -> Floats:
     """Return the middle creeps of rows with those replaced that are far from their neighbours.
 
@@ -153,11 +155,10 @@ def _without_outliers(edges: Floats) -> Floats:
     from scipy.ndimage import median_filter
 
     middle, low, high = edges.T
-    rows = np.arange(middle.size)
-    good = np.abs(middle - median_filter(middle, _NEIGHBOURS, mode="nearest")) <= _FAR * (
-        high - low
-    )
-    return np.interp(rows, rows[good], middle[good])
+    place = (middle - low) / (high - low)
+    rows = np.arange(place.size)
+    good = np.abs(place - median_filter(place, _NEIGHBOURS, mode="nearest")) <= _FAR
+    return low + (high - low) * np.interp(rows, rows[good], place[good])
 
 
 def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], Floats]:
@@ -173,7 +174,7 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
     mu = row.mu
     low, high = row.onsets()
     creeps = middle + np.where(t < 0.0, low - middle, high - middle) * grade(t)
-    fields = _fields(row.states(creeps), creeps, u, mu)
+    fields = _fields(row.states(creeps, t), creeps, u, mu)
     place = _free_place(t, fields[:, 0])
     free = middle + ((low if place < 0.0 else high) - middle) * float(grade(place))
     if not 0.0 < u < math.inf:
@@ -247,7 +248,11 @@ def _free_place(t: Floats, Q: Floats) -> float:
 
 
 def measure_errors(
-    rows: CoupledRows, pair: CoupledPair, count: int = _CHECKED, seed: int = _SEED
+    rows: CoupledRows,
+    pair: CoupledPair,
+    count: int = _CHECKED,
+    seed: int = _SEED,
+    elements: int = ELEMENTS,
 ) -> dict[str, float]:
     """Compare a table with states at random points that are no nodes: a third near the middle
     creep, others anywhere.
@@ -256,6 +261,7 @@ def measure_errors(
     pair: its bodies.
     count: number of points, in rows of eight at one speed.
     seed: of the random points.
+    elements: of the states that it is compared with.
     Returns field -> largest absolute error, with 2 kappa times that of the work.
     """
     from ..kernels.law.spline_law import look_up
@@ -266,9 +272,9 @@ def measure_errors(
 
     def compare(start: int, stop: int) -> None:
         for u, draw in zip(speeds[start:stop], draws[start:stop], strict=True):
-            row = CoupledRow(pair, float(u), rows.mu)
+            row = CoupledRow(pair, float(u), rows.mu, elements)
             low, high = row.onsets()
-            middle = row.touch()
+            middle = np.interp(math.log(u), np.log(rows.u), rows.edges[1:-1, 0])
             near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
             creeps = np.concatenate([near, low + (high - low) * draw[3:]])
             exact = _fields(row.states(creeps), creeps, float(u), rows.mu)

@@ -28,7 +28,13 @@ import numpy as np
 
 from .. import __version__, tables
 from ..core.checks import check_choice, check_integer
-from ..core.errors import FileError, MissingDependencyError, import_extra, shape_error
+from ..core.errors import (
+    FileError,
+    MissingDependencyError,
+    described_error,
+    import_extra,
+    shape_error,
+)
 from ..core.files import replace_file
 from ..core.scale import dimension_powers
 from ..laws.law_netcdf import parse_law
@@ -369,6 +375,9 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     version = check_integer("version", version, 2, 3)
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)
+    if table.coupled is not None:
+        allowed = "a law without a table of the coupled solution, which FMUs do not read"
+        raise described_error("given", "has one", allowed)
     l0 = _contact_length_of_cover(table)
     starts = _start_values(MODELS[model].variables, given, table, l0)
     fmpy = import_extra("fmpy", "fmu")

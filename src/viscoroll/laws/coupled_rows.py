@@ -68,21 +68,26 @@ class CoupledRows:
 
         x = np.log(self.u)
         along = self._slopes_along if self.graded else _free_slopes
-        over_t = self._slopes_in_t()
-        jets = np.stack([self.fields, along(x, self.fields), over_t, along(x, over_t)], axis=-1)
+        fields = self.fields
+        if self.graded:
+            fields = np.concatenate([fields, self._friction()[..., np.newaxis]], axis=-1)
+        over_t = self._slopes_in_t(fields)
+        jets = np.stack([fields, along(x, fields), over_t, along(x, over_t)], axis=-1)
         edges = np.stack([self.edges, along(x, self.edges)], axis=-1)
         head = np.zeros(layout.HEAD)
         head[[layout.ROWS, layout.NODES, layout.GRADED]] = self.u.size + 2, self.t.size, self.graded
         head[[layout.FIRST, layout.LAST, layout.MOST]] = self.u[0], self.u[-1], self.fastest
-        head[[layout.U_STEP, layout.T_STEP]] = _equal_step(x), _equal_step(self.t)
+        head[layout.U_STEP : layout.U_STEP + 2] = _equal_step(x)
+        head[layout.T_STEP : layout.T_STEP + 2] = _equal_step(self.t)
         begin = layout.HEAD + np.cumsum([x.size, self.t.size, edges.size])
         head[[layout.T_BEGIN, layout.EDGES, layout.FIELDS]] = begin
         head[[layout.FIELD_COUNT, layout.SLIPS, layout.LIMIT]] = (
-            self.fields.shape[-1],
+            fields.shape[-1],
             self.slips,
             self.limit,
         )
-        return lock_array(np.concatenate([head, x, self.t, edges.ravel(), jets.ravel()]))
+        planes = np.moveaxis(jets, 2, 0)
+        return lock_array(np.concatenate([head, x, self.t, edges.ravel(), planes.ravel()]))
 
     def _slopes_along(self, x: Floats, values: Floats) -> Floats:
         """Return slopes over x = ln u, of ``values`` (n + 2, ...), that join the limits smoothly; 0
@@ -95,21 +100,35 @@ class CoupledRows:
         found[1:-1] = CubicSpline(x, values[1:-1], bc_type=ends)(x, 1)
         return found
 
-    def _slopes_in_t(self) -> Floats:
-        """Return slopes of the fields over t, (n + 2, m, fields); 0 at t = 0 and +-1 where the
-        nodes are graded.
+    def _friction(self) -> Floats:
+        """Return 2 kappa times the friction in slip at the nodes, (n + 2, m): what traction does
+        but for the work of shear on strain.
+        """
+        middle, low, high = (edge[:, np.newaxis] for edge in self.edges[:, :3].T)
+        creep = middle + np.where(self.t < 0.0, low - middle, high - middle) * grade(self.t)
+        work = self.fields[..., 6] + self.fields[..., 7]
+        return np.maximum(self.mu * self.fields[..., 0] * creep - work, 0.0)
+
+    def _slopes_in_t(self, fields: Floats) -> Floats:
+        """Return slopes of fields, (n + 2, m, fields), over t; 0 at t = 0 and +-1 where the nodes
+        are graded.
         """
         from scipy.interpolate import CubicSpline
 
         if not self.graded:
-            slopes = np.moveaxis(_slopes(self.t, np.moveaxis(self.fields, 1, 0)), 0, 1)
-            return np.where(np.ptp(self.fields, axis=1, keepdims=True) > 0.0, slopes, 0.0)
+            slopes = np.moveaxis(_slopes(self.t, np.moveaxis(fields, 1, 0)), 0, 1)
+            return np.where(np.ptp(fields, axis=1, keepdims=True) > 0.0, slopes, 0.0)
         middle = int(np.argmin(np.abs(self.t)))
-        found = np.zeros_like(self.fields)
+        found = np.zeros_like(fields)
         for side in (slice(0, middle + 1), slice(middle, None)):
-            spline = CubicSpline(self.t[side], self.fields[:, side], axis=1, bc_type="clamped")
+            spline = CubicSpline(self.t[side], fields[:, side], axis=1, bc_type="clamped")
             found[:, side] = spline(self.t[side], 1)
         return found
+
+
+def grade(t: Any) -> Any:
+    """Return w = 1 - (1 - t^2)^(3/2), the place at t of a graded table."""
+    return 1.0 - (1.0 - np.square(t)) ** 1.5
 
 
 def _slopes(x: Floats, values: Floats) -> Floats:
@@ -128,7 +147,9 @@ def _free_slopes(x: Floats, values: Floats) -> Floats:
     return found
 
 
-def _equal_step(x: Any) -> float:
-    """Return the step of coordinates in equal steps, else 0."""
+def _equal_step(x: Any) -> tuple[float, float]:
+    """Return the step of coordinates in equal steps and its inverse, else two zeros."""
     steps = np.diff(x)
-    return float(steps.mean()) if np.ptp(steps) <= 1e-12 * np.abs(steps).max() * x.size else 0.0
+    step = float(steps.mean())
+    equal = np.ptp(steps) <= 1e-12 * np.abs(steps).max() * x.size
+    return (step, 1.0 / step) if equal else (0.0, 0.0)

@@ -18,6 +18,7 @@ from ..core.errors import ParameterError, described_error
 from ..core.files import as_path, replace_file, write_text
 from ..core.scale import PAPER
 from ..laws.law_netcdf import parse_law
+from ..laws.law_table import LawTable
 from ..materials.checked_netcdf import CHECKSUM, dataset_content
 from . import table_files
 
@@ -229,14 +230,13 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
 
 
 def _write_header(dataset: xr.Dataset, path: Path) -> None:
-    """Write the rows of a law and their evaluator as one header of C.
+    """Write the numbers of a law and their evaluator as one header of C.
 
     The header contains title, source, T_ref, checksum and material as a comment, the evaluator
-    (``c/vr_law.h``), an array ``static const double NAME_coefficients`` (octave, power, function),
-    of a cover ``NAME_creep`` too, and a variable ``static const vr_law NAME``, which refers to
-    them.
+    (``c/vr_law.h``, of a table of the coupled solution ``c/vr_table.h`` too), and constants of
+    which the last is ``static const vr_law NAME`` or ``static const vr_table NAME``.
 
-    dataset : dataset of a law, of half-spaces or of a cover.
+    dataset : dataset of a law, of half-spaces, of a cover, or of the coupled solution.
     path : file to write, replaced if it exists; its stem becomes the name of the variable.
     Raises ParameterError for a stem that is no identifier of C; FileError for the law of every
     alpha, which has no such evaluator, for a law that is incomplete, and if the file cannot be
@@ -247,28 +247,13 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
         raise ParameterError(
             "path", path, "a file name that is a valid C identifier, for example rubber.h"
         )
-    from ..kernels.law.cover_law import COVER_FRONT_SIZE
-
     table = parse_law(dataset_content(dataset), dataset.encoding.get("source", "the table"))
-    if table.coupled is not None:
-        allowed = (
-            "a name that ends in .nc, .cdf or .json for a table of the coupled solution, or "
-            "a law without it"
-        )
-        raise ParameterError("path", path, allowed)
-    front = table.record.rows[:8]
-    arrays = {f"{name}_coefficients": table.coefficients}
-    fields = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays]
-    of_cover = ["0", "{0.0}"]
-    if table.cover is not None:
-        arrays[f"{name}_creep"] = np.moveaxis(table.cover.creep, 0, -1)
-        of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:COVER_FRONT_SIZE])]
-    constants = "".join(
-        f"static const double {array}[{len(rows)}][VR_TERMS][{rows.shape[-1]}] = "
-        f"{_initializer(rows)};\n"
-        for array, rows in arrays.items()
+    coupled = table.coupled is not None
+    constants = (_table_constants if coupled else _law_constants)(table, name)
+    evaluator = "".join(
+        files("viscoroll.tables").joinpath(f"c/{part}.h").read_text(encoding="utf-8")
+        for part in ("vr_law", "vr_table")[: 1 + coupled]
     )
-    evaluator = files("viscoroll.tables").joinpath("c/vr_law.h").read_text(encoding="utf-8")
     material = "\n".join(
         f" * {line}".rstrip() for line in dataset.attrs["material"].splitlines()
     ).replace("*/", "* /")
@@ -283,9 +268,52 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
 {evaluator}
 #ifndef VR_LAW_{name}
 #define VR_LAW_{name}
-{constants}static const vr_law {name} = {{{len(table.coefficients)}, {table.e0}, {", ".join(fields + of_cover)}}};
-#endif
+{constants}#endif
 """,  # noqa: E501
+    )
+
+
+def _law_constants(table: LawTable, name: str) -> str:
+    """Return the constants of C of the rows of a law, of half-spaces or of a cover; ``name``: of
+    the law.
+    """
+    from ..kernels.law.cover_law import COVER_FRONT_SIZE
+
+    front = table.record.rows[:8]
+    arrays = {f"{name}_coefficients": table.coefficients}
+    fields = [repr(front[0].item()), _initializer(front[2:].reshape(3, 2)), *arrays]
+    of_cover = ["0", "{0.0}"]
+    if table.cover is not None:
+        arrays[f"{name}_creep"] = np.moveaxis(table.cover.creep, 0, -1)
+        of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:COVER_FRONT_SIZE])]
+    constants = "".join(
+        f"static const double {array}[{len(rows)}][VR_TERMS][{rows.shape[-1]}] = "
+        f"{_initializer(rows)};\n"
+        for array, rows in arrays.items()
+    )
+    counts = f"{len(table.coefficients)}, {table.e0}"
+    return (
+        f"{constants}static const vr_law {name} = {{{counts}, {', '.join(fields + of_cover)}}};\n"
+    )
+
+
+def _table_constants(table: LawTable, name: str) -> str:
+    """Return the constants of C of the splines of a table of the coupled solution; ``name``: of the
+    table.
+    """
+    from ..kernels.law import coupled_splines as layout
+
+    rows: Any = table.coupled
+    count = rows.u.size + 2
+    begin = rows.vector[[layout.EDGES, layout.FIELDS]].astype(int)
+    edges = rows.vector[begin[0] : begin[1]].reshape(count, layout.EDGE_COUNT, 2)
+    jets = rows.vector[begin[1] :].reshape(-1, layout.JET)[: layout.WORK * count * rows.t.size]
+    numbers = ", ".join(map(repr, (rows.mu, rows.u[0].item(), rows.u[-1].item())))
+    return (
+        f"static const double {name}_edges[{count}][VR_EDGES][2] = {_initializer(edges)};\n"
+        f"static const double {name}_fields[{len(jets)}][{layout.JET}] = {_initializer(jets)};\n"
+        f"static const vr_table {name} = {{{count}, {rows.t.size}, {numbers}, {name}_edges, "
+        f"{name}_fields}};\n"
     )
 
 

@@ -1,8 +1,8 @@
 """The law of one scene as a table: cubic splines over speed and creep, with first derivatives, one
 state at a time.
 
-A table is one vector of doubles: a head, nodes, edges, fields.  Its speed is u = kappa |V|, its
-creep D = 2 kappa delta.
+A table is one vector of doubles: a head, nodes, edges of each row, fields, each with its rows and
+in them nodes.  Its speed is u = kappa |V|, its creep D = 2 kappa delta.
 Three creeps divide the states of a speed, each a cubic spline of ln u: the onset of full slip of
 negative sign, D_-, a creep D_0 between, and the onset of positive sign, D_+.  With sigma = 1 above
 D_0 and -1 below, a state has the place
@@ -22,6 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from ..numerics.jit import inline_kernel
+from ..numerics.simd import fma4, load, pack, unpack
 
 # Indices in the head.
 #: Number of rows: limit of u = 0, nodes of ln u, limit of u infinite.
@@ -34,26 +35,26 @@ GRADED = 2
 FIRST = 3
 #: Last node of u.
 LAST = 4
-#: Step of equal steps in ln u; 0 where they are not equal.
+#: Step of equal steps in ln u, and after it the inverse; 0 where they are not equal.
 U_STEP = 5
-#: Step of equal steps in t; 0 where they are not equal.
-T_STEP = 6
+#: Step of equal steps in t, and after it the inverse; 0 where they are not equal.
+T_STEP = 7
 #: Where the nodes of t begin; those of ln u begin at :data:`HEAD`.
-T_BEGIN = 7
+T_BEGIN = 9
 #: Where the edges begin.
-EDGES = 8
+EDGES = 10
 #: Where the fields begin.
-FIELDS = 9
+FIELDS = 11
 #: Number of fields.
-FIELD_COUNT = 10
+FIELD_COUNT = 12
 #: Largest u: infinite, or LAST for a table without the limit of u infinite.
-MOST = 11
+MOST = 13
 #: 1 if slip is full beyond the onsets, 0 where nothing is known there.
-SLIPS = 12
+SLIPS = 14
 #: Largest |Q/mu|: 1, or infinite where it is not known.
-LIMIT = 13
+LIMIT = 15
 #: Numbers of the head.
-HEAD = 14
+HEAD = 16
 
 #: Edge: the creep D_0 between the signs.
 MIDDLE = 0
@@ -78,7 +79,10 @@ SHIFT = 4
 STICK = 5
 #: Field: 2 kappa times the work of shear on the strain of the half-space; of the cylinder follows.
 WORK = 6
-#: Numbers of a field at a node: its value, slopes over ln u and t, and the mixed one.
+#: Field of graded tables alone: 2 kappa times the friction in slip per unit of V.
+FRICTION = 8
+#: Numbers of a field at a node: its value, slopes over ln u and t, and the mixed one; a vector of
+#: :mod:`..numerics.simd`.
 JET = 4
 
 #: 1 - w below which a place counts as this far from the onset: slopes there are 0 to rounding.
@@ -107,45 +111,73 @@ class Weights(NamedTuple):
 
 
 class FieldValue(NamedTuple):
-    """A field of the table, or an edge: its value, and its slopes over u at fixed w and over w at
-    fixed u.
-
-    Of an edge the third number is the second derivative over u.
-    """
+    """A field of the table: its value, and its slopes over u at fixed w and over w at fixed u."""
 
     value: float
     du: float
     dw: float
 
 
+class Edge(NamedTuple):
+    """A creep that divides the states of a speed, and its two derivatives over u."""
+
+    value: float
+    du: float
+    ddu: float
+
+
+class Interval(NamedTuple):
+    """An interval between two nodes of an axis, and a coordinate in it.
+
+    first : int, number of the left node.
+    h, inverse : length of the interval, and its inverse.
+    s : part of the interval to the left of the coordinate; beyond 0 to 1 outside of the nodes.
+    """
+
+    first: int
+    h: float
+    inverse: float
+    s: float
+
+
 @inline_kernel
 def _interval(begin, count, step, x, table):
-    """Return the number of the interval of a coordinate, 0 ... count - 2, between nodes that begin
-    at ``begin``.
+    """Return the :class:`Interval` of a coordinate; outside of the nodes it is the first or the
+    last.
 
-    step : float, the step of equal steps, 0 where they are not equal.
-    x : float, coordinate; one outside of the nodes gets the first or the last interval.
+    begin, count : int, where the nodes begin, and their number.
+    step : int, where the step of the axis is in the head.
+    x : float, coordinate.  table : vector of the module.
     """
-    if step > 0.0:
-        return min(max(np.int64((x - table[np.uint64(begin)]) / step), 0), count - 2)
+    h = table[np.uint64(step)]
+    if h > 0.0:
+        inverse = table[np.uint64(step + 1)]
+        y = (x - table[np.uint64(begin)]) * inverse
+        first = np.int64(min(max(y, 0.0), count - 1.5))
+        return Interval(first, h, inverse, y - first)
     low = np.int64(0)
     span = count - 1
     while span > 1:
         half = span >> 1
         low += half * np.int64(x >= table[np.uint64(begin + low + half)])
         span -= half
-    return low
+    left = table[np.uint64(begin + low)]
+    h = table[np.uint64(begin + low + 1)] - left
+    return Interval(low, h, 1.0 / h, (x - left) / h)
 
 
 @inline_kernel
-def _cubic(first, x, left, right, dx):
-    """Return the :class:`Weights` of a cubic between two nodes, with derivatives multiplied by
-    ``dx``.
+def _cubic(first, at, dx):
+    """Return the :class:`Weights` of a cubic between two nodes.
+
+    first : int, number of the row or node at the left end.
+    at : :class:`Interval`.
+    dx : derivative of the coordinate over what derivatives are asked for.
     """
-    h = right - left
-    s = (x - left) / h
+    h = at.h
+    s = at.s
     r = 1.0 - s
-    slope = 6.0 * s * r * dx / h
+    slope = 6.0 * s * r * dx * at.inverse
     return Weights(
         first=first,
         a0=(1.0 + 2.0 * s) * r * r,
@@ -161,8 +193,9 @@ def _cubic(first, x, left, right, dx):
 
 @inline_kernel
 def locate_speed(u, table):
-    """Return the :class:`Weights` of the rows at a speed, with derivatives over u; u >= 0, which
-    may be infinite.
+    """Return the :class:`Weights` of the rows at a speed, with derivatives over u.
+
+    u : float, kappa |V|, >= 0, which may be infinite.  table : vector of the module.
     """
     rows = np.int64(table[ROWS])
     if u <= table[FIRST]:
@@ -184,20 +217,17 @@ def locate_speed(u, table):
             db0=0.0,
             db1=0.0,
         )
-    x = np.log(u)
-    first = _interval(HEAD, rows - 2, table[U_STEP], x, table)
-    return _cubic(
-        first + 1, x, table[np.uint64(HEAD + first)], table[np.uint64(HEAD + first + 1)], 1.0 / u
-    )
+    at = _interval(HEAD, rows - 2, U_STEP, np.log(u), table)
+    return _cubic(at.first + 1, at, 1.0 / u)
 
 
 @inline_kernel
 def edge_at(name, u, speed, table):
-    """Return an edge, one of the creeps of the module, as :class:`FieldValue` with its second
-    derivative over u.
+    """Return an edge, one of the creeps of the module, as :class:`Edge`.
 
     name : MIDDLE, ONSET, ONSET + 1 or FREE.
-    u : float, the speed of ``speed``, of :func:`locate_speed`.
+    u : float, kappa |V|.  speed : its weights, of :func:`locate_speed`.
+    table : vector of the module.
     """
     at = np.int64(table[EDGES]) + (speed.first * EDGE_COUNT + name) * 2
     f0 = table[np.uint64(at)]
@@ -207,16 +237,16 @@ def edge_at(name, u, speed, table):
     value = speed.a0 * f0 + speed.a1 * f1 + speed.b0 * g0 + speed.b1 * g1
     slope = speed.da0 * f0 + speed.da1 * f1 + speed.db0 * g0 + speed.db1 * g1
     if u <= table[FIRST]:
-        return FieldValue(value, slope, 0.0)
+        return Edge(value, slope, 0.0)
     if u >= table[LAST]:
-        return FieldValue(value, slope, -2.0 * slope / u)
+        return Edge(value, slope, -2.0 * slope / u)
     left = table[np.uint64(HEAD + speed.first - 1)]
     h = table[np.uint64(HEAD + speed.first)] - left
     s = (np.log(u) - left) / h
     bend = (6.0 - 12.0 * s) * (f1 - f0) / (h * h) + (
         (6.0 * s - 4.0) * g0 + (6.0 * s - 2.0) * g1
     ) / h
-    return FieldValue(value, slope, (bend / u - slope) / u)
+    return Edge(value, slope, (bend / u - slope) / u)
 
 
 @inline_kernel
@@ -225,6 +255,7 @@ def locate_creep(w, sigma, table):
 
     w : float, place of the module, clipped to [0, 1]; beyond 1, in full slip, derivatives are 0.
     sigma : 1.0 or -1.0, the side.
+    table : vector of the module.
     """
     rest = max(1.0 - max(w, 0.0), 0.0)
     t = 1.0 - rest
@@ -237,50 +268,113 @@ def locate_creep(w, sigma, table):
         t = 1.0
         slope = 0.0
     begin = np.int64(table[T_BEGIN])
-    t = sigma * t
-    first = _interval(begin, np.int64(table[NODES]), table[T_STEP], t, table)
-    return _cubic(
-        first,
-        t,
-        table[np.uint64(begin + first)],
-        table[np.uint64(begin + first + 1)],
-        sigma * slope,
+    at = _interval(begin, np.int64(table[NODES]), T_STEP, sigma * t, table)
+    return _cubic(at.first, at, sigma * slope)
+
+
+class Cell(NamedTuple):
+    """The four nodes around a state, in the order of rows and in them of nodes, and their weights.
+
+    at : int, where the first node of the cell is in the first field.
+    down, plane : int, numbers from a row to the next one, and from a field to the next one.
+    corners : four vectors of four numbers, weights of what a field has at each node.
+    speed, place : :class:`Weights` of the rows, and of the nodes.
+    """
+
+    at: int
+    down: int
+    plane: int
+    corners: tuple
+    speed: Weights
+    place: Weights
+
+
+@inline_kernel
+def _values(x):
+    """Return the weights (a0, a1, b0, b1) of :class:`Weights`."""
+    return x.a0, x.a1, x.b0, x.b1
+
+
+@inline_kernel
+def _slopes(x):
+    """Return the weights (da0, da1, db0, db1) of :class:`Weights`."""
+    return x.da0, x.da1, x.db0, x.db1
+
+
+@inline_kernel
+def _corners(rows, nodes):
+    """Return the weights of four nodes, vectors; ``rows``, ``nodes``: those of both rows and
+    nodes, of :func:`_values` or :func:`_slopes`.
+    """
+    a0, a1, b0, b1 = rows
+    c0, c1, d0, d1 = nodes
+    return (
+        pack(a0 * c0, b0 * c0, a0 * d0, b0 * d0),
+        pack(a0 * c1, b0 * c1, a0 * d1, b0 * d1),
+        pack(a1 * c0, b1 * c0, a1 * d0, b1 * d0),
+        pack(a1 * c1, b1 * c1, a1 * d1, b1 * d1),
     )
 
 
 @inline_kernel
-def field_at(name, w, speed, place, table):
+def cell_at(speed, place, table):
+    """Return the :class:`Cell` of a state.
+
+    speed : :class:`Weights` of :func:`locate_speed`.  place : those of :func:`locate_creep`.
+    table : vector of the module.
+    """
+    down = np.int64(table[NODES]) * JET
+    return Cell(
+        at=np.int64(table[FIELDS]) + speed.first * down + place.first * JET,
+        down=down,
+        plane=np.int64(table[ROWS]) * down,
+        corners=_corners(_values(speed), _values(place)),
+        speed=speed,
+        place=place,
+    )
+
+
+@inline_kernel
+def _nodes_of(name, cell, table):
+    """Return what a field has at the four nodes of a cell, vectors; arguments as of
+    :func:`field_at`.
+    """
+    at = cell.at + name * cell.plane
+    below = at + cell.down
+    return load(table, at), load(table, at + JET), load(table, below), load(table, below + JET)
+
+
+@inline_kernel
+def _combined(weights, nodes):
+    """Return the sum of weights of four nodes times what a field has there, vectors both."""
+    a, b, c, d = unpack(
+        fma4(nodes[0], weights[0], nodes[1] * weights[1])
+        + fma4(nodes[2], weights[2], nodes[3] * weights[3])
+    )
+    return (a + b) + (c + d)
+
+
+@inline_kernel
+def value_at(name, cell, table):
+    """Return the value of a field for w >= 0; arguments as of :func:`field_at`."""
+    return _combined(cell.corners, _nodes_of(name, cell, table))
+
+
+@inline_kernel
+def field_at(name, w, cell, table):
     """Return a field as :class:`FieldValue`, continued along its tangent for w < 0.
 
     name : TRACTION to WORK + 1.
-    w : float, place of ``place``, of :func:`locate_creep`; ``speed``: of :func:`locate_speed`.
+    w : float, place of the state.  cell : :class:`Cell` of :func:`cell_at`.
+    table : vector of the module.
     """
-    fields = np.int64(table[FIELD_COUNT])
-    across = fields * JET
-    down = np.int64(table[NODES]) * across
-    at = np.int64(table[FIELDS]) + speed.first * down + place.first * across + name * JET
-    value = du = dw = 0.0
-    for n in range(2):
-        left = at + n * down
-        right = left + across
-        f0 = table[np.uint64(left)]
-        f1 = table[np.uint64(right)]
-        t0 = table[np.uint64(left + 2)]
-        t1 = table[np.uint64(right + 2)]
-        f = place.a0 * f0 + place.a1 * f1 + place.b0 * t0 + place.b1 * t1
-        df = place.da0 * f0 + place.da1 * f1 + place.db0 * t0 + place.db1 * t1
-        x0 = table[np.uint64(left + 1)]
-        x1 = table[np.uint64(right + 1)]
-        m0 = table[np.uint64(left + 3)]
-        m1 = table[np.uint64(right + 3)]
-        g = place.a0 * x0 + place.a1 * x1 + place.b0 * m0 + place.b1 * m1
-        dg = place.da0 * x0 + place.da1 * x1 + place.db0 * m0 + place.db1 * m1
-        a = speed.a1 if n else speed.a0
-        b = speed.b1 if n else speed.b0
-        value += a * f + b * g
-        dw += a * df + b * dg
-        du += (speed.da1 if n else speed.da0) * f + (speed.db1 if n else speed.db0) * g
-    return FieldValue(value + min(w, 0.0) * dw, du, dw)
+    nodes = _nodes_of(name, cell, table)
+    dw = _combined(_corners(_values(cell.speed), _slopes(cell.place)), nodes)
+    return FieldValue(
+        _combined(cell.corners, nodes) + min(w, 0.0) * dw,
+        _combined(_corners(_slopes(cell.speed), _values(cell.place)), nodes),
+        dw,
+    )
 
 
 class Place(NamedTuple):
@@ -300,8 +394,9 @@ class Place(NamedTuple):
 def place_of(D, u, speed, table):
     """Return the :class:`Place` of a creep.
 
-    D : float, 2 kappa delta, which may be infinite.  u, speed : speed, and its weights of
-    :func:`locate_speed`.
+    D : float, 2 kappa delta, which may be infinite.
+    u : float, kappa |V|.  speed : its weights, of :func:`locate_speed`.
+    table : vector of the module.
     """
     middle = edge_at(MIDDLE, u, speed, table)
     sigma = 1.0 if D >= middle.value else -1.0

@@ -42,7 +42,7 @@ _MOST_CENTRINGS = 6
 #: largest number of half lengths that are tried for one load
 _MOST_LENGTHS = 20
 #: relative error of the load, for which lam is then corrected to first order
-_LOAD_ERROR = 2e-5
+_LOAD_ERROR = 5e-6
 #: relative error of the load where only zones are asked
 _ROUGH_LOAD = 1e-3
 #: least change of ln(c) from which a secant is taken: that of a new mesh is smaller
@@ -59,8 +59,11 @@ WEIGHT_OF_SPOT = 1.0
 WEIGHT_OF_LAYER = 3.0
 #: integral of negative pressure over the load that counts as tension
 _TENSION = 1e-6
-#: steps of the bisection of the creep where the other slip opens
-_BISECTIONS = 17
+#: steps of the bisection of the creep where the other slip opens: to 5e-4 of the distance of the
+#: onsets
+_BISECTIONS = 11
+#: largest ratio of neighbouring steps over which states are continued
+_LARGEST_STEP = 2.0
 
 
 class Row(NamedTuple):
@@ -335,7 +338,7 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
         error = math.log(total / LOAD) if total > 0.0 else -1.0
         if n > 0 and abs(y - before) > _LEAST_CHANGE:
             slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
-        if n > 0 and abs(error) < tolerance and (centred or n >= _MOST_CENTRINGS):
+        if abs(error) < tolerance and (centred or n >= _MOST_CENTRINGS):
             break
         last = error
         before = y
@@ -363,8 +366,10 @@ def finish_state(row, contact, out):
 
 @kernel(allocates=True)
 def full_slip(row, mu, sign, count, c, out):
-    """Solve full slip of one sign; write the state and return its onset, the creep d.
+    """Solve full slip of one sign; write the state and return (its onset, the creep d; d
+    ln(load)/d ln(c)).
 
+    row : :class:`Row`.  mu : friction.  count : number of elements.
     sign : 1.0, -1.0, the sign of the slip.  c : guess of the half length.  out : (COLUMNS,),
     written.  The onset is the largest strain of that sign; at the edges it is extrapolated, by the
     parameter of the mesh, or by its square where u' falls like a root (without local coupling it
@@ -372,7 +377,7 @@ def full_slip(row, mu, sign, count, c, out):
     """
     contact = new_contact(count)
     contact.zone[:] = sign
-    find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
+    _, slope = find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
     best = -np.inf
     for e in range(count):
         best = max(best, sign * contact.strain[e])
@@ -388,44 +393,76 @@ def full_slip(row, mu, sign, count, c, out):
         value += f2 * x0 * x1 / ((x2 - x0) * (x2 - x1))
         best = max(best, sign * value)
     finish_state(row, contact, out)
-    return sign * best
+    return sign * best, slope
 
 
 @kernel(allocates=True)
-def states_loop(row, mu, creeps, count, c, apart, out):
-    """Solve states at creeps between the onsets, in their order, each from the zones and length of
-    the one before.
+def move_edges(place, last, before, count, ahead):
+    """Move the nodes of a mesh so that the edges of its zones lie where those of two states point
+    to.
+
+    place : parameters of the nodes, (N + 1,), changed; they stay where edges would meet.
+    last, before : edges of the last state and of the one before it, in column 0, (MOST_SPOTS, 3).
+    count : number of edges of both.
+    ahead : step to the next state over that between the two.
+    """
+    old = np.zeros(count + 2)
+    new = np.zeros(count + 2)
+    old[count + 1] = new[count + 1] = 1.0
+    for k in range(count):
+        old[k + 1] = last[k, 0]
+        new[k + 1] = last[k, 0] + ahead * (last[k, 0] - before[k, 0])
+    if (np.diff(new) > 0.0).all():
+        place[:] = np.interp(place, old, new)
+
+
+@kernel(allocates=True)
+def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
+    """Solve states at creeps between the onsets, in their order, each from the zones and length to
+    which the two before it point.
 
     row : :class:`Row`.  mu : friction.
     creeps : d of each, (n,); neighbours should be near each other.
+    at : places of the states in a coordinate over which they are smooth, ascending, (n,).
     count : number of elements.
-    c : guess of the first half length.
+    c, slope : guesses of the first half length and of d ln(load)/d ln(c).
     apart : whether each is solved from nothing, so that it does not depend on the others.
     out : (n, COLUMNS), written.
     """
     contact = new_contact(count)
-    slope = 2.0
+    edges = np.zeros((2, MOST_SPOTS, 3))
+    found = np.zeros(2, np.int64)
     guess = c
-    first = c
+    steepness = slope
     for n in range(creeps.size):
         if apart:
             contact.zone[:] = 0.0
-            guess = first
-            slope = 2.0
-        c, slope = find_length(row, contact, guess, slope, mu, creeps[n], _LOAD_ERROR, out[n])
+            guess = c
+            steepness = slope
+        length, steepness = find_length(
+            row, contact, guess, steepness, mu, creeps[n], _LOAD_ERROR, out[n]
+        )
         finish_state(row, contact, out[n])
-        guess = c
+        guess = length
+        this = n % 2
+        found[this] = find_spots(contact.zone, contact.place, 1.0, 1.0, edges[this])
         if 0 < n < creeps.size - 1:
-            ahead = (creeps[n + 1] - creeps[n]) / (creeps[n] - creeps[n - 1])
-            guess *= (c / out[n - 1, 9]) ** min(ahead, 2.0)
+            ahead = min((at[n + 1] - at[n]) / (at[n] - at[n - 1]), _LARGEST_STEP)
+            guess *= (length / out[n - 1, 9]) ** ahead
+            if found[0] == found[1]:
+                move_edges(contact.place, edges[this], edges[1 - this], found[0], ahead)
 
 
 @kernel(allocates=True)
-def rear_slip(row, contact, c, mu, d, out):
+def rear_slip(row, contact, c, slope, mu, d, out):
     """Solve a state and return (slip of sign + in its rear half; of sign -; zone at the rear edge;
     half length).
+
+    row, contact : :class:`Row`, :class:`Contact`, of which the second is written.
+    c, slope : guesses of the half length and of d ln(load)/d ln(c).  mu : friction.  d : creep.
+    out : (COLUMNS,), written.
     """
-    c, _ = find_length(row, contact, c, 2.0, mu, d, _ROUGH_LOAD, out)
+    c, _ = find_length(row, contact, c, slope, mu, d, _ROUGH_LOAD, out)
     plus = False
     minus = False
     for i in range(contact.zone.size // 2):
@@ -435,10 +472,12 @@ def rear_slip(row, contact, c, mu, d, out):
 
 
 @kernel(allocates=True)
-def touch_creep(row, mu, low, high, count, c):
+def touch_creep(row, mu, low, high, count, c, slope):
     """Return the creep d at which slip of the other sign opens in the rear half, between the onsets
     low and high.
 
+    row : :class:`Row`.  mu : friction.  count : number of elements.
+    c, slope : guesses of the half length and of d ln(load)/d ln(c).
     Below it the rear slips backwards, above it forwards; where both do in between it is the creep
     at which the sign at the rear edge ends.  Found by bisection on the zones.
     """
@@ -448,20 +487,20 @@ def touch_creep(row, mu, low, high, count, c):
     b = high
     for _ in range(_BISECTIONS):
         middle = 0.5 * (a + b)
-        plus, _, _, c = rear_slip(row, contact, c, mu, middle, out)
+        plus, _, _, c = rear_slip(row, contact, c, slope, mu, middle, out)
         if plus:
             b = middle
         else:
             a = middle
     opened = 0.5 * (a + b)
-    _, minus, edge, c = rear_slip(row, contact, c, mu, b + 2e-3 * (high - low), out)
+    _, minus, edge, c = rear_slip(row, contact, c, slope, mu, b + 2e-3 * (high - low), out)
     if not minus or edge < 0.0:
         return opened
     a = opened
     b = high
     for _ in range(_BISECTIONS):
         middle = 0.5 * (a + b)
-        _, minus, _, c = rear_slip(row, contact, c, mu, middle, out)
+        _, minus, _, c = rear_slip(row, contact, c, slope, mu, middle, out)
         if minus:
             a = middle
         else:
@@ -470,14 +509,16 @@ def touch_creep(row, mu, low, high, count, c):
 
 
 @kernel(allocates=True)
-def solve_one(row, mu, d, count, c, sign, out):
+def solve_one(row, mu, d, count, c, slope, sign, out):
     """Solve one state and return its :class:`Contact`.
 
-    d : creep; infinite: full slip of the sign ``sign``.  c : guess of the half length.  out :
-    (COLUMNS,), written.
+    row : :class:`Row`.  mu : friction.  count : number of elements.
+    d : creep; infinite: full slip of the sign ``sign``.
+    c, slope : guesses of the half length and of d ln(load)/d ln(c).
+    out : (COLUMNS,), written.
     """
     contact = new_contact(count)
     if math.isinf(d):
         contact.zone[:] = sign
-    find_length(row, contact, c, 2.0, mu, d, _LOAD_ERROR, out)
+    find_length(row, contact, c, slope, mu, d, _LOAD_ERROR, out)
     return contact

@@ -16,7 +16,7 @@ Q does not depend on the creep.  Symbols are those of :mod:`.coupled_splines`; a
 but what is said to be in units of a caller.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import carray
@@ -25,8 +25,8 @@ from ..numerics.intrinsics import floats_at, fma, record_at, record_type
 from ..numerics.jit import inline_kernel, kernel
 from .coupled_splines import (
     CYLINDER,
-    FIELD_COUNT,
     FREE,
+    FRICTION,
     HALF_SPACE,
     LENGTH,
     LIMIT,
@@ -37,11 +37,13 @@ from .coupled_splines import (
     SLIPS,
     STICK,
     TRACTION,
+    cell_at,
     edge_at,
     field_at,
     locate_creep,
     locate_speed,
     place_of,
+    value_at,
 )
 from .law_callables import RESULTS, Jitted, c_function_address, refuse
 from .law_record import read_state, slip_and_creepage, write_field
@@ -261,38 +263,70 @@ class Load(NamedTuple):
     ddelta: float
 
 
+class TablePlace(NamedTuple):
+    """Where a state lies in a table.
+
+    sign : that of V, 1.0 or -1.0, in which loads are odd.
+    u : kappa |V|.  speed : its :class:`.coupled_splines.Weights`.
+    state : :class:`.coupled_splines.Place` of its creep.  cell : :class:`.coupled_splines.Cell`.
+    """
+
+    sign: float
+    u: float
+    speed: Any
+    state: Any
+    cell: Any
+
+
 @inline_kernel
-def _load(name, factor, V, kappa, u, state, speed, place, table):
+def _place(V, D, kappa, table):
+    """Return the :class:`TablePlace` of a state.
+
+    V : speed of the axis.  D : 2 kappa delta.  kappa : slenderness.
+    table : vector of :mod:`.coupled_splines`.
+    """
+    u = kappa * abs(V)
+    speed = locate_speed(u, table)
+    state = place_of(D, u, speed, table)
+    place = locate_creep(state.w, state.sigma, table)
+    return TablePlace(np.copysign(1.0, V), u, speed, state, cell_at(speed, place, table))
+
+
+@inline_kernel
+def _load(name, factor, kappa, at, table):
     """Return a field times a factor as a :class:`Load`, which is odd in V.
 
     name : TRACTION, HALF_SPACE or CYLINDER.
     factor : mu of Q, 1/kappa of a moment.
-    V, kappa, u : speed of the axis, slenderness, kappa |V|.
-    state, speed, place : of :func:`.coupled_splines.place_of`,
-    :func:`.coupled_splines.locate_speed` and :func:`.coupled_splines.locate_creep`.
+    kappa : slenderness.
+    at, table : :class:`TablePlace`, and the vector of :mod:`.coupled_splines`.
     """
-    found = field_at(name, state.w, speed, place, table)
-    sign = np.copysign(1.0, V)
-    dV = factor * kappa * (found.du + found.dw * state.dw_du)
+    found = field_at(name, at.state.w, at.cell, table)
     return Load(
-        sign * factor * found.value, dV, sign * factor * 2.0 * kappa * found.dw * state.dw_dD
+        at.sign * factor * found.value,
+        factor * kappa * (found.du + found.dw * at.state.dw_du),
+        at.sign * factor * 2.0 * kappa * found.dw * at.state.dw_dD,
     )
 
 
 @inline_kernel
-def _traction(mu, V, kappa, u, state, speed, place, table):
-    """Return Q as a :class:`Load`; arguments as of :func:`_load`.  It is at most mu LIMIT, with
-    slopes 0 there.
+def _traction(mu, at, table):
+    """Return Q, at most mu LIMIT; arguments as of :func:`_load`, ``mu``: friction."""
+    limit = table[LIMIT]
+    found = value_at(TRACTION, at.cell, table)
+    found = at.state.sigma * limit if at.state.w >= 1.0 and limit < np.inf else found
+    return at.sign * mu * min(max(found, -limit), limit)
+
+
+@inline_kernel
+def _sloped_traction(mu, kappa, at, table):
+    """Return Q as a :class:`Load`, with slopes 0 where it is limited; arguments as of
+    :func:`_load` and :func:`_traction`.
     """
-    limit = mu * table[LIMIT]
-    found = _load(TRACTION, mu, V, kappa, u, state, speed, place, table)
-    if state.w < 1.0 and abs(found.value) <= limit:
-        return found
-    sign = np.copysign(1.0, V)
-    full = sign * state.sigma * limit
-    if abs(full) < np.inf:
-        return Load(full, 0.0, 0.0)
-    return found
+    value = _traction(mu, at, table)
+    if abs(value) >= mu * table[LIMIT]:
+        return Load(value, 0.0, 0.0)
+    return _load(TRACTION, mu, kappa, at, table)
 
 
 @inline_kernel
@@ -307,16 +341,16 @@ def _at_fixed_omega(load, V, delta):
 
 @kernel(allocates=True)
 def look_up(table, u, D):
-    """Return all fields of a table at speeds kappa |V| and creeps 2 kappa delta, both (n,), as (n,
-    fields).
+    """Return the fields of a table but friction at states, (n, FRICTION).
+
+    table : vector of :mod:`.coupled_splines`, with all fields.
+    u, D : kappa |V| and 2 kappa delta of each, (n,).
     """
-    out = np.empty((u.size, np.int64(table[FIELD_COUNT])))
+    out = np.empty((u.size, FRICTION))
     for n in range(u.size):
-        speed = locate_speed(u[n], table)
-        state = place_of(D[n], u[n], speed, table)
-        place = locate_creep(state.w, state.sigma, table)
+        at = _place(u[n], D[n], 1.0, table)
         for name in range(out.shape[1]):
-            out[n, name] = field_at(name, state.w, speed, place, table).value
+            out[n, name] = value_at(name, at.cell, table)
     return out
 
 
@@ -335,58 +369,63 @@ def table_loop(table, request, count):
 
 @inline_kernel
 def _write_state(table, given, n, request):
-    """Write the requested fields of one state, number ``n``; ``given``:
-    :class:`.law_record.State`.
+    """Write the requested fields of one state.
+
+    table : vector of :mod:`.coupled_splines`, with all fields.
+    given : :class:`.law_record.State`.  n : its number.  request : :class:`.law_record.Request`.
     """
     to = request.to
     kappa = given.kappa
-    V = given.V
-    u = kappa * abs(V)
     _, delta = slip_and_creepage(given)
     D = 2.0 * kappa * delta
-    speed = locate_speed(u, table)
-    state = place_of(D, u, speed, table)
-    place = locate_creep(state.w, state.sigma, table)
+    at = _place(given.V, D, kappa, table)
     write_field(to.delta, delta, n, request)
-    write_field(to.full_slip, np.float64(state.w >= 1.0), n, request)
+    write_field(to.full_slip, np.float64(at.state.w >= 1.0), n, request)
     if max(to.lam, to.zeta) >= 0:
-        lam = field_at(LENGTH, state.w, speed, place, table).value
+        lam = value_at(LENGTH, at.cell, table)
         write_field(to.lam, lam, n, request)
-        write_field(to.zeta, 0.5 * lam / u, n, request)
+        write_field(to.zeta, 0.5 * lam / at.u, n, request)
     if to.epsilon >= 0:
-        write_field(to.epsilon, field_at(SHIFT, state.w, speed, place, table).value, n, request)
+        write_field(to.epsilon, value_at(SHIFT, at.cell, table), n, request)
     if to.beta >= 0:
-        stick = field_at(STICK, state.w, speed, place, table).value
+        stick = value_at(STICK, at.cell, table)
         write_field(to.beta, min(max(stick, 0.0), 1.0), n, request)
     if max(to.delta_star, to.delta_0) >= 0:
-        free = edge_at(FREE, u, speed, table).value
-        onset = edge_at(ONSET + np.int64(D >= free), u, speed, table).value
+        free = edge_at(FREE, at.u, at.speed, table).value
+        onset = edge_at(ONSET + np.int64(D >= free), at.u, at.speed, table).value
         write_field(to.delta_star, 0.5 * abs(onset - free) / kappa, n, request)
         write_field(to.delta_0, 0.5 * free / kappa, n, request)
     if max(to.delta_minus, to.delta_plus) >= 0:
-        write_field(to.delta_minus, 0.5 * edge_at(ONSET, u, speed, table).value / kappa, n, request)
-        write_field(
-            to.delta_plus, 0.5 * edge_at(ONSET + 1, u, speed, table).value / kappa, n, request
-        )
-    Q = _traction(given.mu, V, kappa, u, state, speed, place, table)
-    half_space = _load(HALF_SPACE, 1.0 / kappa, V, kappa, u, state, speed, place, table)
-    cylinder = _load(CYLINDER, 1.0 / kappa, V, kappa, u, state, speed, place, table)
-    write_field(to.Q, Q.value, n, request)
-    write_field(to.grip, 1.0 - abs(Q.value) / given.mu, n, request)
-    write_field(to.M, half_space.value + cylinder.value, n, request)
-    write_field(to.M_half_space, half_space.value, n, request)
-    write_field(to.M_cylinder, cylinder.value, n, request)
+        for side, field in ((0, to.delta_minus), (1, to.delta_plus)):
+            onset = edge_at(ONSET + side, at.u, at.speed, table).value
+            write_field(field, 0.5 * onset / kappa, n, request)
+    if max(to.Q, to.grip) >= 0:
+        Q = _traction(given.mu, at, table)
+        write_field(to.Q, Q, n, request)
+        write_field(to.grip, 1.0 - abs(Q) / given.mu, n, request)
+    if max(to.M, to.M_half_space, to.M_cylinder) >= 0:
+        factor = at.sign / kappa
+        half_space = factor * value_at(HALF_SPACE, at.cell, table)
+        cylinder = factor * value_at(CYLINDER, at.cell, table)
+        write_field(to.M, half_space + cylinder, n, request)
+        write_field(to.M_half_space, half_space, n, request)
+        write_field(to.M_cylinder, cylinder, n, request)
     if max(to.dQ_ddelta, to.dQ_dV, to.dQ_domega, to.dM_ddelta, to.dM_dV, to.dM_domega) >= 0:
-        _write_slopes(Q, half_space, cylinder, given, delta, n, request)
+        _write_slopes(table, given, at, delta, n, request)
 
 
 @inline_kernel
-def _write_slopes(Q, half_space, cylinder, given, delta, n, request):
-    """Write the requested slopes of one state, number ``n``: of Q and of the moments, each a
-    :class:`Load`.
+def _write_slopes(table, given, at, delta, n, request):
+    """Write the requested slopes of one state, of Q and of the moments.
+
+    at : :class:`TablePlace`.  delta : creepage.  Other arguments as of :func:`_write_state`.
     """
     to = request.to
     V = given.V
+    kappa = given.kappa
+    Q = _sloped_traction(given.mu, kappa, at, table)
+    half_space = _load(HALF_SPACE, 1.0 / kappa, kappa, at, table)
+    cylinder = _load(CYLINDER, 1.0 / kappa, kappa, at, table)
     M = Load(
         half_space.value + cylinder.value,
         half_space.dV + cylinder.dV,
@@ -428,29 +467,41 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     if not (u <= table[MOST] and abs(slip) < np.inf):
         return refuse(out)
     delta = slip / V if V != 0.0 else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
-    speed = locate_speed(u, table)
-    state = place_of(2.0 * kappa * delta, u, speed, table)
-    if state.w > 1.0 and table[SLIPS] == 0.0:
+    at = _place(V, 2.0 * kappa * delta, kappa, table)
+    if at.state.w > 1.0 and table[SLIPS] == 0.0:
         return refuse(out)
-    place = locate_creep(state.w, state.sigma, table)
-    Q = _traction(scene.mu, V, kappa, u, state, speed, place, table)
-    half_space = _load(HALF_SPACE, 1.0 / kappa, V, kappa, u, state, speed, place, table)
-    cylinder = _load(CYLINDER, 1.0 / kappa, V, kappa, u, state, speed, place, table)
-    out[0] = scene.Q * Q.value
-    out[1] = scene.M * (half_space.value + cylinder.value)
-    out[2] = scene.M * half_space.value
-    out[3] = scene.M * cylinder.value
+    factor = scene.M * at.sign / kappa
+    half_space = factor * value_at(HALF_SPACE, at.cell, table)
+    cylinder = factor * value_at(CYLINDER, at.cell, table)
+    out[0] = scene.Q * _traction(scene.mu, at, table)
+    out[1] = half_space + cylinder
+    out[2] = half_space
+    out[3] = cylinder
     if scene.slopes:
-        dQ_dV, dQ_domega = _at_fixed_omega(Q, V, delta)
-        half_space_dV, half_space_domega = _at_fixed_omega(half_space, V, delta)
-        cylinder_dV, cylinder_domega = _at_fixed_omega(cylinder, V, delta)
-        out[4] = scene.Q / scene.V * dQ_dV
-        out[5] = scene.Q / scene.omega * dQ_domega
-        out[6] = scene.M / scene.V * half_space_dV
-        out[7] = scene.M / scene.V * cylinder_dV
-        out[8] = scene.M / scene.omega * half_space_domega
-        out[9] = scene.M / scene.omega * cylinder_domega
+        _slopes_to_caller(scene, V, delta, at, table, out)
     return 0
+
+
+@inline_kernel
+def _slopes_to_caller(scene, V, delta, at, table, out):
+    """Write the slopes of a state in the units of the caller into ``out``, (RESULTS,).
+
+    scene : TABLE record.  V : dimensionless.  delta : creepage.  at : :class:`TablePlace`.
+    table : vector of :mod:`.coupled_splines`.
+    """
+    kappa = scene.kappa
+    Q = _sloped_traction(scene.mu, kappa, at, table)
+    half_space = _load(HALF_SPACE, 1.0 / kappa, kappa, at, table)
+    cylinder = _load(CYLINDER, 1.0 / kappa, kappa, at, table)
+    dQ_dV, dQ_domega = _at_fixed_omega(Q, V, delta)
+    half_space_dV, half_space_domega = _at_fixed_omega(half_space, V, delta)
+    cylinder_dV, cylinder_domega = _at_fixed_omega(cylinder, V, delta)
+    out[4] = scene.Q / scene.V * dQ_dV
+    out[5] = scene.Q / scene.omega * dQ_domega
+    out[6] = scene.M / scene.V * half_space_dV
+    out[7] = scene.M / scene.V * cylinder_dV
+    out[8] = scene.M / scene.omega * half_space_domega
+    out[9] = scene.M / scene.omega * cylinder_domega
 
 
 def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
@@ -493,12 +544,12 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
         for step in range(_HALVINGS + 2):
             d = -1.0 if step == 0 else 1.0 if step == 1 else 0.5 * (low + high)
             sigma = 1.0 if d >= 0.0 else -1.0
-            place = locate_creep(abs(d), sigma, table)
-            found = mu[n] * field_at(TRACTION, abs(d), speed, place, table).value
+            cell = cell_at(speed, locate_creep(abs(d), sigma, table), table)
+            found = mu[n] * value_at(TRACTION, cell, table)
             if of_spin:
-                found += field_at(CYLINDER, abs(d), speed, place, table).value / kappa[n]
+                found += value_at(CYLINDER, cell, table) / kappa[n]
             else:
-                found -= field_at(HALF_SPACE, abs(d), speed, place, table).value / kappa[n]
+                found -= value_at(HALF_SPACE, cell, table) / kappa[n]
             if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
                 break
             if step > 1 and found < load[n]:

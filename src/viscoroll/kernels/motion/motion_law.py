@@ -54,7 +54,13 @@ from ..law.law_record import ALPHA, E0, ROW_COUNT, element
 from ..numerics.intrinsics import by_value, unlikely
 from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import TERMS, evaluate_pair
-from .table_law import Width, asymmetry_of_table, strain_power, width_at
+from .table_law import (
+    Loads,
+    Width,
+    asymmetry_of_table,
+    friction_by_shear,
+    width_at,
+)
 
 # --- Added mass ---
 
@@ -203,22 +209,6 @@ def evaluate_moments(u, scene):
     )
 
 
-class LoadedMoments(NamedTuple):
-    """Rolling moments of both bodies under traction, with their derivatives, dimensionless.
-
-    half_space, cylinder : M_half_space and M_cylinder.
-    half_space_dV, cylinder_dV : derivatives in V at fixed omega or d.
-    half_space_dd, cylinder_dd : derivatives in d at fixed V; 0 of half-spaces.
-    """
-
-    half_space: float
-    cylinder: float
-    half_space_dV: float
-    cylinder_dV: float
-    half_space_dd: float
-    cylinder_dd: float
-
-
 @inline_kernel
 def _change_at(u, Q, scene, cover_rows):
     """Return what the traction changes in the moments at one speed, as
@@ -249,7 +239,8 @@ def _change_at(u, Q, scene, cover_rows):
 
 @inline_kernel
 def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene):
-    """Return the rolling moments under traction with their derivatives, as :class:`LoadedMoments`.
+    """Return traction and the rolling moments under it with their derivatives, as
+    :class:`.table_law.Loads`.
 
     V: float, speed of the axis, dimensionless.
     du_dV: float, derivative of u = kappa |V| in V, kappa with the sign of V.
@@ -261,14 +252,17 @@ def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene):
     """
     half_space, cylinder, half_space_slope, cylinder_slope = free
     change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
-    return LoadedMoments(
+    return Loads(
+        Q=Q,
+        Q_dV=dQ_dV,
+        Q_dd=dQ_dd,
         half_space=V * half_space + change.half_space,
-        cylinder=V * cylinder + change.cylinder,
         half_space_dV=half_space_slope
         + du_dV * change.half_space_du
         + change.half_space_dQ * dQ_dV,
-        cylinder_dV=cylinder_slope + du_dV * change.cylinder_du + change.cylinder_dQ * dQ_dV,
         half_space_dd=change.half_space_dQ * dQ_dd,
+        cylinder=V * cylinder + change.cylinder,
+        cylinder_dV=cylinder_slope + du_dV * change.cylinder_du + change.cylinder_dQ * dQ_dV,
         cylinder_dd=change.cylinder_dQ * dQ_dd,
     )
 
@@ -288,7 +282,8 @@ def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
     """
     change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
     by_shear = V * change.half_space + omega * change.cylinder
-    by_shear -= strain_power(V, omega, scene.kappa, by_value(scene.law).table)
+    table = by_value(scene.law).table
+    by_shear = friction_by_shear(V, omega, Q, scene.kappa, scene.mu, by_shear, table)
     return (omega - V) * Q + by_shear, V * M_half_space + omega * M_cylinder - by_shear
 
 

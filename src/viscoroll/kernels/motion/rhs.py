@@ -62,7 +62,7 @@ from ..records import State
 from .collocation import ROW_OMEGA_OR_D, ROW_V
 from .drive import current_load, load_at_node
 from .motion_law import added_inertia, asymmetry, evaluate_moments, loaded_moments
-from .table_law import Width, free_creep_of_table, loads_on_rows, table_state, width_at
+from .table_law import Width, free_creep_of_table, table_state, width_at
 
 #: k relative to the smallest k at which dp/dV may vanish at d = -1, above which V is collocated,
 #: dimensionless: below it dp/dV at rest is at least a fifth of its value at d = 0.
@@ -257,7 +257,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
-    on_rows = loads_on_rows(Q, dQ_dV, dQ_dd, loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene))
+    on_rows = loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene)
     moments = table_state(V, d, sign, scene.kappa, mu, on_rows, law.table)
     Q = moments.Q
     dQ_dV = moments.Q_dV
@@ -368,8 +368,7 @@ def full_slip_rates(V, omega, load, regime, scene):
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
-    moments = loaded_moments(V, scene.kappa if V >= 0.0 else -scene.kappa, Q, 0.0, 0.0, free, scene)
-    on_rows = loads_on_rows(Q, 0.0, 0.0, moments)
+    on_rows = loaded_moments(V, scene.kappa if V >= 0.0 else -scene.kappa, Q, 0.0, 0.0, free, scene)
     moments = table_state(
         V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table
     )

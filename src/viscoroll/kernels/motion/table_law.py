@@ -16,16 +16,19 @@ import numpy as np
 
 from ..law.coupled_splines import (
     CYLINDER,
+    FIELD_COUNT,
+    FRICTION,
     HALF_SPACE,
     MIDDLE,
     ONSET,
     TRACTION,
-    WORK,
+    cell_at,
     edge_at,
     field_at,
     locate_creep,
     locate_speed,
     place_of,
+    value_at,
 )
 from ..law.cover_law import FreeCreep, OverSpeed
 from ..numerics.jit import inline_kernel
@@ -55,8 +58,9 @@ class Width(NamedTuple):
 def free_creep_of_table(width, u, kappa, k, rows, table):
     """Return D_0 as :class:`.cover_law.FreeCreep`.
 
-    width: :class:`Width` at u = kappa |V|.  k: mu/(2 kappa).  rows: what
-    :func:`.cover_law.free_kinematics` gives.
+    width: :class:`Width` at u = kappa |V|.  kappa: slenderness.  k: mu/(2 kappa).
+    rows: what :func:`.cover_law.free_kinematics` gives.
+    table: vector of :mod:`.coupled_splines`, or None.
     """
     if table is None:
         return rows
@@ -76,9 +80,11 @@ def asymmetry_of_table(rows, table):
     return rows if table is None else OverSpeed(0.0, 0.0, 0.0)
 
 
-class TableState(NamedTuple):
-    """Loads of partial or full slip with their derivatives: in V at fixed d (_dV), in d at fixed V
-    (_dd).
+class Loads(NamedTuple):
+    """Traction and rolling moments of partial or full slip, dimensionless, with their derivatives:
+    in V at fixed d (_dV; of rows in full slip at fixed omega), in d at fixed V (_dd).
+
+    Q : traction.  half_space, cylinder : M_half_space and M_cylinder.
     """
 
     Q: float
@@ -94,62 +100,46 @@ class TableState(NamedTuple):
 
 @inline_kernel
 def width_at(u, sigma, mu, rows, table):
-    """Return the :class:`Width` at u = kappa |V| on the side sigma, 1.0 or -1.0; ``rows``: that of
-    the rows.
+    """Return the :class:`Width` at a speed on one side of D_0.
+
+    u : float, kappa |V|.  sigma : side, 1.0 or -1.0.  mu : friction.
+    rows : Width that the rows give.  table : vector of :mod:`.coupled_splines`, or None.
     """
     if table is None:
         return rows
     speed = locate_speed(u, table)
-    middle, dmiddle, ddmiddle = _edge(MIDDLE, u, speed, table)
-    onset, donset, ddonset = _edge(ONSET + np.int64(sigma > 0.0), u, speed, table)
+    middle = edge_at(MIDDLE, u, speed, table)
+    onset = edge_at(ONSET + np.int64(sigma > 0.0), u, speed, table)
     factor = sigma / mu
-    L = factor * (onset - middle)
     return Width(
-        L=L,
-        dL=factor * (donset - dmiddle),
-        ddL=factor * (ddonset - ddmiddle),
-        middle=middle,
-        dmiddle=dmiddle,
-        ddmiddle=ddmiddle,
-    )
-
-
-@inline_kernel
-def _edge(name, u, speed, table):
-    """Return an edge with two derivatives over u."""
-    found = edge_at(name, u, speed, table)
-    return found.value, found.du, found.dw
-
-
-@inline_kernel
-def loads_on_rows(Q, Q_dV, Q_dd, moments):
-    """Return traction with its derivatives and :class:`.motion_law.LoadedMoments`, of the rows, as
-    :class:`TableState`.
-    """
-    return TableState(
-        Q=Q,
-        Q_dV=Q_dV,
-        Q_dd=Q_dd,
-        half_space=moments.half_space,
-        half_space_dV=moments.half_space_dV,
-        half_space_dd=moments.half_space_dd,
-        cylinder=moments.cylinder,
-        cylinder_dV=moments.cylinder_dV,
-        cylinder_dd=moments.cylinder_dd,
+        L=factor * (onset.value - middle.value),
+        dL=factor * (onset.du - middle.du),
+        ddL=factor * (onset.ddu - middle.ddu),
+        middle=middle.value,
+        dmiddle=middle.du,
+        ddmiddle=middle.ddu,
     )
 
 
 @inline_kernel
 def table_state(V, d, sigma, kappa, mu, rows, table):
-    """Return the :class:`TableState` at a speed V of either sign and d on the side sigma; full slip
-    where sigma d >= 1.
-
-    rows: that of the rows.
-
-    In full slip at V < 0 it is that of the opposite direction, in which slip has the opposite sign.
+    """Return the :class:`Loads` of a state, ``rows`` of a law without a table; arguments as of
+    :func:`_loads`.
     """
     if table is None:
         return rows
+    return _loads(V, d, sigma, kappa, mu, table)
+
+
+@inline_kernel
+def _loads(V, d, sigma, kappa, mu, table):
+    """Return the :class:`Loads` of a state of a table; full slip where sigma d >= 1.
+
+    V : float, speed of the axis, of either sign.  d : float, second unknown of the module.
+    sigma : side of D_0, 1.0 or -1.0.  kappa, mu : slenderness and friction.
+    table : vector of :mod:`.coupled_splines`.
+    In full slip at V < 0 it is that of the opposite direction, in which slip has the opposite sign.
+    """
     w = sigma * d
     sign = 1.0
     if w >= 1.0 and V < 0.0:
@@ -158,13 +148,13 @@ def table_state(V, d, sigma, kappa, mu, rows, table):
     u = kappa * abs(V)
     du_dV = kappa if V >= 0.0 else -kappa
     speed = locate_speed(u, table)
-    place = locate_creep(w, sigma, table)
-    Q = field_at(TRACTION, w, speed, place, table)
-    half_space = field_at(HALF_SPACE, w, speed, place, table)
-    cylinder = field_at(CYLINDER, w, speed, place, table)
+    cell = cell_at(speed, locate_creep(w, sigma, table), table)
+    Q = field_at(TRACTION, w, cell, table)
+    half_space = field_at(HALF_SPACE, w, cell, table)
+    cylinder = field_at(CYLINDER, w, cell, table)
     turned = mu * sign
     moment = sign / kappa
-    return TableState(
+    return Loads(
         Q=turned * Q.value,
         Q_dV=turned * du_dV * Q.du,
         Q_dd=turned * sigma * Q.dw,
@@ -180,25 +170,24 @@ def table_state(V, d, sigma, kappa, mu, rows, table):
 @inline_kernel
 def pull_of_table(d, kappa, mu, rows, table):
     """Return what friction does at V = 0, in the direction of the regime: force on the axis, torque
-    against the spin.
+    against the spin, and their derivatives in d.
 
-    d: float, at most 1 in modulus.
-    rows: what the rows give, (Q - M_half_space, Q + M_cylinder, their derivatives in d).
+    rows: what the rows give, of a law without a table.  Other arguments as of :func:`_pull`.
     """
     if table is None:
         return rows
-    none = TableState(
-        Q=0.0,
-        Q_dV=0.0,
-        Q_dd=0.0,
-        half_space=0.0,
-        half_space_dV=0.0,
-        half_space_dd=0.0,
-        cylinder=0.0,
-        cylinder_dV=0.0,
-        cylinder_dd=0.0,
-    )
-    found = table_state(0.0, d, np.copysign(1.0, d), kappa, mu, none, table)
+    return _pull(d, kappa, mu, table)
+
+
+@inline_kernel
+def _pull(d, kappa, mu, table):
+    """Return (Q - M_half_space, Q + M_cylinder, their derivatives in d) at V = 0 of a table.
+
+    d: float, at most 1 in modulus.
+    kappa, mu: slenderness and friction.
+    table: vector of :mod:`.coupled_splines`.
+    """
+    found = _loads(0.0, d, np.copysign(1.0, d), kappa, mu, table)
     return (
         found.Q - found.half_space,
         found.Q + found.cylinder,
@@ -214,7 +203,10 @@ def balance_of_table(load, kappa, mu, rows, table):
     It begins to roll in a direction if, with friction in balance with the force, the torque is
     above what friction takes in rolling: also where bodies are elastic some slip remains in free
     rolling of a cover.
+    load: Load at rest, of which force, torque and brake are read.
+    kappa, mu: slenderness and friction.
     rows: float, the margin that the rows give.
+    table: vector of :mod:`.coupled_splines`, or None.
     Returns the smaller margin of both directions, less than 0 where no friction balances the force.
     """
     if table is None:
@@ -225,40 +217,43 @@ def balance_of_table(load, kappa, mu, rows, table):
         high = 1.0
         for _ in range(_HALVINGS):
             d = 0.5 * (low + high)
-            if (
-                pull_of_table(d, kappa, mu, (0.0, 0.0, 0.0, 0.0), table)[0] + direction * load.force
-                < 0.0
-            ):
+            if _pull(d, kappa, mu, table)[0] + direction * load.force < 0.0:
                 low = d
             else:
                 high = d
         d = 0.5 * (low + high)
         if abs(d) >= 1.0 - _EDGE:
             return min(mu - abs(load.force), -_EDGE)
-        margin = min(
-            margin,
-            pull_of_table(d, kappa, mu, (0.0, 0.0, 0.0, 0.0), table)[1] - direction * load.torque,
-        )
+        on_spin = _pull(d, kappa, mu, table)[1]
+        margin = min(margin, on_spin - direction * load.torque)
     if abs(margin) < _ROUNDING * mu:
         margin = 0.0
     return margin + load.brake
 
 
 @inline_kernel
-def strain_power(V, omega, kappa, table):
-    """Return the power that the bodies take by the strain of their surfaces along the path, at V >=
-    0 and omega.
+def friction_by_shear(V, omega, Q, kappa, mu, rows, table):
+    """Return the power of friction less (omega - V) Q, which is what the bodies take by the strain
+    of their surfaces along the path, negative; in units of P R/T_ref.
+
+    V, omega: floats, speeds, V >= 0.  Q: traction.  kappa, mu: slenderness and friction.
+    rows: what the rows give, of a law without friction in a table.
+    table: vector of :mod:`.coupled_splines`, or None.
+    Friction is a spline of its own, so that it is not the difference of two where almost all of the
+    contact sticks.
     """
     if table is None:
-        return 0.0
+        return rows
+    if table[FIELD_COUNT] <= FRICTION:
+        return rows
     u = kappa * abs(V)
     slip = omega - V
     D = 2.0 * kappa * slip / V if V > 0.0 else np.copysign(np.inf, slip)
     speed = locate_speed(u, table)
     state = place_of(D, u, speed, table)
-    place = locate_creep(state.w, state.sigma, table)
-    work = (
-        field_at(WORK, state.w, speed, place, table).value
-        + field_at(WORK + 1, state.w, speed, place, table).value
-    )
-    return 0.5 * V * work / kappa
+    cell = cell_at(speed, locate_creep(state.w, state.sigma, table), table)
+    friction = 0.5 * V / kappa * max(value_at(FRICTION, cell, table), 0.0)
+    if state.w > 1.0:
+        onset = edge_at(ONSET + np.int64(state.sigma > 0.0), u, speed, table).value
+        friction += mu * state.sigma * (slip - 0.5 * V * onset / kappa)
+    return friction - slip * Q
