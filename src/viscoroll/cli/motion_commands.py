@@ -216,7 +216,10 @@ def steady(arguments: Namespace) -> None:
     import numpy as np
 
     loads = {name: getattr(arguments, name) for name in ("force", "torque", "slope", "V")}
-    loads = {name: np.atleast_1d(load) for name, load in loads.items() if load is not None}
+    loads = {name: load for name, load in loads.items() if load is not None}
+    slope = {"slope": loads.pop("slope")} if "slope" in loads else {}  # a cover takes one number
+    loads = loads or {"force": 0.0}
+    loads = {name: np.atleast_1d(load) for name, load in loads.items()} | slope
     equilibria = roller_of_argument(arguments.scene).steady(**loads)
     lines = [f"load {n}: {reason}" for n, reason in enumerate(equilibria.reason) if reason]
     if len(lines) > _MOST_LINES:
@@ -260,7 +263,7 @@ def heat(arguments: Namespace) -> None:
 
     names = ("V", "ambient", "conductance", "force", "torque", "slope")
     given = {
-        name: np.atleast_1d(value)
+        name: value if name == "slope" else np.atleast_1d(value)  # a cover takes one number
         for name in names
         if (value := getattr(arguments, name)) is not None
     }

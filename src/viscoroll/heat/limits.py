@@ -57,6 +57,8 @@ _HALF_STEP = 1e-3
 #: Speed up to which turning points are returned, m/s: beyond it no roller runs, and the loss of a
 #: cold rubber no longer depends on the speed to rounding.
 FASTEST = 1e4
+#: ln V from which on the speed of a balance is of no account: a number, of which differences exist
+_MOST_LN_V = 100.0
 #: Step that tells a maximum of ln V from a minimum.
 _BEND = 1e-2
 
@@ -238,7 +240,8 @@ def _ln_limit(states: HeatStates, name: str, n: Integers, rise: Floats) -> Float
         C = pure_rolling_fields(states.law, np.exp2(x), "M")[0]
         return np.log(C) + power * math.log(2.0) * x - target[own]
 
-    secant = x[k] + (target - curve[k]) / (curve[k + 1] - curve[k]) / NODES
+    with np.errstate(divide="ignore", invalid="ignore"):  # in a limit the curve is flat to rounding
+        secant = x[k] + (target - curve[k]) / (curve[k + 1] - curve[k]) / NODES
     u = refine(rest, np.arange(n.size), x[k], x[k + 1], secant, np.full(n.size, power > 0.0))
     if name == "V":
         return np.where(target > curve[-1], np.inf, math.log(2.0) * (u - unit) - np.log(kappa))
@@ -298,7 +301,8 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
 
     def ln_V(y: Floats) -> Floats:
         theta = states.curve.temperature_of(y)
-        return _ln_limit(states, "V", np.zeros(y.size, np.int64), theta - given["ambient"])
+        found = _ln_limit(states, "V", np.zeros(y.size, np.int64), theta - given["ambient"])
+        return np.minimum(found, _MOST_LN_V)
 
     hottest = np.float64(min(HOTTEST, states.curve.high))
     ends = states.curve.log2_of(np.array([hottest, given["ambient"]]))

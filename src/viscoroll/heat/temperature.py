@@ -200,7 +200,6 @@ def temperature(
             "V", "is not given", "given, or a force, torque or slope from which it follows"
         )
     states = heat_states(roller, scene, "temperature", plain | found, slip_share)
-    driven |= {name: np.broadcast_to(load, states.shape) for name, load in found.items()}
     if states.V is None:
         rows, zeros = _under_load(level, states, driven)
     else:
@@ -331,6 +330,8 @@ def _under_load(
         raise described_error(
             "vertical_shift", "is given", "left out where the speed follows from the load: give V"
         )
+    force = 0.0 if driven["force"] is None else driven["force"]
+    driven = driven | {"force": np.broadcast_to(force, states.shape)}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # of speeds at the reference
         found = steady(level, **driven)
