@@ -11,6 +11,7 @@ import pytest
 from memory import forget
 
 from viscoroll.contact_mechanics import model_warnings
+from viscoroll.measurements import spectrum
 from viscoroll.motion import flow_store
 
 # what a user chose for other work does not reach the tests
@@ -45,6 +46,12 @@ def pytest_sessionfinish(session):
 def nothing_said_yet(monkeypatch):
     """What is said of a material once a process is said in each test."""
     monkeypatch.setattr(model_warnings, "_warned_records", set())
+
+
+@pytest.fixture
+def two_speeds(monkeypatch):
+    """The accuracy of M by a fit is found at two speeds, not at two a decade of its data."""
+    monkeypatch.setattr(spectrum, "_SPEEDS", 0)
 
 
 @pytest.fixture

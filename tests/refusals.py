@@ -2,6 +2,8 @@
 allowed.
 """
 
+from functools import partial
+
 import pytest
 
 import viscoroll as vr
@@ -18,3 +20,18 @@ def refused(call, *words, error=vr.ParameterError):
             assert word in text, text
         return text
     pytest.fail(f"not refused: {', '.join(words)}")
+
+
+def each(call, given, error=vr.ParameterError, **usual):
+    """Parameters of a test: calls, the words of the answer, and the error that has them.
+
+    given: words, with " | " between, -> a dict of arguments beside the ``usual`` or in place of
+    them, a tuple of arguments, or one; without ``call`` a function that makes the whole call.
+    """
+    found = []
+    for words, one in given.items():
+        named = one if isinstance(one, dict) else {}
+        listed = one if isinstance(one, tuple) else () if isinstance(one, dict) else (one,)
+        made = partial(call, *listed, **usual | named) if call else one
+        found.append(pytest.param(made, words.split(" | "), error, id=words))
+    return found

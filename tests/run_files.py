@@ -195,7 +195,7 @@ FILES = {
     "a series": LOADED,
     "rubber": RUBBER,
     "rubber on rubber": RUBBER + SOFT_BASE,
-    "rubber on steel": RUBBER + HARD_BASE,
+    "rubber on steel": RUBBER.replace("m = 35.5", "m = 35.5\ncoupled = false") + HARD_BASE,
     "on what is rigid": RUBBER + RIGID_BASE,
     "known rubber": CERTAIN.replace(
         "0.5\n", "0.5\nprony = { E = [0.3, 1.5], tau = [2e-2, 1e-3] }\n", 1

@@ -17,8 +17,17 @@ WLF = vr.WLF(C1=8.86, C2=101.6, T0=0.0)
 RUBBER = vr.Material(
     3e6, 0.49, vr.Prony([2.0, 40.0], [1.0, 1e-2]), 0.02, temperature=20.0, shift=WLF
 )
-ROLLER = vr.Cylinder(R=0.1, m=60.0, material=RUBBER, base=vr.Material.rigid(), mu=0.6, load=2e4)
+ROLLER = vr.Cylinder(
+    R=0.1, m=60.0, material=RUBBER, base=vr.Material.rigid(), mu=0.6, load=2e4, coupled=False
+)
 COLD = {"ambient": -30.0, "conductance": 6.0}
+
+
+def ln_a_T(shift, theta):
+    """ln a_T of either law as it is published."""
+    if isinstance(shift, vr.WLF):
+        return -np.log(10.0) * shift.C1 * (theta - shift.T0) / (shift.C2 + theta - shift.T0)
+    return shift.energy / 8.314462618 * (1.0 / (theta + 273.15) - 1.0 / (shift.T0 + 273.15))
 
 
 def with_shift(shift, **more):
@@ -54,12 +63,12 @@ def test_infinite_conductance_is_the_law_at_ambient(base):
 
 
 def test_against_a_dense_scan():
-    """None of the equilibria of 300 random rollers at 60,000 temperatures is missed; they balance,
+    """None of the equilibria of 80 random rollers at 60,000 temperatures is missed; they balance,
     and alternate.
     """
     rng = np.random.default_rng(5)
     several = 0
-    for k in range(300):
+    for k in range(80):
         n = rng.integers(1, 5)
         shift = vr.WLF(C1=rng.uniform(6, 18), C2=rng.uniform(40, 120), T0=rng.uniform(-60, 20))
         shift = shift if k % 3 else vr.Arrhenius(energy=rng.uniform(3e4, 2e5), T0=20.0)
@@ -83,7 +92,7 @@ def test_against_a_dense_scan():
         assert found.stable.tolist() == [n % 2 == 0 for n in range(found.count)]
         largest = roller.contact(np.geomspace(1e-9, 1e9, 999), delta=0.0, fields="C_rr").C_rr.max()
         theta = np.linspace(A, A + 1.1 * roller.load * V * largest / G, 60_000)
-        a_T = np.exp(shift.log(theta) - shift.log(np.float64(20.0)))
+        a_T = np.exp(ln_a_T(shift, theta) - ln_a_T(shift, 20.0))
         loss = (
             roller.load
             * V
@@ -93,7 +102,7 @@ def test_against_a_dense_scan():
         positive = loss > G * (theta - A)
         assert found.count >= np.count_nonzero(positive[1:] != positive[:-1])
         several += found.count > 1
-    assert several > 10
+    assert several > 3
 
 
 def test_found_factors_and_arrays():
@@ -101,7 +110,7 @@ def test_found_factors_and_arrays():
     states.
     """
     at = np.linspace(-60.0, 150.0, 2101)
-    table = with_shift(lambda T: float(np.exp(np.interp(T, at, WLF.log(at)))))
+    table = with_shift(lambda T: float(np.exp(np.interp(T, at, ln_a_T(WLF, at)))))
     V = np.array([[0.3], [2.0]])
     A = np.array([-30.0, 20.0, 0.0])
     whole = ROLLER.temperature(V, ambient=A, conductance=6.0)
@@ -386,7 +395,7 @@ def test_fit_at_the_strain_of_the_contact():
     """Of moduli that fall with a power of the strain the fit has the strain that its own contact
     has.
     """
-    omega = np.geomspace(1e-2, 1e5, 60)
+    omega = np.geomspace(1e-2, 1e5, 30)
 
     def record(strain, power=-0.3):
         moduli = [part(omega) * (strain / 0.01) ** power for part in (RUBBER.storage, RUBBER.loss)]

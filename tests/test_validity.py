@@ -1,5 +1,6 @@
 """Scene.validity and Cylinder.validity: which assumptions a state strains."""
 
+import warnings
 from dataclasses import replace
 
 import numpy as np
@@ -71,3 +72,7 @@ def test_lengths_in_mm_give_one_warning():
         with pytest.warns(vr.ModelWarning, match="divide those in mm by 1000") as said:
             call()
         assert len(said) == 1
+    drum = vr.Cylinder(R=6.0, m=2e4, material=replace(tread, thickness=None), mu=0.5, load=1e6)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        drum.contact(1.0, delta=0.0)  # large, and so is the contact of its load

@@ -105,12 +105,15 @@ contact_state <- function(law, kappa, mu, V, slip) {
   creepage <- if (slip == 0) 0 else if (V == 0) sign(slip) * Inf else slip / V
   own <- creepage - 0.5 * (h[2] + h[3]) / kappa
   delta <- abs(own)
-  D <- 2 * kappa * delta / mu
-  w <- L - D
   delta_star <- 0.5 * mu * L / kappa
+  # The onsets of full slip of a layer lie unlike far from free rolling.
+  excess <- 2 * (h[4] + h[5]) / (mu * L)
+  c <- -sign(own) * excess / (1 + (2 * excess)^6)
+  D <- 4 * kappa * delta / mu / (1 + sqrt(max(1 + 4 * c * delta / delta_star, 0)))
+  w <- L - D
   beta <- 0
   used <- 1
-  if (delta < delta_star && w > 0) {
+  if (delta < delta_star * (1 + c) && w > 0) {
     at <- stick(law, 2 * u / w)
     q <- if (D < L / 8) D * ((2 * L - D) * at[2] - 2 * u * L / w * secant(law, 2 * u / L, 2 * u / w)) else 1 - w^2 * at[2]
     beta <- min(at[1] * w / f$lam, 1)
@@ -118,7 +121,7 @@ contact_state <- function(law, kappa, mu, V, slip) {
   }
   along <- sign(own) * mu * used
   Q <- if (V < 0) -along else along
-  more <- used * (1 + (2 * (h[4] + h[5]) / (mu * L))^4)^-0.25
+  more <- used * (1 + excess^4)^-0.25
   Mh <- V * f$m_half_space - Q * (h[2] + more * h[4]) / (2 * kappa)
   Mc <- V * f$m_cylinder - Q * (h[3] + more * h[5]) / (2 * kappa + h[2] + h[3])
   list(lam = f$lam + h[6] * along, epsilon = f$epsilon + h[7] * along, delta_star = delta_star, beta = beta, Q = Q,

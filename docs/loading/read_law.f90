@@ -119,7 +119,7 @@ contains
     type(law), intent(in) :: a
     real(8), intent(in) :: kappa, mu, V, slip
     type(place) :: p
-    real(8) :: u, f(7), h(7), z, L, own, delta, D, w, used, along, share, more, beta, Q, Mh, Mc
+    real(8) :: u, f(7), h(7), z, L, own, delta, star, excess, c, D, w, used, along, share, more, beta, Q, Mh, Mc
     integer :: k
     u = kappa*abs(V)
     if (.not. (kappa > 0 .and. mu > 0 .and. ieee_is_finite(mu) .and. u <= 1d300 .and. ieee_is_finite(slip))) then
@@ -150,11 +150,14 @@ contains
     if (slip /= 0 .and. V == 0) own = sign(huge(own), slip)
     own = own - 0.5d0*(h(2) + h(3))/kappa
     delta = abs(own)
-    D = 2*kappa*delta/mu
+    star = mu*L/(2*kappa)
+    excess = 2*(h(4) + h(5))/(mu*L)
+    c = -sign(excess, excess*own)/(1 + (2*excess)**6) ! onsets of full slip lie unlike far from free rolling
+    D = 4*kappa*delta/mu/(1 + sqrt(max(1 + 4*c*delta/star, 0d0)))
     w = L - D
     beta = 0
     used = 1
-    if (delta < mu*L/(2*kappa) .and. w > 0) then
+    if (delta < star*(1 + c) .and. w > 0) then
       p = at(a, 2*u/w)
       if (p%row < a%rows) then
         f(6:7) = [value(a%c(:, p%row, 6), p%t), value(a%c(:, p%row, 7), p%t)]
@@ -170,9 +173,9 @@ contains
     end if
     along = merge(0d0, sign(mu*used, own), own == 0)
     Q = merge(-along, along, V < 0)
-    more = used*(1 + (2*(h(4) + h(5))/(mu*L))**4)**(-0.25d0)
+    more = used*(1 + excess**4)**(-0.25d0)
     Mh = V*f(3) - Q*(h(2) + more*h(4))/(2*kappa)
     Mc = V*f(4) - Q*(h(3) + more*h(5))/(2*kappa + h(2) + h(3))
-    s = state(f(1) + h(6)*along, f(2) + h(7)*along, mu*L/(2*kappa), beta, Q, Mh + Mc, Mh, Mc, f(5))
+    s = state(f(1) + h(6)*along, f(2) + h(7)*along, star, beta, Q, Mh + Mc, Mh, Mc, f(5))
   end function
 end module

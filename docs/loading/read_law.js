@@ -71,15 +71,17 @@ function law(file) {
     const [L, fh, fc, gh, gc, lam_Q, epsilon_Q] = limits ? shear(u) : [lam * (1 + epsilon), 0, 0, 0, 0, 0, 0];
     const creepage = slip === 0 ? 0 : V === 0 ? Math.sign(slip) * Infinity : slip / V;
     const own = creepage - 0.5 * (fh + fc) / kappa, side = V < 0 ? -1 : 1;
-    const delta = Math.abs(own), D = 2 * kappa * delta / mu, w = L - D, delta_star = 0.5 * mu * L / kappa;
+    const delta = Math.abs(own), delta_star = 0.5 * mu * L / kappa, excess = 2 * (gh + gc) / (mu * L);
+    const c = -Math.sign(own) * excess / (1 + (2 * excess) ** 6); // onsets of full slip lie unlike far from free rolling
+    const D = 4 * kappa * delta / mu / (1 + Math.sqrt(1 + 4 * c * delta / delta_star)), w = L - D;
     let beta = 0, used = 1;
-    if (delta < delta_star && w > 0) {
+    if (delta < delta_star * (1 + c) && w > 0) {
       const [s, p] = stick(2 * u / w);
       const q = D < L / 8 ? D * ((2 * L - D) * p - 2 * u * L / w * secant(2 * u / L, 2 * u / w)) : 1 - w * w * p;
       beta = Math.min(s * w / lam, 1);
       used = Math.min(q, 1);
     }
-    const along = Math.sign(own) * mu * used, Q = side * along, more = used * (1 + (2 * (gh + gc) / (mu * L)) ** 4) ** -0.25;
+    const along = Math.sign(own) * mu * used, Q = side * along, more = used * (1 + excess ** 4) ** -0.25;
     const ch = Q * (fh + more * gh) / (2 * kappa), cc = Q * (fc + more * gc) / (2 * kappa + fh + fc);
     return {
       lam: lam + lam_Q * along, epsilon: epsilon + epsilon_Q * along, delta_star, beta, Q,

@@ -33,14 +33,16 @@ function s = state(law, kappa, mu, V, slip)
   if slip ~= 0, if V == 0, creepage = sign(slip) * Inf; else, creepage = slip / V; end, end
   own = creepage - 0.5 * (h(2) + h(3)) / kappa;  delta = abs(own);  side = 1;
   if V < 0, side = -1; end
-  D = 2 * kappa * delta / mu;  w = L - D;  delta_star = 0.5 * mu * L / kappa;  beta = 0;  used = 1;
-  if delta < delta_star && w > 0
+  delta_star = 0.5 * mu * L / kappa;  excess = 2 * (h(4) + h(5)) / (mu * L);
+  c = -sign(own) * excess / (1 + (2 * excess)^6);  % onsets of full slip lie unlike far from free rolling
+  D = 4 * kappa * delta / mu / (1 + sqrt(max(1 + 4 * c * delta / delta_star, 0)));  w = L - D;  beta = 0;  used = 1;
+  if delta < delta_star * (1 + c) && w > 0
     v1 = 2 * u / L;  v2 = 2 * u / w;
     [share, press] = stick(law, v2);
     if D < L / 8, q = D * ((2 * L - D) * press - 2 * u * L / w * secant(law, v1, v2)); else, q = 1 - w^2 * press; end
     beta = min(share * w / f(1), 1);  used = min(q, 1);
   end
-  along = sign(own) * mu * used;  Q = side * along;  more = used * (1 + (2 * (h(4) + h(5)) / (mu * L))^4)^-0.25;
+  along = sign(own) * mu * used;  Q = side * along;  more = used * (1 + excess^4)^-0.25;
   Mh = V * f(3) - Q * (h(2) + more * h(4)) / (2 * kappa);
   Mc = V * f(4) - Q * (h(3) + more * h(5)) / (2 * kappa + h(2) + h(3));
   s = struct('lam', f(1) + h(6) * along, 'epsilon', f(2) + h(7) * along, 'delta_star', delta_star, 'beta', beta, 'Q', Q, ...

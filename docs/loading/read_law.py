@@ -93,8 +93,11 @@ def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
         - 0.5 * f / kappa
     )
     side, sign, delta = np.where(V < 0.0, -1.0, 1.0), np.sign(delta), np.abs(delta)
-    D = 2.0 * kappa * delta / mu
-    slips = ~((delta < 0.5 * mu * L / kappa) & (D < L))
+    # the onsets of full slip of a layer lie unlike far from free rolling
+    star, excess = 0.5 * mu * L / kappa, 2.0 * (g_h + g_c) / (mu * L)
+    lean = -sign * excess / (1.0 + (2.0 * excess) ** 6)
+    D = 4.0 * kappa * delta / mu / (1.0 + np.sqrt(1.0 + 4.0 * lean * delta / star))
+    slips = ~((delta < star * (1.0 + lean)) & (D < L))
     w = np.where(slips, L, L - D)
     v1, v2 = 2.0 * u / L, 2.0 * u / w
     (r1, t1, p1), (r2, t2, p2) = place(v1, e0), place(v2, e0)
@@ -115,7 +118,7 @@ def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
     )
     used = np.where(slips, 1.0, np.minimum(q, 1.0))
     Q, along = side * sign * mu * used, sign * mu * used
-    more = used * (1.0 + (2.0 * (g_h + g_c) / (mu * L)) ** 4) ** -0.25
+    more = used * (1.0 + excess**4) ** -0.25
     change_h, change_c = (
         Q * (f_h + more * g_h) / (2.0 * kappa),
         Q * (f_c + more * g_c) / (2.0 * kappa + f),
@@ -123,7 +126,7 @@ def state(c, e0, alpha, limit, ends, kappa, mu, V, slip):
     found = {
         "lam": lam + lam_Q * along,
         "epsilon": epsilon + epsilon_Q * along,
-        "delta_star": 0.5 * mu * L / kappa,
+        "delta_star": star,
         "beta": np.where(slips, 0.0, np.minimum(share * w / lam, 1.0)),
         "Q": Q,
         "M": V * (half_space + cylinder) - (change_h + change_c),

@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from .contact_mechanics.assumptions import DUNDURS_LIMIT
 from .contact_mechanics.body_data import BodyData
 from .contact_mechanics.bound_law import law
 from .contact_mechanics.contact import contact, stress
@@ -33,7 +34,7 @@ from .heat.limits import heat_limit, turning_points
 from .heat.temperature import temperature
 from .heat.warming import warming
 from .laws.law_table import LawTable
-from .materials.bodies import Cover
+from .materials.bodies import Bodies, Cover
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
@@ -156,8 +157,9 @@ class Cylinder(Methods):
     base : the :class:`Material` of the half-space; default: that of the cylinder.
     load : normal force P, N/m, > 0; default: the weight m g.
     coupled : whether states with traction of a layer, and of half-spaces with Dundurs' constant
-        above 0.05, are those of the coupled solution, by a table that is made at first use; False:
-        those of the law without a table.
+        above 0.05, are those of the coupled solution, by a table that is made at first use; None
+        (default): they are.  False: those of the fast law, which takes coupling to first order
+        (:func:`viscoroll.validity` states its error).
 
     Raises
     ------
@@ -196,7 +198,7 @@ class Cylinder(Methods):
     base: Material | None
     #: the load as it was given: :meth:`replace` with another m makes the weight anew
     pressed: Any
-    coupled: bool
+    coupled: bool | None
 
     def __init__(
         self,
@@ -215,7 +217,7 @@ class Cylinder(Methods):
         base: Material | None = None,
         load: ArrayLike | None = None,
         pressed: ArrayLike | None = None,
-        coupled: bool = False,
+        coupled: bool | None = None,
     ) -> None:
         """Check and freeze the parameters, which the class describes; each number may be an array
         (n,), or have a unit.
@@ -238,7 +240,8 @@ class Cylinder(Methods):
         load: force that presses the cylinder on the base, N/m, > 0; None: the weight m g.
         pressed: the load by its name as a field, for :func:`dataclasses.replace`; not used beside
         ``load``.
-        coupled: whether states with traction are those of the coupled solution.
+        coupled: whether states with traction are those of the coupled solution; None: where shear
+        acts on pressure.
         Raises ParameterError as the class says.
         """
         values: dict[str, Any] = {
@@ -255,7 +258,7 @@ class Cylinder(Methods):
             "material": material,
             "base": base,
             "pressed": pressed if load is None else load,
-            "coupled": check_bool("coupled", coupled),
+            "coupled": coupled if coupled is None else check_bool("coupled", coupled),
         }
         missing = ", ".join(name for name in _SLS if values[name] is None)
         solid = ", ".join(name for name in _SLS if values[name] is not None)
@@ -547,8 +550,22 @@ class Cylinder(Methods):
                 )
         if law is None:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
+            self._refuse_coupled_ratios(law)
         scene = scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
         return scene.replace(coupled=self.coupled)
+
+    def _refuse_coupled_ratios(self, law: Prony | Bodies | Cover) -> None:
+        """Raise ParameterError where half-spaces with an array of nu need the coupled solution.
+
+        law: of the bodies; :class:`Bodies` have no Poisson's ratios where one of them is an array.
+        Returns nothing for bodies whose Dundurs' constants are at most 0.05, and where ``coupled``
+        is False.
+        """
+        if self.coupled is False or type(law) is not Bodies or law.poisson is not None:
+            return
+        if self.pair.most_coupled > DUNDURS_LIMIT:
+            found = "is an array, and would need a table of the coupled solution for each value"
+            raise described_error("nu", found, "one number; or coupled=False, for the fast law")
 
     def _refuse_other_load(self, law: LawTable) -> None:
         """Raise ParameterError where the law of a layer is that of another load or radius, and for

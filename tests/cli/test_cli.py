@@ -32,7 +32,7 @@ START = [*PRESET, "--V0", "1.5", "--omega0", "0.5"]
 GRID = "tables build --V 0.1:1:5:log --delta -0.04:0.04:9"
 SCENE = "[scene]\nalpha = 11.0\nkappa = 2.91\nmu = 0.2\n"
 COMMANDS = [
-    name for name in arguments.COMMANDS if name not in ("warmup", "identify", "fmu")
+    name for name in arguments.COMMANDS if name not in ("warmup", "identify", "fmu", "tables grid")
 ]  # these take long
 UNCERTAIN = """
 preset = "paper-section-5"

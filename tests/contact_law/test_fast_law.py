@@ -34,7 +34,12 @@ def random_scene(rng):
         on=str(rng.choice(["base", "cylinder"])),
         **more,
     )
-    return vr.Scene(material=cover, kappa=rng.uniform(3.0, 30.0), mu=10.0 ** rng.uniform(-1.7, 0.0))
+    return vr.Scene(
+        material=cover,
+        kappa=rng.uniform(3.0, 30.0),
+        mu=10.0 ** rng.uniform(-1.7, 0.0),
+        coupled=False,
+    )
 
 
 def test_no_state_makes_energy():
@@ -60,7 +65,9 @@ def test_the_same_nip_has_the_same_losses():
     """
     nip = {"nu": 0.45, "thickness": 0.5, "other_nu": 0.3, "other_thickness": 0.8, "part": 0.6}
     one, two = (
-        vr.Scene(material=vr.Cover(THREE, on=on, other=ONE, **nip), kappa=1e6, mu=0.3)
+        vr.Scene(
+            material=vr.Cover(THREE, on=on, other=ONE, **nip), kappa=1e6, mu=0.3, coupled=False
+        )
         for on in ("base", "cylinder")
     )
     V = np.array([[1e-8], [1e-7], [1e-6]])
@@ -76,7 +83,7 @@ def test_the_line_of_rest():
     along the force.
     """
     belt = vr.Cover(ONE, nu=0.5, thickness=0.5, on="base")
-    scene = vr.Scene(material=belt, kappa=4.0, mu=0.3, gamma=0.5)
+    scene = vr.Scene(material=belt, kappa=4.0, mu=0.3, gamma=0.5, coupled=False)
     limit = vr.contact(scene, 0.0, delta=0.0, fields=("delta_0", "delta_star"))
     state = vr.contact(
         scene, 0.0, delta=limit.delta_0 + limit.delta_star * np.array([-0.6, -0.01, 0.01, 0.5])

@@ -14,6 +14,7 @@ from experiments import (
     DRAG,
     HUMP,
     SLOW,
+    TIMES,
     TRUTH,
     noise,
     ranges,
@@ -61,18 +62,13 @@ def warm():
 
 #: data without noise, what they hold, and what else is told
 HELD = {
-    "M over the hump": (lambda: [resistance()], ranges("E", "E_1", "T_ref")),
     "pull over the hump": (
         lambda: [vr.Resistance(V, F=M / 0.1, sigma=0.1)],
         ranges("E", "E_1", "T_ref"),
     ),
     "Q at three speeds": (lambda: [traction((0.1, 1.0, 10.0))], ranges("mu", "E")),
     "M and Q": (lambda: [resistance(), traction()], ranges("mu", "E", "E_1", "T_ref")),
-    "a throw": (lambda: [thrown()], ranges("mu", "E", "E_1", "T_ref")),
-    "a throw and M, the series known": (
-        lambda: [thrown(), resistance()],
-        ranges("mu", "E", "T_ref"),
-    ),
+    "a throw": (lambda: [thrown(t=TIMES[::4])], ranges("mu", "E", "T_ref")),
     "a bearing at two loads": (lambda: [drum(100.0), drum(700.0)], ranges("E", "T_ref") | BEARING),
     "a bearing and a late clock": (lambda: [late()], ranges("T_ref") | BEARING),
     "two temperatures": (lambda: [resistance(), warm()], ranges("E", "T_ref")),
@@ -115,18 +111,17 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
 
 
 def test_slow_rolling_tells_a_product_alone():
-    fit = vr.identify(
-        roller(), ranges("mu", "E", "E_1", "T_ref"), [resistance(SLOW[::4], seed=2)], starts=1
-    )
+    unknown = ranges("mu") | {"E_1": (4.5, 18.0), "T_ref": (5e-4, 2e-3)}
+    fit = vr.identify(roller(), unknown, [resistance(0.5 * SLOW[::8], seed=2)], starts=1)
     assert fit.does_not_act == ("mu",)
-    assert fit.undetermined == ("E", "E_1", "T_ref")
+    assert fit.undetermined == ("E_1", "T_ref")
     assert fit.intervals()["mu"] == (None, None)
     (product,) = fit.products()
     assert product.powers == {"E_1": 1.0, "T_ref": 1.0}
     assert product.low < TRUTH["E_1"] * TRUTH["T_ref"] / product.value < product.high
     text = str(fit)
     assert "the data do not depend on mu" in text
-    assert "E, E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
+    assert "E_1 and T_ref cannot be separated by these data: only E_1 T_ref = 0.00" in text
 
 
 def test_a_product_that_a_range_limits_is_told():
@@ -168,7 +163,7 @@ def test_a_wrong_model_is_told_before_any_interval():
     """M of two modes, by one."""
     two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
     measured = vr.Resistance(V, two.contact(V, delta=0.0, fields="M").M, sigma=0.01)
-    fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), [measured], starts=1)
+    fit = vr.identify(roller(), ranges("E", "T_ref"), [measured], starts=1)
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
     assert lines[1].startswith(
@@ -179,9 +174,9 @@ def test_a_wrong_model_is_told_before_any_interval():
 
 def test_sigma_that_is_not_given_is_estimated():
     data = [resistance(seed=4), traction(seed=5)]
-    given = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), data, starts=1)
+    given = vr.identify(roller(), ranges("mu", "E", "T_ref"), data, starts=1)
     bare = [vr.Resistance(V, data[0].M), vr.Traction(data[1].V, data[1].delta, data[1].Q)]
-    fit = vr.identify(roller(), ranges("mu", "E", "E_1", "T_ref"), bare, starts=1)
+    fit = vr.identify(roller(), ranges("mu", "E", "T_ref"), bare, starts=1)
     for name, sigma in {"M of resistance": 0.01, "Q of traction": 1.0}.items():
         assert close(fit.sigma[name][0], sigma, tol.SIGMA), name
     for name in fit.values:
@@ -202,7 +197,7 @@ def test_outliers_count_less_where_asked():
         assert tol.OUTLIERS * (not robust) < off < bound
 
 
-@pytest.mark.parametrize("points", [40, 400])
+@pytest.mark.parametrize("points", [40, 200])
 def test_a_robust_fit_tells_outliers_from_a_wrong_model(points):
     """With 5 % of outliers good data are no misfit of it; a wrong model is one, and a sigma far
     below the noise too.
@@ -227,7 +222,7 @@ def test_a_robust_fit_tells_outliers_from_a_wrong_model(points):
 
 def test_a_prior_tells_what_slow_rolling_does_not():
     prior = {"E": (3e6, 0.1), "E_1": (9.0, 0.1)}
-    data = [resistance(SLOW, seed=7)]
+    data = [resistance(SLOW[::4], seed=7)]
     fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), data, starts=1, prior=prior)
     assert fit.undetermined == ()
     for name in fit.values:
@@ -419,7 +414,7 @@ def test_intervals_of_autocorrelated_residuals_cover_the_truth():
     M = resistance(V).M
     inside = []
     narrow = []
-    for _ in range(40):
+    for _ in range(25):
         noise = lfilter([0.8], [1.0, -0.6], rng.standard_normal(250))[50:]
         data = vr.Resistance(V, M + 0.01 * noise, sigma=0.01)
         fit = vr.identify(roller(), ranges("E", "T_ref"), [data], starts=1)

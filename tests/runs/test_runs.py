@@ -194,6 +194,7 @@ R = 0.1
 m = 30.0
 mu = 0.5
 load = {load}
+coupled = false
 [material]
 E = 2e6
 nu = 0.49

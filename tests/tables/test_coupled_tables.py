@@ -137,3 +137,33 @@ def test_speeds_beyond_the_nodes_join_the_elastic_limits(law, scene):
         )
         close(state.Q, [-0.3, 0.3], tol.TABLE_MOTION)
         close(4.0 * state.M_half_space, rows.fields[row, [0, -1], 1], tol.TABLE_MOTION)
+
+
+def test_one_cover_takes_its_table_unless_asked_otherwise(law):
+    roller = vr.Scene(material=BELT, kappa=4.0, mu=0.3)
+    states = {"V": 0.1, "delta": np.linspace(-0.2, 0.2, 9)}
+    by_default = roller.contact(**states)
+    of_table = vr.Scene(material=law, kappa=4.0, mu=0.3).contact(**states)
+    assert np.array_equal(by_default.Q, of_table.Q)
+    assert np.abs(by_default.Q - roller.replace(coupled=False).contact(**states).Q).max() > 0.01
+
+
+@pytest.mark.parametrize(
+    ("change", "tables"),
+    [({"material": BELT.of_thickness([0.5, 0.6, 0.7])}, 3), ({"mu": np.array([0.2, 0.3])}, 2)],
+)
+def test_many_covers_in_one_call_say_what_their_tables_would_take(change, tables):
+    many = vr.Scene(material=BELT, kappa=4.0, mu=0.3).replace(**change)
+    with pytest.raises(vr.ParameterError, match=f"would need {tables} tables.*coupled=False"):
+        many.contact(0.1, delta=0.0)
+    assert many.replace(coupled=False).contact(0.1, delta=0.0).Q.shape == (tables,)
+
+
+def test_a_search_that_changes_the_table_is_refused():
+    rubber = vr.Material(E=4e6, nu=0.49, prony=ONE, thickness=6e-3)
+    roller = vr.Cylinder(
+        R=0.08, m=40.0, material=vr.Material.rigid(), base=rubber, mu=0.5, load=2e3
+    )
+    data = vr.Traction(V=1.0, delta=[-0.01, 0.01], Q=[-500.0, 500.0], sigma=1.0)
+    with pytest.raises(vr.ParameterError, match=r"coupled.*mu.*must be False"):
+        vr.identify(roller, {"mu": (0.1, 1.0)}, [data])

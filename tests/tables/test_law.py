@@ -85,8 +85,8 @@ def test_a_file_has_the_bits_of_its_material(tmp_path, name):
         if isinstance(table.material, float)
         else {"material": table.material}
     )
-    one = vr.Scene(kappa=20.0, mu=0.3, material=loaded)
-    other = vr.Scene(kappa=20.0, mu=0.3, **material)
+    one = vr.Scene(kappa=20.0, mu=0.3, coupled=False, material=loaded)
+    other = vr.Scene(kappa=20.0, mu=0.3, coupled=False, **material)
     assert one == other
     assert hash(one) == hash(other)
     states = (vr.contact(scene, V, delta=DELTA, slopes=True).as_dict() for scene in (one, other))
@@ -147,7 +147,7 @@ def test_a_cylinder_of_a_law(tmp_path, name):
     vr.tables.save(vr.tables.law(*GIVEN[name]), tmp_path / "law.nc")
     law = vr.load_law(tmp_path / "law.nc")
     pair = law_table_of(*GIVEN[name]).pair
-    by_law = vr.Cylinder(R=0.1, m=30.0, mu=0.3, material=law, plane=pair.plane)
+    by_law = vr.Cylinder(R=0.1, m=30.0, mu=0.3, material=law, plane=pair.plane, coupled=False)
     own = by_law.replace(material=pair.cylinder, base=pair.base)
     assert by_law.scene() == own.scene()
     assert (by_law.T_ref, by_law.E_prime, by_law.l0) == (own.T_ref, own.E_prime, own.l0)

@@ -90,7 +90,9 @@ def scenes() -> list[tuple[str, vr.Scene, float]]:
     found = []
     for name, nu, h, u, mu, on in LAYERS:
         cover = vr.Cover(MATERIALS[name], nu=nu, thickness=h, on=on)
-        found.append((f"{name}, {on}", vr.Scene(material=cover, kappa=KAPPA, mu=mu), u))
+        found.append(
+            (f"{name}, {on}", vr.Scene(material=cover, kappa=KAPPA, mu=mu, coupled=False), u)
+        )
     for (name, nu, h), (other, other_nu, other_h), part, u, mu in NIPS:
         nip = vr.Cover(
             MATERIALS[name],
@@ -102,7 +104,9 @@ def scenes() -> list[tuple[str, vr.Scene, float]]:
             other_nu=other_nu,
             other_thickness=other_h,
         )
-        found.append((f"{name}, {other}", vr.Scene(material=nip, kappa=KAPPA, mu=mu), u))
+        found.append(
+            (f"{name}, {other}", vr.Scene(material=nip, kappa=KAPPA, mu=mu, coupled=False), u)
+        )
     return found
 
 

@@ -31,7 +31,7 @@ def placed(truth: dict[str, Any]) -> tuple[vr.Scene, Any, str]:
     truth: series, cover, V, half lengths, and what the elements find.
     """
     cover = vr.Cover(vr.Prony(**truth["series"]), **truth["cover"])
-    scene = vr.Scene(material=cover, kappa=_KAPPA, mu=_MU)
+    scene = vr.Scene(material=cover, kappa=_KAPPA, mu=_MU, coupled=False)
     free = vr.contact(scene, truth["V"], delta=0.0, fields="delta_0").delta_0
     return (
         scene,

@@ -1,8 +1,7 @@
 """The program ``viscoroll``: arguments -> one call of the library -> text, CSV or netCDF.
 
-Read in this order: :mod:`program` (parser, errors, exit codes), :mod:`arguments` (commands,
-numbers, ranges, scenes), :mod:`arguments` (formats), then a module per group of commands: each
-command is a function.  :mod:`program` has their help.
+Read in this order: :mod:`.program` (parser, help, errors, exit codes), :mod:`.arguments` (numbers,
+ranges, scenes, formats), then a module per group of commands: each command is a function.
 """
 
 from .program import main

@@ -138,7 +138,7 @@ Write the contact law of a material, pair, cover or range of alpha to a file.
 
 .nc is read by vr.load_law, run files and every netCDF reader; .cdf is the same without HDF5; .h is a header of C99
 or C++ with table and evaluator; .json is for JavaScript.  --alpha writes the law of one relaxation time for
-every alpha of a range.
+every alpha of a range.  Of a cover it is the fast law (coupled = false); viscoroll tables grid writes the coupled one.
 
 example:
   viscoroll samples
@@ -191,6 +191,7 @@ example:
 Build an FMU of a cylinder, for Modelica tools and others.
 
 The FMU contains the law of a material, pair or cover and its C sources, compiled for this machine by cc.
+Of a cover it is the fast law, as with coupled = false.
 Roller: inputs drive force and torque, outputs v, omega, x; for co-simulation and model exchange.
 ContactElement: inputs v, omega, load, outputs force, torque, moments; for model exchange.
 Both provide exact directional derivatives.

@@ -367,13 +367,14 @@ def assess_inertia(
     )
 
 
-def assess_coupling(long: float, instant: float, *, like: bool) -> Assumption:
+def assess_coupling(long: float, instant: float, *, like: bool, solved: bool = False) -> Assumption:
     """Compare Dundurs' constant of two bodies with :data:`DUNDURS_LIMIT`.
 
     long, instant: the constant by the long-time and by the instantaneous moduli, dimensionless, any
         sign.
     like: whether the bodies are alike, so that the constant is 0 at all times; the numbers are not
         used then.
+    solved: whether the law is a table of the coupled solution, with which any constant holds.
     Returns the assumption ``bodies``; its value is that of the two constants which is larger in
     size, with its sign, a float, 0.0 for like bodies; it holds, a bool, where its size is at most
     0.05.
@@ -385,13 +386,15 @@ def assess_coupling(long: float, instant: float, *, like: bool) -> Assumption:
         )
     if worst == 0.0:
         return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not change the pressure")
-    return Assumption(
-        abs(worst) <= DUNDURS_LIMIT,
-        worst,
-        f"Dundurs' constant is {long:.2g} for long times and {instant:.2g} for the instant; up to "
-        f"{DUNDURS_LIMIT} in size is "
-        "allowed: the theory neglects the part of the pressure that shear causes",
+    sentence = f"Dundurs' constant is {long:.2g} for long times and {instant:.2g} for the instant; "
+    if solved:
+        sentence += "states with traction are of a table of the coupled solution"
+        return Assumption(True, worst, sentence)
+    sentence += (
+        f"up to {DUNDURS_LIMIT} in size is "
+        "allowed: the theory neglects the part of the pressure that shear causes"
     )
+    return Assumption(abs(worst) <= DUNDURS_LIMIT, worst, sentence)
 
 
 def assess_measured_band(frequency: Any, records: Mapping[str, Measured]) -> Assumption:

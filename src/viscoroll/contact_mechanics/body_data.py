@@ -34,10 +34,15 @@ from .strain import assess_strain
 
 #: Acceleration by which a mass is compared with a load, m/s^2.
 _GRAVITY = 9.81
-#: Largest radius of a wheel or roller, m: none is larger, but those in mm are.
-_LARGEST_R = 10.0
-#: Largest thickness of a layer, m: no cover or belt is thicker, but those in mm are.
-_LARGEST_THICKNESS = 1.0
+#: Radius and thickness of a layer, m, from which a length may be in mm: few rollers are larger.
+_LARGE_R = 5.0
+_LARGE_THICKNESS = 0.5
+#: Contact length over radius below which that radius is in mm: the lengths in mm, with the same
+#: load and moduli, make a contact shorter than the radius, as l/R changes by sqrt(1000).
+_SHORT_OVER_R = 1000.0**-0.5
+#: Contact length over the thickness of a layer below which that thickness is in mm: the layer acts
+#: as a half-space, and nobody gives it.
+_SHORT_OVER_THICKNESS = 0.2
 #: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness
 #: matter.
 _LEAST_SHARE = 0.01
@@ -164,16 +169,18 @@ class BodyData:
 
     @cached_property
     def in_metres(self) -> bool:
-        """Whether no radius is above 10 m and no layer above 1 m, as those that were given in
-        mm.
+        """Whether no length looks like one in mm: a large radius or layer beside which the contact
+        of this load is short.
         """
-        layers = (
-            []
-            if self.pair is None
-            else [self.pair.cylinder.thickness, self.pair.half_space.thickness]
+        limits = [(self.R, _LARGE_R, _SHORT_OVER_R)]
+        if self.pair is not None:
+            layers = self.pair.cylinder.thickness, self.pair.half_space.thickness
+            limits += [
+                (h, _LARGE_THICKNESS, _SHORT_OVER_THICKNESS) for h in layers if h is not None
+            ]
+        return not any(
+            np.any((size >= least) & (self.l0 < part * size)) for size, least, part in limits
         )
-        limits = [(self.R, _LARGEST_R), *((h, _LARGEST_THICKNESS) for h in layers if h is not None)]
-        return all(float(np.max(length, initial=0.0)) <= limit for length, limit in limits)
 
     @cached_property
     def covered_speeds(self) -> tuple[float, float] | None:
@@ -288,7 +295,9 @@ class BodyData:
         return report._replace(
             quasistatic=assess_inertia(*self.wave_ratio(fastest, density)),
             bodies=assess_coupling(
-                *(pair.dundurs if pair else (0.0, 0.0)), like=pair is None or pair.like
+                *(pair.dundurs if pair else (0.0, 0.0)),
+                like=pair is None or pair.like,
+                solved=self.scene.tabulated,
             ),
             measured=assess_measured_band(transit_frequency(V, length), self.records),
             plane=Assumption(

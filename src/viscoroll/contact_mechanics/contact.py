@@ -106,11 +106,11 @@ def contact(
         ``lam``: contact length divided by l0, the contact length at rest of half-spaces;
         ``epsilon``: shift of the contact towards the leading edge in half contact lengths, 0 at V =
         0;
-        ``delta_star``: critical creepage, > 0;
+        ``delta_star``: critical creepage, > 0: half the distance of ``delta_minus`` and
+        ``delta_plus``;
         ``delta``: creepage; infinite with the sign of omega at V = 0 with omega other than 0, and
         where omega R/V exceeds the doubles;
-        ``full_slip``: whether |delta - delta_0| >= delta_star, where delta_0 is 0 unless a body is
-        a layer;
+        ``full_slip``: whether delta is beyond ``delta_minus`` or ``delta_plus``;
         ``beta``: length of the stick zone divided by the contact length, 0 in full slip, 1 where
         Q = 0.  Those with a unit of their own, by which those of a Scene are divided:
         ``zeta``: half the transit time, T_ref or s; infinite at V = 0, and where lam/V exceeds the
@@ -130,7 +130,9 @@ def contact(
         (:meth:`viscoroll.Measured.moment_error`); ``grip``, the friction reserve 1 - |Q|/(mu P)
         without loss of digits, 0 in full slip;
         ``N``, the added mass of slow speed changes, in which the moment is M(V) + N dV/dt (P
-        T_ref^2 or N s^2/m), not known of layers and of arrays of materials; and each slope below.
+        T_ref^2 or N s^2/m), not known of layers and of arrays of materials; ``delta_minus`` and
+        ``delta_plus``, the creepages at and beyond which the whole contact slips backwards or
+        forwards, -delta_star and delta_star but for layers; and each slope below.
     slopes : whether ``dQ_dV``, ``dQ_ddelta``, ``dQ_domega`` and ``dM_dV`` are computed in addition,
         and of bodies that differ ``dM_half_space_dV`` and ``dM_cylinder_dV``; of a layer also
         ``dM_ddelta``, ``dM_domega`` and those over omega of either body.  ``dQ_dV``, and of a layer
@@ -139,14 +141,14 @@ def contact(
         V, and the slopes there are those of full slip.  In partial slip at V = 0 ``dQ_domega`` is
         infinite, and where omega = 0 was given ``dQ_dV`` is -infinite.
     method : "table" (from the rows of the law: no equation is solved) or "direct" (the equations as
-        the paper prints them, solved by Brent-Dekker), which has no slopes, N, grip and delta_0,
-        and takes an alpha alone, no material.  Or "coupled": pressure and shear are solved together
-        by boundary elements, for any two bodies, layers or half-spaces, each rigid, elastic or
-        relaxing, of one material.  Zones of stick and slip are found, not assumed.  Its fields are
-        of these bodies at any coupling: ``delta_minus`` and ``delta_plus``, the creepages beyond
-        which the whole contact slips backwards or forwards (``delta_star`` is half their distance),
-        and the powers lost, ``loss_slip``, ``loss_half_space`` and ``loss_cylinder``, whose sum is
-        V (M + delta Q), over P R/T_ref or W/m.  ``depth`` by name alone is the approach of the
+        the paper prints them, solved by Brent-Dekker), which has no slopes, N, grip, delta_0
+        and onsets, and takes an alpha alone, no material.  Or "coupled": pressure and shear are
+        solved together by boundary elements, for any two bodies, layers or half-spaces, each rigid,
+        elastic or relaxing, of one material.  Zones of stick and slip are found, not assumed.  Its
+        fields are of these bodies at any coupling: ``delta_minus``, ``delta_plus``, and the powers
+        lost,
+        ``loss_slip``, ``loss_half_space`` and ``loss_cylinder``, whose sum is V (M + delta Q), over
+        P R/T_ref or W/m.  ``depth`` by name alone is the approach of the
         bodies where each is a layer or rigid, over l0 or m.  It has no slopes and no N.
 
     Returns
@@ -364,6 +366,8 @@ def stress(
         parts = {name: scale["p"] * value for name, value in zip(("p", "tau"), both, strict=True)}
         parts = {name: value if value.ndim else value.item() for name, value in parts.items()}
         return Values(parts, given, si=scale.si, title="Stresses", labels=labels)
+    # no table of the coupled solution has stresses: they are of the law without one
+    scene = scene.uncoupled
     lam, epsilon, beta, zeta, delta = evaluate_contact(
         scene, speed, creep, creep_name == "omega", _FIELDS
     ).values()

@@ -67,8 +67,10 @@ GRIP = "grip"
 FREE_CREEP = "delta_0"
 #: Approach of the bodies, of layers on rigid ground.
 DEPTH = "depth"
+#: Creepages at which full slip begins: default fields of method "coupled".
+ONSETS = ("delta_minus", "delta_plus")
 #: Fields that method "coupled" alone has, with the default ones first.
-OF_COUPLED = ("delta_minus", "delta_plus", "loss_slip", "loss_half_space", "loss_cylinder", DEPTH)
+OF_COUPLED = ("loss_slip", "loss_half_space", "loss_cylinder", DEPTH)
 #: Accuracy of M by the data of the materials, of a cylinder in SI units alone.
 ACCURACY = "M_error"
 #: Field -> the field of which it is a multiple, or from which it follows: the length is lam times
@@ -80,7 +82,7 @@ _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
 _KNOWN = (
     *(*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, *SLOPES_OF_COVERS),
-    *(UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES, *OF_COUPLED),
+    *(UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES, *ONSETS, *OF_COUPLED),
 )
 
 
@@ -95,9 +97,9 @@ def field_names(
     fields : a name or names of fields; None: the default fields of such a roller.  A name may occur
         twice; of no names there are no fields.
     slopes : whether the slopes are added to these fields.
-    method : "table"; "direct" (the printed equations), which has no slopes, N, grip and delta_0; or
-        "coupled", which has no slopes and no N, and alone has :data:`OF_COUPLED`, of which all but
-        the depth are default fields.
+    method : "table"; "direct" (the printed equations), which has no slopes, N, grip, delta_0 and
+        onsets; or "coupled", which has no slopes and no N, and alone has :data:`OF_COUPLED`, of
+        which all but the depth are default fields, as are the onsets.
     like : whether both bodies are of one material; if not, the parts of M in either body are
         default fields, and ``slopes`` adds their slopes.
     si : whether the roller is a cylinder, in SI units; ``length``, ``C_rr`` and the parts of M are
@@ -114,7 +116,7 @@ def field_names(
     Raises
     ------
     ParameterError
-        An unknown field or method; slopes, N, grip or delta_0 with method "direct"; slopes or N
+        An unknown field or method; what "direct" does not have; slopes or N
         with "coupled", and its own fields without it; N of a cover.
     """
     check_choice("method", method, "table", "direct", "coupled")
@@ -139,7 +141,7 @@ def field_names(
             raise ParameterError(
                 "method", "'direct'", "'table' for slopes: the equations of the paper give none"
             )
-        for name in (UNSTEADY, GRIP, FREE_CREEP):
+        for name in (UNSTEADY, GRIP, FREE_CREEP, *ONSETS):
             if name in names:
                 raise ParameterError(
                     "fields", repr(name), "left out, or computed with method='table'"
@@ -166,7 +168,7 @@ def _coupled_names(names: tuple[str, ...], default: bool) -> tuple[str, ...]:
             )
     if not default:
         return names
-    extra = (*OF_BODIES, *OF_COUPLED[:-1])
+    extra = (*OF_BODIES, *ONSETS, *OF_COUPLED[:-1])
     return names + tuple(name for name in extra if name not in names)
 
 

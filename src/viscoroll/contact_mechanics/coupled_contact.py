@@ -27,8 +27,6 @@ _REASONS = {
     3: "no contact length bears the load",
     4: "a matrix is singular",
 }
-#: Names of the fields that are -V times those of a motion in the other direction.
-_ODD = ("Q", "M", "M_half_space", "M_cylinder")
 
 
 @lru_cache(maxsize=16)

@@ -38,6 +38,7 @@ from ..kernels.numerics.jit import sources_digest
 from ..laws.coupled_rows import FIELDS, CoupledRows
 from ..laws.law_table import LawTable, coupled_table
 from ..materials.prony import lock_array
+from .assumptions import DUNDURS_LIMIT
 from .coupled_pair import CoupledPair, CoupledRow, CoupledStates
 
 # --- Tables of the coupled solution ---
@@ -283,8 +284,6 @@ def measure_errors(
 
 #: files kept; the one that was used longest ago goes first
 _KEPT = 256
-#: Dundurs' constant above which half-spaces take the coupled solution
-_COUPLED = 0.05
 #: seconds that a table takes on two cores, for messages
 SECONDS = 3
 _lock = threading.Lock()
@@ -307,7 +306,7 @@ def is_coupled(pair: CoupledPair) -> bool:
             / (2.0 - 2.0 * body.nu)
             for share, body in zip(shares, pair.bodies, strict=True)
         )
-        if abs(math.fsum(local)) > _COUPLED * math.fsum(shares):
+        if abs(math.fsum(local)) > DUNDURS_LIMIT * math.fsum(shares):
             return True
     return False
 

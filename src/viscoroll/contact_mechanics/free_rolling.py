@@ -326,6 +326,7 @@ class FreeRolling:
         known.
         Raises ParameterError for a cover, whose N is not known.
         """
+        scene = scene.uncoupled  # a free roller has hardly any traction
         refuse_cover(scene, "free rolling is not examined, since N is not available")
         materials: Any
         unit: Any

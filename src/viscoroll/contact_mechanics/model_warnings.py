@@ -66,7 +66,8 @@ _SLOW = 0.6 / 16.0 / STEADY_LIMIT
 _FASTER_THAN_WAVES = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
 #: Fault of a motion or contact whose lengths were given in mm.
 _MILLIMETRES = (
-    "R is above 10 m, or a layer thicker than 1 m: lengths are in m, divide those in mm by 1000"
+    "R is 5 m and more, or a layer thicker than 0.5 m, beside which the contact of this load is "
+    "short: lengths are in m, divide those in mm by 1000"
 )
 #: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
 _EXAMINED = 256

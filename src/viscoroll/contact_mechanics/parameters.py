@@ -157,7 +157,8 @@ class Parameters(Roller):
     j : moment of inertia divided by m R^2, > 0.
     material : in place of alpha: a series, two bodies, or the rows of a law, whose material it
     becomes; None of an alpha. ``shape`` is what the parameters broadcast to; () for one scene.
-    coupled : whether states with traction are those of the coupled solution (:attr:`rolling_law`).
+    coupled : whether states with traction are those of the coupled solution (:attr:`rolling_law`);
+    None (default): where shear acts on pressure.
     """
 
     alpha: Any = None
@@ -166,7 +167,7 @@ class Parameters(Roller):
     gamma: Any = None
     j: Any = 0.5
     material: Prony | Bodies | LawTable | None = None
-    coupled: bool = False
+    coupled: bool | None = None
     _law: ClassVar[LawTable | None] = None
     shape: ClassVar[tuple[int, ...]] = ()
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
@@ -185,7 +186,8 @@ class Parameters(Roller):
         values: dict[str, Any] = {name: getattr(self, name) for name in PARAMETERS}
         material: Any = self.material
         check_one_given(alpha=values["alpha"], material=material)
-        check_bool("coupled", self.coupled)
+        if self.coupled is not None:
+            check_bool("coupled", self.coupled)
         if isinstance(material, LawGrid):
             material = material.table(check_number("kappa", values["kappa"], above=0.0))
         if isinstance(material, LawTable):
@@ -358,7 +360,7 @@ class Parameters(Roller):
         """
         if self._law is not None:
             return self._law.coupled is not None
-        if not self.coupled or not isinstance(self.material, Bodies):
+        if self.coupled is False or not isinstance(self.material, Bodies):
             return False
         from .coupled_pair import CoupledPair
         from .coupled_tables import is_coupled
@@ -401,6 +403,11 @@ class Parameters(Roller):
             made = coupled_table(self.material, stored_rows(CoupledPair.of_scene(self), mu))
             object.__setattr__(self, "_made", made)
         return made
+
+    @property
+    def uncoupled(self) -> Self:
+        """The scene by the law without a table; the scene itself where a law was given."""
+        return self if self._law is not None else self.replace(coupled=False)
 
     @property
     def like_bodies(self) -> bool:
@@ -547,7 +554,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            f"coupled = True: must be False: by the coupled solution {why}",
+            "the law of these bodies is a table of the coupled solution; give coupled=False: "
+            f"by a table {why}",
         )
 
 

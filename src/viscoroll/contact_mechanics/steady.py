@@ -8,6 +8,10 @@ unknown, V:
 
     R = Q(V, omega) - M_half_space + f = 0          Q = +-mu in full slip
 
+Of covers M depends on Q too.  qw times the equation of the axis less fw times that of the cylinder
+has no omega and gives Q for every V (:meth:`.steady_loads.Shear.traction_of_both`); either equation
+then gives omega, and R is the same.
+
 R is smooth between the speeds at which omega - V is that of free rolling (0 of half-spaces, V
 delta_0 of covers) or at a limit of stick, which are found first.  If fw + qw = 0, the sum
 determines V, and R = 0 is an equation for omega.
@@ -43,15 +47,14 @@ from ..core.errors import ParameterError, described_error
 from ..core.labels import strip_labels
 from ..laws.law_table import LawTable
 from .model_warnings import warn_of_contact
-from .parameters import Roller, refuse_arrays, refuse_cover, resolve_model, scale_of
+from .parameters import Roller, refuse_arrays, resolve_model, scale_of
 from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
 from .steady_loads import (
     Loads,
-    find_speeds_of_cover,
-    find_speeds_on_table,
+    find_speeds,
     is_balanced_at_rest,
     loads_of,
-    rests_on_table,
+    shear_at,
 )
 from .steady_result import Diagnosis, Steady, pack_result
 from .steady_states import (
@@ -84,18 +87,16 @@ class _FreeRolling(NamedTuple):
     """The contact at several speeds, in the frame of the motion, each (n,).
 
     V : speeds, > 0.
-    M, M_half_space : moment of both bodies and of the half-space.
-    limit : V delta_star, > 0: full slip begins at omega - V = ``slip`` + limit and ``slip`` -
-    limit.
-    slip : omega - V of free rolling, V delta_0, at which Q = 0; the number 0.0 times V for
-    half-spaces.
+    M, M_half_space, M_cylinder : moment of both bodies and of each, without traction.
+    slips : omega - V at the onset of full slip with Q = -mu, of free rolling, at which Q = 0, and
+        at the onset of full slip with Q = mu, (3, n).
     """
 
     V: NDArray
     M: NDArray
     M_half_space: NDArray
-    limit: NDArray
-    slip: NDArray
+    M_cylinder: NDArray
+    slips: NDArray
 
 
 class _ScanProblem(NamedTuple):
@@ -114,21 +115,30 @@ class _ScanProblem(NamedTuple):
     mu: float
 
     def free_rolling(self, x: NDArray) -> _FreeRolling:
-        """Return the contact at given speeds as :class:`_FreeRolling`: V, M, M_half_space, limit V
-        delta_star of stick, and slip V delta_0 of free rolling, (n,) each, dimensionless.
+        """Return the contact at given speeds as :class:`_FreeRolling`.
 
         x: log2(kappa V), (n,).
         """
         V = np.exp2(x) / self.kappa
-        M, M_half_space, star = contact_fields_at(
-            self.law, self.kappa, self.mu, V, 0.0, "M", "M_half_space", "delta_star"
+        delta_0 = free_creep(self.law, self.kappa, self.mu, V)
+        M, half_space, cylinder, low, high = contact_fields_at(
+            self.law,
+            self.kappa,
+            self.mu,
+            V,
+            delta_0,
+            "M",
+            "M_half_space",
+            "M_cylinder",
+            "delta_minus",
+            "delta_plus",
         )
         return _FreeRolling(
             V=V,
             M=M,
-            M_half_space=M_half_space,
-            limit=star * V,
-            slip=free_creep(self.law, self.kappa, self.mu, V) * V,
+            M_half_space=half_space,
+            M_cylinder=cylinder,
+            slips=np.stack([low * V, delta_0 * V, high * V]),
         )
 
     def loads_at(self, V: Any, omega: Any) -> NDArray:
@@ -137,11 +147,25 @@ class _ScanProblem(NamedTuple):
         """
         return self.load_rows @ np.array([np.ones_like(V), V, omega])
 
-    def slip(self, V: NDArray, M: NDArray) -> NDArray:
-        """Return omega - V at which force + torque equal M at V, (n,); the gains on omega must not
-        add to 0.
+    def slip(self, free: _FreeRolling) -> NDArray:
+        """Return omega - V at which a traction balances both equations, (n,).
+
+        free : the contact at some speeds, (n,).  Of half-spaces force + torque equal M there; their
+            gains on omega must not add to 0.
+        Raises ParameterError of a cover, where the gains leave Q open.
         """
-        return (M - self.loads_at(V, V).sum(axis=0)) / self.load_rows[:, 2].sum()
+        force, torque = self.loads_at(free.V, free.V)
+        of_force, of_torque = self.load_rows[:, 2]
+        if self.law.cover is None:
+            return (free.M - (force + torque)) / (of_force + of_torque)
+        shear = shear_at(self.law, self.kappa, self.mu, free.V)
+        on_axis = free.M_half_space - force
+        on_spin = torque - free.M_cylinder
+        Q = shear.traction_of_both(on_axis, on_spin, of_force, of_torque)
+        by_base, by_cylinder = shear.moments(Q)
+        if abs(of_force) > abs(of_torque):
+            return (on_axis + by_base - Q) / of_force
+        return (by_cylinder + Q - on_spin) / of_torque
 
     def residual(self, x: NDArray, slip: NDArray) -> NDArray:
         """Return R = Q - M_half_space + force, 0 in equilibrium, at x = log2(kappa V) and slip =
@@ -190,10 +214,15 @@ def scan_states(law: LawTable, loads: Loads) -> States:
             problem = _ScanProblem(
                 law, np.hstack([sign * at_rest, gained]), loads.kappa[n], loads.mu[n]
             )
-            x, slip = _scan_speed(problem) if problem.load_rows[:, 2].sum() else _scan_slip(problem)
+            by_speed = law.cover is not None or problem.load_rows[:, 2].sum()
+            x, slip = _scan_speed(problem) if by_speed else _scan_slip(problem)
             rows = _polish(problem, np.exp2(x) / problem.kappa, slip)
             count = rows.shape[1]
-            parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows))
+            free = None
+            if law.cover is not None:
+                rolling = problem.free_rolling(np.log2(problem.kappa * rows[Field.V]))
+                free = np.stack([rolling.M_half_space, rolling.M_cylinder])
+            parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows, free))
         parts += _spinning_at_rest(law, loads, n)
     return States.joined(*parts)
 
@@ -211,12 +240,12 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
     Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is infinite
     with the sign of omega, as of :func:`.contact.contact` at V = 0, and whose eigenvalues are
     those of the slowest speed of the nodes; or an empty list: also where the gains on omega add to
-    0, and where force + torque are 0 at rest.
+    0, where force + torque are 0 at rest, and of a cover, on which a moment remains.
     """
     gains = loads.gains
     total = loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
-    if not (gain and total):
+    if law.cover is not None or not (gain and total):
         return []
     omega = -total / gain
     side = math.copysign(1.0, omega)
@@ -239,43 +268,40 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     """Find the states of a load by a scan over V, where the sum of the equations gives omega at
     each V.
 
-    Used where the gains on omega of force and torque have a sum other than 0.
+    Used where the gains on omega of force and torque have a sum other than 0, and of covers.
     problem : :class:`_ScanProblem`, the load and the table of its material.
     Returns (x = log2(kappa V), ascending; slip = omega - V), (states,) each, dimensionless, in the
     frame where V > 0; empty arrays if there is no state.  The states are approximate;
     :func:`_polish` refines them and drops those that are none.
     """
 
-    def beyond(x: NDArray, part: float) -> NDArray:
+    def beyond(x: NDArray, which: int) -> NDArray:
         free = problem.free_rolling(x)
-        return problem.slip(free.V, free.M) - free.slip - part * free.limit
+        return problem.slip(free) - free.slips[which]
 
     nodes = speed_nodes(problem.law)
     nodes = np.unique(
-        np.concatenate(
-            [nodes, *(find_zeros(partial(beyond, part=part), nodes) for part in (-1.0, 0.0, 1.0))]
-        )
+        np.concatenate([nodes, *(find_zeros(partial(beyond, which=n), nodes) for n in range(3))])
     )
     free = problem.free_rolling(nodes)
-    stuck = np.abs(problem.slip(free.V, free.M) - free.slip) <= free.limit * (1.0 + 1e-9)
+    low, _, high = free.slips
+    off = np.abs(problem.slip(free) - 0.5 * (low + high))
+    stuck = off <= 0.5 * (high - low) * (1.0 + 1e-9)
     within = np.flatnonzero(stuck[1:] | stuck[:-1])
     fine = (
         nodes[within, None]
         + np.linspace(0.0, 1.0, _STICK_NODES)[1:-1] * np.diff(nodes)[within, None]
     )
     nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
-    V, M, M_half_space, *_ = problem.free_rolling(nodes)
-    terms = (
-        problem.mu
-        + M_half_space
-        + np.abs(problem.load_rows[0]) @ np.abs([np.ones_like(V), V, V + problem.slip(V, M)])
-    )
+    free = problem.free_rolling(nodes)
+    speeds = [np.ones_like(free.V), free.V, free.V + problem.slip(free)]
+    terms = problem.mu + free.M_half_space + np.abs(problem.load_rows[0]) @ np.abs(speeds)
     found = find_zeros(
-        lambda x: problem.residual(x, problem.slip(*problem.free_rolling(x)[:2])),
+        lambda x: problem.residual(x, problem.slip(problem.free_rolling(x))),
         nodes,
         _ROUNDING * terms,
     )
-    return found, problem.slip(*problem.free_rolling(found)[:2])
+    return found, problem.slip(problem.free_rolling(found))
 
 
 def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
@@ -294,18 +320,17 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     positions = [np.empty(0)]
     slips = [np.empty(0)]
     for x in np.log2(u[sign > 0.0]):
-        V, _, M_half_space, (limit,), (free_slip,) = problem.free_rolling(np.array([x]))
-        rest = M_half_space - problem.loads_at(V, V)[0]  # Q + gain slip
+        free = problem.free_rolling(np.array([x]))
+        limit = free.slips[2, 0]
+        rest = free.M_half_space - problem.loads_at(free.V, free.V)[0]  # Q + gain slip
 
-        def residual(
-            part: NDArray, x: float = x, limit: float = limit, free_slip: float = free_slip
-        ) -> NDArray:
-            return problem.residual(np.full(part.size, x), free_slip + limit * part)
+        def residual(part: NDArray, x: float = x, limit: float = limit) -> NDArray:
+            return problem.residual(np.full(part.size, x), limit * part)
 
         sides = np.array([1.0, -1.0])
         full = (rest - sides * problem.mu) / problem.load_rows[0, 2]
-        partial_slip = free_slip + limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
-        slips += [partial_slip, full[sides * (full - free_slip) > limit]]
+        partial_slip = limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
+        slips += [partial_slip, full[sides * full > limit]]
         positions += [np.full(each.size, x) for each in slips[-2:]]
     return np.concatenate(positions), np.concatenate(slips)
 
@@ -332,11 +357,11 @@ def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
     (of_V, of_omega) = gains.sum(axis=0)
     (force_V, force_omega) = gains[0]
     for _ in range(_NEWTON_STEPS if V.size else 0):
-        a, b, one, other = rows[Field.DQ_DV : Field.DM_HALF_SPACE_DOMEGA]
-        sum_V = one + other - of_V - of_omega
-        sum_slip = -of_omega
-        rest_V = a + b - one + force_V + force_omega
-        rest_slip = b + force_omega
+        a, b, one, other, one_omega, other_omega = rows[Field.DQ_DV :]
+        sum_slip = one_omega + other_omega - of_omega
+        sum_V = one + other + (one_omega + other_omega) - of_V - of_omega
+        rest_slip = b - one_omega + force_omega
+        rest_V = a + b - (one + one_omega) + force_V + force_omega
         det = sum_V * rest_slip - sum_slip * rest_V
         with np.errstate(divide="ignore", invalid="ignore"):
             dV = (residuals[0] * rest_slip - residuals[1] * sum_slip) / det
@@ -472,7 +497,6 @@ def steady(
             raise described_error(
                 "a gain on omega", "is given", "left out for a table of the coupled solution"
             )
-        refuse_cover(scene, "a feedback on omega is not examined: give one on V alone")
         rolling = scan_states(law, loads)
     else:
         rolling = _states_under_load(law, loads)
@@ -507,12 +531,7 @@ def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
     """
     if loads.V is not None:
         return (loads.V == 0.0).nonzero()[0]
-    if law.coupled is not None:
-        rests = rests_on_table(law, loads)
-    elif law.cover is not None:
-        rests = is_balanced_at_rest(law, loads)
-    else:
-        rests = loads.force + loads.torque == 0.0
+    rests = is_balanced_at_rest(law, loads)
     return (rests & (np.abs(loads.torque) > loads.mu) if neutral else rests).nonzero()[0]
 
 
@@ -536,11 +555,8 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
         raise ParameterError("kappa (force + torque)", f"{total[wrong][0]:g}", allowed)
     if not gain and law.alpha == 1.0:
         return States.none()
-    if law.coupled is not None:
-        load, sign, V = find_speeds_on_table(law, loads)
-        return states_at(law, loads, load, sign, V)
-    if law.cover is not None:
-        load, sign, V = find_speeds_of_cover(law, loads)
+    if law.coupled is not None or law.cover is not None:
+        load, sign, V = find_speeds(law, loads)
         return states_at(law, loads, load, sign, V)
     load, sign, u = find_crossings(law, gain, total)
     return states_at(law, loads, load, sign, u / loads.kappa[load])

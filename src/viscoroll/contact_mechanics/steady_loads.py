@@ -31,6 +31,7 @@ All is dimensionless; a law is a :class:`LawTable` with ``coupled`` rows.
 from __future__ import annotations
 
 import math
+from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -232,6 +233,29 @@ class Shear(NamedTuple):
         """Return the Q with Q (1 - a_c - e_c |Q|/mu) = ``rest``, (n,)."""
         return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.mu, rest)
 
+    def traction_of_both(
+        self, on_axis: Floats, on_spin: Floats, of_force: float, of_torque: float
+    ) -> Floats:
+        """Return the Q of both balances without omega, (n,): ``of_torque`` times Q (1 + a_b + e_b
+        |Q|/mu) plus ``of_force`` times Q (1 - a_c - e_c |Q|/mu) is the same sum of loads.
+
+        on_axis, on_spin : moment less force on the axis, torque less moment on the cylinder, at
+            omega = 0 or at any other speed, (n,).
+        of_force, of_torque : gains on omega of force and torque.
+        Raises ParameterError where more than one Q balances.
+        """
+        factor = of_torque * (1.0 + self.half_space) + of_force * (1.0 - self.cylinder)
+        excess = of_torque * self.half_space_excess - of_force * self.cylinder_excess
+        if np.any(np.abs(factor) <= 2.0 * np.abs(excess)):
+            raise described_error(
+                "gains on omega of force and torque",
+                f"{of_force:g} and {of_torque:g} nearly cancel",
+                "a sum farther from 0 for a layer, on which they leave the traction open",
+            )
+        side = np.sign(factor)
+        rest = side * (of_torque * on_axis + of_force * on_spin)
+        return _solve_quadratic(np.abs(factor), side * excess / self.mu, rest)
+
     def slopes_at_rest(self, law: LawTable, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return how a small speed changes the balance of a cylinder at rest under a traction.
 
@@ -249,11 +273,11 @@ class Shear(NamedTuple):
             return on_axis, on_spin, half_space, cylinder
         limit, free = creep_at_rest(law)
         part = np.where(used < 1.0, used, 0.0)
-        delta = (
-            0.5 * (limit * self.mu * np.sign(Q) * (1.0 - np.sqrt(1.0 - part)) + free) / self.kappa
-        )
+        still = np.zeros(Q.size)
+        creep = 0.5 * limit * self.mu / self.kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
+        delta = creep_beyond_free(law, self.kappa, self.mu, still, creep) + 0.5 * free / self.kappa
         names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
-        state = [1.0, self.kappa, self.mu, np.zeros(Q.size), delta]
+        state = [1.0, self.kappa, self.mu, still, delta]
         half_space, cylinder, over_V = evaluate_law(law, state, Q.shape, False, names)
         return (
             on_axis,
@@ -286,6 +310,20 @@ def creep_at_rest(law: LawTable) -> tuple[float, float]:
     return float(limit), float(half_space + cylinder)
 
 
+def creep_beyond_free(law: LawTable, kappa: Any, mu: Any, V: Floats, creep: Floats) -> Floats:
+    """Return delta - delta_0 = delta_star (d + c d^2) of d delta_star, (n,), dimensionless.
+
+    law : table of the material; of half-spaces the result is ``creep``.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    V, creep : speeds, >= 0, and d delta_star, of either sign, (n,).
+    """
+    if law.cover is None:
+        return creep
+    names = "delta_minus", "delta_plus", "delta_star", "delta_0"
+    low, high, star, free = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, names)
+    return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
+
+
 def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:
     """Return how shear acts back on the moments at speeds V >= 0, (n,), as :class:`Shear`.
 
@@ -313,61 +351,83 @@ def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:
     )
 
 
-def find_speeds_of_cover(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
-    """Find the speeds at which a cover rolls steadily under loads without a gain on omega, in both
-    directions.
+def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
+    """Find the speeds at which a cover, or a table of the coupled solution, rolls steadily under
+    loads without a gain on omega, in both directions.
 
     At each speed the balance of the axis gives Q, and that of the cylinder is a function of the
-    speed alone, of which the zeros are found between the nodes of
-    :func:`.rolling_resistance.speed_nodes`.  M without traction is read at Q = 0.
+    speed alone, of which the zeros are found: of a cover between the nodes of
+    :func:`.rolling_resistance.speed_nodes`.
 
-    law : table of the material, of a cover.
+    law : table of the material, of a cover or with ``coupled`` rows.
     loads : the loads, dimensionless, without a gain on omega; V is not given.
     Returns (index of the load; sign of V, 1.0 or -1.0; |V|, > 0), one entry for each crossing,
     (crossings,) each.
     """
-    nodes = speed_nodes(law)
-    gains = loads.gains
-    found: list[tuple[int, float, Floats]] = []
-    for n in range(loads.mu.size):
-        kappa = loads.kappa[n]
-        mu = loads.mu[n]
+    if law.coupled is None:
+        nodes = speed_nodes(law)
+        noise = _BALANCE_ROUNDING * (np.abs(loads.force) + np.abs(loads.torque))
+        torque_left = _torque_left_of_cover
+    else:
+        low = np.log2(law.coupled.u[0]) - _FAR_OCTAVES
+        high = np.log2(law.coupled.u[-1]) + _FAR_OCTAVES
+        nodes = np.linspace(low, high, int(_DENSITY * (high - low)))
+        noise = np.full(loads.mu.size, _NOISE)
+        torque_left = _torque_left_on_table
+    load = []
+    signs = []
+    speeds = []
+    for n, kappa in enumerate(loads.kappa):
         for sign in (1.0, -1.0):
+            one = loads._replace(
+                force=sign * loads.force[n],
+                torque=sign * loads.torque[n],
+                kappa=kappa,
+                mu=loads.mu[n],
+            )
+            zeros = find_zeros(partial(torque_left, law, one), nodes, noise[n])
+            load.append(np.full(zeros.size, n))
+            signs.append(np.full(zeros.size, sign))
+            speeds.append(np.exp2(zeros) / kappa)
+    return np.concatenate(load), np.concatenate(signs), np.concatenate(speeds)
 
-            def unbalanced(
-                x: Floats, n: int = n, sign: float = sign, kappa: Any = kappa, mu: Any = mu
-            ) -> Floats:
-                """Return torque less M_cylinder and Q at speeds exp2(x)/kappa at which the axis is
-                in balance.
-                """
-                V = np.exp2(x) / kappa
-                shear = shear_at(law, kappa, mu, V)
-                delta_0 = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, ("delta_0",))[
-                    0
-                ]
-                state = [1.0, kappa, mu, V, delta_0]
-                half_space, cylinder = evaluate_law(
-                    law, state, V.shape, False, ("M_half_space", "M_cylinder")
-                )
-                Q = shear.traction_of_force(half_space - sign * loads.force[n] - gains.force_V * V)
-                moments = shear.moments(Q)
-                return sign * loads.torque[n] + gains.torque_V * V - cylinder - moments[1] - Q
 
-            noise = _BALANCE_ROUNDING * (abs(loads.force[n]) + abs(loads.torque[n]))
-            found.append((n, sign, np.exp2(find_zeros(unbalanced, nodes, noise)) / kappa))
-    load = np.concatenate([np.full(V.size, n) for n, _, V in found])
-    signs = np.concatenate([np.full(V.size, sign) for _, sign, V in found])
-    return load, signs, np.concatenate([V for _, _, V in found])
+def _torque_left_of_cover(law: LawTable, load: Loads, x: Floats) -> Floats:
+    """Return torque less M_cylinder and Q at speeds exp2(x)/kappa at which the axis is in balance,
+    (n,).  M without traction is read at Q = 0.
+
+    load : one load in the frame where V > 0, whose force, torque, kappa and mu are numbers.
+    """
+    kappa = load.kappa
+    V = np.exp2(x) / kappa
+    shear = shear_at(law, kappa, load.mu, V)
+    state = [1.0, kappa, load.mu, V, 0.0]
+    state[4] = evaluate_law(law, state, V.shape, False, ("delta_0",))[0]
+    half_space, cylinder = evaluate_law(law, state, V.shape, False, ("M_half_space", "M_cylinder"))
+    Q = shear.traction_of_force(half_space - load.force - load.gains.force_V * V)
+    return load.torque + load.gains.torque_V * V - cylinder - shear.moments(Q)[1] - Q
+
+
+def _torque_left_on_table(law: LawTable, load: Loads, x: Floats) -> Floats:
+    """Return the torque that is left at speeds exp2(x)/kappa; arguments as of
+    :func:`_torque_left_of_cover`.
+    """
+    V = np.exp2(x) / load.kappa
+    force = load.force + load.gains.force_V * V
+    torque = load.torque + load.gains.torque_V * V
+    return _torque_left(law, load.kappa, load.mu, V, force, torque)
 
 
 def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
-    """Return under which loads V = omega = 0 is a state of equilibrium, (n,); the friction is not
-    considered.
+    """Return under which loads V = omega = 0 is a state of equilibrium, (n,); the friction is
+    considered on a table of the coupled solution only.
 
     law : table of the material.
     loads : the loads, dimensionless; force and torque are read.  Of half-spaces force + torque must
         be 0, of a cover what the traction of the torque leaves on the axis, to rounding.
     """
+    if law.coupled is not None:
+        return _rests_on_table(law, loads)
     if law.cover is None:
         return loads.force + loads.torque == 0.0
     shear = shear_at(law, loads.kappa, loads.mu, np.zeros(loads.mu.size))
@@ -439,43 +499,7 @@ def _torque_left(
     return torque - mu * found["Q_over_mu"] - found["M_cylinder"] / kappa - rest
 
 
-def find_speeds_on_table(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
-    """Find the speeds at which a table rolls steadily under loads without a gain on omega, in both
-    directions.
-
-    law : table of the material.
-    loads : the loads, dimensionless, without a gain on omega; V is not given.
-    Returns (index of the load; sign of V, 1.0 or -1.0; |V|, > 0), one entry for each crossing,
-    (crossings,) each.
-    """
-    rows: Any = law.coupled
-    low = np.log2(rows.u[0]) - _FAR_OCTAVES
-    high = np.log2(rows.u[-1]) + _FAR_OCTAVES
-    nodes = np.linspace(low, high, int(_DENSITY * (high - low)))
-    gains = loads.gains
-    found: list[tuple[int, float, Floats]] = []
-    for n in range(loads.mu.size):
-        kappa = float(loads.kappa[n])
-        mu = float(loads.mu[n])
-        for sign in (1.0, -1.0):
-
-            def unbalanced(
-                x: Floats, n: int = n, sign: float = sign, kappa: float = kappa, mu: float = mu
-            ) -> Floats:
-                """Return the torque that is left at speeds exp2(x)/kappa."""
-                V = np.exp2(x) / kappa
-                force = sign * loads.force[n] + gains.force_V * V
-                return _torque_left(
-                    law, kappa, mu, V, force, sign * loads.torque[n] + gains.torque_V * V
-                )
-
-            found.append((n, sign, np.exp2(find_zeros(unbalanced, nodes, _NOISE)) / kappa))
-    load = np.concatenate([np.full(V.size, n) for n, _, V in found])
-    signs = np.concatenate([np.full(V.size, sign) for _, sign, V in found])
-    return load, signs, np.concatenate([V for _, _, V in found])
-
-
-def rests_on_table(law: LawTable, loads: Loads) -> Booleans:
+def _rests_on_table(law: LawTable, loads: Loads) -> Booleans:
     """Return under which loads a cylinder on a table stays at V = omega = 0, (n,), by the slip of
     slow rolling.
     """
@@ -491,7 +515,7 @@ def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, 
     """Return creepage, fields and decay rate of states at rest, as limits of slow rolling with V >
     0.
 
-    law, loads : as of :func:`find_speeds_on_table`; ``load``: index of the load of each state,
+    law, loads : as of :func:`find_speeds`; ``load``: index of the load of each state,
     (n,).
     Returns (creepage, (n,), NaN where the friction does not suffice; Q, M_half_space, M_cylinder,
     beta, (4, n); rate by which V decays, (n,), without the slip that remains).

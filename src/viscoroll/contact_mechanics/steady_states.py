@@ -8,8 +8,9 @@ In this file all is dimensionless, and a law is a :class:`LawTable`, the rows of
 zeta and eta are half the transit times of the contact and of its stick zone, H a function of the
 material, Q the friction force over the load P, M the rolling moment over P R, mu the coefficient of
 friction, kappa = R/l0 with the contact length at rest l0, delta = (omega - V)/V the creepage,
-delta_star the size of it from which on the contact slips fully (of a cover: of its difference from
-delta_0, at which Q = 0), lam the contact length over l0, and beta the part of it that sticks.  Rows
+delta_star the size of it from which on the contact slips fully (of a cover, where delta - delta_0 =
+delta_star (d + c d^2) with delta_0 at which Q = 0, that follows for d delta_star), lam the contact
+length over l0, and beta the part of it that sticks.  Rows
 of :class:`Field` are V, delta, Q, M_half_space, M_cylinder, beta, and then either six slopes of the
 law, dQ_dV at fixed omega, dQ_domega, dM_half_space_dV, dM_cylinder_dV and both slopes of M over
 omega, or omega, the eigenvalues and the moments without traction.
@@ -33,6 +34,7 @@ from .steady_loads import (
     Loads,
     balance,
     creep_at_rest,
+    creep_beyond_free,
     moments_of_losses,
     rest_on_table,
     shear_at,
@@ -181,19 +183,21 @@ class States(NamedTuple):
         part = np.abs(Q) / mu
         rows = np.zeros((2 + len(_ROWS), load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
-        delta = 0.5 * limit * mu / kappa * part / (1.0 + beta)
+        star = 0.5 * limit * mu / kappa * part / (1.0 + beta)
+        still = np.zeros(load.size)
+        forth, back = (
+            creep_beyond_free(law, kappa, mu, still, sign * star)
+            for sign in (np.sign(Q), -np.sign(Q))
+        )
         free = 0.5 * free / kappa
         rows[Field.OMEGA] = 0.0 * beta
-        rows[Field.DELTA] = np.sign(Q) * delta + free
+        rows[Field.DELTA] = forth + free
         rows[Field.Q] = Q
         rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = shear.moments(Q)
         rows[Field.FAST] = rows[Field.SLOW] = -np.inf
         on_axis, on_spin, half_space, cylinder = shear.slopes_at_rest(law, Q)
         gains = loads.gains
-        for creep in (
-            free + delta,
-            free - delta,
-        ):  # to either side omega = V (1 + delta) or V (1 - delta)
+        for creep in (free + forth, free + back):  # of motion to either side
             push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
             turn = cylinder - gains.torque_V - gains.torque_omega * (1.0 + creep)
             rate = on_spin * push + on_axis * turn
@@ -416,7 +420,8 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     rolling = delta_0 if law.cover is None else free_creep(law, kappa, mu, faster)
     less_star, less_lam = contact_fields_at(law, kappa, mu, faster, rolling, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
-    rows = state_rows(law, kappa, mu, V, np.copysign(size, Q) + delta_0)
+    creep = creep_beyond_free(law, kappa, mu, V, np.copysign(size, Q))
+    rows = state_rows(law, kappa, mu, V, creep + delta_0)
     # one Newton step for delta alone, which is a difference where |Q|/mu is small: the other rows
     # do not change by it
     rows[Field.DELTA] -= np.divide(

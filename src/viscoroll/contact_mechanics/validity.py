@@ -410,14 +410,15 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     scene: dimensionless parameters of a roller with a cover, or with an array of covers.
     V: speeds, dimensionless, any sign, an array of any shape; broadcasts with the scene.
     Returns the assumption, whose value is 2 |delta_0* - delta_0|/delta_star, in the broadcast
-    shape.
+    shape.  It holds for any value where the law is a table of the coupled solution; the sentence
+    then states what the errors would be without it.
     Raises ParameterError as :func:`assess_cover`.
     """
     cover = scene.cover
     assert cover is not None
     names = ("delta_0", "delta_star", "M_half_space", "M_cylinder")
     forth, back = (
-        evaluate_contact(scene, np.abs(V), np.full((), slip), False, names)
+        evaluate_contact(scene.uncoupled, np.abs(V), np.full((), slip), False, names)
         for slip in (_FULL_SLIP, -_FULL_SLIP)
     )
     change = {name: 0.5 * (back[name] - forth[name]) / scene.mu for name in names[2:]}
@@ -433,13 +434,19 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     largest = float(np.max(value, initial=0.0))
     beyond = "both ends slip, and the law does not hold: use method='coupled'"
-    sentence = (
-        f"shear acts back on the pressure: compared with method='coupled' the error of Q is up to "
-        f"{100.0 * np.max(error, initial=0.0):.2g} % of mu P and that of M up to "
-        f"{np.max(error_of_M, initial=0.0):.1g} "
+    errors = (
+        f"the error of Q is up to {100.0 * np.max(error, initial=0.0):.2g} % of mu P and that of "
+        f"M up to {np.max(error_of_M, initial=0.0):.1g} "
         f"P l0 where this value, up to {largest:.2g}, is at most 1"
         + ("; above, " + beyond if largest > 1.0 else "")
     )
+    if scene.tabulated:
+        sentence = (
+            "shear acts back on the pressure: states with traction are of a table of the coupled "
+            f"solution; with coupled=False {errors}"
+        )
+        return Assumption(np.full(np.shape(value), True)[()], value, sentence)
+    sentence = f"shear acts back on the pressure: compared with method='coupled' {errors}"
     return Assumption(value <= 1.0, value, sentence)
 
 
@@ -499,13 +506,14 @@ def validity(
     speed = scaled["V"]
     spin = scaled.get("omega")
     broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
+    law = scene.uncoupled  # no table is made for a report
     if scene.cover is None:
-        free = FreeRolling.of_scene(scene, speed)
+        free = FreeRolling.of_scene(law, speed)
         lengths = free.contact_lengths(scene.kappa)
         steady = UNKNOWN.steady if scene.gamma is None else Steadiness.of(free.scaled(scale))
         report = UNKNOWN._replace(steady=steady)
     else:
-        lengths, thick = assess_cover(scene, speed)
+        lengths, thick = assess_cover(law, speed)
         report = UNKNOWN._replace(
             steady=UNKNOWN_OF_COVERS, thick=thick, traction=assess_traction(scene, speed)
         )
@@ -518,7 +526,7 @@ def validity(
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
         full: Any = np.abs(delta) >= scene.mu * np.asarray(lengths.reach)
         if scene.cover is not None:
-            full = evaluate_contact(scene, speed, spin, True, ("full_slip",))["full_slip"]
+            full = evaluate_contact(law, speed, spin, True, ("full_slip",))["full_slip"]
         report = report._replace(creep=assess_creep(delta, full))
     if roller.body_data is not None:
         return roller.body_data.extend_validity(

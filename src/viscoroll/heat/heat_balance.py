@@ -106,6 +106,8 @@ def zeros_of(balance: Balance) -> Zeros:
     balance: the balance of n states; n may be 0.
     Returns the :class:`Zeros`, to the rounding of f.
     """
+    if balance.law is not None and balance.law.coupled is None and balance.shift.slope:
+        return _zeros_by_kernel(balance, balance.law)
     blocks = range(0, balance.x_0.size, _BLOCK)
     parts = [_brackets(balance, np.arange(at, min(at + _BLOCK, balance.x_0.size))) for at in blocks]
     if not parts:
@@ -116,6 +118,33 @@ def zeros_of(balance: Balance) -> Zeros:
     theta = balance.ambient[n] + refine(balance.rest, n, low, high, first, ~stable)
     found = theta <= balance.hottest[n]
     return Zeros(n[found], theta[found], stable[found])
+
+
+def _zeros_by_kernel(balance: Balance, law: LawTable) -> Zeros:
+    """Return :func:`zeros_of` a balance of one law and a shift with a pole, found by a kernel."""
+    from ..kernels.law.heat_zeros import HeatRequest, heat_loop
+
+    shift = balance.shift
+    request = HeatRequest(
+        x_hot=balance.x_0 - shift.own,
+        ambient=balance.ambient,
+        power=balance.power / balance.conductance,
+        hottest=balance.hottest,
+        pole=shift.pole,
+        slope=shift.slope,
+        curve=kept_curve(law),
+        density=NODES,
+        farthest=FARTHEST,
+    )
+    size = count = 3 * balance.x_0.size
+    while count >= size:  # some states have more zeros than three
+        size = count + 1
+        number = np.empty(size, np.int64)
+        rise = np.empty(size)
+        stable = np.empty(size, bool)
+        count = heat_loop(law.record, request, number, rise, stable)
+    n = number[:count]
+    return Zeros(n, balance.ambient[n] + rise[:count], stable[:count])
 
 
 def _brackets(balance: Balance, states: Integers) -> tuple[Any, ...]:

@@ -41,10 +41,8 @@ from .heat_balance import FARTHEST, NODES, kept_curve, refine
 from .heated_bodies import HeatStates, check_ambient, heat_states
 from .temperature import HOTTEST
 
-#: Film coefficient of a turning roller in still to moving air, W/(m2 K): the range of forced
-#: convection and radiation at surface speeds of 0.5 to 10 m/s; the default is near its geometric
-#: mean.
-FILM_RANGE = 10.0, 50.0
+#: Film coefficient of a turning roller in still to moving air, W/(m2 K): near the geometric mean of
+#: 10 to 50, the range of forced convection and radiation at surface speeds of 0.5 to 10 m/s.
 DEFAULT_FILM = 20.0
 #: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab
 #: with an insulated side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
@@ -197,18 +195,16 @@ def _for_each_load(
 
     plain: ambient and conductance, numbers or arrays; labels: of the arguments.
     """
-    given = {"load": load} | {
-        key: np.asarray(plain[key], np.float64) for key in ("ambient", "conductance")
-    }
-    shape = broadcast_shape(**given)
-    rows = zip(
-        *(np.broadcast_to(each, shape).ravel().tolist() for each in given.values()), strict=True
-    )
-    parts = [heat_limit(roller, allowed, load=P, ambient=at, conductance=G) for P, at, G in rows]
-    found = {
-        name: np.array([part[name] for part in parts]).reshape(shape)
-        for name in ("V", "temperature", "runaway")
-    }
+    names = ("V", "temperature", "runaway")
+
+    def limits(P: Any, at: Any, G: Any) -> tuple[Any, ...]:
+        found = heat_limit(roller, allowed, load=P, ambient=at, conductance=G)
+        return tuple(found[name] for name in names)
+
+    given = {"load": load} | {name: np.asarray(plain[name]) for name in ("ambient", "conductance")}
+    broadcast_shape(**given)
+    found = np.vectorize(limits, otypes=[float, float, bool])(*given.values())
+    found = dict(zip(names, found, strict=True))
     return Values(found, given, si=True, title="Limits by heat", labels=labels)
 
 

@@ -31,6 +31,8 @@ _SAMPLES = 5001
 _TILT = 1e-9
 #: distance beyond the ends of the samples, K, over which they are extrapolated
 _BEYOND = 1e4
+#: stands for 0 and less in a divisor, so that the quotient is a number beyond all others
+_LEAST = 1e-300
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,6 +49,8 @@ class ShiftCurve:
     sampled_root_b : function of temperatures that returns sqrt(b_T) relative to the reference;
         None: both functions are those of the shift itself, and b_T = 1, else they interpolate
         samples.
+    slope, pole, own : log2_of(theta) = slope/(theta - pole) - own, K, degrees Celsius and
+        dimensionless; 0 where they interpolate samples.
     """
 
     material: Material
@@ -55,6 +59,9 @@ class ShiftCurve:
     log2_of: Callable[[Floats], Floats]
     temperature_of: Callable[[Floats], Floats]
     sampled_root_b: Callable[[Floats], Floats] | None = None
+    slope: float = 0.0
+    pole: float = 0.0
+    own: float = 0.0
 
     def root_b(self, theta: Floats) -> Any:
         """Return sqrt(b_T) relative to the reference at temperatures of any shape; 1.0 without
@@ -118,17 +125,19 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
         raise ParameterError("shift", None, allowed)
     reference = material.temperature
     if isinstance(shift, WLF | Arrhenius) and vertical is None:
-        own = 0.0 if reference is None else float(shift.log(np.asarray(reference)))
-        low, high = _range_of(
-            shift, (shift.T0 - shift.C2 if isinstance(shift, WLF) else -273.15, math.inf)
-        )
-        ln2 = math.log(2.0)
+        pole = shift.pole
+        slope = shift.slope / math.log(2.0)
+        own = slope / ((shift.T0 if reference is None else reference) - pole)
+        low, high = _range_of(shift, (pole, math.inf))
         return ShiftCurve(
             material=material,
             low=low,
             high=high,
-            log2_of=lambda theta: (shift.log(theta) - own) / ln2,
-            temperature_of=lambda x: shift.temperature_of(x * ln2 + own),
+            log2_of=lambda theta: slope / np.maximum(theta - pole, _LEAST) - own,
+            temperature_of=lambda x: pole + slope / np.maximum(x + own, _LEAST),
+            slope=slope,
+            pole=pole,
+            own=own,
         )
     theta, a_T = _sampled(shift, *_range_of(shift, _SAMPLED_RANGE), reference)
     roots = np.sqrt([vertical_factor(vertical, at, reference) for at in theta.tolist()])

@@ -19,7 +19,7 @@ from ..contact_mechanics.contact_table import (
 from ..contact_mechanics.model_warnings import warn_of_contact
 from ..contact_mechanics.parameters import Roller, resolve_model
 from ..contact_mechanics.steady import steady
-from ..contact_mechanics.steady_loads import Loads, loads_of
+from ..contact_mechanics.steady_loads import loads_of
 from ..contact_mechanics.steady_result import Equilibria, pad
 from ..contact_mechanics.steady_states import Field, states_at
 from ..core.checks import Floats, Integers, Numbers
@@ -200,6 +200,7 @@ def temperature(
             "V", "is not given", "given, or a force, torque or slope from which it follows"
         )
     states = heat_states(roller, scene, "temperature", plain | found, slip_share)
+    driven |= {name: np.broadcast_to(load, states.shape) for name, load in found.items()}
     if states.V is None:
         rows, zeros = _under_load(level, states, driven)
     else:
@@ -223,7 +224,9 @@ def _at_speed(states: HeatStates, driven: dict[str, Any] | None) -> tuple[dict[s
     if driven is None:
         zeros = zeros_of(balance)
         return rolling_rows(states, zeros.state, V[zeros.state], zeros.theta), zeros
-    loads = _loads_of(states, driven)
+    scale = states.roller.scale
+    force, torque = (make_dimensionless(name, driven[name], scale) for name in ("force", "torque"))
+    loads = loads_of(states.scene, force, torque, driven["slope"], np.ones(states.shape))
 
     def curve(n: Integers, x: Floats) -> Floats:
         """Return kappa times the parts of M and of |delta Q| that heat the body; a slip that
@@ -236,12 +239,9 @@ def _at_speed(states: HeatStates, driven: dict[str, Any] | None) -> tuple[dict[s
             states.body.part * rolling + states.body.slip * np.abs(delta * found[Field.Q])
         )
 
+    power = balance.power / states.body.part
     hottest = np.full(V.size, HOTTEST)
-    zeros = zeros_of(
-        replace(
-            balance, curve=curve, law=None, power=balance.power / states.body.part, hottest=hottest
-        )
-    )
+    zeros = zeros_of(replace(balance, curve=curve, law=None, power=power, hottest=hottest))
     n = zeros.state
     rows = rolling_rows(states, n, V[n], zeros.theta)
     # a cylinder at rest has no slip; a speed of 1 stands for it
@@ -314,24 +314,6 @@ def rolling_rows(states: HeatStates, n: Integers, V: Floats, theta: Floats) -> d
     return rows | more | {"loss_slip": np.zeros(n.size)}
 
 
-def _loads_of(states: HeatStates, driven: dict[str, Any]) -> Loads:
-    """Return the loads of states at given speeds, dimensionless; their V is not used.
-
-    driven: force, torque and slope as :func:`temperature` has them.
-    """
-    scale = states.roller.scale
-    given = {
-        name: make_dimensionless(name, driven[name], scale) for name in ("force", "torque")
-    } | {"slope": driven["slope"]}
-    whole = {
-        name: None if load is None else np.broadcast_to(load, states.shape)
-        for name, load in given.items()
-    }
-    return loads_of(
-        states.scene, whole["force"], whole["torque"], whole["slope"], np.ones(states.shape)
-    )
-
-
 def _under_load(
     level: Any, states: HeatStates, driven: dict[str, Any]
 ) -> tuple[dict[str, Floats], Zeros]:
@@ -349,50 +331,36 @@ def _under_load(
         raise described_error(
             "vertical_shift", "is given", "left out where the speed follows from the load: give V"
         )
-    whole = {
-        name: None if load is None else np.broadcast_to(load, states.shape)
-        for name, load in driven.items()
-    }
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # of speeds at the reference
-        found = steady(level, **whole)
-    table = {
-        name: np.asarray(found[name]).reshape(states.load.size, -1)
-        for name in ("V", "stable", *_MOMENTS)
-    }
-    table |= {
-        name: np.asarray(each).reshape(table["V"].shape) for name, each in vars(found.loss).items()
-    }
-    n, branch = np.nonzero(np.nan_to_num(table["V"]))
-    at = {name: each[n, branch] for name, each in table.items()}
-    body = states.body
-    G = states.conductance[n]
-    power = body.part * (at["half_space"] + at["cylinder"]) + body.slip * at["slip"]
-    hottest = np.full(n.size, HOTTEST)
-    curve = lambda _, x: np.exp2(-x)  # noqa: E731
+        found = steady(level, **driven)
+    fields = {name: found[name] for name in ("V", "stable", *_MOMENTS)} | vars(found.loss)
+    n, branch = np.nonzero(np.nan_to_num(found.V).reshape(states.load.size, -1))
+    at = {name: np.reshape(x, (states.load.size, -1))[n, branch] for name, x in fields.items()}
+    rolling = at["half_space"] + at["cylinder"]
+    power = states.body.part * rolling + states.body.slip * at["slip"]
     zeros = zeros_of(
         Balance(
-            curve=curve,
+            curve=lambda _, x: np.exp2(-x),
             law=None,
             shift=states.curve,
             x_0=0.0 * power,
             power=power,
-            conductance=G,
+            conductance=states.conductance[n],
             ambient=states.ambient[n],
-            hottest=hottest,
+            hottest=np.full(n.size, HOTTEST),
         )
     )
-    n = n[zeros.state]
-    at = {name: each[zeros.state] for name, each in at.items()}
     a_T = states.curve.factors(zeros.theta)[0]
-    rows = {name: at[name] for name in _MOMENTS} | {
-        "V": at["V"] / a_T,
-        "temperature": zeros.theta,
-        "a_T": a_T,
+    at |= {
+        "loss": rolling + at["slip"],
+        "loss_slip": at["slip"],
+        "C_rr": at["M"] / (states.load * states.R)[n],
     }
-    rows |= {"C_rr": at["M"] / (states.load[n] * states.R[n]), "loss_slip": at["slip"] / a_T}
-    rows |= {"loss": (at["slip"] + at["half_space"] + at["cylinder"]) / a_T}
-    return rows, Zeros(n, zeros.theta, zeros.stable & at["stable"])
+    rows = {name: at[name][zeros.state] for name in ("C_rr", *_MOMENTS)}
+    rows |= {name: at[name][zeros.state] / a_T for name in ("V", "loss", "loss_slip")}
+    rows |= {"temperature": zeros.theta, "a_T": a_T}
+    return rows, Zeros(n[zeros.state], zeros.theta, zeros.stable & at["stable"][zeros.state])
 
 
 def _pack(

@@ -248,8 +248,6 @@ _EPSILON = 2
 _MOMENTS = slice(3, 5)
 #: indices of f, of which the sum is 2 kappa delta_f
 _FREE = slice(5, 7)
-#: indices of g, of which the sum is 2 kappa (delta_0* - delta_f)
-_EXCESS = slice(7, 9)
 #: indices of the slopes of lam and epsilon in Q
 _TILT = slice(9, 11)
 #: functions that have a row each beside those of a table: L, f, g and the slopes

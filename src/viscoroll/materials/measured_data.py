@@ -16,11 +16,12 @@ import tomllib
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from ..core.checks import Floats, check_array, check_number, check_text
+from ..core.checks import check_array, check_number, check_text
 from ..core.errors import ModelWarning, ParameterError, caller_level, described_error
 from ..core.scale import SI, Units
 
@@ -99,53 +100,15 @@ class WLF:
             raise ParameterError("temperature", temperature, allowed)
         return _shift(temperature, -math.log(10.0) * self.C1 * above / (self.C2 + above))
 
-    def log(self, temperature: Floats) -> Floats:
-        """Return ln a_T at temperatures, for arrays and without checks.
+    @property
+    def pole(self) -> float:
+        """Temperature T0 - C2 at which a_T is infinite, degrees Celsius."""
+        return self.T0 - self.C2
 
-        Parameters
-        ----------
-        temperature : degrees Celsius, an array of any shape.
-
-        Returns
-        -------
-        array
-            ln a_T, dimensionless; +inf where a_T is infinite.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import viscoroll as vr
-        >>> shift = vr.WLF(T0=20.0)
-        >>> shift.log(np.array([20.0]))
-        array([0.])
-        """
-        above = np.maximum(temperature - self.T0 + self.C2, 0.0)
-        with np.errstate(divide="ignore"):
-            return math.log(10.0) * self.C1 * (self.C2 / above - 1.0)
-
-    def temperature_of(self, log: Floats) -> Floats:
-        """Return the temperatures at which ln a_T has given values, for arrays and without checks.
-
-        Parameters
-        ----------
-        log : ln a_T, dimensionless, an array of any shape.
-
-        Returns
-        -------
-        array
-            Degrees Celsius; +inf where a_T is smaller at no temperature.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import viscoroll as vr
-        >>> shift = vr.WLF(T0=20.0)
-        >>> shift.temperature_of(np.array([0.0]))
-        array([20.])
-        """
-        above_least = np.maximum(math.log(10.0) * self.C1 + log, 0.0)
-        with np.errstate(divide="ignore"):
-            return self.T0 - self.C2 + math.log(10.0) * self.C1 * self.C2 / above_least
+    @property
+    def slope(self) -> float:
+        """Slope of ln a_T over 1/(T - pole), K, > 0."""
+        return math.log(10.0) * self.C1 * self.C2
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -196,55 +159,15 @@ class Arrhenius:
             self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO)),
         )
 
-    def log(self, temperature: Floats) -> Floats:
-        """Return ln a_T at temperatures, for arrays and without checks.
+    @property
+    def pole(self) -> float:
+        """Temperature at which a_T is infinite, absolute zero, degrees Celsius."""
+        return ABSOLUTE_ZERO
 
-        Parameters
-        ----------
-        temperature : degrees Celsius, an array of any shape.
-
-        Returns
-        -------
-        array
-            ln a_T, dimensionless; +inf where a_T is infinite.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import viscoroll as vr
-        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
-        >>> shift.log(np.array([20.0]))
-        array([0.])
-        """
-        kelvin = np.maximum(temperature - ABSOLUTE_ZERO, 0.0)
-        with np.errstate(divide="ignore"):
-            return self.energy / GAS_CONSTANT * (1.0 / kelvin - 1.0 / (self.T0 - ABSOLUTE_ZERO))
-
-    def temperature_of(self, log: Floats) -> Floats:
-        """Return the temperatures at which ln a_T has given values, for arrays and without checks.
-
-        Parameters
-        ----------
-        log : ln a_T, dimensionless, an array of any shape.
-
-        Returns
-        -------
-        array
-            Degrees Celsius; +inf where a_T is smaller at no temperature.
-
-        Examples
-        --------
-        >>> import numpy as np
-        >>> import viscoroll as vr
-        >>> shift = vr.Arrhenius(energy=5e4, T0=20.0)
-        >>> shift.temperature_of(np.array([0.0]))
-        array([20.])
-        """
-        inverse = np.maximum(
-            log * GAS_CONSTANT / self.energy + 1.0 / (self.T0 - ABSOLUTE_ZERO), 0.0
-        )
-        with np.errstate(divide="ignore"):
-            return ABSOLUTE_ZERO + 1.0 / inverse
+    @property
+    def slope(self) -> float:
+        """Slope of ln a_T over 1/(T - pole), K, > 0."""
+        return self.energy / GAS_CONSTANT
 
 
 _Law = TypeVar("_Law", WLF, Arrhenius)
@@ -297,8 +220,6 @@ class ShiftFactors:
         converted.
         Raises ParameterError and warns as the class states.
         """
-        from scipy.interpolate import PchipInterpolator
-
         found = check_celsius("temperature", temperature)
         low = self.temperature[0]
         high = self.temperature[-1]
@@ -310,7 +231,14 @@ class ShiftFactors:
             raise ParameterError("temperature", temperature, allowed)
         if low == high:
             return self.a_T[0]
-        return math.exp(PchipInterpolator(self.temperature, np.log(self.a_T))(found))
+        return math.exp(self._ln(found))
+
+    @cached_property
+    def _ln(self) -> Any:
+        """The interpolated ln a_T, a function of the temperature."""
+        from scipy.interpolate import PchipInterpolator
+
+        return PchipInterpolator(self.temperature, np.log(self.a_T))
 
     def wlf(self) -> WLF:
         """Fit the law of Williams, Landel and Ferry to the factors, so that other temperatures need
@@ -741,6 +669,9 @@ class Measured:
 
     def __str__(self) -> str:
         source = f" ({self.source})" if self.source else ""
+        errors = [100.0 * error for _, error in self.M_error]
+        accuracy = f", M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""
         return (
-            f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %{source}"
+            f"{self.low:.3g} to {self.high:.3g} rad/s, misfit {100.0 * self.misfit:.2g} %"
+            f"{accuracy}{source}"
         )

@@ -271,6 +271,23 @@ class Pair:
             dundurs(G, one.nu, G_2, other.nu, self.plane) for G, G_2 in ((one.G, other.G), instant)
         )  # type: ignore[return-value]
 
+    @property
+    def most_coupled(self) -> float:
+        """The largest Dundurs' constant in size, of long times or at once, of any of many pairs.
+
+        A float >= 0, dimensionless.  Bodies may be of either class; a :class:`Solid` may have
+        arrays of E and nu, and many series.
+        """
+        bodies = (self.cylinder, self.half_space)
+        long = [body.E / (2.0 * (1.0 + np.asarray(body.nu))) for body in bodies]
+        instant = [G * body.prony.alpha for G, body in zip(long, bodies, strict=True)]
+        of_pairs = np.vectorize(dundurs, otypes=[float])
+        first, second = (np.asarray(body.nu) for body in bodies)
+        return max(
+            float(np.abs(of_pairs(G[0], first, G[1], second, self.plane)).max())
+            for G in (long, instant)
+        )
+
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
     """Return the contact modulus E' = pi E/(1 - nu^2) of Sect. 3.1 of the paper; in plane stress pi

@@ -302,7 +302,7 @@ def fit_relaxation(
     return RelaxationFit(
         **fields,
         misfit=errors[0],
-        mode=_mode(mode or "tension"),
+        mode=_mode("tension" if mode is None else mode),
         source=source,
         temperature=temperature,
     )

@@ -36,7 +36,7 @@ from .identification_result import Identification
 from .least_squares import Minimum, Problem
 from .measurement_records import OF_RECORDS, Coastdown, Record, Resistance, Traction
 from .text_table import column_in_unit, find_column, missing_column, named_table
-from .unknowns import Shift, cylinder_of, unknowns_of
+from .unknowns import Shift, Unknown, changes_law, cylinder_of, unknowns_of
 
 # --- Parameters of a cylinder from measurements ---
 
@@ -154,6 +154,7 @@ def identify(
     unknowns = unknowns_of(cylinder, unknown, records, prior)
     if not unknowns:
         raise described_error("unknown", "is empty", "at least one name and its range")
+    _refuse_tables(cylinder, unknowns)
     problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
@@ -168,6 +169,23 @@ def identify(
             problem, 1 if problem.planned else count, seed, check_bool("progress", progress)
         ),
     )
+
+
+def _refuse_tables(cylinder: Cylinder, unknowns: list[Unknown]) -> None:
+    """Raise ParameterError where each trial value of an unknown would need a table of its own.
+
+    cylinder : with the fixed values; a table of the coupled solution holds for its bodies, load, R
+        and mu.
+    unknowns : of the search.
+    Returns nothing where no unknown changes the law, or the law is no table.
+    """
+    changing = [each.name for each in unknowns if changes_law(each.name)]
+    if changing and cylinder.scene().tabulated:
+        raise described_error(
+            "coupled",
+            f"gives a table of the coupled solution for each trial value of {changing[0]}",
+            "False, for the fast law, whose error validity states",
+        )
 
 
 def _records_by_name(data: Iterable[Record]) -> dict[str, Record]:

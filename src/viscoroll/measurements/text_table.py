@@ -169,8 +169,8 @@ def conversion(unit: str, wanted: str) -> tuple[float, float]:
     """Return the conversion of a unit as files spell it to another: number in ``wanted`` = factor *
     number + offset.
 
-    It reads more spellings than :func:`.units.conversion_factor`, and refuses texts that pint would
-    compute.
+    It reads more spellings than :func:`.quantities.conversion_factor`, and refuses texts that
+    pint would compute.
 
     unit : unit as a file spells it; the texts of :data:`NO_UNIT`, as "" and "-", are that of a
         ratio.  "mpa", "U/min", "C", "Nm" are read as MPa, rpm, degC, N m where pint does not know

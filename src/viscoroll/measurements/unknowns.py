@@ -89,6 +89,12 @@ class Unknown(NamedTuple):
         return value if self.unit is None else self.unit
 
 
+def changes_law(name: str) -> bool:
+    """Return whether the law of a cylinder depends on an unknown of this name."""
+    kind = name.split(":")[0]
+    return kind != "j" and kind not in _BEARING and kind not in OF_RECORDS
+
+
 def unknowns_of(
     cylinder: Cylinder,
     requested: Mapping[str, Any],

@@ -442,7 +442,7 @@ def _time_of_laws(run: Run) -> float:
     A cover is a layer of finite thickness.  A run with one cover needs one law; covers that differ
     have laws at nodes of thickness (and of Poisson's ratio nu, if that differs), between which they
     are interpolated.  One law, that of the largest thickness and the largest nu, is computed here,
-    and its time is multiplied by the number of laws.
+    and its time is multiplied by the number of laws.  A table of the coupled solution is made here.
 
     run: :class:`runs.Run`, of half-spaces or of covers.
     Raises ParameterError for inputs of the first block that no cylinder allows or a layer too thin
@@ -451,10 +451,14 @@ def _time_of_laws(run: Run) -> float:
     from ..laws.cover_rows import cover_rows
     from ..laws.laws_per_element import count_laws
 
-    cover = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene().cover
+    scene = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene()
+    start = time.perf_counter()
+    if scene.tabulated:
+        scene.rolling_law  # noqa: B018  # makes the table, or finds it
+        return time.perf_counter() - start
+    cover = scene.cover
     if cover is None:
         return 0.0
-    start = time.perf_counter()
     cover_rows(cover.of_thickness(np.max(cover.thickness), np.max(cover.nu)))
     return count_laws(cover) * (time.perf_counter() - start)
 

@@ -188,9 +188,9 @@ class Run:
 
         A flow map is a set of tables of all free motions of one scene, which are looked up there
         and not integrated.  The method is that of the file, or for "auto" the flow map if one
-        serves (:attr:`mappable`), the run has at least 4096 motions (:data:`.batch.FLOW_PAYS`), and
-        a start speed differs from 0.  It depends on the run as a whole, so that bits do not depend
-        on blocks.
+        serves (:attr:`mappable`), the run has at least 4096 motions
+        (:data:`.many_motions.FLOW_PAYS`), and a start speed differs from 0.  It depends on the
+        run as a whole, so that bits do not depend on blocks.
         """
         if self.settings.method != "auto":
             return self.settings.method

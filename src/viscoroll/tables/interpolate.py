@@ -220,7 +220,7 @@ class Interpolant:
         Returns (names of those of its axes that have more than one node, in their order; the spline
         over these, a function that takes coordinates of :meth:`_map_axis`, (..., axes), and returns
         values, (...)).  The spline is cubic, with ``_linear`` of degree 1, of lower degree along
-        axes of few nodes (:func:`.splines.fit_spline`); it extrapolates, and values are not
+        axes of few nodes (:func:`.law_grid.fit_spline`); it extrapolates, and values are not
         clipped.  Without such axes the names are () and the second entry is the value of the field,
         an array without axes.
         Raises ValueError of scipy where values that were changed after the check are not finite.

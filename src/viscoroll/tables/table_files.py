@@ -150,7 +150,7 @@ def check_grid(table: Any, path: Any) -> None:
     changed.
 
     Each axis and field must have float64 values, all finite and none a fill value, and fields those
-    of a contact (:func:`.grid.check_nodes`); each axis at least one, strictly increasing;
+    of a contact (:func:`.law_grid.check_nodes`); each axis at least one, strictly increasing;
     dimensions
     must be axes of the grid, in their order, and units those that :func:`variable` writes.  beta
     and Q are required, of the fields over V (:data:`PLANE`) none, of an atlas all fields; other

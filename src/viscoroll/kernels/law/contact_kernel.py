@@ -20,8 +20,9 @@ Terms of this file:
   dt/dx.
 - u = kappa |V|: dimensionless speed.  L = 2 kappa delta_star/mu: critical creepage, a function of
   u.
-- D = 2 kappa |delta - delta_0|/mu: creepage less delta_0, that of free rolling, which is 0 for
-  half-spaces; D < L in partial slip, and infinite stands for full slip.
+- D = L |d|, of half-spaces 2 kappa |delta|/mu; of a cover d follows from the creepage less delta_0,
+  that of free rolling, and from the asymmetry c of the onsets of full slip (:mod:`.cover_law`).
+  D < L in partial slip, and infinite stands for full slip.
 - v = 2 u/(L - D) = 1/F(eta), with eta half the transit time of the stick zone; H and F are
   functions of the material (:mod:`.law`), of which only H/F^2 and eta/F occur, as functions of v.
   A NaN of u or v where L and D are finite has no meaning and is not checked.
@@ -39,12 +40,14 @@ from ..numerics.intrinsics import bits_to_float, float_to_bits
 from ..numerics.jit import inline_kernel, kernel
 from .cover_law import (
     MomentChange,
+    asymmetry_at,
     free_creep_at,
     length_change,
     moment_change,
     shear_reaction,
     sliding_creep,
     slope_over_speed,
+    slopes_of_cover,
 )
 from .law_functions import (
     H_over_F2,
@@ -94,6 +97,8 @@ _Q = np.uint64(15 * TOGETHER)
 _T = np.uint64(TOGETHER)
 #: Distance of dt/dx from that row.
 _DT_DX = np.uint64(2 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of the asymmetry c of a cover.
+_ASYMMETRY = np.uint64(16 * TOGETHER)
 
 
 @inline_kernel
@@ -102,7 +107,7 @@ def stick_argument(u, L, D):
 
     u : float, kappa |V|, dimensionless, >= 0.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
-    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    D : float, L |d|, dimensionless, >= 0; infinite in full slip.
     Returns a float, dimensionless, >= 0 in partial slip, and 0 at u = 0.  In full slip it is -0.0,
     which has no meaning but may be located in the rows like any other v.  Where rounding makes D
     equal to L it is infinite (NaN at u = 0), and where rounding makes D larger it is negative:
@@ -120,7 +125,7 @@ def traction_over_mu(position, v, u, L, D, law):
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     u : float, kappa |V|, dimensionless, >= 0; read where the form with the mean slope is used.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
-    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    D : float, L |d|, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
 
     Returns a float in [0, 1], dimensionless: 0.0 at D = 0; 1.0 in full slip, where D is rounded to
@@ -150,7 +155,7 @@ def _cancels(traction, D, L):
     difference is used in spite of its rounding.
 
     traction : float, the difference 1 - w^2 H/F^2, which is |Q|/mu with rounding, dimensionless.
-    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0, finite.
+    D : float, L |d|, dimensionless, >= 0, finite.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     Returns a bool.
     """
@@ -164,7 +169,7 @@ def friction_reserve(position, v, L, D, law):
     position : :class:`RowPosition` of v; like v it is not read in full slip.
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
-    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    D : float, L |d|, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
     Returns a float in [0, 1], dimensionless: (L - D)^2 (H/F^2)(v), which is 1 to rounding at D = 0;
     0.0 in full slip (L <= D), and where L or D is NaN.
@@ -182,7 +187,7 @@ def stick_fraction(position, v, lam, L, D, law):
     lam : float, length of the contact divided by l0, dimensionless, > 0; not read in full slip and
     at D = 0.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
-    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    D : float, L |d|, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material, of which the polynomials of eta/F are read.
     Returns a float in [0, 1], dimensionless: exactly 1.0 at D = 0, else (eta/F)(v) (L - D)/lam; 0.0
     in full slip (L <= D), and where L or D is NaN.
@@ -200,7 +205,7 @@ def traction_slopes(u, L, dL, D, law):
     u : float, kappa |V|, dimensionless, >= 0.
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is read only
         where the plain formula below is used: neither with the mean slopes nor in full slip.
-    D : float, 2 kappa |delta - delta_0|/mu, dimensionless, >= 0; infinite in full slip.
+    D : float, L |d|, dimensionless, >= 0; infinite in full slip.
     law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
     Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) in full slip (L <= D),
     and where L or D is NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they
@@ -234,16 +239,15 @@ def traction_slopes(u, L, dL, D, law):
 
 
 @inline_kernel
-def signed_creep(L, free_creep, state, law):
-    """Return D = 2 kappa |delta - delta_0|/mu with the sign of the traction, and infinite in full
-    slip.
+def signed_creep(L, free_creep, asymmetry, state, law):
+    """Return D = L |d| with the sign of the traction, and infinite in full slip.
 
-    The state is in full slip where |delta - delta_0| >= delta_star, which includes omega other than
-    0 at V = 0 if omega is given.
+    The state is in full slip where |d| >= 1, which includes omega other than 0 at V = 0 if omega is
+    given.
 
     L : float, 2 kappa delta_star/mu at the speed of the state, dimensionless, > 0.
-    free_creep : float, 2 kappa delta_0, with delta_0 the creepage of free rolling, dimensionless; 0
-    for half-spaces.
+    free_creep, asymmetry : floats, 2 kappa delta_0, with delta_0 the creepage of free rolling, and
+        the asymmetry c, dimensionless; not read for half-spaces.
     state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
     law : :class:`Law`, of which only ``cover_rows`` is read: whether the material is a cover (not
     None).
@@ -252,7 +256,7 @@ def signed_creep(L, free_creep, state, law):
     gives inf or -inf; NaN where the creepage is NaN, or ``free_creep`` of a cover.
     """
     slip, delta = slip_and_creepage(state)
-    slip, delta = sliding_creep(slip, delta, free_creep, state, law.cover_rows)
+    slip, delta = sliding_creep(slip, delta, L, free_creep, asymmetry, state, law.cover_rows)
     full_slip = abs(delta) >= 0.5 * state.mu / state.kappa * L
     return np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
 
@@ -265,7 +269,7 @@ def signed_traction(position, v, u, L, D, mu, law):
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     u : float, kappa |V|, dimensionless, >= 0.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
-    D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`,
+    D : float, L |d| with the sign of the traction, of :func:`signed_creep`,
         dimensionless; inf or -inf in full slip.
     mu : float, coefficient of friction, dimensionless, > 0.
     law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
@@ -282,7 +286,7 @@ def Q_slopes(u, L, dL, D, state, law):
 
     u : float, kappa |V|, dimensionless, >= 0.
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless.
-    D : float, 2 kappa |delta - delta_0|/mu with the sign of the traction, of :func:`signed_creep`,
+    D : float, L |d| with the sign of the traction, of :func:`signed_creep`,
         dimensionless; inf or -inf in full slip, where nothing else is read.
     state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
     law : :class:`Law` of the material, of which the polynomials of H/F^2 and, of a cover,
@@ -297,6 +301,9 @@ def Q_slopes(u, L, dL, D, state, law):
     if abs(D) >= L:
         return 0.0, 0.0, 0.0
     over_u, over_D = traction_slopes(u, L, dL, abs(D), law)
+    over_u, over_D = slopes_of_cover(
+        over_u, over_D, D, locate_row(u, law), u, L, dL, state, law.cover_rows
+    )
     over_delta = 2.0 * state.kappa * over_D
     over_omega = over_delta / abs(state.V)
     over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
@@ -442,10 +449,11 @@ def _write_other_fields(n, c, law, scratch, request):
         rows of the requested quantities are written, dimensionless.
 
     Returns nothing.  The quantities: delta_star (critical creepage), delta (creepage), delta_0
-    (creepage of free rolling), full_slip (1.0 or 0.0), grip (1 - |Q|/mu), lam (contact length
-    divided by l0), zeta (half the transit time divided by T_ref), epsilon (shift of the contact
-    ahead of the axis, in half contact lengths), beta (stick zone divided by the contact length),
-    dQ_dV, dQ_ddelta, dQ_domega, dM_dV, and M of half-space and cylinder with their slopes in V.
+    (creepage of free rolling), delta_minus and delta_plus (onsets of full slip),
+    full_slip (1.0 or 0.0), grip (1 - |Q|/mu), lam (contact length divided by l0), zeta (half the
+    transit time divided by T_ref), epsilon (shift of the contact ahead of the axis, in half contact
+    lengths), beta (stick zone divided by the contact length), dQ_dV, dQ_ddelta, dQ_domega, dM_dV,
+    and M of half-space and cylinder with their slopes in V.
 
     At V = 0 zeta is infinite, and delta too if omega is given and not 0.  In full slip grip, beta
     and the slopes of Q are 0; grip and beta are 0 too where D of a state of partial slip is rounded
@@ -462,6 +470,12 @@ def _write_other_fields(n, c, law, scratch, request):
     write_field(to.delta_star, 0.5 * state.mu / state.kappa * L, n, request)
     write_field(to.delta, slip_and_creepage(state)[1], n, request)
     write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
+    if max(to.delta_minus, to.delta_plus) >= 0:
+        middle = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
+        star = 0.5 * state.mu / state.kappa * L
+        shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
+        write_field(to.delta_minus, middle + star * (shift - 1.0), n, request)
+        write_field(to.delta_plus, middle + star * (shift + 1.0), n, request)
     write_field(to.full_slip, 1.0 if abs(D) == np.inf else 0.0, n, request)
     if to.grip >= 0:
         write_field(to.grip, friction_reserve(stick_position, v, L, abs(D), law), n, request)
@@ -587,6 +601,28 @@ def _is_cover(cover_rows):
 
 
 @inline_kernel
+def _write_asymmetry(c, position, functions, cover_rows, scratch):
+    """Store the asymmetry c of a state on a cover in the scratch.
+
+    c, scratch : as of :func:`_write_other_fields`.
+    position, functions : :class:`RowPosition` of u, and :class:`LengthAndMoment` there.
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
+    half-spaces, of which nothing is written.
+    Returns nothing.
+    """
+    if cover_rows is not None:
+        scratch[_ASYMMETRY + c] = asymmetry_at(
+            position,
+            scratch[_U + c],
+            scratch[_MU + c],
+            functions.L,
+            functions.dL,
+            functions.ddL,
+            cover_rows,
+        ).value
+
+
+@inline_kernel
 def _write_moment_of_half_space(n, c, position, functions, cover_rows, scratch, request):
     """Write M of a state on half-spaces, which depends on the speed alone, if it is requested.
 
@@ -677,6 +713,7 @@ def contact_loop(laws, request, scratch, count):
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
                 scratch[_FREE_CREEP + c] = free_creep_at(position, u, law.cover_rows)[0]
+                _write_asymmetry(c, position, functions, law.cover_rows, scratch)
                 _write_moment_of_half_space(
                     _index(first + k, request),
                     c,
@@ -689,7 +726,13 @@ def contact_loop(laws, request, scratch, count):
             for k in range(begin, end):
                 c = np.uint64(k)
                 L = scratch[_L + c]
-                D = signed_creep(L, scratch[_FREE_CREEP + c], _state(c, scratch, request), laws[0])
+                D = signed_creep(
+                    L,
+                    scratch[_FREE_CREEP + c],
+                    scratch[_ASYMMETRY + c],
+                    _state(c, scratch, request),
+                    laws[0],
+                )
                 scratch[_D + c] = D
                 scratch[_STICK + c] = stick_argument(scratch[_U + c], L, abs(D))
             _write_positions(_STICK, _STICK_POSITION, begin, end, laws, scratch)

@@ -20,6 +20,15 @@ g_b and g_c change the moment of full slip to that of the mirrored strain (docs/
 A body without a layer has f = g = 0.
 |g_b + g_c| is limited to mu L/2 by a smooth function, so that the loss in slip is never below 0.
 
+Full slip begins at creepages that lie unlike far from delta_f where shear acts back:
+
+    delta = delta_f + delta_star (d + c d^2)
+    c = -r/(1 + (2 r)^6)        r = 2 (g_b + g_c)/(mu L)
+
+where d in [-1, 1] is the creepage of a half-space over its delta_star, from which Q follows, and c,
+|c| < 0.32, the asymmetry.  r is the excess in units of what it is limited to; where it is above 1
+both ends slip, and no law of this form holds.  Losses in slip stay above 0 for every r.
+
 Letters: kappa = R/l0, mu the coefficient of friction; L = 2 kappa delta_star/mu; lam, length of the
 contact divided by l0, and epsilon, its shift in half contact lengths, functions of u; eta, half the
 transit time of the stick zone, and eta/F, a function of v = 1/F(eta) (:mod:`.law`).
@@ -98,8 +107,8 @@ class FreeCreep(NamedTuple):
     """Parts that the creepage of free rolling, delta_0, adds to the kinematics omega = V (1 +
     delta_0 + k L d).
 
-    Here k = mu/(2 kappa) and L = 2 kappa delta_star/mu; d is (delta - delta_0)/delta_star.  All
-    parts are dimensionless.
+    Here k = mu/(2 kappa) and L = 2 kappa delta_star/mu; d stands for (delta - delta_0)/delta_star.
+    All parts are dimensionless.
 
     creep : delta_0.
     aside : d(V delta_0)/dV divided by k d(u L)/du, by which d is shifted.
@@ -241,6 +250,106 @@ def free_creep_at(position, u, cover_rows):
     )
 
 
+class OverSpeed(NamedTuple):
+    """A function of u = kappa |V| at one speed, with two derivatives over u, dimensionless."""
+
+    value: float
+    slope: float
+    curvature: float
+
+
+@inline_kernel
+def _relative_excess(excess, mu, L, dL, ddL):
+    """Return r = 2 (g_b + g_c)/(mu L), as :class:`OverSpeed`.
+
+    excess : :class:`PairOverSpeed` of g_b and g_c.
+    mu : float, coefficient of friction, > 0.
+    L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u, dimensionless.
+    """
+    bound = 2.0 / (mu * L)
+    value = bound * (excess.first + excess.second)
+    slope = bound * (excess.first_slope + excess.second_slope) - value * dL / L
+    curvature = bound * (excess.first_curvature + excess.second_curvature)
+    return OverSpeed(value, slope, curvature - (2.0 * slope * dL + value * ddL) / L)
+
+
+@inline_kernel
+def asymmetry_at(position, u, mu, L, dL, ddL, cover_rows):
+    """Return the asymmetry c of the onsets of full slip, as :class:`OverSpeed`; 0 of half-spaces.
+
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    mu, L, dL, ddL : as of :func:`_relative_excess`.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces.
+    """
+    if cover_rows is None:
+        return OverSpeed(0.0, 0.0, 0.0)
+    excess = _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
+    r = _relative_excess(excess, mu, L, dL, ddL)
+    square = 4.0 * r.value * r.value
+    power = square * square * square
+    share = 1.0 / (1.0 + power)
+    over_r = -(1.0 - 5.0 * power) * share * share
+    twice_over_r = 24.0 * square * square * r.value * (7.0 - 5.0 * power) * share * share * share
+    return OverSpeed(
+        value=-r.value * share,
+        slope=over_r * r.slope,
+        curvature=over_r * r.curvature + twice_over_r * r.slope * r.slope,
+    )
+
+
+@inline_kernel
+def reduced_creep(creep, asymmetry):
+    """Return d, of which d + c d^2 is a creep: the inverse of :func:`creep_of`, but linear beyond
+    full slip.
+
+    creep : float, (delta - delta_0)/delta_star, dimensionless, which may be infinite or NaN.
+    asymmetry : float, c, |c| < 1/2.
+    Returns a float: at least 1 in modulus where the whole contact slips, 1 at its onset.
+    """
+    if abs(creep) >= abs(asymmetry + np.copysign(1.0, creep)):
+        return creep - asymmetry
+    return 2.0 * creep / (1.0 + np.sqrt(1.0 + 4.0 * asymmetry * creep))
+
+
+class CreepCurve(NamedTuple):
+    """The creep (delta - delta_0)/delta_star over d, dimensionless, with a linear continuation
+    beyond |d| = 1.
+
+    value, slope, curvature : d + c d^2 and its derivatives in d.
+    bend : its derivative in c; bend_slope : the derivative of that in d.
+    """
+
+    value: float
+    slope: float
+    curvature: float
+    bend: float
+    bend_slope: float
+
+
+@inline_kernel
+def creep_of(d, asymmetry, cover_rows):
+    """Return the :class:`CreepCurve` at d; d itself of half-spaces.
+
+    d : float, of either sign, dimensionless.
+    asymmetry : float, c; not read for half-spaces.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces.
+    """
+    if cover_rows is None:
+        return CreepCurve(d, 1.0, 0.0, 0.0, 0.0)
+    within = min(max(d, -1.0), 1.0)
+    bend = within * (2.0 * d - within)
+    return CreepCurve(
+        value=d + asymmetry * bend,
+        slope=1.0 + 2.0 * asymmetry * within,
+        curvature=2.0 * asymmetry if within == d else 0.0,
+        bend=bend,
+        bend_slope=2.0 * within,
+    )
+
+
 class Reaction(NamedTuple):
     """How shear acts back on the rolling moments at one speed: M of a body is that without traction
     less
@@ -295,13 +404,11 @@ def shear_reaction(position, u, kappa, mu, L, dL, cover_rows):
     on_base = 0.5 / kappa
     on_cylinder = 1.0 / (2.0 * kappa + free.first + free.second)
     on_cylinder_slope = -on_cylinder * on_cylinder * (free.first_slope + free.second_slope)
-    bound = 2.0 / (mu * L)
-    ratio = bound * (excess.first + excess.second)
-    ratio_slope = bound * (excess.first_slope + excess.second_slope) - ratio * dL / L
-    cube = ratio * ratio * ratio
-    rest = 1.0 / (1.0 + cube * ratio)
+    ratio = _relative_excess(excess, mu, L, dL, 0.0)
+    cube = ratio.value * ratio.value * ratio.value
+    rest = 1.0 / (1.0 + cube * ratio.value)
     limiter = np.sqrt(np.sqrt(rest))
-    limiter_slope = -limiter * rest * cube * ratio_slope
+    limiter_slope = -limiter * rest * cube * ratio.slope
     excess_slope = limiter * excess.second_slope + limiter_slope * excess.second
     return Reaction(
         half_space=on_base * free.first,
@@ -371,27 +478,50 @@ def length_change(Q, position, u, cover_rows):
 
 
 @inline_kernel
-def sliding_creep(slip, delta, free_creep, state, cover_rows):
-    """Return slip and creepage that cause the traction: for a cover without those of free rolling.
+def sliding_creep(slip, delta, L, free_creep, asymmetry, state, cover_rows):
+    """Return slip and creepage that cause the traction: for a cover d delta_star in place of delta.
 
     slip : float, a number with the sign of omega - V, of :func:`.law_record.slip_and_creepage`;
         not read for a cover.
     delta : float, creepage (omega - V)/V, dimensionless; infinite at V = 0 if omega is given and
     not 0.
-    free_creep : float, 2 kappa delta_0, with delta_0 the creepage of free rolling, dimensionless;
-        read of a cover alone.
-    state : :class:`.law_record.State`, of which kappa and the sign of V are read, of a cover
+    L, free_creep, asymmetry : floats, 2 kappa delta_star/mu, 2 kappa delta_0, with delta_0 the
+        creepage of free rolling, and c, dimensionless; read of a cover alone.
+    state : :class:`.law_record.State`, of which kappa, mu and the sign of V are read, of a cover
     alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
     half-spaces.
-    Returns (a float with the sign of the traction, delta - delta_0), dimensionless.  Of a cover the
-    first is delta - delta_0 with the sign of V, where V = 0.0 and -0.0 count as V > 0; of
-    half-spaces the two are ``slip`` and ``delta`` as given.
+    Returns (a float with the sign of the traction, d delta_star), dimensionless.  Of a cover the
+    first is d delta_star with the sign of V, where V = 0.0 and -0.0 count as V > 0; of half-spaces
+    the two are ``slip`` and ``delta`` as given.
     """
     if cover_rows is None:
         return slip, delta
-    own = delta - 0.5 * free_creep / state.kappa
+    star = 0.5 * state.mu / state.kappa * L
+    own = star * reduced_creep((delta - 0.5 * free_creep / state.kappa) / star, asymmetry)
     return -own if state.V < 0.0 else own, own
+
+
+@inline_kernel
+def slopes_of_cover(over_u, over_D, D, position, u, L, dL, state, cover_rows):
+    """Return the slopes of |Q|/mu at fixed creepage less that of free rolling, from those at fixed
+    D.
+
+    over_u, over_D : floats, slopes over u at fixed D and over D at fixed u, dimensionless.
+    D : float, 2 kappa |d| delta_star/mu with the sign of the traction, finite.
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    u, L, dL : floats, kappa |V|, 2 kappa delta_star/mu and its slope over u.
+    state : :class:`.law_record.State`, of which mu and the sign of V are read.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None, for
+        half-spaces, leaves both as they are.
+    Returns (slope over u, slope over 2 kappa |delta - delta_0|/mu), floats.
+    """
+    if cover_rows is None:
+        return over_u, over_D
+    c = asymmetry_at(position, u, state.mu, L, dL, 0.0, cover_rows)
+    d = (-D if state.V < 0.0 else D) / L
+    over_creep = over_D / (1.0 + 2.0 * c.value * d)
+    return over_u + np.sign(d) * over_creep * d * d * (c.value * dL - c.slope * L), over_creep
 
 
 @inline_kernel
@@ -438,6 +568,68 @@ def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
         factor * (value + u * slope) / (k * uL_slope),
         factor * (2.0 * slope + u * second_derivative) / k,
     )
+
+
+class ReducedKinematics(NamedTuple):
+    """Terms with d in the kinematics of partial slip at one speed, dimensionless; A = d(u L)/du.
+
+    With S = L (d + c d^2), delta = delta_0 + k S, k = mu/(2 kappa).
+
+    value : S/L.
+    width, dwidth, turn : dS/dd, and its derivatives over u and d.
+    total, total_dd : d(u S)/du divided by A, and its derivative in d.
+    bend : d^2(u S)/du^2.
+    """
+
+    value: float
+    width: float
+    dwidth: float
+    turn: float
+    total: float
+    total_dd: float
+    bend: float
+
+
+@inline_kernel
+def reduced_kinematics(d, u, L, dL, ddL, asymmetry, cover_rows):
+    """Return the :class:`ReducedKinematics` of partial slip at d.
+
+    d : float, of either sign, dimensionless.
+    u : float, kappa |V|, dimensionless, >= 0.
+    L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u.
+    asymmetry : :class:`OverSpeed` of c at u; not read for half-spaces.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces.
+    """
+    uL_slope = L + u * dL
+    uL_curvature = 2.0 * dL + u * ddL
+    if cover_rows is None:
+        return ReducedKinematics(d, L, dL, 0.0, d, 1.0, uL_curvature * d)
+    c = asymmetry
+    creep = creep_of(d, c.value, cover_rows)
+    aside = u * c.slope * L / uL_slope
+    return ReducedKinematics(
+        value=creep.value,
+        width=L * creep.slope,
+        dwidth=dL * creep.slope + L * c.slope * creep.bend_slope,
+        turn=L * creep.curvature,
+        total=creep.value + aside * creep.bend,
+        total_dd=creep.slope + aside * creep.bend_slope,
+        bend=uL_curvature * creep.value
+        + creep.bend * (2.0 * c.slope * uL_slope + u * c.curvature * L),
+    )
+
+
+@inline_kernel
+def creep_turn(creep, rate, cover_rows):
+    """Return what d^2 in the creepage adds to the slope of V d' in d, times dS/dd, a float; -0.0 of
+    half-spaces, which a compiler leaves out of sums.
+
+    creep : :class:`ReducedKinematics`.
+    rate : float, V d', dimensionless.
+    cover_rows : as of :func:`reduced_kinematics`.
+    """
+    return -0.0 if cover_rows is None else -creep.turn * rate
 
 
 # --- Rows for one thickness of a cover after another ---

@@ -37,15 +37,16 @@ Fields = namedtuple(
     "lam zeta epsilon delta_star delta full_slip beta grip Q M dQ_dV dQ_ddelta dQ_domega dM_dV "
     "M_half_space M_cylinder dM_half_space_dV dM_cylinder_dV delta_0 "
     "dM_ddelta dM_domega dM_half_space_domega dM_cylinder_domega "
-    "reaction_half_space reaction_cylinder excess_half_space excess_cylinder",
-    defaults=[-1] * 27,
+    "reaction_half_space reaction_cylinder excess_half_space excess_cylinder "
+    "delta_minus delta_plus",
+    defaults=[-1] * 29,
 )
 
 #: States that pass through the stages of the evaluation together: enough that a loop over them
 #: costs little for each, and few enough that their scratch stays in the first cache.
 TOGETHER = 64
 #: Numbers of the scratch of :func:`.contact_kernel.contact_loop`.
-SCRATCH_SIZE = 16 * TOGETHER
+SCRATCH_SIZE = 17 * TOGETHER
 
 
 class State(NamedTuple):

@@ -363,6 +363,11 @@ def _write_state(table, given, n, request):
         onset = edge_at(ONSET + np.int64(D >= free), u, speed, table).value
         write_field(to.delta_star, 0.5 * abs(onset - free) / kappa, n, request)
         write_field(to.delta_0, 0.5 * free / kappa, n, request)
+    if max(to.delta_minus, to.delta_plus) >= 0:
+        write_field(to.delta_minus, 0.5 * edge_at(ONSET, u, speed, table).value / kappa, n, request)
+        write_field(
+            to.delta_plus, 0.5 * edge_at(ONSET + 1, u, speed, table).value / kappa, n, request
+        )
     Q = _traction(given.mu, V, kappa, u, state, speed, place, table)
     half_space = _load(HALF_SPACE, 1.0 / kappa, V, kappa, u, state, speed, place, table)
     cylinder = _load(CYLINDER, 1.0 / kappa, V, kappa, u, state, speed, place, table)

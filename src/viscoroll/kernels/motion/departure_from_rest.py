@@ -6,7 +6,8 @@ Rolling off in the direction with V' > 0, d is the root of the right side of the
 
     2 kappa (omega' - V')/mu = d V'      Q = mu sign(d) (2 |d| - d^2)
 
-(of a cover with L d + 2 kappa delta_0/mu in place of d on the right).
+(of a cover with L (d + c d^2) + 2 kappa delta_0/mu in place of d on the right, with the asymmetry c
+of :mod:`.cover_law`).
 
 The left side less the right side decreases with d where mu <= 2 kappa: for |d| < 1 there is one
 root, or slip is full from the start.  Where mu > 2 kappa it decreases only from d = -2 kappa/mu on,
@@ -16,8 +17,8 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
 
 - L = 2 kappa delta_star/mu and delta_0, the creepage of free rolling, in the limit V -> 0: 1 and 0
   for half-spaces.
-- d = delta/delta_star, of a cover (delta - delta_0)/delta_star; Q: traction; M: rolling moment, 0
-  at V = 0.
+- d = delta/delta_star, of a cover d + c d^2 = (delta - delta_0)/delta_star; Q: traction; M: rolling
+  moment, 0 at V = 0.
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
   under a brake; whether the brake holds omega at 0.
@@ -35,11 +36,18 @@ from __future__ import annotations
 
 import numpy as np
 
+from ..law.cover_law import reduced_creep
 from ..numerics.intrinsics import by_value
 from ..numerics.jit import inline_kernel, kernel
 from ..records import REGIME_AT_REST, Load, Regime
 from .drive import evaluate_load, has_brake, is_constant, segment_end
-from .motion_law import added_inertia, reaction_at_rest, rest_limits
+from .motion_law import (
+    added_inertia,
+    asymmetry_at_rest,
+    creep_at_rest,
+    reaction_at_rest,
+    rest_limits,
+)
 from .table_law import balance_of_table, pull_of_table
 
 #: Code of a departure: the cylinder stays at rest for a time.
@@ -130,9 +138,10 @@ def _residual_of_d(d, load, scene):
     omega_rate = load.inverse_inertia * (load.torque - spin) + load.prescribed_omega_rate
     L, delta_0 = rest_limits(scene, np.copysign(1.0, d))
     inverse_k = 2.0 * scene.kappa / scene.mu / L
-    d_total = d + delta_0 * inverse_k
+    creep = creep_at_rest(d, scene)
+    d_total = creep.value + delta_0 * inverse_k
     slope = -(load.inverse_inertia * spin_dd + load.inverse_mass * axis_dd) * inverse_k
-    slope = slope - V_rate - d_total * load.inverse_mass * axis_dd
+    slope = slope - creep.slope * V_rate - d_total * load.inverse_mass * axis_dd
     return (omega_rate - V_rate) * inverse_k - d_total * V_rate, slope, V_rate
 
 
@@ -141,13 +150,16 @@ def _d_at_zero_omega(scene):
     """Return the d at which omega stays 0 as V grows from 0, that of delta = -1; a float below 0,
     dimensionless.
 
-    It is above -1, so that omega can stay 0 in partial slip, only where mu L > 2 kappa (1 +
+    It is above -1, so that omega can stay 0 in partial slip, only where mu L (1 - c) > 2 kappa (1 +
     delta_0); of half-spaces, where L = 1 and delta_0 = 0 at rest, that is mu > 2 kappa.
 
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
     """
     L, delta_0 = rest_limits(scene, -1.0)
-    return -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
+    creep = -2.0 * scene.kappa / scene.mu / L * (1.0 + delta_0)
+    if by_value(scene.law).cover_rows is None:
+        return creep
+    return reduced_creep(creep, asymmetry_at_rest(scene))
 
 
 @kernel
@@ -225,7 +237,7 @@ def _local_maximum_of_residual(load, scene):
     where C = inverse_mass f + V_rate, with the force f and the prescribed slope V_rate of V, so
     that the larger zero of the slope is the maximum.  Where V is prescribed, inverse_mass = 0, the
     residual is quadratic, and its only maximum is returned.  The moments of a cover by its traction
-    are left out here: the result bounds a search.
+    and c are left out here: the result bounds a search.
 
     load: Load, at V = 0, with brake and added mass in it (:func:`_effective_load`).
     scene: Scene, of which kappa, mu > 0 and ``law`` are read.
@@ -433,8 +445,8 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
     increase the slip.
 
     The sign sigma = 1 of the slip is tried first, then -1; the first is returned for which sigma
-    (omega' - V' (1 + delta_0)) exceeds ``stick_zone_slip`` times L |V'|.  Neither feedback nor
-    added mass acts, as V = omega = 0 and slip is full.
+    (omega' - V' (1 + delta_0)) exceeds ``stick_zone_slip`` times L (1 + sigma c) |V'|.  Neither
+    feedback nor added mass acts, as V = omega = 0 and slip is full.
 
     tau: float, time at which the drive is evaluated.
     segment: int, index of the segment of the drive that contains the time.
@@ -466,7 +478,8 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
         )
         if locked:
             omega_rate = 0.0
-        if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > stick_zone_slip * L * abs(V_rate):
+        onset = stick_zone_slip * L * abs(creep_at_rest(sigma, scene).value)
+        if sigma * (omega_rate - V_rate * (1.0 + free_creep)) > onset * abs(V_rate):
             direction = 1.0 if V_rate >= 0.0 else -1.0
             return (
                 SLIDES_OFF,

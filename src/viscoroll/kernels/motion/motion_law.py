@@ -34,7 +34,14 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..law.cover_law import MomentChange, moment_change, shear_reaction
+from ..law.cover_law import (
+    MomentChange,
+    asymmetry_at,
+    creep_of,
+    moment_change,
+    reduced_creep,
+    shear_reaction,
+)
 from ..law.law_functions import (
     body_moments,
     free_creep_and_slopes,
@@ -47,7 +54,7 @@ from ..law.law_record import ALPHA, E0, ROW_COUNT, element
 from ..numerics.intrinsics import by_value, unlikely
 from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import TERMS, evaluate_pair
-from .table_law import Width, strain_power, width_at
+from .table_law import Width, asymmetry_of_table, strain_power, width_at
 
 # --- Added mass ---
 
@@ -301,6 +308,45 @@ def reaction_at_rest(scene):
 
 
 @inline_kernel
+def asymmetry(position, u, L, dL, ddL, scene):
+    """Return the asymmetry c of the onsets of full slip at one speed, as
+    :class:`.cover_law.OverSpeed`; 0 of half-spaces and of tables.
+
+    position, u: :class:`.law_functions.RowPosition` of u = kappa |V|, and u.
+    L, dL, ddL: floats, 2 kappa delta_star/mu of the rows and its derivatives over u.
+    scene: Scene, of which ``law`` and, of a cover, mu are read.
+    """
+    law = by_value(scene.law)
+    rows = asymmetry_at(position, u, scene.mu, L, dL, ddL, law.cover_rows)
+    return asymmetry_of_table(rows, law.table)
+
+
+@inline_kernel
+def _asymmetry_at_speed(V, scene):
+    """Return the asymmetry c at a speed V of either sign, a float."""
+    u = scene.kappa * abs(V)
+    law = by_value(scene.law)
+    position = locate_row(u, law)
+    functions = length_and_moment(position, u, law)
+    return asymmetry(position, u, functions.L, functions.dL, functions.ddL, scene).value
+
+
+@inline_kernel
+def asymmetry_at_rest(scene):
+    """Return the asymmetry c in the limit V -> 0, a float."""
+    return _asymmetry_at_speed(0.0, scene)
+
+
+@inline_kernel
+def creep_at_rest(d, scene):
+    """Return the :class:`.cover_law.CreepCurve` in the limit V -> 0 at d, of either sign.
+
+    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read.
+    """
+    return creep_of(d, asymmetry_at_rest(scene), by_value(scene.law).cover_rows)
+
+
+@inline_kernel
 def rest_limits(scene, sigma=1.0):
     """Return (L, creepage delta_0 of free rolling) in the limit V -> 0, dimensionless; 1 and 0 for
     half-spaces.
@@ -388,8 +434,8 @@ def speeds_after_sliding(V, omega, scene):
     It ends within a time of the order of the speeds, in which nothing but the traction acts: a Q on
     the axis and b Q on the cylinder, with a = 1 + a_b + e_b q, b = 1 - a_c - e_c q, q = |Q|/mu
     (:class:`.cover_law.Reaction`), 1 of half-spaces.  In full slip, q = 1, V b + j omega a is
-    constant.  From |d| = 1 to 0, q = |d| (2 - |d|), d(ln V)/dy = -a/(b/j + a y) with y = omega/V,
-    which has the rule of Gauss with four points.
+    constant.  From |d| = 1 to 0, q = |d| (2 - |d|), d(ln V)/dy = -a/(b/j + a y) with y = omega/V, a
+    function of d, which has the rule of Gauss with four points.
 
     V, omega : floats, of either sign, not both 0.
     scene : Scene, of which ``law``, kappa, mu and j are read.
@@ -402,22 +448,27 @@ def speeds_after_sliding(V, omega, scene):
         return V, V * free
     reaction = reaction_at_rest(scene)
     limit = 0.5 * L * scene.mu / scene.kappa
-    left = abs(omega - free * V) / (limit * abs(V)) if V != 0.0 else np.inf
+    c = asymmetry_at_rest(scene)
     side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0  # a product of both would be 0
+    left = np.inf
+    if V != 0.0:
+        left = abs(reduced_creep(side * abs(omega - free * V) / (limit * abs(V)), c))
     if left > 1.0:
         left = 1.0
         on_axis = 1.0 + reaction.half_space + reaction.half_space_excess
         on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess
         kept = V * on_spin + j * omega * on_axis
         side = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
-        V = kept / (on_spin + j * on_axis * (free + side * limit))
+        V = kept / (on_spin + j * on_axis * (free + limit * (side + c)))
     for place, weight in _GAUSS:
         d = left * place
         q = d * (2.0 - d)
         on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * q
         on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * q
-        y = free + side * limit * d
-        V *= np.exp(left * weight * side * limit * on_axis / (on_spin / j + on_axis * y))
+        creep = creep_of(side * d, c, by_value(scene.law).cover_rows)
+        y = free + limit * creep.value
+        dy = side * limit * creep.slope
+        V *= np.exp(left * weight * dy * on_axis / (on_spin / j + on_axis * y))
     return V, V * free
 
 
@@ -440,29 +491,55 @@ def critical_creepage(V, sigma, scene):
     """Return the critical creepage delta_star, Eq. (9), at which the whole contact slips,
     dimensionless.
 
-    On a cover it is the excess over the creepage of free rolling.  It is above 0, even in V, and mu
-    L/(2 kappa) with L of :func:`rest_limits` at V = 0.
+    On a cover it is the excess over the creepage of free rolling, delta_star (1 + sigma c).  It is
+    above 0, even in V, and of half-spaces mu L/(2 kappa) with L of :func:`rest_limits` at V = 0.
 
     V: float, speed of the axis of either sign, finite, dimensionless.
-    sigma: float, sign of the slip, 1.0 or -1.0, on which that of a table depends.
+    sigma: float, sign of the slip, 1.0 or -1.0, on which that of a cover depends.
     scene: Scene, of which kappa, mu and ``law`` are read.
     """
-    return 0.5 * scene.mu / scene.kappa * _width(V, sigma, scene).L
+    onset = _creep_over_L(V, sigma, scene)
+    return 0.5 * scene.mu / scene.kappa * _width(V, sigma, scene).L * abs(onset)
+
+
+@inline_kernel
+def _creep_over_L(V, d, scene):
+    """Return (delta - delta_0)/delta_star at a speed V and d, both of either sign; d of
+    half-spaces.
+    """
+    cover_rows = by_value(scene.law).cover_rows
+    return creep_of(d, _asymmetry_at_speed(V, scene), cover_rows).value
+
+
+@inline_kernel
+def reduced_slip(slip, limit, V, sigma, scene):
+    """Return d of an excess slip in partial slip.
+
+    slip: float, :func:`excess_slip`, dimensionless, of sign sigma.
+    limit: float, its modulus where full slip begins, |V| times :func:`critical_creepage`, > 0.
+    V, sigma: floats, speed of the axis, and 1.0 or -1.0.
+    scene: Scene, of which kappa, mu and ``law`` are read.
+    """
+    part = slip / limit
+    if by_value(scene.law).cover_rows is None:
+        return part
+    c = _asymmetry_at_speed(V, scene)
+    return reduced_creep(part * (1.0 + sigma * c), c)
 
 
 @inline_kernel
 def creepage(V, d, scene):
-    """Return the creepage delta, Eq. (5), in partial slip: d delta_star, and on a cover delta_0 of
-    free rolling added.
+    """Return the creepage delta, Eq. (5), in partial slip: d delta_star, and on a cover delta_0 +
+    delta_star (d + c d^2).
 
     V: float, speed of the axis of either sign, dimensionless; V = 0: the limit.
-    d: float, delta/delta_star of the excess over free rolling; |d| <= 1 in partial slip, beyond it
-    the result is linear in d too.
+    d: float, |d| <= 1 in partial slip, beyond it the result is linear in d.
     scene: Scene, of which kappa, mu and ``law`` are read.
     Returns a float, dimensionless; omega = V (1 + delta) follows from it.
     """
     width = _width(V, np.copysign(1.0, d), scene)
-    return 0.5 * scene.mu / scene.kappa * width.L * d + 0.5 / scene.kappa * width.middle
+    creep = _creep_over_L(V, d, scene)
+    return 0.5 * scene.mu / scene.kappa * width.L * creep + 0.5 / scene.kappa * width.middle
 
 
 @inline_kernel
@@ -473,7 +550,8 @@ def excess_slip(slip, V, scene):
     slip: float, omega - V, signed, dimensionless.
     V: float, speed of the axis of either sign, dimensionless.
     scene: Scene, of which ``law`` is read, and kappa of a cover.
-    Returns a float, signed, dimensionless; full slip begins where its modulus is delta_star |V|.
+    Returns a float, signed, dimensionless; full slip begins where its modulus is
+    :func:`critical_creepage` times |V|.
     At V = 0 it is ``slip``.
     """
     return slip - V * (0.5 / scene.kappa * _width(V, 1.0, scene).middle)

@@ -38,7 +38,7 @@ from ..records import (
 )
 from .collocation import DELTA_ZERO, OMEGA_ZERO, ROW_V, STICK_EDGE, V_ZERO, change_slip, row_range
 from .drive import current_load, has_brake, is_undriven, prescribed_speed
-from .motion_law import critical_creepage, excess_slip, speeds_after_sliding
+from .motion_law import critical_creepage, excess_slip, reduced_slip, speeds_after_sliding
 from .rhs import applied_forces, current_rates
 
 #: V at the event divided by V at the left end of the step, below which V is 0, as rounding leaves
@@ -340,9 +340,9 @@ def initial_regime(V, omega, step_state, work):
     step_state: StepState, at the start.
     work: Workspace, of which Scene and Drive are read.
     Returns (State, Regime, stick_formed): the State in the direction of the Regime, which is that
-    of V, or of omega where V is 0, with omega in full slip and d = excess slip/(delta_star V) in
-    partial slip; the Regime with the sign of the excess slip as ``sigma`` (1 for 0) and without a
-    brake; ``stick_formed``, a bool, True only for a start in partial slip with d = +-1.
+    of V, or of omega where V is 0, with omega in full slip and d in partial slip; the Regime with
+    the sign of the excess slip as ``sigma`` (1 for 0) and without a brake; ``stick_formed``, a
+    bool, True only for a start in partial slip with d = +-1.
     """
     if is_undriven(0, work.drive) and max(abs(V), abs(omega)) < ZERO_V_RATIO:
         V, omega = speeds_after_sliding(V, omega, work.scene)
@@ -357,7 +357,7 @@ def initial_regime(V, omega, step_state, work):
     if V == 0.0:
         return state, regime, False
     on_edge = abs(abs(slip) - limit) <= _START_ON_EDGE * max(V, abs(omega))
-    stick_state = State(V, sigma if on_edge else slip / limit)
+    stick_state = State(V, sigma if on_edge else reduced_slip(slip, limit, V, sigma, work.scene))
     stick_regime = Regime(
         full_slip=False, direction=direction, sigma=sigma, spin_sign=0.0, locked=False
     )

@@ -9,9 +9,9 @@ w = (1 - |d|) L, s = sign d and H(v) the function :func:`.law_functions.H_over_F
 
     omega = V (1 + k L d)      Q = s mu [1 - w^2 H(2 u/w)]      V d' = [(omega' - V')/k - d (L + u L') V']/L
 
-On a cover of finite thickness delta = delta_0(u) + k L d: delta_0 V is added to omega, and its
-slope to the factor of V' in the last equation (:mod:`.cover_law`); half-spaces are compiled
-without it.
+On a cover of finite thickness delta = delta_0(u) + k L (d + c(u) d^2): delta_0 V is added to omega,
+and the slopes of delta_0 and c to the factors of V' and d' in the last equation
+(:mod:`.cover_law`); half-spaces are compiled without them.
 
 Both sides of the last equation stay finite as V -> 0, where d is the root of its right side.
 For |d| > 1 the law is continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V <
@@ -54,14 +54,14 @@ from __future__ import annotations
 import math
 from typing import NamedTuple
 
-from ..law.cover_law import free_kinematics
+from ..law.cover_law import creep_turn, free_kinematics, reduced_kinematics
 from ..law.law_functions import H_over_F2, H_over_F2_secants, locate_row
 from ..numerics.intrinsics import by_value, unlikely
 from ..numerics.jit import inline_kernel, kernel
 from ..records import State
 from .collocation import ROW_OMEGA_OR_D, ROW_V
 from .drive import current_load, load_at_node
-from .motion_law import added_inertia, evaluate_moments, loaded_moments
+from .motion_law import added_inertia, asymmetry, evaluate_moments, loaded_moments
 from .table_law import Width, free_creep_of_table, loads_on_rows, table_state, width_at
 
 #: k relative to the smallest k at which dp/dV may vanish at d = -1, above which V is collocated,
@@ -196,11 +196,11 @@ def partial_slip_rates(V, d, load, regime, scene):
     0 all values are finite.
 
     Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L,
-    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with the creepage of a cover, x_V
-    and x_d: derivatives of x in V and d.
+    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with what a cover adds,
+    x_V and x_d: derivatives of x in V and d.
 
     V: float, speed of the axis in the direction of the regime, dimensionless.
-    d: float, delta/delta_star, of a cover that of the excess over free rolling; dimensionless.
+    d: float, delta/delta_star; of a cover d + c d^2 = (delta - delta_0)/delta_star; dimensionless.
     load: Load, the drive at the time; all fields are read.
     regime: Regime, of partial slip; sigma is the sign of the branch, spin_sign that of omega under
     a brake.
@@ -245,12 +245,15 @@ def partial_slip_rates(V, d, load, regime, scene):
     dL = width.dL
     ddL = width.ddL
     dVdelta_star = L + u * dL
-    cover = free_kinematics(locate_row(u, law), u, scene.kappa, k, dVdelta_star, law.cover_rows)
+    position = locate_row(u, law)
+    cover = free_kinematics(position, u, scene.kappa, k, dVdelta_star, law.cover_rows)
     cover = free_creep_of_table(width, u, scene.kappa, k, cover, law.table)
-    d_total = d + cover.aside
-    omega = V * (1.0 + k * L * d + cover.creep)
+    c = asymmetry(position, u, L, dL, ddL, scene)
+    creep = reduced_kinematics(d, u, L, dL, ddL, c, law.cover_rows)
+    d_total = creep.total + cover.aside
+    omega = V * (1.0 + k * L * creep.value + cover.creep)
     domega_dV = 1.0 + k * d_total * dVdelta_star
-    domega_dd = k * V * L
+    domega_dd = k * V * creep.width
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
@@ -299,11 +302,11 @@ def partial_slip_rates(V, d, load, regime, scene):
     omega_rate = inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
     # Reciprocals are formed once: the processor takes longer for a division than for five products.
     inverse_k = 1.0 / k
-    inverse_L = 1.0 / L
+    inverse_L = 1.0 / creep.width
     rate = inverse_L * (inverse_k * (omega_rate - V_rate) - d_total * dVdelta_star * V_rate)
     domega_rate_dV = inverse_inertia * (dtorque_dV - dQ_dV - moments.cylinder_dV)
     domega_rate_dd = inverse_inertia * (dtorque_dd - dQ_dd - moments.cylinder_dd)
-    dL_term = du_dV * (((2.0 * dL + u * ddL) * d + cover.bend) * V_rate + dL * rate)
+    dL_term = du_dV * ((creep.bend + cover.bend) * V_rate + creep.dwidth * rate)
     if unlikely(has_strong_friction(load, regime, scene)):
         p = V
         p_rate = V_rate
@@ -334,7 +337,8 @@ def partial_slip_rates(V, d, load, regime, scene):
         drate_dd=inverse_L
         * (
             inverse_k * (domega_rate_dd - dV_rate_dd)
-            - dVdelta_star * (V_rate + d_total * dV_rate_dd)
+            - dVdelta_star * (creep.total_dd * V_rate + d_total * dV_rate_dd)
+            + creep_turn(creep, rate, law.cover_rows)
         ),
         dweight_dV=1.0,
     )

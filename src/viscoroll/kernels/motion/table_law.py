@@ -27,7 +27,7 @@ from ..law.coupled_splines import (
     locate_speed,
     place_of,
 )
-from ..law.cover_law import FreeCreep
+from ..law.cover_law import FreeCreep, OverSpeed
 from ..numerics.jit import inline_kernel
 
 #: Bisections of d in [-1, 1], to rounding.
@@ -66,6 +66,14 @@ def free_creep_of_table(width, u, kappa, k, rows, table):
         factor * (width.middle + u * width.dmiddle) / (k * (width.L + u * width.dL)),
         factor * (2.0 * width.dmiddle + u * width.ddmiddle) / k,
     )
+
+
+@inline_kernel
+def asymmetry_of_table(rows, table):
+    """Return the asymmetry c as :class:`.cover_law.OverSpeed`: 0 of a table, whose sides have an L
+    each; else ``rows``, that of the rows.
+    """
+    return rows if table is None else OverSpeed(0.0, 0.0, 0.0)
 
 
 class TableState(NamedTuple):

@@ -19,7 +19,7 @@ enum { VR_TERMS = 24, VR_FUNCTIONS = 7 };
 /* functions of kappa |V|, then of v = 1/F(eta) */
 enum { VR_LAM, VR_EPSILON, VR_M_HALF_SPACE, VR_M_CYLINDER, VR_N, VR_SHARE, VR_PRESS };
 /* what a cover has besides: L = 2 kappa delta_star/mu, f and g of half-space and cylinder, slopes of lam and epsilon in
- * Q; 2 kappa delta_0 is the sum of f, and g changes M of full slip */
+ * Q; 2 kappa delta_0 is the sum of f, and g changes M of full slip and the onsets of full slip */
 enum { VR_LIMIT, VR_FREE, VR_EXCESS = 3, VR_TILT = 5, VR_CREEP_FUNCTIONS = 7 };
 
 typedef struct {
@@ -121,6 +121,21 @@ static inline double vr_free_creep(const vr_law *law, double kappa, double V, do
   return *slope = 0.5 * (d[VR_FREE] + d[VR_FREE + 1]), 0.5 * (f[VR_FREE] + f[VR_FREE + 1]) / kappa;
 }
 
+/* r, the excess of a cover in units of mu L/2, and the asymmetry c of the onsets of full slip, with their slopes over u,
+ * from its functions f at kappa |V| and their slopes e:  delta = delta_0 + delta_star (x + c x^2), |x| < 1 in partial
+ * slip, where x takes the place of delta/delta_star of half-spaces */
+typedef struct { double r, dr, c, dc; } vr_excess;
+
+static inline vr_excess vr_excess_at(double mu, const double f[VR_CREEP_FUNCTIONS], const double e[VR_CREEP_FUNCTIONS]) {
+  double of_L = 2.0 / (mu * f[VR_LIMIT]), n;
+  vr_excess x;
+  x.r = of_L * (f[VR_EXCESS] + f[VR_EXCESS + 1]);
+  x.dr = of_L * (e[VR_EXCESS] + e[VR_EXCESS + 1]) - x.r * e[VR_LIMIT] / f[VR_LIMIT];
+  n = 4.0 * x.r * x.r, n *= n * n;
+  x.c = -x.r / (1.0 + n), x.dc = -x.dr * (1.0 - 5.0 * n) / ((1.0 + n) * (1.0 + n));
+  return x;
+}
+
 /* Add what shear does on a cover at u = kappa |V| to lam, epsilon and M, and with d, where not NULL, to the slopes, of
  * which those of Q are known; du_dV: kappa with the sign of V. */
 static inline void vr_shear(const vr_law *law, double kappa, double mu, double u, double du_dV, vr_state *s,
@@ -129,9 +144,8 @@ static inline void vr_shear(const vr_law *law, double kappa, double mu, double u
   int n;
   if (!law->creep || !(s->Q == s->Q)) return;
   vr_creep(law, u, f, e);
-  double of_L = 2.0 / (mu * f[VR_LIMIT]), r = of_L * (f[VR_EXCESS] + f[VR_EXCESS + 1]);
-  double dr = of_L * (e[VR_EXCESS] + e[VR_EXCESS + 1]) - r * e[VR_LIMIT] / f[VR_LIMIT];
-  double rest = 1.0 / (1.0 + r * r * r * r), k = sqrt(sqrt(rest)), dk = -k * rest * r * r * r * dr;
+  vr_excess x = vr_excess_at(mu, f, e);
+  double rest = 1.0 / (1.0 + x.r * x.r * x.r * x.r), k = sqrt(sqrt(rest)), dk = -k * rest * x.r * x.r * x.r * x.dr;
   for (n = 0; n < 2; n++) { /* half-space, cylinder */
     double a = n ? 1.0 / (2.0 * kappa + f[VR_FREE] + f[VR_FREE + 1]) : 0.5 / kappa, g = f[VR_EXCESS + n];
     double da = n ? -a * a * (e[VR_FREE] + e[VR_FREE + 1]) : 0.0, bracket = f[VR_FREE + n] + k * g * used;
@@ -210,7 +224,15 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
   vr_speed(law, u, f, d ? m : (double *)0);
   double creep[VR_CREEP_FUNCTIONS] = {f[VR_LAM] * (1.0 + f[VR_EPSILON])}, slope[VR_CREEP_FUNCTIONS];
   if (law->creep) vr_creep(law, u, creep, slope);
-  double L = creep[VR_LIMIT], D = 2.0 * kappa * delta / mu, w = L - D;
+  double L = creep[VR_LIMIT], bend = 0.0, turn = 1.0, D = 2.0 * kappa * delta / mu, w;
+  if (law->creep) { /* D = L |x|; turn: d(x + c x^2)/dx; bend: slope of D over u at fixed creepage */
+    vr_excess of = vr_excess_at(mu, creep, slope);
+    double side = creepage < 0.0 ? -1.0 : 1.0, part = D / L, x = HUGE_VAL;
+    if (part < 1.0 + side * of.c) x = 2.0 * part / (1.0 + sqrt(1.0 + 4.0 * side * of.c * part));
+    D = L * x, delta = 0.5 * mu * D / kappa, turn = 1.0 + 2.0 * side * of.c * x;
+    bend = side * x * x * (of.c * slope[VR_LIMIT] - of.dc * L) / turn;
+  }
+  w = L - D;
   s->lam = f[VR_LAM], s->epsilon = f[VR_EPSILON], s->N = f[VR_N], s->delta_star = 0.5 * mu * L / kappa;
   s->delta_0 = delta_0;
   s->M_half_space = V * f[VR_M_HALF_SPACE], s->M_cylinder = V * f[VR_M_CYLINDER];
@@ -230,8 +252,9 @@ static inline void vr_solve(const vr_law *law, double kappa, double mu, double V
   if (d) {
     vr_stick(law, v1, a, &p1);
     double A1 = a[1] - 0.5 * v1 * p1, A2 = b[1] - 0.5 * v2 * p2;
-    d->dQ_domega = 4.0 * kappa * w * A2 / fabs(V); /* then dQ_dV at fixed delta, and what delta changes */
-    d->dQ_dV = sign * (V < 0.0 ? -2.0 : 2.0) * mu * kappa * w * (A2 * p1 / A1 - p2) - (1.0 + creepage) * d->dQ_domega;
+    d->dQ_domega = 4.0 * kappa * w * A2 / turn / fabs(V); /* then dQ_dV at fixed delta, and what delta changes */
+    d->dQ_dV = sign * (V < 0.0 ? -2.0 : 2.0) * mu * kappa * w * (A2 * (p1 / A1 + bend) - p2);
+    d->dQ_dV -= (1.0 + creepage) * d->dQ_domega;
   }
 }
 

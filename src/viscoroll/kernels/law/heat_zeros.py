@@ -1,0 +1,177 @@
+"""The temperatures at which the loss of rolling equals the heat given off, of many states of one
+law.
+
+With the rise r of the temperature above ambient, K, they are the zeros of
+
+    f(r) = power kappa M(u) - r,    log2 u = x_hot + slope/(ambient - pole + r)
+
+where u = kappa V a_T, and kappa M without traction is a function of u alone.  log2 a_T of the laws
+of Williams, Landel and Ferry and of Arrhenius is slope/(theta - pole) plus a constant, which is
+part of x_hot.
+"""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ..numerics.jit import inline_kernel, kernel
+from .law_functions import length_and_moment, locate_row
+
+#: steps of bracketed Newton: bisection alone needs 50 from a node to rounding
+_STEPS = 60
+#: distance from a zero at which it is found, relative, and absolute in K
+_RELATIVE = 1e-12
+_ABSOLUTE = 1e-15
+
+
+class HeatRequest(NamedTuple):
+    """States of one law, vectors of one length (n,), and nodes of its curve.
+
+    x_hot : log2 of kappa V a_T in the limit of an infinite temperature, finite.
+    ambient : degrees Celsius, above the pole.
+    power : loss over kappa M and conductance, K, >= 0.
+    hottest : temperature up to which zeros are looked for, degrees Celsius.
+    pole : of the shift, degrees Celsius, a number.
+    slope : of log2 a_T over 1/(theta - pole), K, > 0, a number.
+    curve : kappa M at log2 u = k/density - farthest, (2 farthest density + 1,).
+    density, farthest : ints, of the curve.
+    """
+
+    x_hot: Any
+    ambient: Any
+    power: Any
+    hottest: Any
+    pole: float
+    slope: float
+    curve: Any
+    density: int
+    farthest: int
+
+
+@inline_kernel
+def _rest(n, r, request, law):
+    """Return f and its slope at the rise r, K, of state n: floats, K and dimensionless."""
+    above = request.ambient[n] - request.pole + r
+    u = np.exp2(request.x_hot[n] + request.slope / above)
+    functions = length_and_moment(locate_row(u, law), u, law)
+    du_dr = -np.log(2.0) * u * request.slope / (above * above)
+    return (
+        request.power[n] * u * functions.scale * functions.m - r,
+        request.power[n] * functions.d_um * du_dr - 1.0,
+    )
+
+
+@kernel
+def _find_zero(n, low, high, r, falling, request, law):
+    """Return the zero of f between ``low`` and ``high``, K: Newton's iteration from r in a bracket.
+
+    falling : whether f > 0 at ``low``, and < 0 at ``high``; else the reverse.
+    """
+    if not low < r < high:
+        r = 0.5 * (low + high)
+    for _ in range(_STEPS):
+        value, slope = _rest(n, r, request, law)
+        if (value > 0.0) == falling:
+            low = r
+        else:
+            high = r
+        new = r - value / slope
+        if not low <= new <= high:
+            new = 0.5 * (low + high)
+        step = abs(new - r)
+        r = new
+        if step <= _RELATIVE * abs(r) + _ABSOLUTE:
+            break
+    return r
+
+
+@kernel
+def _find_turn(n, low, high, positive, request, law):
+    """Return a rise between ``low`` and ``high``, K, at which f has the other sign than
+    ``positive`` states, else NaN.
+
+    |f| has a minimum there, which is bracketed by its slope.
+    """
+    for _ in range(_STEPS):
+        r = 0.5 * (low + high)
+        value, slope = _rest(n, r, request, law)
+        if (value > 0.0) != positive:
+            return r
+        if (slope < 0.0) == positive:
+            low = r
+        else:
+            high = r
+    return np.nan
+
+
+@inline_kernel
+def _write(n, rise, stable, count, request, number, out, is_stable):
+    """Write a zero of state n as the one of index ``count``, and return the next index.
+
+    A zero above the hottest temperature is left out; beyond the end of ``out`` it is only counted.
+    """
+    if request.ambient[n] + rise > request.hottest[n]:
+        return count
+    if count < out.size:
+        number[count] = n
+        out[count] = rise
+        is_stable[count] = stable
+    return count + 1
+
+
+@kernel
+def heat_loop(law, request, number, out, is_stable):
+    """Find all zeros of f of each state: changes of sign between nodes, and pairs of zeros between
+    neighbouring nodes.
+
+    A pair is found where |f| has a minimum at a node near which a parabola reaches 0 and f has the
+    other sign at the extremum; zeros at which f only touches 0 are not found.
+
+    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the
+    head are read.
+    request : :class:`HeatRequest`.
+    number, out, is_stable : (m,) each, ints, floats, bools, of which the first are written: index
+        of the state, rise, K, and whether f falls there; ordered by state, and of a state by rise
+        but for pairs between nodes.
+    Returns the number of zeros, which may exceed m: those beyond are not written.
+    """
+    count = 0
+    density = request.density
+    offset = request.farthest * density
+    for n in range(request.x_hot.size):
+        x_hot = request.x_hot[n]
+        above = request.ambient[n] - request.pole
+        most = request.hottest[n] - request.ambient[n]
+        first = max(int(density * (x_hot + request.slope / (above + most))) - 3, -offset)
+        last = min(int(density * (x_hot + request.slope / above)) + 4, offset)
+        older = 0.0
+        old = 0.0
+        low = -above
+        cold = -above
+        for k in range(last, first - 1, -1):  # from cold to hot
+            distance = k / density - x_hot
+            r = 2.0 * most + 1.0
+            if distance > 0.0:
+                r = min(request.slope / distance - above, r)
+            f = request.power[n] * request.curve[k + offset] - r
+            if k < last and (f > 0.0) != (old > 0.0):
+                start = low + old / (old - f) * (r - low)
+                zero = _find_zero(n, low, r, start, old > 0.0, request, law)
+                count = _write(n, zero, old > 0.0, count, request, number, out, is_stable)
+            elif k < last - 1 and (old > 0.0) == (older > 0.0):
+                near = abs(old) <= min(abs(older), abs(f))
+                if near and abs(old) < abs(older - 2.0 * old + f):
+                    up = old > 0.0
+                    turn = _find_turn(n, cold, r, up, request, law)
+                    if turn == turn:
+                        for side in range(2):
+                            begin = cold if side == 0 else turn
+                            end = turn if side == 0 else r
+                            falls = up == (side == 0)
+                            zero = _find_zero(n, begin, end, begin, falls, request, law)
+                            count = _write(n, zero, falls, count, request, number, out, is_stable)
+            older = old
+            cold = low
+            old = f
+            low = r
+    return count
