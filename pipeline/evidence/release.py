@@ -27,6 +27,7 @@ from readme_renderer import markdown
 import viscoroll as vr
 
 from ..stage import ROOT, said
+from .citation import made
 from .matrix import packed
 from .results import RESULTS
 from .stamps import SHORT, kernels_digest, outdated
@@ -84,6 +85,9 @@ def metadata(packages: Packages) -> Iterator[str]:
         date[1]
     ) > datetime.date.today():
         yield "CITATION.cff has no date-released, or one to come"
+    for name, text in made().items():
+        if (ROOT / name).read_text(encoding="utf-8") != text:
+            yield f"{name} is not that of pyproject.toml: run pipeline.evidence.citation"
     if f"\n## {vr.__version__}\n" not in packages.texts.get("CHANGELOG.md", ""):
         yield f"the CHANGELOG has no section {vr.__version__}, or not as released"
     if found.license_expression != "BSD-3-Clause" or not found.summary or not found.description:

@@ -16,7 +16,7 @@ if sys.version_info < (3, 11):  # noqa: UP036 (a copy that pip did not install)
     raise ImportError("viscoroll needs Python 3.11 or newer, this is " + sys.version.split()[0])
 
 #: Version of the package; its metadata are made from this line.
-__version__ = "0.3.0"
+__version__ = "0.4.0"
 
 
 def _read_modules() -> dict[str, str]:
