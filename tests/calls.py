@@ -134,46 +134,33 @@ def law_file():
     return vr.tables.law(11.0)
 
 
-def lines_of(name):
-    """The pairs of lines of a table: a call, and below it the answer; comments and empty lines are
-    left out.
-    """
-    text = (Path(__file__).parent / name).read_text()
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    return [*zip(lines[::2], map(str.strip, lines[1::2]), strict=True)]
+def file(content, name="file.toml"):
+    """A file in the working directory."""
+    Path(name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    return Path(name)
 
 
-def names_in(folder):
-    """What the calls of a table see, with functions that write files into a folder."""
+def run(name, old, new):
+    """A run file, with this in place of that."""
+    assert old in FILES[name]
+    return read_run(file(FILES[name].replace(old, new, 1)))
 
-    def file(content, name="file.toml"):
-        (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
-        return folder / name
 
-    def run(name, old, new):
-        assert old in FILES[name]
-        return read_run(file(FILES[name].replace(old, new, 1)))
+def measured(old, new):
+    """The fit of a file of measurements, with this in place of that."""
+    return vr.identify(**read_measurements(experiments.measurements(Path(), old, new)), starts=1)
 
-    def measured(old, new):
-        return vr.identify(
-            **read_measurements(experiments.measurements(folder, old, new)), starts=1
-        )
 
-    def data(text, kind="resistance"):
-        """The first data of a file of measurements, whose columns have the names of its own
-        kind.
-        """
-        file(text, "drum.csv")
-        plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', "").replace(
-            "resistance", kind
-        )
-        return read_measurements(file(plain))["data"][0]
+def data(text, kind="resistance"):
+    """The first data of a file of measurements, whose columns have the names of its own kind."""
+    file(text, "drum.csv")
+    plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', "")
+    return read_measurements(file(plain.replace("resistance", kind)))["data"][0]
 
-    def netcdf(data, without=""):
-        """A file of a dataset, without an attribute, as another program writes it."""
-        data = data.copy()
-        data.attrs.pop(without, None)
-        data.to_netcdf(folder / "given.nc", engine="h5netcdf")
-        return folder / "given.nc"
 
-    return vars(experiments) | globals() | locals()
+def netcdf(data, without=""):
+    """A file of a dataset, without an attribute, as another program writes it."""
+    data = data.copy()
+    data.attrs.pop(without, None)
+    data.to_netcdf("given.nc", engine="h5netcdf")
+    return Path("given.nc")
