@@ -17,7 +17,6 @@ from calls import (
     MANY,
     ONE,
     PAPER,
-    PAPER_CYLINDER,
     ROLLER,
     RUBBER_COVER,
     SERIES,
@@ -34,6 +33,7 @@ import viscoroll as vr
 from viscoroll import fmu
 from viscoroll.laws.law_netcdf import law_table_of
 from viscoroll.laws.law_table import law_table
+from viscoroll.presets import PAPER_CYLINDER
 from viscoroll.sampling import sample
 
 inf, nan = math.inf, math.nan
@@ -251,9 +251,11 @@ FLOWS = each(
         "V0 = inf at row 1: must be a finite number": {"V0": [1.0, inf]},
         "motions have different scenes": {"roller": PAPER.replace(mu=[0.2, 0.3])},
         "driven": {"force": 0.1},
-        "method = 'flow'": {"roller": PAIRS},
-        "method = 'flow' | finite": {"roller": COVERED},
-        "method = 'flow' | or bodies differ": {"roller": BODIES},
+        "method = 'flow' | or bodies differ": [
+            {"roller": PAIRS},
+            {"roller": COVERED},
+            {"roller": BODIES},
+        ],
         "'auto' or 'integrate' where motions are driven or unsteady": UNSTEADY | {"unsteady": True},
     },
     **FREE,
