@@ -1,14 +1,7 @@
-"""Tables of calls, refusals.txt, values.txt and cli/answers.txt; their lines see the names of this
-module.
-"""
-# ruff: noqa: F401 - names are imported for the lines
+"""Rollers, materials, data and files that many calls share."""
 
-import dataclasses
-import math
-import pickle
 from dataclasses import replace
 from functools import cache
-from math import inf, nan, pi
 from pathlib import Path
 
 import experiments
@@ -17,34 +10,11 @@ import pandas as pd
 import xarray as xr
 from drives import DMA as DMA_SERIES
 from drives import ON_DMA as DMA_ROLLER
-from drives import ROLLER as DRIVEN
-from refusals import refused
 from run_files import FILES
-from scipy import stats
 
 import viscoroll as vr
-from viscoroll import fmu
-from viscoroll.cli.file_commands import _figure_of_netcdf
-from viscoroll.contact_mechanics.assumptions import REACH_LIMIT, WAVE_LIMIT, assess_coupling
-from viscoroll.contact_mechanics.contact_table import FIELDS, SLOPES
-from viscoroll.contact_mechanics.free_rolling import FreeRolling
-from viscoroll.contact_mechanics.validity import Steadiness
-from viscoroll.core.scale import Scale
-from viscoroll.kernels.law.bessel_ratios import ratio_i2, ratio_k, ratio_r
-from viscoroll.laws.law_netcdf import law_table_of
-from viscoroll.laws.law_table import law_table
-from viscoroll.materials.checked_netcdf import material_as_dataset
-from viscoroll.materials.material_toml import read_materials
 from viscoroll.measurements.identify import read_measurements
-from viscoroll.motion.summaries import Histogram
-from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
-from viscoroll.roller_toml import read_law_source, read_roller
-from viscoroll.runs import estimate, read_run
-from viscoroll.runs.run_blocks import attributes, block_inputs, roll_inputs
-from viscoroll.runs.sensitivity import sobol_indices
-from viscoroll.runs.uncertain_inputs import read_column
-from viscoroll.sampling import sample
-from viscoroll.tables.law_dataset import check_table
+from viscoroll.runs import read_run
 
 SCENE_FILE = "[scene]\nalpha = 11\nkappa = 2.91\nmu = 0.2\n"
 ROLLER_FILE = "[cylinder]\nR = 0.1\nm = 35.5\nmu = 0.2\n"
@@ -134,46 +104,33 @@ def law_file():
     return vr.tables.law(11.0)
 
 
-def lines_of(name):
-    """The pairs of lines of a table: a call, and below it the answer; comments and empty lines are
-    left out.
-    """
-    text = (Path(__file__).parent / name).read_text()
-    lines = [line for line in text.splitlines() if line.strip() and not line.startswith("#")]
-    return [*zip(lines[::2], map(str.strip, lines[1::2]), strict=True)]
+def file(content, name="file.toml"):
+    """A file in the working directory."""
+    Path(name).write_bytes(content if isinstance(content, bytes) else content.encode())
+    return Path(name)
 
 
-def names_in(folder):
-    """What the calls of a table see, with functions that write files into a folder."""
+def run(name, old, new):
+    """A run file, with this in place of that."""
+    assert old in FILES[name]
+    return read_run(file(FILES[name].replace(old, new, 1)))
 
-    def file(content, name="file.toml"):
-        (folder / name).write_bytes(content if isinstance(content, bytes) else content.encode())
-        return folder / name
 
-    def run(name, old, new):
-        assert old in FILES[name]
-        return read_run(file(FILES[name].replace(old, new, 1)))
+def measured(old, new):
+    """The fit of a file of measurements, with this in place of that."""
+    return vr.identify(**read_measurements(experiments.measurements(Path(), old, new)), starts=1)
 
-    def measured(old, new):
-        return vr.identify(
-            **read_measurements(experiments.measurements(folder, old, new)), starts=1
-        )
 
-    def data(text, kind="resistance"):
-        """The first data of a file of measurements, whose columns have the names of its own
-        kind.
-        """
-        file(text, "drum.csv")
-        plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', "").replace(
-            "resistance", kind
-        )
-        return read_measurements(file(plain))["data"][0]
+def data(text, kind="resistance"):
+    """The first data of a file of measurements, whose columns have the names of its own kind."""
+    file(text, "drum.csv")
+    plain = experiments.FILE.replace('columns = { V = "speed", M = "moment" }\n', "")
+    return read_measurements(file(plain.replace("resistance", kind)))["data"][0]
 
-    def netcdf(data, without=""):
-        """A file of a dataset, without an attribute, as another program writes it."""
-        data = data.copy()
-        data.attrs.pop(without, None)
-        data.to_netcdf(folder / "given.nc", engine="h5netcdf")
-        return folder / "given.nc"
 
-    return vars(experiments) | globals() | locals()
+def netcdf(data, without=""):
+    """A file of a dataset, without an attribute, as another program writes it."""
+    data = data.copy()
+    data.attrs.pop(without, None)
+    data.to_netcdf("given.nc", engine="h5netcdf")
+    return Path("given.nc")

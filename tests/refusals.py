@@ -26,12 +26,14 @@ def each(call, given, error=vr.ParameterError, **usual):
     """Parameters of a test: calls, the words of the answer, and the error that has them.
 
     given: words, with " | " between, -> a dict of arguments beside the ``usual`` or in place of
-    them, a tuple of arguments, or one; without ``call`` a function that makes the whole call.
+    them, a tuple of arguments, or one; without ``call`` a function that makes the whole call; a
+    list of several of these.
     """
     found = []
-    for words, one in given.items():
-        named = one if isinstance(one, dict) else {}
-        listed = one if isinstance(one, tuple) else () if isinstance(one, dict) else (one,)
-        made = partial(call, *listed, **usual | named) if call else one
-        found.append(pytest.param(made, words.split(" | "), error, id=words))
+    for words, ways in given.items():
+        for one in ways if isinstance(ways, list) else [ways]:
+            named = one if isinstance(one, dict) else {}
+            listed = one if isinstance(one, tuple) else () if isinstance(one, dict) else (one,)
+            made = partial(call, *listed, **usual | named) if call else one
+            found.append(pytest.param(made, words.split(" | "), error, id=words))
     return found

@@ -3,6 +3,7 @@ elements: make prove.
 """
 
 import ctypes
+import dataclasses
 import json
 import shutil
 import subprocess
@@ -171,7 +172,7 @@ def test_a_thin_compressible_cover_is_a_foundation():
     assert close(2.0 * ratios[1] - ratios[0], 1.0, rel=0.1 * tol.COVER_THIN)
 
 
-@settings(max_examples=12, deadline=None)
+@settings(max_examples=6, deadline=None)
 @given(
     st.floats(0.0, 0.5),
     st.floats(-0.8, 2.0),
@@ -287,8 +288,8 @@ def test_motions_follow_the_contact():
     assert np.array_equal(vr.ensemble(scene, [1.0, 0.5], [0.2, 0.5], **options).V[0], m.V)
 
 
-#: on either side of an octave; elastic, with a Poisson's ratio each
-MANY = vr.Cover(ONE, nu=0.3, thickness=[0.45, 0.55, 0.45], on="base")
+#: in one octave; elastic, on either side of an octave, with a Poisson's ratio each
+MANY = vr.Cover(ONE, nu=0.3, thickness=[0.52, 0.6, 0.52], on="base")
 MANY_NU = vr.Cover(1.0, nu=[0.0, 0.5, 0.33], thickness=[0.3, 0.55, 0.45])
 
 
@@ -310,10 +311,11 @@ def test_a_thickness_each(cover):
 
 
 def test_a_load_each():
-    """Cylinders whose loads, and with them thicknesses over l0, differ."""
-    load = np.array([1.2e3, 1.7e3])
-    rollers = roller_of(THIN, RIGID, load)
-    M = [roller_of(THIN, RIGID, each).contact(1.0, delta=0.0).M for each in load]
+    """Cylinders whose loads, and with them thicknesses over l0, differ: of the covers above."""
+    load = np.array([1.2e3, 1.6e3])
+    belt = vr.Material(2e6, 0.3, ONE, 0.1, thickness=0.01)
+    rollers = roller_of(RIGID, belt, load)
+    M = [roller_of(RIGID, belt, each).contact(1.0, delta=0.0).M for each in load]
     assert close(rollers.contact(1.0, delta=0.0).M, M, rel=tol.COVER_EACH)
     assert rollers.validity(1.0).thick.value.shape == (2,)
 
@@ -364,8 +366,9 @@ def test_the_shear_of_a_cover_is_not_computed(monkeypatch):
     assert np.isfinite(vr.stress(ALL[0], 0.0, 0.2, delta=0.0).p)
 
 
-@pytest.mark.parametrize("scene", ALL)
-@pytest.mark.parametrize("V", [0.0, 2e-3, 0.04, 0.2])
+@pytest.mark.parametrize(
+    ("scene", "V"), [(ALL[1], 0.0), (ALL[3], 2e-3), *((scene, 0.2) for scene in ALL)]
+)
 def test_pressure_of_a_cover_makes_the_parabola(scene, V):
     """Its integral is the load, its moment M, and the slope that both bodies take on, by Fourier's
     transform with the kernel of the layer, is x/R in the contact.
@@ -491,16 +494,17 @@ def test_a_thickness_in_SI_units():
     tells of it.
     """
     steel = vr.Material.elastic(2e11, 0.3)
+    thin = dataclasses.replace(THIN, prony=ONE)
     for material, base, on in (
-        (THIN, RIGID, "cylinder"),
-        (RIGID, THIN, "base"),
-        (THIN, steel, "cylinder"),
+        (thin, RIGID, "cylinder"),
+        (RIGID, thin, "base"),
+        (thin, steel, "cylinder"),
     ):
         roller = roller_of(material, base)
         found = roller.contact(1.0, delta=0.0)
         scene = roller.scene()
         assert scene.material.on == on
-        plain = scene.replace(material=vr.Cover(THREE, nu=0.49, thickness=0.01 / roller.l0, on=on))
+        plain = scene.replace(material=vr.Cover(ONE, nu=0.49, thickness=0.01 / roller.l0, on=on))
         known = vr.contact(plain, 1.0 / roller.scale["V"], delta=0.0)
         for name in ("lam", "epsilon", "delta_star", "delta_0"):
             assert close(

@@ -1,4 +1,4 @@
-"""Scene and Cylinder as values; their numbers are in values.txt."""
+"""Scene and Cylinder as values; their numbers are in materials/test_values_of_materials.py."""
 
 import dataclasses
 

@@ -123,7 +123,7 @@ EACH_SLOPE_OVER_V = 2e-14
 EACH_MATERIAL = 1e-13
 EACH_SLOPE = 1e-11
 
-# --- rollers.py (values.txt) ---
+# --- rollers.py (materials/test_values_of_materials.py) ---
 #: Conversions: a few roundings of products and one square root.
 SCENE = 1e-15
 

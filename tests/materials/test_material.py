@@ -1,5 +1,5 @@
 """Material: SI moduli, shifts with temperature, conventions of other programs; more numbers by
-hand: values.txt.
+hand: test_values_of_materials.py.
 """
 
 import dataclasses

@@ -164,7 +164,7 @@ def test_scene_files_and_material_files(saved, tmp_path):
     assert read_law_source(path).pair == law_table_of(RUBBER).pair
 
 
-# --- other writers; what is refused of their files: refusals.txt ---
+# --- other writers; what is refused of their files: test_refused_files.py ---
 
 
 def test_rewritten_by_another_program(copy, saved):

@@ -1,0 +1,354 @@
+"""Numbers by hand of rollers, scenes, materials and series."""
+
+import math
+from dataclasses import replace
+from math import inf, nan, pi
+
+import numpy as np
+import pytest
+import tolerances as tol
+from calls import HARD, MANY, MEASURED, PAPER, ROLLER, RUBBER, SERIES, SI, STEEL, TREAD, file, pair
+from closeness import close
+
+import viscoroll as vr
+from viscoroll.kernels.law.bessel_ratios import ratio_i2, ratio_k, ratio_r
+from viscoroll.laws.law_netcdf import law_table_of
+from viscoroll.laws.law_table import law_table
+from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
+
+pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """Files of a test are its own."""
+    monkeypatch.chdir(tmp_path)
+
+
+#: terms of G that all programs are given, Pa
+TERMS = np.array([2e6, 3e6])
+
+
+def test_cylinder_and_scene():
+    """Cylinder and Scene: Sect. 3.1 and Eq. (4) of the paper."""
+    cylinder = vr.Cylinder(**SI)
+    scene = cylinder.scene()
+    E_prime = pi * 2.3e5 / (1.0 - 0.49**2)
+    load = 35.5 * 9.81
+    assert scene == vr.presets.PAPER_SECTION_5
+    assert PAPER_CYLINDER.scene() == vr.presets.PAPER_SECTION_5
+    assert [f"{scene.alpha:.5}", f"{scene.kappa:.5}"] == ["11.031", "2.921"]
+    assert (f"{scene.gamma:.5}", scene.mu, scene.j) == ("1.1231e+04", 0.2, 0.5)
+    assert close(cylinder.load, load, tol.SCENE)
+    assert close(cylinder.E_prime, E_prime, tol.SCENE)
+    assert close(cylinder.l0, math.sqrt(32.0 * 0.1 * load / (E_prime)), tol.SCENE)
+    assert close(scene.alpha, 10.7 / 0.97, tol.SCENE)
+    assert close(scene.kappa, math.sqrt(E_prime * 0.1 / (32.0 * load)), tol.SCENE)
+    assert close(scene.gamma, load * 10.7**2 / (35.5 * 0.1), tol.SCENE)
+    assert vr.Cylinder(*SI.values()) == cylinder
+    # limits that are allowed
+    assert close(vr.Cylinder(**SI | {"nu": 0.5}).E_prime, pi * 2.3e5 / 0.75, tol.SCENE)
+    assert close(vr.Cylinder(**SI, plane="stress").E_prime, pi * 2.3e5, tol.SCENE)
+    assert vr.Cylinder(**SI | {"T_epsilon": 0.97}).scene().alpha == 1.0
+    assert vr.Scene(1.0, 1e-300, 1e-300).alpha == 1.0
+    # presets: Figs. 2 and 3 use ten times the kappa of Sects. 4 and 5
+    assert vr.presets.PAPER_SECTION_5_ROUNDED == vr.Scene(11.0, 2.91, 0.2, 1.1e4, 0.5)
+    assert close(vr.presets.PAPER_FIGURES_2_3.kappa, 29.1, tol.SCENE)
+    assert sorted(PRESETS) == [
+        "paper-figures-2-3",
+        "paper-section-5",
+        "paper-section-5-rounded",
+        "rubber-roller",
+    ]
+    assert PAPER_STARTS == {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
+
+
+def test_a_given_load():
+    """Kappa and gamma by P; the weight is made anew where another mass is given, a load is not."""
+    loaded = vr.Cylinder(**SI, load=1e3)
+    scene = loaded.scene()
+    assert loaded.load == 1e3
+    assert close(scene.kappa, math.sqrt(0.1 * vr.Cylinder(**SI).E_prime / 32e3), tol.SCENE)
+    assert close(scene.gamma, 1e3 * 10.7**2 / (35.5 * 0.1), tol.SCENE)
+    assert vr.Cylinder(**SI, load=35.5 * 9.81).scene() == vr.presets.PAPER_SECTION_5
+    assert replace(vr.Cylinder(**SI), m=1.0).load == 9.81
+    assert replace(loaded, m=1.0).load == 1e3
+
+
+def test_a_material_in_place_of_the_four_parameters():
+    """Kappa and gamma to the bit, creep of its own; a base alike."""
+    rubber = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
+    made = pair(rubber, None)
+    scene = made.scene()
+    paper = vr.presets.PAPER_SECTION_5
+    assert [getattr(scene, name) for name in ("alpha", "kappa", "mu", "gamma", "j", "coupled")] == [
+        getattr(paper, name) for name in ("alpha", "kappa", "mu", "gamma", "j", "coupled")
+    ]
+    assert scene.material == rubber.prony
+    assert [getattr(made, name) for name in ("E_prime", "l0", "load", "T_ref")] == [
+        getattr(PAPER_CYLINDER, name) for name in ("E_prime", "l0", "load", "T_ref")
+    ]
+    assert vr.Cylinder(**SI, base=rubber).scene() == paper
+
+
+def test_moduli_and_times_of_pairs():
+    """Moduli and times of pairs: 2/E' = 1/E'_1 + 1/E'_2, and the shares of the compliance."""
+    rigid = vr.Material.rigid()
+    on_steel = pair(RUBBER, STEEL)
+    under_steel = pair(STEEL, RUBBER)
+    on_hard = pair(RUBBER, HARD)
+    on_rigid = pair(RUBBER, rigid)
+    under_rigid = pair(rigid, RUBBER)
+    assert close(2.0 / on_steel.E_prime, 0.75 / (pi * 2.3e5) + 0.91 / (pi * 2e11), tol.SCENE)
+    assert close(on_steel.pair.share, 0.75 / 2.3e5 / (0.75 / 2.3e5 + 0.91 / 2e11), tol.SCENE)
+    assert under_steel.E_prime == on_steel.E_prime
+    assert close(under_steel.pair.share + on_steel.pair.share, 1.0, tol.SCENE)
+    assert (on_rigid.E_prime, on_rigid.pair.share) == (2.0 * pi * 2.3e5 / 0.75, 1.0)
+    assert (under_rigid.E_prime, under_rigid.pair.share) == (2.0 * pi * 2.3e5 / 0.75, 0.0)
+    assert [
+        pair(RUBBER, base).E_prime for base in (None, RUBBER, replace(RUBBER, name="the same"))
+    ] == [pi * 2.3e5 / 0.75] * 3
+    assert [
+        pair(RUBBER, base).scene().material
+        for base in (None, RUBBER, replace(RUBBER, name="the same"))
+    ] == [SERIES] * 3
+    # the time is the cylinder's, or the base's where the cylinder does not relax
+    assert [
+        (c.T_ref, c.scale["t"], 1.0 / c.scale["V"]) for c in (on_hard, on_steel, under_steel)
+    ] == [(0.3, 0.3, 0.3 / 0.1)] * 3
+    assert [
+        (c.T_ref, c.scale["t"], 1.0 / c.scale["V"]) for c in (pair(HARD, RUBBER), pair(HARD, rigid))
+    ] == [(2.0, 2.0, 2.0 / 0.1)] * 2
+    assert [(c.T_ref, c.scale["t"], 1.0 / c.scale["V"]) for c in (pair(rigid, HARD),)] == [
+        (2.0, 2.0, 2.0 / 0.1)
+    ]
+    assert on_hard.scene().material == vr.Bodies(
+        SERIES, HARD.prony.slower(2.0 / 0.3), on_hard.pair.share, (0.5, 0.5)
+    )
+    assert close(on_hard.scene().kappa, 0.1 / on_hard.l0, tol.SCENE)
+    assert close(on_hard.scene().gamma, 35.5 * 9.81 * 0.3**2 / (35.5 * 0.1), tol.SCENE)
+    assert pair(rigid, HARD).scene().material == vr.Bodies(
+        vr.Prony.elastic(), HARD.prony, 0.0, (rigid.nu, 0.5)
+    )
+
+
+def test_limits_of_a_material():
+    """Of frequency and time; what is elastic."""
+    solid = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
+    t = np.array([0.0, 1e-4, 0.3, 7.0, 1e200])
+    assert close(TREAD.instant, 20.0 * 2.3e5, tol.MATERIAL)
+    assert (TREAD.storage(0.0), TREAD.relaxation(1e200), TREAD.loss(0.0)) == (2.3e5, 2.3e5, 0.0)
+    assert close(
+        (TREAD.storage(1e308), TREAD.relaxation(0.0)), (TREAD.instant, TREAD.instant), tol.MATERIAL
+    )
+    assert close((TREAD.creep(0.0), TREAD.creep(1e200)), (1.0 / 20.0, 1.0), tol.MATERIAL)
+    assert np.isfinite(TREAD.loss([0.0, 1e-9, 3.3, 1e9, 1e200, 1e308])).all()
+    assert (
+        [getattr(STEEL, name)(3.0) for name in ("relaxation", "loss", "creep")],
+        STEEL.instant,
+        STEEL.is_rigid,
+    ) == ([2e11, 0.0, 1.0], 2e11, False)
+    assert close(STEEL.G, 2e11 / 2.6, tol.MATERIAL)
+    assert (
+        [getattr(vr.Material.rigid(), name)(1.0) for name in ("storage", "loss", "tan_delta")],
+        vr.Material.rigid().is_rigid,
+    ) == ([inf, 0.0, 0.0], True)
+    # E(t) = E (1 + (T_epsilon/T_sigma - 1) exp(-t/T_sigma)) is the paper's material: 10.7 s over
+    # 0.97 s
+    assert close(
+        solid.relaxation(t), 2.3e5 * (1.0 + (10.7 / 0.97 - 1.0) * np.exp(t / -0.97)), tol.MATERIAL
+    )
+    one = vr.Material.sls(230000.0, 0.49, 10.7, 0.97)
+    assert (one.T_ref, one.prony.T.item(), one.prony.alpha) == (10.7, 1.0, 10.7 / 0.97)
+    assert vr.Material.sls(2.3e5, 0.49, 1.0, 1.0).prony == vr.Prony.elastic()
+
+
+def test_shifts_by_temperature():
+    """Shifts by temperature."""
+    shift = vr.WLF(T0=20.0)
+    warm = TREAD.at(30.0, shift)
+    known = replace(TREAD, measured=vr.Measured(0.1, 300.0, 0.01, "dma.csv"))
+    # log10 a_T = -17.44 * 10/(51.6 + 10) ten degrees above T0; T_ref becomes a_T T_ref, nothing
+    # else
+    assert close(math.log10(warm.T_ref / TREAD.T_ref), -174.4 / 61.6, tol.MATERIAL)
+    assert warm.temperature == 30.0
+    assert replace(warm, T_ref=TREAD.T_ref, temperature=None) == TREAD
+    assert TREAD.at(20.0, shift=shift) == replace(TREAD, temperature=20.0)
+    # 100 kJ/mol between 20 and 30 degrees: ln a_T = 12027.24 (1/303.15 - 1/293.15)
+    assert close(
+        math.log(vr.Arrhenius(energy=1e5, T0=20.0)(30.0)), -1.3533756, tol.MATERIAL_PRINTED
+    )
+    assert vr.Arrhenius(energy=1e5, T0=20.0)(20.0) == 1.0
+    # a_T = 100: the data hold a hundredth of their frequencies
+    assert known.at(0.0, lambda _: 100.0).measured == vr.Measured(1e-3, 3.0, 0.01, "dma.csv")
+    assert "0.1 to 300 rad/s, misfit 1 % (dma.csv)" in repr(known._summary())
+
+
+def test_constants_of_lsdyna_and_bulk_terms():
+    """Other programs."""
+    dyna = vr.Material.lsdyna(G=[90e6, 20e6], beta=[10.0, 1e4], bulk=66.67e6, G_inf=10e6)
+    # LS-DYNA: 66.67 MPa, G_inf = 10 MPa, G_1 = 90 MPa, beta = 0.01/ms: nu = (200.01 - 20)/(400.02
+    # + 20), E = 2 (1 + nu) 10 MPa
+    assert close(dyna.nu, 0.42857483, tol.MATERIAL_PRINTED)
+    assert close(dyna.E, 28.571497e6, tol.MATERIAL_PRINTED)
+    # modes of G and of 3 K + G
+    assert dyna.prony.E.size == 4
+    # bulk terms equal to those of shear leave nu alone
+    assert (
+        vr.Material.abaqus(1e6, 0.3, [0.2, 0.3], [0.1, 10.0], k=[0.2, 0.3]).prony.E.size
+        == vr.Material.abaqus(1e6, 0.3, [0.2, 0.3], [0.1, 10.0]).prony.E.size
+    )
+    assert vr.Material.ansys(1e6, 0.5, [0.2], [0.1], k=[0.7]) == vr.Material.ansys(
+        1e6, 0.5, [0.2], [0.1]
+    )
+
+
+@pytest.mark.parametrize(
+    "given",
+    [
+        vr.Material.abaqus(18e6, 0.5, TERMS / 6e6, [0.1, 4.0]),
+        vr.Material.abaqus(3e6, 0.5, TERMS / 6e6, [0.1, 4.0], long_term=True),
+        vr.Material.ansys(18e6, 0.5, TERMS / 6e6, [0.1, 4.0]),
+        vr.Material.comsol(3e6, 0.5, TERMS, [0.1, 4.0]),
+        vr.Material.lsdyna(TERMS, [10.0, 0.25], nu=0.5, G_inf=1e6),
+    ],
+)
+def test_one_material_by_all_programs(given):
+    """G(t) = 1 + 2 exp(-t/0.1 s) + 3 exp(-t/4 s) MPa, nu = 1/2."""
+    t = np.array([0.0, 1e-4, 0.3, 7.0, 1e200])
+    exact = 3e6 + 6e6 * np.exp(-t / 0.1) + 9e6 * np.exp(-t / 4.0)
+    assert close(given.relaxation(t), exact, tol.MATERIAL)
+
+
+def test_series():
+    """One mode is the standard linear solid; nothing that is given is rescaled."""
+    known = vr.Prony([3.0, 6.0], [1.0, 1e-5])
+    added = vr.Prony(E=[6.0, 0.0, 2.0, 1.0], tau=[1e-5, 3.0, 1.0, 1.0])
+    p = vr.Prony([10.0], [1.0 / 11.0])
+    assert close(
+        [p.alpha, *p.E, *p.tau, *p.J, *p.T],
+        [11.0, 10.0, 1.0 / 11.0, 10.0 / 11.0, 1.0],
+        tol.SERIES_FORMS,
+    )
+    p = vr.Prony.creep([10.0 / 11.0], [1.0], alpha=11.0)
+    assert close(
+        [p.alpha, *p.E, *p.tau, *p.J, *p.T],
+        [11.0, 10.0, 1.0 / 11.0, 10.0 / 11.0, 1.0],
+        tol.SERIES_FORMS,
+    )
+    # equal times are added up, zeros are dropped
+    p = vr.Prony(E=[6.0, 0.0, 2.0, 1.0], tau=[1e-05, 3.0, 1.0, 1.0])
+    assert (p.E.tolist(), p.tau.tolist()) == ([3.0, 6.0], [1.0, 1e-05])
+    assert {added: 1}[known] == 1
+    assert eval(repr(known), {"Prony": vr.Prony}) == known
+    assert vr.Prony.elastic().alpha == 1.0
+
+
+def test_arrays_of_materials():
+    """Arrays of materials: one of the two may be shared, and an array of materials is a
+    material.
+    """
+    assert (len(MANY), MANY.shape, vr.Prony([1.0], [1.0]).shape) == (2, (2,), ())
+    assert ((MANY, hash(MANY))) == (
+        vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),
+        hash(vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])),
+    )
+    assert isinstance(MANY[:1], vr.Prony)
+    assert vr.Prony([1.0, 2.0], [[1.0, 0.1], [2.0, 0.1]])[1] == vr.Prony([1.0, 2.0], [2.0, 0.1])
+    assert vr.Prony.creep(
+        [[0.3, 0.6], [0.2, 0.7]], [1.0, 0.1], alpha=[10.0, 10.000000000000002]
+    ).alpha.tolist() == [10.0, 10.000000000000002]
+    assert vr.Scene(material=MANY, kappa=[[1.0], [2.0], [3.0]], mu=0.1).shape == (3, 2)
+    assert vr.Bodies(MANY, vr.Prony.elastic()).shape == (2,)
+    one = vr.ensemble(
+        vr.Scene(material=MANY, kappa=2.91, mu=0.2, gamma=700.0), 1.0, 0.0, 0.001
+    ).scene.material
+    assert one.tau.tolist() == MANY.tau.tolist()
+
+
+def test_a_scene_keeps_its_law():
+    """And what follows from a change of a cylinder."""
+    of_law = vr.Scene(kappa=20.0, mu=0.3, material=law_table(SERIES))
+    scene = of_law
+    table = law_table(SERIES)
+    assert scene.table is scene.replace(mu=0.2).table is law_table_of(table) is table
+    assert of_law.replace(alpha=3.0).table is not law_table(SERIES)
+    assert vr.Scene(kappa=20.0, mu=0.3, material=law_table(11.0)).alpha == 11.0
+    assert ((PAPER_CYLINDER.replace(nu=0.0), hash(PAPER_CYLINDER.replace(nu=0.0)))) == (
+        PAPER_CYLINDER.replace(nu=-0.0),
+        hash(PAPER_CYLINDER.replace(nu=-0.0)),
+    )
+    assert PAPER_CYLINDER.replace(material=RUBBER).E is None
+    assert (
+        pair(RUBBER, STEEL).replace(E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97).material is None
+    )
+    assert (
+        vr.Cylinder(
+            R=0.1, m=35.5, E=2.3e6, nu=0.49, T_epsilon=[1e-3, 2e-2], T_sigma=[1e-3, 5e-3], mu=0.3
+        ).T_ref
+        == 2e-2
+    )
+
+
+def test_a_scene_and_a_series_are_values():
+    """A scene and a series are values."""
+    two = vr.Scene(np.array([2.0, 3.0]), 2.0, 0.2)
+    assert two == vr.Scene([2.0, 3.0], 2.0, 0.2)
+    assert two not in (PAPER, "scene")
+    assert (vr.Scene(11, 2.91, 0.2, 1.1e4), type(vr.Scene(11, 2.91, 0.2, 1.1e4).alpha)) == (
+        PAPER,
+        float,
+    )
+    assert (PAPER.replace(mu=0.3).mu, PAPER.mu) == (0.3, 0.2)
+    assert eval(repr(PAPER), {"Scene": vr.Scene}) == PAPER
+    assert len(repr(PAPER.replace(mu=np.linspace(0.1, 0.3, 1000)[:, None]))) < 120
+    assert vr.Scene([1.0, 2.0, 3.0], [[1.0], [2.0]], 0.2).shape == (2, 3)
+    assert vr.Prony([[0.0], [1.0]], [1.0]).slow_time.tolist() == [
+        1.0,
+        3.0,
+    ]  # (tau^2 + J T^2)/(J T) of E = 1: J = 1/2, T = 2
+
+
+def test_odd_kinds_of_materials_covers_and_counts():
+    """Odd kinds of materials, covers and counts."""
+    assert close(
+        [vr.Prony([3.0], [unit]).T.item() / unit for unit in (1e-140, 1e-30, 1e24, 1e100, 1e140)],
+        [4.0] * 5,
+        tol.MATERIAL,
+    )
+    assert close(
+        vr.Prony.creep([0.3, 0.5], [1e60, 1e59]).tau / 1e60,
+        vr.Prony.creep([0.3, 0.5], [1.0, 0.1]).tau,
+        tol.MATERIAL,
+    )
+    assert close(
+        vr.Prony([1e11, 1.0], [1e140, 1e110]).slow_time / 1e140,
+        vr.Prony([1e11, 1.0], [1.0, 1e-30]).slow_time,
+        tol.MATERIAL,
+    )
+    assert vr.Cover(np.float32(11.0), nu=0.5, thickness=1.0) == vr.Cover(11, nu=0.5, thickness=1.0)
+    path = file("", "m.nc")
+    assert [
+        vr.Material(1000000.0, 0.5, measured=MEASURED.measured, name="r").to_netcdf(path),
+        repr(vr.Material.from_netcdf(path)).count("np.str_"),
+    ] == [None, 0]
+    assert (ROLLER.contact(1e-310, omega=1e300).delta, ROLLER.contact(1e-320, omega=0.0).zeta) == (
+        inf,
+        inf,
+    )
+
+
+def test_bessel_ratios_at_their_ends():
+    """NaN must not be taken for the number of a bin, which reads beyond the table."""
+    assert (
+        [ratio(0.0) for ratio in (ratio_r, ratio_k)],
+        [ratio(inf) for ratio in (ratio_r, ratio_k)],
+    ) == ([(0.0, 1.0)] * 2, [(1.0, 0.0)] * 2)
+    assert np.array_equal(
+        np.array([ratio_r(nan), ratio_k(nan)]), np.full((2, 2), nan), equal_nan=True
+    )
+    assert np.array_equal(
+        np.array([ratio_i2(0.0, 0.0), ratio_i2(inf, 1.0), ratio_i2(nan, nan)]),
+        [0.0, 1.0, nan],
+        equal_nan=True,
+    )

@@ -1,0 +1,397 @@
+"""What is answered with a warning, or with nothing; and what results say of what was found."""
+
+import dataclasses
+import warnings
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+import pytest
+import xarray as xr
+from calls import (
+    BELT,
+    DMA,
+    HEAVY,
+    LABELLED,
+    ONE,
+    PAPER,
+    ROLLER,
+    RUBBER_FILE,
+    SOFT,
+    STEEL,
+    UNSURE,
+    T,
+    file,
+    pair,
+)
+from drives import ON_DMA as DMA_ROLLER
+from experiments import HUMP, ranges, resistance, roller, thrown
+
+import viscoroll as vr
+from viscoroll.contact_mechanics.free_rolling import FreeRolling
+from viscoroll.contact_mechanics.validity import Steadiness
+from viscoroll.core.scale import Scale
+from viscoroll.materials.material_toml import read_materials
+
+
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
+    """Files of a test are its own."""
+    monkeypatch.chdir(tmp_path)
+
+
+SAID = [
+    (lambda: vr.roll(PAPER, 1.0, 1.0, 1e-3, unsteady=np.False_, rested=np.False_).V.shape, "(1,)"),
+    (
+        lambda: (
+            vr.Cylinder(R=xr.DataArray(10.0, attrs={"units": "cm"}), m=1.0, mu=0.3, material=SOFT).R
+        ),
+        "0.1",
+    ),
+    (
+        lambda: (
+            vr.contact(ROLLER, 1.0, omega=xr.DataArray(1.0, attrs={"units": "Hz"}))
+            .to_xarray()
+            .omega.values
+        ),
+        "6.283185307179586",
+    ),
+    (lambda: vr.WLF(T0=xr.DataArray(300.15, attrs={"units": "K"}), C2=50.0).T0, "27"),
+    (lambda: str(vr.steady(ROLLER, V=xr.DataArray(0.5), torque=0.0)), "stable | 0.5 m s-1"),
+    (lambda: vr.contact(ROLLER, [[1.0, 2.0]], delta=0.0).plot(), "Figure"),
+    (
+        lambda: vr.contact(
+            ROLLER, pd.Series([1.0, 2.0, 3.0], index=pd.interval_range(0, 3)), delta=0.0
+        ).plot(),
+        "Figure",
+    ),
+    (
+        lambda: vr.contact(
+            ROLLER, pd.Series([1.0, 2.0, 3.0], index=[1, "a", "b"]), delta=0.0
+        ).plot(),
+        "Figure",
+    ),
+    (
+        lambda: vr.contact(
+            ROLLER, pd.Series([1.0, 2.0, 3.0], index=pd.date_range("2026", periods=3)), delta=0.0
+        ).plot(),
+        "Figure",
+    ),
+    (
+        lambda: vr.contact(
+            ROLLER, LABELLED, delta=xr.DataArray([0.1, 0.2], dims="of", coords={"of": ["x", "y"]})
+        ).plot(),
+        "Figure",
+    ),
+    (
+        lambda: (
+            vr.Resistance(xr.DataArray(HUMP, dims="speed", attrs={"units": "km/h"}), sigma=0.1).V[1]
+            * 3.6
+            / HUMP[1]
+        ),
+        "1.0",
+    ),
+    (
+        lambda: (
+            vr.Resistance(
+                xr.DataArray(HUMP, dims="speed", attrs={"units": "m s^-1"}), sigma=0.1
+            ).V.shape
+        ),
+        "(40,)",
+    ),
+    (lambda: vr.identify(roller(), ranges("E"), [vr.Resistance(HUMP, sigma=0.01)]), "planned"),
+    (
+        lambda: vr.identify(
+            roller().replace(base=vr.Material.rigid()),
+            ranges("E"),
+            [vr.Resistance(HUMP, sigma=0.01)],
+        ),
+        "planned",
+    ),
+    (
+        lambda: vr.identify(
+            roller(), ranges("mu"), thrown(seed=1, t=np.linspace(0.0, 60.0, 200)), starts=1
+        ),
+        "throw has only 2 points in full slip, which determine mu",
+    ),
+    (
+        lambda: vr.identify(roller(), ranges("E", "E_1", "T_ref"), resistance(seed=3), starts=1),
+        "3 unknowns, 40 points; chi2  | E_1 and T_ref are correlated: -0.999",
+    ),
+    (
+        lambda: vr.identify(
+            roller(),
+            ranges("mu", "E"),
+            [vr.Coastdown(T, roller().roll(3.0, 30.0, T).V, sigma=5e-3, V0=3.0)],
+            starts=1,
+        ),
+        "the data do not depend on mu: omega0 was taken as V0/R, without slip; give omega0",
+    ),
+    (
+        lambda: (
+            (
+                file(RUBBER_FILE, "rubber.toml"),
+                read_materials(
+                    file('[material]\nfile = "rubber.toml"\ndensity = 1150.0\n', "a.toml")
+                ),
+            )[1]["material"].density
+        ),
+        "1150.0",
+    ),
+    (
+        lambda: ROLLER.roll(
+            0.0, 0.0, [0.0, 1.0], torque=vr.Schedule([0.0, 0.5, 1.0], [0.0, 1.0, 0.0])
+        ),
+        "3 corners, 0 to 1 N m m-1",
+    ),
+    (
+        lambda: ROLLER.roll(
+            0.0, 0.0, [0.0, 1.0], torque=vr.Feedback(0.5, omega=-0.1), force=lambda t: 0.1 * t
+        ),
+        "0.5 N m m-1 - 0.1 omega | a function of t",
+    ),
+    (
+        lambda: vr.steady(PAPER, force=0.05, torque=0.07).reason,
+        "force + torque = 0.12 exceeds the largest rolling moment 0.0847415 (at V = 0.235061)",
+    ),
+    (lambda: vr.steady(PAPER, slope=0.1).reason, "exceeds the largest rolling moment"),
+    (
+        lambda: vr.presets.PAPER_CYLINDER.steady(slope=0.1).reason,
+        "force + torque/R =  | N/m exceeds  | over R  | N/m (at V = 0. | m/s)",
+    ),
+    (
+        lambda: vr.steady(PAPER, force=0.3, torque=-0.28).reason,
+        "which exceeds the friction mu = 0.2",
+    ),
+    (lambda: vr.steady(PAPER, force=0.3, torque=-0.3).reason, "which exceeds the friction mu ="),
+    (
+        lambda: vr.steady(PAPER, force=-0.3, torque=vr.Feedback(5.0, omega=1.0)).reason,
+        "at no speed",
+    ),
+    (
+        lambda: vr.steady(PAPER, force=-0.175, torque=0.225).reason,
+        "no isolated steady speed: Q = 0.2",
+    ),
+    (
+        lambda: vr.steady(PAPER.replace(alpha=1.0)).reason,
+        "no isolated steady speed: elastic bodies roll without resistance, so every V is steady",
+    ),
+    (
+        lambda: vr.steady(PAPER.replace(alpha=1.0), force=-0.1, torque=0.1).reason,
+        "no isolated steady speed: elastic bodies roll without resistance, so every V is steady",
+    ),
+    (lambda: vr.steady(PAPER.replace(alpha=1.0), force=0.1).reason, "elastic"),
+    (lambda: vr.steady(PAPER.replace(alpha=1.0), force=-0.3, torque=0.3).reason, "friction"),
+    (
+        lambda: pair(SOFT, None).validity(1.0).bodies,
+        "yes | cylinder and half-space have the same material: Dundurs' constant is 0",
+    ),
+    (
+        lambda: pair(SOFT, STEEL).validity(1.0).bodies,
+        "yes | -0.02 for long times and -0.02 for the instant",
+    ),
+    (
+        lambda: (
+            pair(vr.Material.elastic(1e6, 0.5), vr.Material.elastic(3e7, 0.5)).validity(1.0).bodies
+        ),
+        "yes | Dundurs' constant is 0:",
+    ),
+    (
+        lambda: pair(vr.Material.elastic(1e6, 0.3), STEEL).validity(1.0).bodies,
+        "no | -0.29 for long times",
+    ),
+    (lambda: pair(SOFT, STEEL).validity(1.0).quasistatic, "the density of the base is not known"),
+    (
+        lambda: pair(HEAVY, replace(SOFT, density=None)).validity(1.0).quasistatic,
+        "?: inertia | ; the density of the base is not known",
+    ),
+    (
+        lambda: pair(replace(SOFT, density=None), HEAVY).validity(1e4).quasistatic,
+        "no: | ; the density of the cylinder is not known",
+    ),
+    (
+        lambda: (
+            pair(vr.Material.rigid(density=7850.0), replace(SOFT, density=None))
+            .validity(1.0)
+            .quasistatic
+        ),
+        "?: inertia | ; the density of the base is not known",
+    ),
+    (
+        lambda: (
+            pair(vr.Material.rigid(), replace(SOFT, density=None))
+            .validity(1.0, density=1100.0)
+            .quasistatic
+        ),
+        "yes: the speed is 11.9 % of",
+    ),
+    (
+        lambda: (
+            pair(vr.Material.rigid(density=7850.0), replace(SOFT, density=None))
+            .roll(1.0, 10.0, [0.0, 1.0])
+            .success
+        ),
+        "True",
+    ),
+    (
+        lambda: pair(SOFT, SOFT).validity(1.0).thick,
+        "?: no thickness is given: the law is that of a half-space",
+    ),
+    (
+        lambda: vr.presets.PAPER_CYLINDER.validity(0.99 * 1.6525, density=1130.0).quasistatic,
+        "the speed is",
+    ),
+    (lambda: vr.presets.PAPER_SECTION_5.validity([0.0, 1.5]).failed, "('steady',)"),
+    (
+        lambda: vr.presets.PAPER_SECTION_5.validity([0.0, 1.5]),
+        "steady         no | small_contact  yes | plane          ?",
+    ),
+    (lambda: vr.presets.RUBBER_CYLINDER.validity(2.0).failed, "()"),
+    (lambda: ROLLER.roll(2.0, 20.0, np.linspace(0.0, 4.0, 5), brake=5.0), "held at t ="),
+    (lambda: ROLLER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity().plane, "?:"),
+    (lambda: ROLLER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity().creep, "no:"),
+    (lambda: vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]), "2 series of 2 modes"),
+    (lambda: DMA_ROLLER.validity(1.3).steady, "would not leave its indentation"),
+    (lambda: DMA_ROLLER.validity(1.0).steady, "the error of V is below 10 % above 1.2"),
+    (
+        lambda: vr.Scene(1.0, 29.1, 0.2, 1e9).validity(0.1).steady,
+        "0 | an elastic cylinder never stops",
+    ),
+    (
+        lambda: (
+            Steadiness.of(
+                FreeRolling.of_scene(DMA_ROLLER, 30.0).scaled(Scale(R=0.1, T=3.0))
+            ).sentence
+        ),
+        "14.03 m | 1 % down to 0.14 m/s, below 10 % down to 0.04 m/s, which is reached after "
+        "25.5 s | 0.002 m/s of speed and 0.062 m of distance",
+    ),
+    (
+        lambda: vr.roll(DMA_ROLLER, 30.0, 30.0, np.linspace(0.0, 20.0, 401)).validity().steady,
+        "0.12 % of the distance is below that speed",
+    ),
+]
+WARNED = {
+    "T0 is outside -150 to 200 | looks like kelvin": [lambda: vr.Arrhenius(energy=8e4, T0=293.15)],
+    "temperature is outside -150 to 200 | looks like kelvin": [
+        lambda: vr.WLF(T0=20.0)(293.15),
+        lambda: vr.fit_prony(*DMA, temperature=293.15),
+    ],
+    "T0 is outside -150 to 200": [lambda: vr.Arrhenius(energy=8e4, T0=-153.15)],
+    "too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a "
+    "tenth of the distance": [
+        lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0),
+        lambda: vr.roll(DMA_ROLLER, 0.0, 9.0, 1.0),
+        lambda: vr.ensemble(DMA_ROLLER, [30.0, 3.0], [30.0, 3.0], 1.0),
+        lambda: vr.ensemble(UNSURE, 3.0, 3.0, 1.0),
+        lambda: vr.ensemble(ONE.replace(alpha=[2.0, 11.0]), 1.0, 1.0, 1.0),
+        lambda: vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, 0.001),
+    ],
+    "kappa = R/l0 is below 1": [lambda: vr.roll(vr.Scene(11.0, 0.5, 0.2, 0.1), 9.0, 9.0, 0.001)],
+    "it starts in full slip at a creep": [
+        lambda: vr.roll(vr.Scene(11.0, 10.0, 0.02, 0.1), 0.5, -0.5, 0.001)
+    ],
+    "speeds exceed the shear wave speed": [
+        lambda: ROLLER.roll(100.0, 1000.0, 0.01),
+        lambda: ROLLER.steady(V=-99.0, torque=0.0),
+        lambda: ROLLER.law()(99.0, 999.0),
+        lambda: ROLLER.ensemble([1.0, 99.0], 10.0, 0.01),
+    ],
+    "the model does not hold for this contact: speeds exceed the shear wave speed": [
+        lambda: ROLLER.contact([1.0, 99.0], delta=0.0)
+    ],
+    "as measured | the contact needs the moduli from 0 to 1.9e+03 rad/s": [
+        lambda: BELT.contact([0.0, 0.1, 2.895], delta=0.0)
+    ],
+    "as measured | the contact needs the moduli from 6.4e+02 to 1.9e+03 rad/s": [
+        lambda: BELT.contact(-2.895, delta=0.0)
+    ],
+    "as measured | the contact needs the moduli from 0.00": [
+        lambda: BELT.contact(1e-05, delta=0.0)
+    ],
+    "as measured | the base was measured from 0.06 to 1.88e+03 rad/s, misfit 1 % (dma.csv)": [
+        lambda: BELT.stress(0.0, 10.0, delta=0.0)
+    ],
+    "as measured | the contact needs the moduli from": [
+        lambda: BELT.roll(10.0, 100.0, 0.01),
+        lambda: BELT.roll(0.0, 0.0, [0.1, 1.0], force=300.0, torque=300.0),
+        lambda: BELT.ensemble([1.0, 10.0], [10.0, 100.0], 0.01),
+        lambda: BELT.steady(V=10.0, torque=0.0),
+        lambda: BELT.replace(R=[0.1, 0.01]).contact([0.1, 2.8], delta=0.0),
+    ],
+    "the fit of the base misses its data | 20 %": [
+        lambda: BELT.replace(
+            base=dataclasses.replace(
+                BELT.base, measured=dataclasses.replace(BELT.base.measured, misfit=0.2)
+            )
+        ).contact(0.1, delta=0.0)
+    ],
+    "as measured | 0.0006 to 18.8": [
+        lambda: BELT.replace(base=BELT.base.at(0.0, lambda _: 100.0)).contact(0.1, delta=0.0)
+    ],
+}
+SILENT = {
+    "": [
+        lambda: vr.Arrhenius(energy=8e4, T0=180.0)(-60.0),
+        lambda: vr.roll(DMA_ROLLER, 30.0, 30.0, 1.0),
+        lambda: vr.roll(DMA_ROLLER, 9.0, 0.0, 1.0),
+        lambda: vr.roll(DMA_ROLLER, 0.0, 0.0, 1.0),
+        lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0, force=0.1),
+        lambda: vr.ensemble(DMA_ROLLER, [30.0, 20.0], 30.0, 1.0),
+        lambda: vr.ensemble(UNSURE, 30.0, 30.0, 1.0),
+        lambda: ROLLER.roll(0.01, 0.1, 1.0),
+        lambda: ROLLER.contact([1.0, 9.0], delta=0.0),
+        lambda: ROLLER.replace(material=dataclasses.replace(ROLLER.material, density=None)).contact(
+            99.0, delta=0.0
+        ),
+        lambda: vr.Resistance(0.01, -0.01, sigma=0.01),
+    ],
+    "as measured": [
+        lambda: BELT.contact([0.0, 0.1, 2.837], delta=0.0),
+        lambda: BELT.contact([], delta=0.0),
+        lambda: BELT.roll(1.0, 10.0, [1.0, 4000.0]),
+        lambda: BELT.roll(1.0, 10.0, 10.0),
+        lambda: BELT.ensemble([1.0, 2.0], [10.0, 20.0], 0.01, fields=("x",)),
+        lambda: BELT.steady(V=0.1, torque=0.0),
+        lambda: BELT.replace(base=dataclasses.replace(BELT.base, measured=None)).contact(
+            10.0, delta=0.0
+        ),
+        lambda: BELT.replace(R=[0.1, 0.01]).contact([2.8, 0.1], delta=0.0),
+    ],
+}
+
+
+def said_of(call):
+    """Warnings of a call, each of which points to this file."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        call()
+    return [
+        str(each.message)
+        for each in found
+        if each.category is vr.ModelWarning and each.filename == __file__
+    ]
+
+
+@pytest.mark.parametrize(
+    ("words", "call"), [(words, call) for words, calls in WARNED.items() for call in calls]
+)
+def test_warned(words, call):
+    """Once."""
+    first, *others = words.split(" | ")
+    (message,) = [each for each in said_of(call) if first in each]
+    assert all(word in message for word in others)
+
+
+@pytest.mark.parametrize(
+    ("words", "call"), [(words, call) for words, calls in SILENT.items() for call in calls]
+)
+def test_not_warned(words, call):
+    assert not [each for each in said_of(call) if words in each]
+
+
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
+@pytest.mark.parametrize(("call", "words"), SAID)
+def test_said(call, words):
+    text = str(call())
+    assert all(word in text for word in words.split(" | ")), text
