@@ -35,7 +35,7 @@ from ..core.errors import ConvergenceError, ParameterError
 from ..core.files import seal, seal_matches
 from ..kernels.numerics.cache_folder import cache_root, is_quiet, read_private, write_private
 from ..kernels.numerics.jit import sources_digest
-from ..laws.coupled_rows import FIELDS, CoupledRows
+from ..laws.law_rows import FIELDS, CoupledRows
 from ..laws.law_table import LawTable, coupled_table
 from ..materials.prony import lock_array
 from .coupled_pair import CoupledPair, CoupledRow, CoupledStates

@@ -18,11 +18,16 @@ is given by alpha alone it is T_epsilon.  z is half the transit time of the cont
 T_ref (zeta of the paper).  The functions g(z) and h(z) of the material
 (:mod:`.material_series`) give the shift of the contact over half its length, g/z, and the
 contact length over that at rest, (1 + 2 h/z)^(-1/2).
+
+Nodes of the law of one scene over speed and creep, and the vector of splines that kernels read
+of them.
+
+:mod:`.coupled_splines` describes the splines.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, NamedTuple
 
@@ -37,7 +42,7 @@ from ..kernels.numerics.interpolation import (
     to_doubles,
 )
 from ..materials.bodies import Bodies
-from ..materials.prony import Prony
+from ..materials.prony import Prony, lock_array
 from ..materials.prony_forms import Modes
 
 # --- Polynomials of one variable over octaves ---
@@ -308,3 +313,124 @@ def evaluate_by_modes(material: Any, z: Floats) -> ModesValues:
     if series.a.size:
         modes_loop(series, alpha, new_workspace(series.a.size), z, values)
     return ModesValues(values[:FUNCTIONS], values[FUNCTIONS:-1], values[-1])
+
+
+# --- Nodes of the law of one scene over speed and creep ---
+
+#: creeps that divide the states of a speed, in the order of :attr:`CoupledRows.edges`
+EDGES = ("middle", "onset_minus", "onset_plus", "free")
+#: fields in the order of :attr:`CoupledRows.fields`
+FIELDS = (
+    "Q_over_mu",
+    "M_half_space",
+    "M_cylinder",
+    "lam",
+    "epsilon",
+    "beta",
+    "work_half_space",
+    "work_cylinder",
+)
+
+
+@dataclass(frozen=True, eq=False)
+class CoupledRows:
+    """The law of one scene at one coefficient of friction, at nodes; arrays are read only, all is
+    dimensionless.
+
+    mu : coefficient of friction.
+    u : nodes of kappa |V|, (n,), > 0, ascending.
+    t : nodes of the place in creep, (m,), from -1 to 1, with 0 among them where ``graded``.
+    edges : 2 kappa times the creepages :data:`EDGES`, (n + 2, 4): first for u = 0, last for u
+    infinite.
+    fields : :data:`FIELDS`, (n + 2, m, 8): M times kappa; work is 2 kappa times that of shear on
+    the strain of a body.
+    graded : whether t is graded at 0 and +-1; else it is the place itself, and the splines are not
+    clamped there.
+    fastest : largest u that is allowed; for a last row that is the limit of u infinite 1e300.
+    slips : whether the contact slips fully beyond the onsets; False: nothing is known there.
+    limit : largest abs(Q/mu): 1, or infinite where it is not known.
+    errors : field -> largest error found beside the nodes, absolute.
+    """
+
+    mu: float
+    u: Floats
+    t: Floats
+    edges: Floats
+    fields: Floats
+    graded: bool = True
+    fastest: float = 1e300
+    slips: bool = True
+    limit: float = 1.0
+    errors: dict[str, float] = field(default_factory=dict)
+
+    @cached_property
+    def vector(self) -> Floats:
+        """Return the splines as the vector that kernels read."""
+        from ..kernels.law import coupled_splines as layout
+
+        x = np.log(self.u)
+        along = self._slopes_along if self.graded else _free_slopes
+        over_t = self._slopes_in_t()
+        jets = np.stack([self.fields, along(x, self.fields), over_t, along(x, over_t)], axis=-1)
+        edges = np.stack([self.edges, along(x, self.edges)], axis=-1)
+        head = np.zeros(layout.HEAD)
+        head[[layout.ROWS, layout.NODES, layout.GRADED]] = self.u.size + 2, self.t.size, self.graded
+        head[[layout.FIRST, layout.LAST, layout.MOST]] = self.u[0], self.u[-1], self.fastest
+        head[[layout.U_STEP, layout.T_STEP]] = _equal_step(x), _equal_step(self.t)
+        begin = layout.HEAD + np.cumsum([x.size, self.t.size, edges.size])
+        head[[layout.T_BEGIN, layout.EDGES, layout.FIELDS]] = begin
+        head[[layout.FIELD_COUNT, layout.SLIPS, layout.LIMIT]] = (
+            self.fields.shape[-1],
+            self.slips,
+            self.limit,
+        )
+        return lock_array(np.concatenate([head, x, self.t, edges.ravel(), jets.ravel()]))
+
+    def _slopes_along(self, x: Floats, values: Floats) -> Floats:
+        """Return slopes over x = ln u, of ``values`` (n + 2, ...), that join the limits smoothly; 0
+        in the limits.
+        """
+        from scipy.interpolate import CubicSpline
+
+        ends = (1, values[1] - values[0]), (1, values[-1] - values[-2])
+        found = np.zeros_like(values)
+        found[1:-1] = CubicSpline(x, values[1:-1], bc_type=ends)(x, 1)
+        return found
+
+    def _slopes_in_t(self) -> Floats:
+        """Return slopes of the fields over t, (n + 2, m, fields); 0 at t = 0 and +-1 where the
+        nodes are graded.
+        """
+        from scipy.interpolate import CubicSpline
+
+        if not self.graded:
+            slopes = np.moveaxis(_slopes(self.t, np.moveaxis(self.fields, 1, 0)), 0, 1)
+            return np.where(np.ptp(self.fields, axis=1, keepdims=True) > 0.0, slopes, 0.0)
+        middle = int(np.argmin(np.abs(self.t)))
+        found = np.zeros_like(self.fields)
+        for side in (slice(0, middle + 1), slice(middle, None)):
+            spline = CubicSpline(self.t[side], self.fields[:, side], axis=1, bc_type="clamped")
+            found[:, side] = spline(self.t[side], 1)
+        return found
+
+
+def _slopes(x: Floats, values: Floats) -> Floats:
+    """Return slopes at nodes, (n, ...), of the not-a-knot spline, of lower degree for few nodes."""
+    from scipy.interpolate import make_interp_spline
+
+    return np.asarray(make_interp_spline(x, values, k=min(3, x.size - 1))(x, 1))
+
+
+def _free_slopes(x: Floats, values: Floats) -> Floats:
+    """Return slopes over x = ln u of the spline through ``values[1:-1]``, 0 in the rows of both
+    limits.
+    """
+    found = np.zeros_like(values)
+    found[1:-1] = _slopes(x, values[1:-1])
+    return found
+
+
+def _equal_step(x: Any) -> float:
+    """Return the step of coordinates in equal steps, else 0."""
+    steps = np.diff(x)
+    return float(steps.mean()) if np.ptp(steps) <= 1e-12 * np.abs(steps).max() * x.size else 0.0
