@@ -48,13 +48,13 @@ from .measurements.dma_reader import read_relaxation as read_relaxation
 from .measurements.dynamic_moduli import DynamicModuli as DynamicModuli
 from .measurements.fit_results import Fit as Fit
 from .measurements.fit_results import RelaxationFit as RelaxationFit
+from .measurements.fit_series import fit_at_strain as fit_at_strain
 from .measurements.fit_series import fit_prony as fit_prony
 from .measurements.fit_series import fit_relaxation as fit_relaxation
 from .measurements.identify import identify as identify
 from .measurements.measurement_records import Coastdown as Coastdown
 from .measurements.measurement_records import Resistance as Resistance
 from .measurements.measurement_records import Traction as Traction
-from .measurements.strain_sets import fit_at_strain as fit_at_strain
 from .motion.ensemble import Ensemble as Ensemble
 from .motion.ensemble import ensemble as ensemble
 from .motion.motion_result import Motion as Motion

@@ -13,8 +13,10 @@ import hashlib
 import io
 import shlex
 import sys
+import tomllib
 from collections.abc import Callable, Mapping
 from datetime import UTC, datetime
+from importlib.resources import files
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -59,7 +61,7 @@ COUPLED = "coupled"
 
 
 class Kind(NamedTuple):
-    """Contents of the files of a kind.
+    """Contents of the files of a kind, of file_variables.toml.
 
     summary : beginning of the summary of the file.
     functions : name of each function in the order of its coefficients -> meaning.
@@ -72,196 +74,16 @@ class Kind(NamedTuple):
 
     summary: str
     functions: dict[str, str]
-    dims: tuple[str, ...]
+    dims: list[str]
     terms: str
-    others: dict[str, tuple[tuple[str, ...], str]]
+    others: dict[str, tuple[list[str], str]]
     comment: str
-    error: str = "largest_relative_error"
+    error: str
 
 
-_ROW = (
-    "x = m 2^e with m in [1/2, 1) (frexp); n = e - e0. n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < "
-    "n < rows: row n at "
-    "t = 4 m - 3; beyond: the fast limit. A function is the sum over k of c[n, k] t^k. "
-)
-_E0 = (), "row 0 covers [0, 2^e0)"
-#: end of a summary
-_ANY = "any speed, creep, kappa and mu, by two look-ups and no iteration."
-_LAW = Kind(
-    summary="The contact law of one material or pair as polynomials, one for each octave of speed: "
-    + _ANY,
-    functions={
-        "lam": "contact length divided by contact length at rest, as a function of kappa |V|",
-        "epsilon": "shift of the contact divided by half its length, as a function of kappa |V|",
-        "m_half_space": "M_half_space/V, as a function of kappa |V|",
-        "m_cylinder": "M_cylinder/V, as a function of kappa |V|",
-        "N": "N of M = M(V) + N dV/dt, as a function of kappa |V|",
-        "share": "eta/F(eta), as a function of v = 1/F(eta)",
-        "press": "H(eta)/F(eta)^2, as a function of v = 1/F(eta)",
-    },
-    dims=("octave", "power"),
-    terms="coefficients of powers of t",
-    others={
-        "e0": _E0,
-        "alpha": ((), "instantaneous modulus divided by long-time modulus"),
-        "T_mean": ((), "sum of J_j T_j, divided by T_ref"),
-        "T_ref": ((), "unit of time; 1 where none was given"),
-        "fast_limit": (
-            ("body", "term"),
-            "W = sum J_j/T_j and C = sum J_j/T_j (ln 2 T_j - 0.5772...) of all, of the half-space "
-            "and of the cylinder",
-        ),
-        "relaxation_strength": (("mode",), "E_i divided by the long-time modulus"),
-        "relaxation_time": (("mode",), "tau_i divided by T_ref"),
-        "creep_strength": (("mode",), "J_j divided by the long-time compliance"),
-        "retardation_time": (("mode",), "T_j divided by T_ref"),
-        "half_space_weight": (("mode",), "share of the half-space in J_j"),
-    },
-    comment=_ROW
-    + "u = kappa |V|; L = lam (1 + epsilon); delta_star = mu L/(2 kappa); D = 2 kappa |delta|/mu; "
-    "D >= L: full slip, |Q| = mu, beta = 0."
-    " Else w = L - D, v = 2 u/w: beta = share(v) w/lam, |Q| = mu (1 - w^2 press(v)); where D < "
-    "L/8: "
-    "|Q| = mu D ((2 L - D) press(v) - (2 u L/w) S), S the mean slope of press between 2 u/L and v. "
-    "M_half_space = V m_half_space, M_cylinder = V m_cylinder, M their sum. Q has the sign of "
-    "omega - V. Fast limit: "
-    "z = 1/(2 u sqrt(alpha)), W and C of fast_limit: lam = alpha^-1/2, epsilon = (alpha z/2)(C - W "
-    "ln z), "
-    "m = (alpha z^2/2)(C - W ln z + W/4) with those of either body, N = (alpha - 1) z^2/4; y = "
-    "1/v: "
-    "share = 1 - (alpha y/2)(C - W ln y), press = alpha share^2. At another temperature: look up u "
-    "a_T, N times a_T^2.",
-)
-_OF_SPEED = ("lam", "epsilon", "m_half_space", "m_cylinder", "share", "press")
-KINDS = {
-    LAW: _LAW,
-    COUPLED: Kind(
-        summary="The coupled solution of rolling with partial slip of one scene, at nodes of speed "
-        "and "
-        "creep: ",
-        functions={
-            "Q_over_mu": "traction divided by mu and load",
-            "M_half_space": "kappa M_half_space",
-            "M_cylinder": "kappa M_cylinder",
-            "lam": "contact length divided by l0",
-            "epsilon": "shift of the contact divided by half its length",
-            "beta": "length of the stick zone divided by that of the contact",
-            "work_half_space": (
-                "2 kappa times the integral of traction and strain of the half-space"
-            ),
-            "work_cylinder": "2 kappa times the integral of traction and strain of the cylinder",
-        },
-        dims=("row", "place"),
-        terms="values at nodes",
-        others={
-            "u": (("speed",), "nodes of kappa |V|"),
-            "t": (("place",), "nodes of the place in creep"),
-            "edges": (
-                ("row", "edge"),
-                "2 kappa times the creepages: middle, onset of negative slip, of positive, free",
-            ),
-            "mu": ((), "coefficient of friction"),
-            "alpha": _LAW.others["alpha"],
-            "T_ref": _LAW.others["T_ref"],
-        },
-        comment="Rows: u = 0, the nodes of u, u infinite; between nodes cubic splines in ln u, "
-        "below the "
-        "first linear in u, "
-        "beyond the last one linear in 1/u, joined smoothly. D = 2 kappa delta; onset: that of "
-        "positive slip where "
-        "D > middle, else of negative; w = (D - middle)/(onset - middle), at most 1; t = +-(1 - (1 "
-        "- w)^(2/3))^(1/2), "
-        "the sign of D - middle; clamped cubic splines in t on either side of t = 0. For V < 0 Q "
-        "and M change sign.",
-        error="largest_error",
-    ),
-    COVER: Kind(
-        summary="The contact law of a layer of finite thickness at one l0/h as polynomials, one "
-        "for each "
-        "octave of speed: " + _ANY,
-        functions={name: _LAW.functions[name] for name in _OF_SPEED}
-        | {
-            "limit": "2 kappa delta_star/mu, as a function of kappa |V|",
-            "free_half_space": (
-                "part of the half-space in 2 kappa delta_0, as a function of kappa |V|"
-            ),
-            "free_cylinder": "part of the cylinder in 2 kappa delta_0, as a function of kappa |V|",
-            "excess_half_space": (
-                "g of the half-space, by which full slip changes M, as a function of kappa |V|"
-            ),
-            "excess_cylinder": "g of the cylinder, as a function of kappa |V|",
-            "lam_Q": "slope of lam in Q, as a function of kappa |V|",
-            "epsilon_Q": "slope of epsilon in Q, as a function of kappa |V|",
-        },
-        dims=("octave", "power"),
-        terms="coefficients of powers of t",
-        others={
-            "e0": _E0,
-            "alpha": _LAW.others["alpha"],
-            "T_ref": _LAW.others["T_ref"],
-            "limits": (
-                ("limit_number",),
-                "limits for u -> infinity: of limit, lam, free (2), excess (2), lam_Q and "
-                "epsilon_Q; of their "
-                "coefficients of 1/u; of epsilon u, and of m_half_space u^2 and m_cylinder u^2",
-            ),
-        },
-        comment=_ROW
-        + "u = kappa |V|; L = limit(u); delta_star = mu L/(2 kappa); f_h = free_half_space, f_c = "
-        "free_cylinder, "
-        "f = f_h + f_c; delta_0 = f/(2 kappa); r = (g_h + g_c)/(mu L/2) with g of excess; c = "
-        "-r/(1 + (2 r)^6); "
-        "delta = delta_0 + delta_star (d + c d^2); |d| >= 1: full slip, |Q| = mu, beta = 0. Else D "
-        "= L |d|, "
-        "w = L - D, v = 2 u/w: beta = share(v) w/lam(u), |Q| = mu (1 - w^2 press(v)). Q has the "
-        "sign of "
-        "(delta - delta_0) V. k = (1 + r^4)^(-1/4)/mu; "
-        "M_half_space = V m_half_space - Q (f_h + k g_h |Q|)/(2 kappa); "
-        "M_cylinder = V m_cylinder - Q (f_c + k g_c |Q|)/(2 kappa + f); lam = lam(u) + lam_Q Q, "
-        "epsilon = epsilon(u) + epsilon_Q Q, for V < 0 with -Q. Fast limit: the limits and their "
-        "first order in 1/u; "
-        "with L_1 and a the limit of L and its coefficient: press = (1 - 2 a/(L_1 v))^2/L_1^2, "
-        "share = lam/L and in first order 2 (b L_1 - lam a)/(L_1^3 v) more, b that of lam.",
-    ),
-    AXIS: Kind(
-        summary="The contact law of one relaxation time as polynomials of speed and of ln alpha: "
-        + _ANY,
-        functions={
-            "lam": _LAW.functions["lam"],
-            "epsilon": (
-                "shift of the contact divided by half its length and by c, as a function "
-                "of "
-                "kappa |V|"
-            ),
-            "m": "M/V divided by c, as a function of kappa |V|",
-            "N": "N of M = M(V) + N dV/dt divided by c, as a function of kappa |V|",
-            "share": _LAW.functions["share"],
-            "press": _LAW.functions["press"],
-        },
-        dims=("octave_of_alpha", "degree", "octave", "power"),
-        terms="coefficients of T_j(s) and of powers of t",
-        others={
-            "first": ((), "log2 of the lowest alpha"),
-            "rows": (
-                ("octave_of_alpha",),
-                "number of rows of an octave of alpha before the fast limit; the remaining rows "
-                "are 0",
-            ),
-            "e0": _E0,
-        },
-        comment="alpha = m 2^e with m in [1/2, 1) (frexp); i = e - 1 - first; s = 2 log2(2 m) - 1; "
-        "c = "
-        "(alpha - 1)/alpha. The "
-        "table of that alpha is the sum over j of T_j(s) times [i, j], T_j Chebyshev's "
-        "polynomials; epsilon, m and N "
-        "come over c. It is read as the file of one material (viscoroll tables law MATERIAL.toml): "
-        "x = m 2^e; row n = "
-        "e - e0; n <= 0 or x = 0: row 0 at t = x 2^-e0; 0 < n < rows[i]: row n at t = 4 m - 3; "
-        "beyond: the fast limit "
-        "with W = c, C = c (ln 2 - 0.5772...). T_epsilon is the unit of time; both bodies take "
-        "half of m.",
-    ),
-}
+_TEXTS = tomllib.loads((files(__package__) / "file_variables.toml").read_text(encoding="utf-8"))
+#: kind of a law file -> its contents
+KINDS = {name: Kind(**about) for name, about in _TEXTS["laws"].items()}
 
 
 class Content(NamedTuple):
@@ -485,27 +307,8 @@ SUFFIX = ".nc"
 _SCHEMA = "viscoroll material 1"
 #: variables of each form of the series
 _FORMS = {"relaxation": ("E", "tau"), "creep": ("J", "T")}
-#: meaning and unit of each variable
-_MEANING = {
-    "E": ("strengths of relaxation divided by E_long", "1"),
-    "tau": ("relaxation times over T_ref", "1"),
-    "J": ("strengths of creep divided by the long-time compliance", "1"),
-    "T": ("retardation times over T_ref", "1"),
-    "E_long": ("long-time Young's modulus; infinite for a rigid body", "Pa"),
-    "nu": ("Poisson's ratio, of long times", "1"),
-    "nu_instant": ("Poisson's ratio at t = 0, where it differs from nu", "1"),
-    "T_ref": ("unit of the times tau and T", "s"),
-    "alpha": ("instantaneous modulus divided by long-time modulus", "1"),
-    "density": ("density", "kg m-3"),
-    "thickness": ("thickness of the layer", "m"),
-    "temperature": ("temperature of moduli and times", "degC"),
-    "measured_low": ("first angular frequency of the data", "rad s-1"),
-    "measured_high": ("last angular frequency of the data", "rad s-1"),
-    "measured_rate": ("transit frequencies at which the accuracy of M is known", "s-1"),
-    "measured_M_error": ("accuracy of M by the data as +-, relative", "1"),
-    "measured_misfit": ("root mean square of the relative errors of the fit", "1"),
-    "measured_strain": ("amplitude of engineering strain of the test", "1"),
-}
+#: variable -> its meaning and unit
+_MEANING = _TEXTS["material"]
 #: variables that a file may lack
 _OPTIONAL = ("density", "thickness", "temperature", "nu_instant")
 #: fields of the measured band, which a file may lack

@@ -36,8 +36,8 @@ from ..core.labels import Labels
 from ..core.results import SummaryRow
 from .many_motions import Batch, Solution, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
+from .motion_datasets import RollResult
 from .motion_problem import MotionProblem, SolverOptions, make_problem
-from .roll_result import RollResult
 
 if TYPE_CHECKING:
     import xarray as xr

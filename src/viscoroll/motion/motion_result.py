@@ -18,8 +18,8 @@ from ..core.drive_arguments import Feedback, Schedule
 from ..core.errors import MotionStatus, ParameterError, described_error, digits_beside
 from ..core.results import SummaryRow, Values
 from .motion_arguments import ROWS, SPEED_RANGE, output_times
+from .motion_datasets import RollResult
 from .motion_problem import NO_NOTES, MotionProblem, integrate_single
-from .roll_result import RollResult
 
 if TYPE_CHECKING:
     import xarray as xr
