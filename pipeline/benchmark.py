@@ -24,8 +24,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
+from viscoroll.contact_mechanics.coupled_tables import coupled_law
 from viscoroll.core.plots import new_figure, save
 from viscoroll.materials.checked_netcdf import stated_errors
+from viscoroll.roller_toml import read_roller
 
 from . import benchmark_integrator, stage
 from .runtime import least_seconds
@@ -134,10 +136,11 @@ def coupled_rows(settings: Coupled, seed: int) -> Iterator[dict[str, Any]]:
         law, seconds = least_seconds(partial(coupled_law, scene, nodes=nodes), False)
         u = np.exp(random.uniform(*np.log(law.coupled.u[[0, -1]]), settings.states))
         creep = random.uniform(*law.coupled.edges[1, 1:3], settings.states)
-        table = replace(scene, material=law)
-        states = u / scene.kappa, 0.5 * creep / scene.kappa
-        ask = partial(vr.contact, table, states[0], delta=states[1], fields=("Q", "M"), threads=1)
-        _, time = least_seconds(ask, True)
+        table = vr.Scene(material=law, kappa=scene.kappa, mu=scene.mu)
+        V = u / scene.kappa
+        delta = 0.5 * creep / scene.kappa
+        ask = partial(vr.contact, table, V, delta=delta, fields=("Q", "M"))
+        _, time = least_seconds(ask, False)
         yield {
             "nodes": "{} by {}".format(*nodes),
             "s to make": seconds,

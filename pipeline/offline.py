@@ -1,5 +1,5 @@
 """Offline: the law of every alpha -> data/tables/law.nc, those of the materials of [tables] ->
-data/tables/NAME.nc, as those of the coupled solution of its rollers, and lam, epsilon, beta, Q and M
+data/tables/NAME.nc, those of the coupled solution of rollers too, and lam, epsilon, beta, Q and M
 on a grid of V, delta and alpha, by root solves -> data/tables/grid.nc.
 
 python -m pipeline.offline [--config FILE] [--tables FOLDER] [-o FOLDER]
