@@ -100,7 +100,8 @@ def _calls() -> dict[str, Callable[[], Any]]:
     series = vr.Scene(material=modes, kappa=2.91, mu=0.2, gamma=1.0)
     many = series.replace(material=vr.Prony([[1.0, 2.0], [2.0, 1.0]], [1.0, 0.1]))
     covered = series.replace(material=vr.Cover(modes, nu=0.5, thickness=1.0))
-    thick = covered.replace(material=vr.Cover(1.0, nu=0.5, thickness=[1.0, 1.5]))
+    fast = covered.replace(coupled=False)
+    thick = fast.replace(material=vr.Cover(1.0, nu=0.5, thickness=[1.0, 1.5]))
     return {
         # build_map computes a map; ensemble might find one on disk
         "motions and flow maps": lambda: flow.build_map(
@@ -113,10 +114,13 @@ def _calls() -> dict[str, Callable[[], Any]]:
         "contact with an array of Prony series": lambda: vr.contact(many, 0.5, delta=0.01),
         "unsteady rolling": lambda: vr.contact(series, 0.5, delta=0.01, fields="N"),
         "bound law": lambda: vr.law(scene),
-        "motions on a cover": lambda: vr.roll(covered, 0.5, 0.5, 0.1),
+        # the first makes the table of the coupled solution
         "contact on a cover": lambda: vr.contact(covered, 0.5, delta=0.01),
+        "motions on a cover": lambda: vr.roll(covered, 0.5, 0.5, 0.1),
         "steady rolling on a cover": lambda: vr.steady(covered, force=0.01),
         "bound law of a cover": lambda: vr.law(covered),
+        "fast law of a cover": lambda: vr.contact(fast, 0.5, delta=0.01),
+        "motions by the fast law": lambda: vr.roll(fast, 0.5, 0.5, 0.1),
         "contact with an array of thicknesses": lambda: vr.contact(thick, 0.5, delta=0.01),
         "steady rolling": lambda: vr.steady(scene, force=0.01),
         "stress": lambda: vr.stress(scene, 0.5, 0.5, delta=0.01),
