@@ -133,7 +133,7 @@ def coupled_rows(settings: Coupled, seed: int) -> Iterator[dict[str, Any]]:
     scene = read_roller(stage.ROOT / settings.roller).scene()
     random = np.random.default_rng(seed)
     for nodes in settings.nodes:
-        law, seconds = least_seconds(partial(coupled_law, scene, nodes=nodes), False)
+        law, seconds = least_seconds(partial(coupled_law, scene, nodes=nodes), True)
         u = np.exp(random.uniform(*np.log(law.coupled.u[[0, -1]]), settings.states))
         creep = random.uniform(*law.coupled.edges[1, 1:3], settings.states)
         table = vr.Scene(material=law, kappa=scene.kappa, mu=scene.mu)

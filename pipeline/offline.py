@@ -91,11 +91,10 @@ def build_all(config: Path, folder: Path) -> stage.Outcome:
 def build_coupled(outcome: stage.Outcome, path: Path, settings: Coupled) -> None:
     """Build the table of the coupled solution of a roller, save and report it."""
     roller = read_roller(stage.ROOT / settings.roller)
-    made(outcome, path, partial(vr.tables.build, roller, method="coupled"))
-    rows = vr.load_law(path).coupled
+    errors = stated_errors(made(outcome, path, partial(vr.tables.build, roller, method="coupled")))
     for name, allowed in settings.allowed.items():
-        outcome.headline[f"{path.stem}: error of {name} (allowed {allowed:g})"] = rows.errors[name]
-        outcome.failed |= not rows.errors[name] <= allowed
+        outcome.headline[f"{path.stem}: error of {name} (allowed {allowed:g})"] = errors[name]
+        outcome.failed |= not errors[name] <= allowed
 
 
 def build_grid(outcome: stage.Outcome, path: Path, settings: Grid) -> None:

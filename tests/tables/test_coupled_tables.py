@@ -125,6 +125,9 @@ def test_grids_of_other_programs_roll(tmp_path):
     close(np.stack([found.V, found.omega]), np.stack([exact.V, exact.omega]), tol.GRID_MOTION)
     with pytest.raises(vr.ParameterError, match="within the table"):
         grid.roll(V0=100.0, omega0=100.0, t=[0.0, 1.0])
+    for V0, torque in ((100.0, 0.0), (9.0, 5.0)):
+        with pytest.raises(vr.ParameterError, match="within the table"):
+            vr.ensemble(grid, [1.0, V0], [1.0, V0], [0.0, 5.0], torque=torque, fields=["x"])
     with pytest.raises(vr.ParameterError, match="lam"):
         grid.contact(0.1, delta=0.0, fields="lam")
 

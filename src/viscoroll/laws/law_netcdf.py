@@ -332,7 +332,8 @@ def bodies_as_toml(given: Any) -> str:
             f"{name} = {{ {series_as_toml(getattr(given, name))} }}"
             for name in ("cylinder", "base")
         )
-        return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", ""])
+        poisson = "" if given.poisson is None else f"poisson = {list(given.poisson)!r}\n"
+        return "\n".join(["[bodies]", *parts, f"share = {given.share!r}", poisson])
     return (
         f"[scene]\n{series_as_toml(given) if isinstance(given, Prony) else f'alpha = {given!r}'}\n"
     )
@@ -366,6 +367,6 @@ def _parse_bodies(text: str, path: Any) -> tuple[Any, Pair | None]:
     if "bodies" in content:
         given = content["bodies"]
         series = {name: parse_series(path, "bodies", given[name]) for name in ("cylinder", "base")}
-        return Bodies(**series, share=given["share"]), None
+        return Bodies(**series, share=given["share"], poisson=given.get("poisson")), None
     given = content["scene"]
     return given["alpha"] if "alpha" in given else parse_series(path, "scene", given), None

@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_mechanics.assumptions import Validity
+from ..contact_mechanics.contact_table import refuse_beyond
 from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
 from ..contact_mechanics.parameters import Roller, scale_of
 from ..contact_mechanics.validity import validity
@@ -443,6 +444,11 @@ def ensemble(
     inputs, count = _broadcast_inputs(problem, drive.numbers)
     warn_of_start(problem.roller, problem.scene, start, problem.V0, problem.omega0, problem.driven)
     scale = problem.roller.scale
+    scene = problem.scene
+    several = scene.material_array is not None or np.ndim(scene.alpha) > 0
+    law = None if several else scene.rolling_law
+    if law is not None and law.coupled is not None and "V" not in names:
+        names = (*names, "V")  # a table of another program ends at a speed
     batch = Batch(
         problem=problem,
         inputs=inputs,
@@ -456,6 +462,11 @@ def ensemble(
         solution = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
     except ParameterError as error:
         raise with_scales(error, scale) from error
+    if law is not None and law.coupled is not None:
+        kappa = np.reshape(inputs["kappa"], (-1, 1))
+        found = solution.motions.out[batch.rows.index("V")]
+        for V in (np.reshape(inputs["V0"], (-1, 1)), found):
+            refuse_beyond(law, kappa * np.abs(np.nan_to_num(V)))
     columns: dict[str, Any] = dict.fromkeys(FIELDS) | {
         name: np.zeros((count, times.size)) for name in names
     }
