@@ -271,8 +271,50 @@ def test_feedback_on_omega_misses_none():
         assert within.sum() == brute_feedback(scene, force, torque, V), n
         several += s.count > 2
     assert several > 2
-    with pytest.raises(vr.ParameterError, match="a feedback on omega is not examined"):
-        vr.steady(series_scene(COVER, mu=0.02), force=vr.Feedback(0.01, omega=0.1))
+
+
+def test_feedback_on_omega_of_covers_misses_none():
+    """Q by the combination of both balances without omega, bisected at each speed; changes of sign
+    of what is left of the larger gain.
+    """
+    rng = np.random.default_rng(3)
+    x = np.geomspace(1e-7, 1e5, 3001)
+    for n, on in enumerate(("base", "cylinder") * 2):
+        scene = series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0, on=on), mu=0.2)
+        gains = rng.uniform(-0.5, 0.5, 4) * (1.0, n > 1, 1.0, 1.0)
+        force = vr.Feedback(rng.uniform(-0.1, 0.1), V=gains[0], omega=gains[1])
+        torque = vr.Feedback(rng.uniform(-0.1, 0.1), V=gains[2], omega=gains[3])
+        s = vr.steady(scene, force=force, torque=torque)
+        for off in residuals(scene, s):
+            assert (np.abs(off) <= tol.STEADY_SCAN * (1.0 + np.abs(s.omega))).all()
+        assert (s.loss.slip >= 0.0).all()
+        sticks = (s.beta > 0.0) & (np.abs(s.V) > x[0])
+        assert sticks.sum() == sum(brute_of_cover(scene, force, torque, V) for V in (x, -x)), n
+    with pytest.raises(vr.ParameterError, match="nearly cancel"):
+        vr.steady(scene, force=vr.Feedback(0.01, omega=0.1), torque=vr.Feedback(0.0, omega=-0.1))
+
+
+def brute_of_cover(scene, force, torque, V):
+    """Equilibria with a stick zone between speeds V of one sign."""
+
+    def left(delta):
+        c = vr.contact(scene, V, delta=delta, fields=("Q", "M_half_space", "M_cylinder"))
+        omega = V * (1.0 + delta)
+        axis = c.Q - c.M_half_space + force.value + force.V * V + force.omega * omega
+        spin = torque.value + torque.V * V + torque.omega * omega - c.Q - c.M_cylinder
+        larger = axis if abs(force.omega) > abs(torque.omega) else spin
+        return torque.omega * axis - force.omega * spin, larger
+
+    ends = vr.contact(scene, V, delta=0.0, fields=("delta_minus", "delta_plus"))
+    low, high = ends.delta_minus, ends.delta_plus
+    top = left(high)[0] > 0.0
+    within = top != (left(low)[0] > 0.0)
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        above = (left(middle)[0] > 0.0) == top
+        low, high = np.where(above, low, middle), np.where(above, middle, high)
+    off = left(middle)[1]
+    return int((within[1:] & within[:-1] & (off[1:] * off[:-1] < 0.0)).sum())
 
 
 def test_opposite_gains_on_omega():

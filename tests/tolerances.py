@@ -640,6 +640,8 @@ COVER_ENERGY = 1e-12
 COVER_NAMES = 1e-5
 #: M over Q at rest beside delta_0 at 0.01 delta_star, the next term of the law.
 COVER_REST_LEVER = 5e-3
+#: Onsets of full slip beside those of the coupled solution, over delta_star: the error of the law.
+COVER_ONSETS = 0.08
 #: Printed digits of 2 kappa delta_0* of an elastic cover, of boundary elements.
 COVER_PRINTED = 1e-6
 #: 2 kappa delta_0* at u = 1e-7 and 1e7 beside elastic covers, first order in u and 1/u; for nu <

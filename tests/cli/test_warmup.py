@@ -42,7 +42,7 @@ vr.contact(cover, V, omega=0.1, slopes=True)
 vr.ensemble(cover, [1.0, 1.5], 0.5, [1e-3], force=0.01, fields=("V", "slip_loss"))
 vr.steady(cover, V=V[:3], force=0.0)
 vr.law(cover)(0.1, 0.2)
-vr.ensemble(cover.replace(material=vr.Cover(1.0, nu=0.5, thickness=[0.5, 0.6])), 1.0, 0.5, [1e-3])
+vr.ensemble(cover.replace(material=vr.Cover(1.0, nu=0.5, thickness=[0.5, 0.6]), coupled=False), 1.0, 0.5, [1e-3])
 """  # noqa: E501
 CODE = f"""
 import importlib

@@ -59,6 +59,23 @@ def test_no_state_makes_energy():
         assert np.nanmax(s.loss.efficiency) <= 1.0
 
 
+@pytest.mark.parametrize("index", [0, 5, 15, 20])
+def test_onsets_lie_unlike_far_from_free_rolling(index):
+    """As in the coupled solution, and full slip begins there, of motions of either direction."""
+    _, scene, u = covers.scenes()[index]
+    V = u / covers.KAPPA
+    found = vr.contact(scene, V, delta=0.0, fields=("delta_minus", "delta_plus", "delta_star"))
+    true = covers.CoupledRow(covers.CoupledPair.of_scene(scene), u, float(scene.mu)).onsets()
+    onsets = np.array([found.delta_minus, found.delta_plus])
+    exact = 0.5 * np.array(true) / covers.KAPPA
+    assert close(onsets, exact, rel=tol.COVER_ONSETS, scale=found.delta_star)
+    inside = found.delta_star * 1e-6 * np.array([1.0, -1.0])
+    for sign in (1.0, -1.0):
+        slips = vr.contact(scene, sign * V, delta=onsets + np.array([[-1.0], [1.0]]) * inside)
+        assert slips.full_slip.tolist() == [[True, True], [False, False]]
+        assert close(slips.Q, [sign * scene.mu * np.array([-1.0, 1.0])] * 2, rel=tol.COVER_ENDS)
+
+
 def test_the_same_nip_has_the_same_losses():
     """Named from the other side V and omega change places; speeds of both names differ by creepage,
     here 1e-6.

@@ -337,10 +337,11 @@ _THICKNESS = (0.2, 0.3, 0.5, 1.0, 2.0, 5.0)
 #: coupling, for every nu, material, speed and creepage (held by
 #: ``pipeline/evidence/prove/cover.py``).
 _ERROR = (0.064, 0.058, 0.046, 0.029, 0.018, 0.011)
-#: Error of Q divided by mu P, beside those, divided by the value of the assumption ``traction``: no
-#: more in any of the scenes of ``pipeline/evidence/measure/covers.py``, beside the coupled
-#: solution.
-_SHEAR_ERROR = 0.7
+#: Error of Q divided by mu P, beside those, where shear acts back, however little: no more, with
+#: the next, in any scene of ``pipeline/evidence/measure/covers.py``, beside the coupled solution.
+_LEAST_SHEAR_ERROR = 0.02
+#: Error of Q divided by mu P and by the value of the assumption ``traction``, beside both.
+_SHEAR_ERROR = 0.4
 #: Creepage far above any delta_star, for full slip.
 _FULL_SLIP = 1e6
 
@@ -404,8 +405,8 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     |delta_0* - delta_0| is at most delta_star/2; beyond, both ends of the contact slip.  The
     sentence states the largest errors of Q and M beside the coupled solution, where it holds
     (docs/validity_covers.md; tested in tests/contact_law/test_fast_law.py).  That of Q is that
-    without coupling and 0.7 mu P times the value; that of M follows, as M has the terms Q delta_0
-    and Q (delta_0* - delta_0).
+    without coupling, 0.02 mu P and 0.4 mu P times the value; that of M follows, as M has the terms
+    Q delta_0 and Q (delta_0* - delta_0).
 
     scene: dimensionless parameters of a roller with a cover, or with an array of covers.
     V: speeds, dimensionless, any sign, an array of any shape; broadcasts with the scene.
@@ -429,7 +430,8 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     limited = np.minimum(2.0 * np.abs(excess) / star, 1.0)
     with np.errstate(divide="ignore"):
         value = limited / (1.0 - limited**4) ** 0.25
-    error = stated_error(float(np.min(cover.thinnest))) + _SHEAR_ERROR * np.minimum(value, 1.0)
+    error = stated_error(float(np.min(cover.thinnest))) + _LEAST_SHEAR_ERROR
+    error = error + _SHEAR_ERROR * np.minimum(value, 1.0)
     levers = np.abs(free) + 0.5 * star * np.minimum(value, 1.0)
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     largest = float(np.max(value, initial=0.0))

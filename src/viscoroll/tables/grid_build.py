@@ -92,7 +92,7 @@ def creep_nodes(
 ) -> Floats:
     """Return nodes of creepage for a grid, which resolve the partial slip at every speed and alpha.
 
-    Full slip begins at delta = +-delta_star(V, alpha), of a layer at delta_0 +- delta_star.
+    Full slip begins at delta = +-delta_star(V, alpha), of a layer at delta_minus and delta_plus.
 
     Parameters
     ----------
@@ -111,8 +111,8 @@ def creep_nodes(
     array of shape (count,)
         Creepages, dimensionless, ascending, symmetric about 0, which is one of them.  Half of the
         nodes lie in equal steps.  The other half are divided equally among all (V, alpha): those of
-        each lie in equal steps within +-1.1 times its delta_star, of a layer its
-        delta_star + |delta_0|.  The ends are +-1.1 times the largest of these
+        each lie in equal steps within +-1.1 times its delta_star, of a layer the
+        larger of |delta_minus| and |delta_plus|.  The ends are +-1.1 times the largest of these
         values: there the whole contact slips.
 
     Raises
@@ -138,8 +138,9 @@ def creep_nodes(
     speeds = increasing("V", V, unit=roller.scale, above=0.0)
     roller = roller if alpha is None else roller.replace(alpha=increasing("alpha", alpha, low=1.0))
     speeds = speeds if alpha is None else speeds[:, np.newaxis]
-    found = roller.contact(speeds, delta=0.0, fields=("delta_star", "delta_0"))
-    ends = np.sort(_END_RATIO * (found.delta_star + np.abs(found.delta_0)), axis=None)
+    found = roller.contact(speeds, delta=0.0, fields=("delta_minus", "delta_plus"))
+    largest = np.maximum(np.abs(found.delta_minus), np.abs(found.delta_plus))
+    ends = np.sort(_END_RATIO * largest, axis=None)
     # nodes divided by their number, per creepage; between two ends it is constant
     density = (1.0 / ends[-1] + np.cumsum(1.0 / ends[::-1])[::-1] / ends.size) / 2.0
     fraction = np.append(0.0, np.cumsum(density * np.diff(ends, prepend=0.0)))
