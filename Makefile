@@ -97,7 +97,7 @@ peer-tools: setup debian-lists
 
 DEBIAN := gcc g++ gfortran netcdf-bin libnetcdf-dev libnetcdff-dev octave octave-netcdf r-base-core r-cran-ncdf4 nodejs
 interop: interop-tools ## laws in C, C++, Fortran, Octave, R, Node, FMUs, ncdump and the CF checker, which it installs
-	$(BIN)/pytest -rs tests/docs/test_interop.py tests/fmu
+	$(BIN)/pytest -rs tests/evidence/test_interop.py tests/fmu
 
 # What cannot be installed, without a network say, is told here, and its tests are skipped with that reason.
 interop-tools: setup debian-lists

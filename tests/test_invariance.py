@@ -1,24 +1,13 @@
-"""What changes no bit: company, order, threads, processes, kinds of arrays; and a hostile host:
-other rounding modes, flushed subnormals, little memory."""
+"""What changes no bit: company, order, threads, kinds of arrays."""
 
-import os
-import platform
-import shutil
-import subprocess
-import sys
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache, partial
-from pathlib import Path
 from threading import Barrier
 
 import numpy as np
 import pytest
-import tolerances as tol
-from closeness import close
 from many import MATERIALS, UNLIKE
 from many import states as of_all_alphas
-from memory import forget
-from processes import printed
 
 import viscoroll as vr
 from viscoroll.motion.ensemble import FIELDS
@@ -31,21 +20,6 @@ SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
 T = np.array([1e-5, 1e-3, 3e-3, 1e-1, 1.0])
 X = np.linspace(-0.5, 1.0, 61)[:, None]
 GRID = {"what": SCENE, "V": [0.1, 0.3, 2.0], "delta": [-0.01, 0.0, 0.03], "alpha": [1.0, 11.0]}
-#: control and status register of SSE: rounding in bits 13-14, denormals are zero in 6, flush to
-#: zero in 15
-MODES = {
-    "denormals are zero": 0x0040,
-    "flush to zero": 0x8000,
-    "down": 0x2000,
-    "up": 0x4000,
-    "toward zero, subnormals flushed": 0xE040,
-}
-FLUSHING = ("denormals are zero", "flush to zero")
-REGISTER = """
-#include <xmmintrin.h>
-unsigned get(void) { return _mm_getcsr(); }
-void set(unsigned value) { _mm_setcsr(value); }
-"""
 
 
 def states():
@@ -240,118 +214,12 @@ def test_a_grid_is_as_the_grid_written_out():
     )
 
 
-# --- floating-point environment ---
-
-
-#: A program that takes a folder and computes ``everything``: in each mode of a host library,
-#: "usual" without one; and in a fork of itself, which has used threads and kernels by then.
-ELSEWHERE = """
-import ctypes, multiprocessing, sys
-from pathlib import Path
-folder = Path(sys.argv[1])
-sys.path.insert(0, sys.argv[2])
-import numpy as np
-import test_invariance as test
-from viscoroll.motion import flow_store
-library = folder / "register.so"
-register = ctypes.CDLL(str(library)) if library.exists() else None
-usual = register.get() if register else 0
-for name, bits in ({"usual": 0} | (test.MODES if register else {})).items():
-    test.forget()
-    flow_store.folder = lambda: folder / name
-    if register:
-        register.set(usual | bits)
-    try:
-        found = test.everything()
-        register_after = register.get() & 0xE040 if register else 0
-    finally:
-        if register:
-            register.set(usual)
-    np.savez(folder / f"{name}.npz", register_after=register_after, **found)
-if "fork" in multiprocessing.get_all_start_methods():
-    flow_store.folder = lambda: folder / "fork"
-    with multiprocessing.get_context("fork").Pool(1) as pool:
-        (found,) = pool.map_async(test.work, range(1)).get(timeout=200)
-    np.savez(folder / "fork.npz", **found)
-"""
-
-
-@pytest.fixture(scope="module")
-def elsewhere(tmp_path_factory):
-    """``everything`` of the program above, in each mode and in a fork."""
-    folder = tmp_path_factory.mktemp("modes")
-    compiler = shutil.which("cc") if platform.machine() in ("x86_64", "AMD64") else None
-    if compiler:
-        (folder / "register.c").write_text(REGISTER)
-        subprocess.run(
-            [compiler, "-shared", "-fPIC", "-o", folder / "register.so", folder / "register.c"],
-            check=True,
-        )
-    environment = {"VISCOROLL_THREADS": "2", "PYTHONPATH": os.pathsep.join(sys.path)}
-    printed(ELSEWHERE, folder, Path(__file__).parent, **environment)
-    return {path.stem: dict(np.load(path)) for path in folder.glob("*.npz")}
-
-
 @pytest.fixture(scope="module")
 def expected(maps_of_this_file):
     return everything()
 
 
-def test_other_processes(elsewhere, expected):
-    """A process of its own and the child of one that has used threads and kernels compute the same
-    bits, and end.
-    """
-    for way in {"usual", "fork"} & elsewhere.keys():
-        assert_same(
-            {name: values for name, values in elsewhere[way].items() if name != "register_after"},
-            expected,
-        )
-
-
-@pytest.fixture(scope="module")
-def modes(elsewhere):
-    """``everything`` in each mode, from one process that a host library has set so."""
-    if not elsewhere.keys() >= MODES.keys():
-        pytest.skip("the register is that of x86, and a C compiler reaches it")
-    return elsewhere
-
-
-def test_flushed_subnormals_change_nothing_else(modes):
-    """What is a normal number in the usual mode has the same bits in this one."""
-    for mode in FLUSHING:
-        assert modes[mode].pop("register_after") == MODES[mode]
-        for name, found in modes[mode].items():
-            usual = modes["usual"][name]
-            normal = (
-                np.isfinite(usual)
-                & (np.abs(usual) > tol.SUBNORMAL)
-                & (np.abs(usual) < 1.0 / tol.SUBNORMAL)
-            )
-            assert np.array_equal(found[normal], usual[normal]), (mode, name)
-            assert np.array_equal(np.isnan(found), np.isnan(usual)), (mode, name)
-
-
-def test_rounding_mode(modes):
-    """The same numbers to some roundings more, over the largest of each field; the same regimes; no
-    new NaN.
-    """
-    for mode in set(MODES) - set(FLUSHING):
-        assert modes[mode].pop("register_after") == MODES[mode] & 0xE040
-        for name, found in modes[mode].items():
-            usual = modes["usual"][name]
-            assert np.array_equal(np.isnan(found), np.isnan(usual)), (mode, name)
-            finite = np.isfinite(usual) & (np.abs(usual) < 1.0 / tol.SUBNORMAL)
-            largest = np.abs(usual[finite]).max(initial=0.0)
-            if name.endswith("dQ_dV"):  # the difference of parts of this size
-                V = CALLS[name.partition(":")[0]][0]()["V"]
-                largest = SCENE.mu / np.maximum(np.abs(V[finite]), tol.SUBNORMAL)
-            of_motion = name.startswith(("integrate", "flow", "roll", "driven"))
-            bound = tol.ROUNDING_MODE_MOTION if of_motion else tol.ROUNDING_MODE
-            if finite.any() and not name.endswith("steps"):
-                assert close(found[finite], usual[finite], bound, scale=largest, what=(mode, name))
-
-
-# --- threads and forks ---
+# --- threads ---
 
 
 def test_called_from_several_threads_at_once(expected, own_maps):
@@ -365,11 +233,6 @@ def test_called_from_several_threads_at_once(expected, own_maps):
     with ThreadPoolExecutor(4) as pool:
         for found in pool.map(work, range(4)):
             assert_same(found, expected)
-
-
-def work(_):
-    forget()
-    return everything()
 
 
 # --- numpy ---

@@ -204,7 +204,7 @@ FLOW_ONSET = 2e-12
 #: measured 7.6e-10.
 FLOW_LOSS = 2e-9
 
-# --- a hostile host (test_invariance.py) ---
+# --- a hostile host (evidence/test_hosts.py) ---
 # Numbers below it, and inverses of them, may become 0 or infinite where subnormals are flushed:
 # products of a few.
 SUBNORMAL = 1e-290

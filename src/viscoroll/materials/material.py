@@ -125,7 +125,8 @@ class Material(FromPrograms):
             _refuse_no_shift(
                 "shift", self.shift, "a WLF, an Arrhenius or a function of the temperature"
             )
-        if self.vertical_shift not in (None, "entropic"):
+        is_text = isinstance(self.vertical_shift, str)
+        if self.vertical_shift is not None and not (is_text and self.vertical_shift == "entropic"):
             _refuse_no_shift(
                 "vertical_shift", self.vertical_shift, "'entropic' or a function of the temperature"
             )

@@ -18,6 +18,7 @@ from ..core.errors import ParameterError, check_names, described_error, shape_er
 from ..core.labels import Labels, strip_labels
 from ..core.quantities import to_unit
 from ..core.scale import DIMENSIONLESS, si_unit
+from ..materials.measured_data import ABSOLUTE_ZERO
 from ..rollers import Cylinder
 
 #: word for an initial angular velocity of V0/R
@@ -25,7 +26,13 @@ ROLLING = "rolling"
 #: unknowns of a record
 OF_RECORDS: tuple[str, ...] = ("V0", "omega0", "t0")
 #: number of a record -> its lower bound
-_NUMBERS = {"load": 0.0, "m": 0.0, "temperature": -math.inf, "V0": -math.inf, "omega0": -math.inf}
+_NUMBERS = {
+    "load": 0.0,
+    "m": 0.0,
+    "temperature": ABSOLUTE_ZERO,
+    "V0": -math.inf,
+    "omega0": -math.inf,
+}
 #: name -> initial value, and range (of t0 as an array of two) where the record leaves it open
 InitialValues = dict[str, tuple[float, tuple[float, float] | None]]
 #: relative tolerance of a free motion
