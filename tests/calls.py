@@ -24,7 +24,7 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll import fmu
-from viscoroll.cli.file_commands import _figure_of_netcdf
+from viscoroll.cli.motion_commands import _figure_of_netcdf
 from viscoroll.contact_mechanics.assumptions import REACH_LIMIT, WAVE_LIMIT, assess_coupling
 from viscoroll.contact_mechanics.contact_table import FIELDS, SLOPES
 from viscoroll.contact_mechanics.free_rolling import FreeRolling
