@@ -20,9 +20,8 @@ from typing import Any
 import numpy as np
 
 from ..core.checks import Floats
-from ..core.errors import FileError, ModelWarning, ParameterError, caller_level
+from ..core.errors import FileError, ModelWarning, ParameterError, caller_level, suggestion
 from ..core.quantities import is_unit
-from ..core.toml_sections import suggestion
 from .text_cells import (
     NO_UNIT,
     SEPARATORS,

@@ -22,9 +22,9 @@ from typing import Any
 import numpy as np
 
 from ..core.checks import Floats
-from ..core.errors import FileError, import_extra
+from ..core.errors import FileError, import_extra, suggestion
 from ..core.scale import si_unit
-from ..core.toml_sections import check_keys, section_error, suggestion
+from ..core.toml_sections import check_keys, section_error
 from ..materials.material_toml import SECTIONS
 from ..measurements.text_cells import readings
 from ..measurements.text_table import column_in_unit, conversion_of_column, named_table
