@@ -48,7 +48,7 @@ def __getattr__(name: str) -> Any:
     """
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from .core.keywords import suggest_arguments
+    from .core.errors import suggest_arguments
 
     if (path := _MODULES[name]) == ".":
         home = import_module(f".{name}", __name__)

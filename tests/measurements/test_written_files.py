@@ -9,7 +9,7 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 import viscoroll as vr
-from viscoroll.measurements.text_table import readings
+from viscoroll.measurements.text_cells import readings
 
 f = rubbers.FREQUENCY
 w = rubbers.OMEGA

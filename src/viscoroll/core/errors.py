@@ -15,15 +15,20 @@ Kernels do not raise exceptions, they return a status.  Each motion has a status
 
 Imports of packages that only some functions need, and that an extra of the installation
 brings.
+
+Misspelt names: an unknown key or heading, and the unknown argument of a public call, of which the
+TypeError names the argument that was meant, as Python does from 3.13 on.
 """
 
 from __future__ import annotations
 
 import copyreg
+import inspect
 import sys
 from collections.abc import Collection, Iterable
 from datetime import date, timedelta
 from enum import IntEnum
+from functools import cache, wraps
 from importlib import import_module
 from typing import Any
 
@@ -436,3 +441,63 @@ def import_extra(package: str, extra: str) -> Any:
         if error.name != package:
             raise  # the package is installed, and one of its own dependencies is not
         raise MissingDependencyError(package, extra) from None
+
+
+# --- Misspelt names: the one that was meant ---
+
+
+def suggestion(name: str, candidates: Iterable[str]) -> str:
+    """Return a question for the one of ``candidates`` that is most similar to ``name``, or differs
+    by capitals alone; "" if none is.
+    """
+    import difflib
+
+    known = list(candidates)
+    similar = [each for each in known if each.lower() == name.lower()]
+    similar += difflib.get_close_matches(name, known, n=1, cutoff=0.5)
+    return f"; did you mean {similar[0]!r}?" if similar else ""
+
+
+@cache
+def _suggesting(function: Any) -> Any:
+    """Return a function that does the same, and whose TypeError of an unknown argument names the
+    most similar one.
+    """
+
+    @wraps(function)
+    def call(*arguments: Any, **named: Any) -> Any:
+        try:
+            return function(*arguments, **named)
+        except TypeError as error:
+            for name in named:
+                if str(error).endswith(f"unexpected keyword argument '{name}'"):
+                    error.args = (
+                        f"{error}{suggestion(name, inspect.signature(function).parameters)}",
+                    )
+            raise
+
+    return call
+
+
+def suggest_arguments(owner: Any, names: tuple[str, ...] | None = None) -> None:
+    """Replace public functions of a module or a class of this package by such that suggest
+    arguments, once.
+
+    owner: module or class; changed, as is the module that defines a function, by whose name it is
+    pickled.
+    names: names of the functions, of the classes whose methods are replaced, and of the modules
+        whose names in ``__all__`` are; None: all.
+    """
+    for name in names or [name for name in vars(owner) if name == "__init__" or name[0] != "_"]:
+        value = vars(owner).get(name)
+        function = value.__func__ if isinstance(value, classmethod | staticmethod) else value
+        if inspect.ismodule(value):
+            suggest_arguments(value, tuple(value.__all__))
+        for base in value.__mro__ if inspect.isclass(value) else ():
+            if base.__module__.startswith("viscoroll"):
+                suggest_arguments(base)
+        if inspect.isfunction(function):
+            replaced = _suggesting(inspect.unwrap(function))
+            setattr(owner, name, replaced if function is value else type(value)(replaced))
+            if inspect.ismodule(owner):
+                setattr(sys.modules[function.__module__], name, replaced)

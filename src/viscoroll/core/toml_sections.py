@@ -4,7 +4,6 @@ line.
 
 from __future__ import annotations
 
-import difflib
 import re
 import tomllib
 from collections.abc import Iterable, Iterator
@@ -16,7 +15,7 @@ from typing import Any, TypeVar, get_args, get_type_hints
 
 import msgspec
 
-from .errors import FileError, ParameterError
+from .errors import FileError, ParameterError, suggestion
 from .files import as_file_error
 
 T = TypeVar("T")
@@ -258,13 +257,3 @@ def find_line(text: str, name: str, key: str) -> int | None:
     if header_line is None and "." in name:  # an inline table stands on the line of its name
         return find_line(text, *name.rsplit(".", 1))
     return header_line
-
-
-def suggestion(name: str, candidates: Iterable[str]) -> str:
-    """Return a question for the one of ``candidates`` that is most similar to ``name``, or differs
-    by capitals alone; "" if none is.
-    """
-    known = list(candidates)
-    similar = [each for each in known if each.lower() == name.lower()]
-    similar += difflib.get_close_matches(name, known, n=1, cutoff=0.5)
-    return f"; did you mean {similar[0]!r}?" if similar else ""

@@ -18,11 +18,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.errors import FileError, ParameterError
-from ..core.toml_sections import suggestion
+from ..core.errors import FileError, ParameterError, suggestion
 from ..materials.measured_data import ABSOLUTE_ZERO
-from .text_cells import Numbers
-from .text_table import NO_UNIT, Table, conversion, find_column, readings
+from .text_cells import NO_UNIT, Numbers, conversion, readings
+from .text_table import Table, find_column
 
 # --- Names of the columns of tests of materials in five languages ---
 

@@ -27,8 +27,9 @@ from ..core.errors import (
     caller_level,
     check_names,
     described_error,
+    suggestion,
 )
-from ..core.toml_sections import as_struct, check_keys, read_toml, section_error, suggestion
+from ..core.toml_sections import as_struct, check_keys, read_toml, section_error
 from ..materials.material_toml import SECTIONS, parse_shifts
 from ..roller_toml import read_roller
 from ..rollers import Cylinder

@@ -22,8 +22,8 @@ from ..core.checks import Floats
 from ..core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
 from .dma_columns import BARE, OF_SHEAR, QUANTITIES, UNITS, Column, columns_of, meanings, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE
-from .text_cells import Numbers
-from .text_table import NO_UNIT, Table, conversion, read_table, readings
+from .text_cells import NO_UNIT, Numbers, conversion, readings
+from .text_table import Table, read_table
 
 # --- Storage and loss modulus from any two of storage, loss, tan delta and magnitude ---
 

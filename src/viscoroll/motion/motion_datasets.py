@@ -6,10 +6,9 @@ Motions and ensembles as xarray datasets, with names, units and provenance.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-import xarray as xr
 from numpy.typing import NDArray
 
 from .. import __version__
@@ -25,6 +24,9 @@ from ..core.scale import Scale, attributes
 from ..materials.bodies import Bodies, Cover
 from ..materials.prony import Prony
 from .motion_arguments import ROWS, STATES, Drive
+
+if TYPE_CHECKING:
+    import xarray as xr
 
 # --- Common data of one motion and of an ensemble ---
 
@@ -211,6 +213,8 @@ def _dataset(
         attrs |= {
             name: getattr(result.roller, name) for name in ("R", "m", "j", "g", "load", "T_ref")
         }
+    import xarray as xr
+
     return xr.Dataset(
         data | variables | drives, {"t": ("t", result.t, column_attributes("t", si))}, attrs
     )

@@ -22,18 +22,12 @@ from typing import Any
 import numpy as np
 
 from ..core.checks import Floats
-from ..core.errors import FileError, import_extra
+from ..core.errors import FileError, import_extra, suggestion
 from ..core.scale import si_unit
-from ..core.toml_sections import check_keys, section_error, suggestion
+from ..core.toml_sections import check_keys, section_error
 from ..materials.material_toml import SECTIONS
-from ..measurements.text_table import (
-    NO_UNIT,
-    column_in_unit,
-    conversion,
-    named_table,
-    readings,
-    warn_without_unit,
-)
+from ..measurements.text_cells import readings
+from ..measurements.text_table import column_in_unit, conversion_of_column, named_table
 from ..roller_toml import SCHEMA
 from ..sampling import LARGEST, SMALLEST
 
@@ -569,8 +563,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     else:
         raise ValueError("a sample must be .csv, .nc or .parquet")
     if path.suffix != ".csv":
-        warn_without_unit(path, column, given, unit, advice)
-        factor, offset = (1.0, 0.0) if given in NO_UNIT else conversion(given, unit)
+        factor, offset = conversion_of_column(path, column, given, unit, advice)
         values = factor * values + offset
     if (
         values.ndim != 1
