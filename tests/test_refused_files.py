@@ -26,7 +26,7 @@ from calls import (
 from refusals import each, refused
 
 import viscoroll as vr
-from viscoroll.cli.file_commands import _figure_of_netcdf
+from viscoroll.cli.motion_commands import _figure_of_netcdf
 from viscoroll.materials.checked_netcdf import material_as_dataset
 from viscoroll.materials.material_toml import read_materials
 from viscoroll.roller_toml import read_law_source, read_roller
