@@ -107,7 +107,7 @@ def _noise(fit: Any) -> Iterator[str]:
         points = 9.0 / allowed**2
         yield (
             f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most "
-            f"{allowed * 2.0 / 3.0:.2f} for noise; {size}): intervals are those at most "
+            f"{allowed * 2.0 / 3.0:.2f} for noise; {size}): intervals are those of "
             f"{points / noise.repeats:.0f} points in place of {points:.0f}, or {_INADEQUATE}"
         )
 
