@@ -84,7 +84,7 @@ def _heading(fit: Any) -> str:
 
 def _noise(fit: Any) -> Iterator[str]:
     """Yield a sentence for each quantity of a record whose residuals are no noise, as
-    ``fit.misfit`` names them.
+    ``fit.misfit`` names them, or are autocorrelated.
 
     A sentence has the rms of the residuals in units of sigma, of a robust fit as found by their
     median, and where they are autocorrelated the lag-1 correlation, its limit and the effective
@@ -93,8 +93,10 @@ def _noise(fit: Any) -> Iterator[str]:
     fit : a :class:`viscoroll.measurements.identification_result.Identification`, of which misfit,
         noise and ``_problem.robust`` are read.
     """
-    for name in fit.misfit:
-        rms, lag, allowed, _ = noise = fit.noise[name]
+    for name, noise in fit.noise.items():
+        rms, lag, allowed, _ = noise
+        if name not in fit.misfit and noise.repeats == 1.0:
+            continue
         size = f"rms {rms:.2f} sigma" + " by their median" * fit._problem.robust
         if noise.repeats == 1.0:
             yield (
@@ -105,10 +107,8 @@ def _noise(fit: Any) -> Iterator[str]:
         points = 9.0 / allowed**2
         yield (
             f"the residuals of {name} are autocorrelated (lag-1 correlation {lag:.2f}, at most "
-            f"{allowed:.2f} "
-            f"for noise; {size}): intervals are those of {points / noise.repeats:.0f} points in "
-            f"place of {points:.0f}, "
-            f"or {_INADEQUATE}"
+            f"{allowed * 2.0 / 3.0:.2f} for noise; {size}): intervals are those of "
+            f"{points / noise.repeats:.0f} points in place of {points:.0f}, or {_INADEQUATE}"
         )
 
 

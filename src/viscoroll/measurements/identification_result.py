@@ -151,7 +151,8 @@ class Identification(Result):
         dimensionless.
 
         It is a quantile of the chi-squared distribution with one degree of freedom where sigma is
-        given, 3.84 at 0.95, and of the F distribution with (1, dof) where any sigma is estimated.
+        given, 3.84 at 0.95, and of the F distribution with (1, dof) where any sigma is estimated
+        or residuals are autocorrelated; the effective number of points then counts.
 
         level : confidence level, in (0, 0.9999].
         Returns the rise, > 0, a float.
@@ -160,8 +161,10 @@ class Identification(Result):
         from scipy import stats
 
         level = check_number("level", level, above=0.0, high=0.9999)
-        estimated = any(column.estimated for column in self._problem.columns)
-        return float(stats.f.ppf(level, 1, self.dof) if estimated else stats.chi2.ppf(level, 1))
+        lost = self._problem.points - self._likelihood.points
+        if not lost and not any(column.estimated for column in self._problem.columns):
+            return float(stats.chi2.ppf(level, 1))
+        return float(stats.f.ppf(level, 1, max(self.dof - lost, 1.0)))
 
     def intervals(self, level: float = _LEVEL) -> dict[str, tuple[float | None, float | None]]:
         """Return the interval of each unknown by its profile: (low, high), None on a side that is

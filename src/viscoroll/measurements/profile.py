@@ -112,6 +112,7 @@ class Likelihood:
     best : :class:`.least_squares.Minimum`, the best minimum.
     cov : covariance of the coordinates by the slopes there, limited by the ranges, shape (unknowns,
         unknowns); where residuals are autocorrelated that of the effective number of points.
+    points : effective number of points: fewer than there are where residuals are autocorrelated.
     sd : standard deviations of the coordinates, shape (unknowns,); of an unknown that does not act
         nearly that of a uniform distribution over its range.
     correlations : correlations of the coordinates, shape (unknowns, unknowns), 1 on the diagonal.
@@ -145,6 +146,7 @@ class Likelihood:
         repeats = np.ones(problem.points)
         for column in problem.columns:
             repeats[column.at] = noise[str(column)].repeats
+        self.points = float((1.0 / repeats).sum())
         within = np.diag(12.0 / (problem.high - problem.low) ** 2)
         self._cov = np.linalg.inv(J.T @ J + within)
         self.cov = self._cov @ ((J.T * repeats) @ J + within) @ self._cov
