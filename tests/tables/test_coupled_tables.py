@@ -102,6 +102,15 @@ def test_motions_solve_the_equations_and_keep_energy(scene, start):
     assert np.abs(energy - energy[0] - works + losses).max() < tol.TABLE_ENERGY * losses[-1]
     assert np.diff(motion.slip_loss).min() >= -tol.TABLE_LOSS * losses[-1]
     assert np.diff(motion.rolling_loss).min() >= 0.0
+    states = {"V": motion.V, "omega": motion.omega}
+    solved = vr.Scene(material=BELT, kappa=4.0, mu=0.3).contact(**states, method="coupled")
+    powers = (
+        each.M_half_space * motion.V + each.M_cylinder * motion.omega + each.Q * slip
+        for slip in (motion.omega - motion.V,)
+        for each in (scene.contact(**states), solved)
+    )
+    found, exact = (np.trapezoid(power, motion.t) for power in powers)
+    close(found, exact, tol.TABLE_POWER, scale=losses[-1])
 
 
 def test_steady_rolling_is_where_motions_end_and_rest_stays(scene):
@@ -130,6 +139,17 @@ def test_grids_of_other_programs_roll(tmp_path):
             vr.ensemble(grid, [1.0, V0], [1.0, V0], [0.0, 5.0], torque=torque, fields=["x"])
     with pytest.raises(vr.ParameterError, match="lam"):
         grid.contact(0.1, delta=0.0, fields="lam")
+
+
+def test_unlike_half_spaces_have_a_table():
+    bodies = vr.Bodies(vr.Prony.elastic(), ONE, 0.05, (0.3, 0.3))
+    exact = vr.Scene(material=bodies, kappa=4.0, mu=0.3)
+    table = exact.replace(material=coupled_law(exact))
+    states = {"V": np.array([-0.1, 0.01, 0.1, 1.0]), "delta": np.array([0.02, -0.01, 0.015, 0.0])}
+    found = table.contact(**states)
+    solved = exact.contact(**states, method="coupled")
+    close(found.Q, solved.Q, tol.TABLE_Q, scale=0.3)
+    close(4.0 * found.M, 4.0 * solved.M, tol.TABLE_M, scale=1.0)
 
 
 def test_speeds_beyond_the_nodes_join_the_elastic_limits(law, scene):

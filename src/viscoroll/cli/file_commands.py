@@ -416,7 +416,7 @@ def build(arguments: Namespace) -> None:
         metavar=("SPEEDS", "CREEPS"),
         help="numbers of nodes (default: 4 to 11 a decade of speed, 33)",
     ),
-    output(".nc", ".cdf"),
+    output(".nc", ".cdf", ".h"),
 )
 def grid(arguments: Namespace) -> None:
     """Compute the coupled solution of a roller over speed and creep as a law, write it, and print
@@ -426,7 +426,7 @@ def grid(arguments: Namespace) -> None:
         scene, path of a TOML file or name of a preset;
         method, "coupled";
         nodes, [over speed, over creep], or None;
-        output, path that is written; its suffix is the format: .nc or .cdf.
+        output, path that is written; its suffix is the format: .nc, .cdf or .h.
     Raises ParameterError for numbers of nodes, FileError for a file that cannot be read or written.
     """
     nodes = None if arguments.nodes is None else tuple(arguments.nodes)

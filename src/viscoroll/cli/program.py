@@ -155,7 +155,7 @@ example:
 Write the coupled solution of a roller over speed and creep as a law, for one mu and one thickness over l0.
 
 Pressure and shear are solved together.  The file is loaded by vr.load_law, as the material of the roller, and states
-the largest errors beside its nodes.  Formats: .nc and .cdf (without HDF5).
+the largest errors beside its nodes.  Formats: .nc, .cdf (without HDF5) and .h (a header of C).
 
 example:
   viscoroll samples

@@ -373,11 +373,11 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     """
     check_choice("model", model, *MODELS)
     version = check_integer("version", version, 2, 3)
+    if isinstance(given, LawTable) and given.coupled is not None:
+        allowed = "a law without one: FMUs do not read it, C does (tables.export to .h)"
+        raise described_error("given", "is a table of the coupled solution", allowed)
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)
-    if table.coupled is not None:
-        allowed = "a law without a table of the coupled solution, which FMUs do not read"
-        raise described_error("given", "has one", allowed)
     l0 = _contact_length_of_cover(table)
     starts = _start_values(MODELS[model].variables, given, table, l0)
     fmpy = import_extra("fmpy", "fmu")

@@ -111,9 +111,8 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
             alpha=law.alpha,
             T_ref=law.T_ref,
         )
-        return make_dataset(
-            numbers, COUPLED, f"{_title(law)}, mu = {rows.mu:g}", rows.errors, material=text
-        )
+        title = f"{_title(law)}, mu = {rows.mu:g}"
+        return make_dataset(numbers, COUPLED, title, rows.errors | dict(errors), material=text)
     if law.cover is None:
         bodies = "unlike" if law.unlike else "alike"
         material = bodies_as_toml(law.pair or law.material)
