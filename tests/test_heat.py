@@ -264,11 +264,14 @@ def test_limits_are_those_of_the_equilibria():
     )
     cold = ROLLER.heat_limit(50.0, V=1.0, **COLD)
     less, more = (
-        ROLLER.replace(load=cold.load * (1.0 + e)).temperature(1.0, **COLD).count
-        for e in (-1e-8, 1e-8)
+        ROLLER.replace(load=cold.load * (1.0 + e)).temperature(1.0, **COLD) for e in (-1e-8, 1e-8)
     )
     assert cold.runaway
-    assert (less, more) == (3, 1)
+    assert (less.count, more.count) == (3, 1)
+    # the lower two lie between nodes of the curve
+    rise = less.temperature - COLD["ambient"]
+    assert close(COLD["conductance"] * rise, less.loss, tol.HEAT_BALANCE)
+    assert less.stable.tolist() == [True, False, True]
 
 
 def test_turning_points():

@@ -438,7 +438,7 @@ def steady(
         shapes that do not broadcast, labelled arrays beside plain ones or with other coordinates, a
         unit of another dimension, kappa |V| above 1e100; without a gain on omega also kappa |force
         + torque| in (0, 1e-120) or above 1e80; a gain on V, divided by the longest retardation
-          time, of a size outside
+        time, of a size outside
         1e-40 to 1e8; a feedback that changes with time or has arrays of gains; what is no scene and
         no cylinder.
 

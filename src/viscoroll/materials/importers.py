@@ -82,10 +82,8 @@ class FromPrograms:
         -------
         Material
             With its long-time modulus, and T_ref = 1 s.  Without ``k``, where k equals g, and for
-            nu = 0.5, E is E0 (1
-            - sum g), or E0 with ``long_term``, and nu is that given; else both are those of the
-              long-time moduli G and
-            K.
+            nu = 0.5, E is E0 times 1 less the sum of g, or E0 with ``long_term``, and nu is that
+            given; else both are those of the long-time moduli G and K.
 
         Raises
         ------

@@ -228,7 +228,7 @@ def build(
     ----------
     what : a :class:`Scene`, dimensionless; a :class:`Cylinder`, in SI units; or the law of
         half-spaces, of :func:`viscoroll.load_law` or the dataset of
-        :func:`viscoroll.tables.law_dataset`.  A law is taken with kappa = mu =
+        :func:`viscoroll.tables.law`.  A law is taken with kappa = mu =
         1: the axis V then means kappa V, delta means kappa delta/mu, Q means Q/mu and M means kappa
         M.  The law of a layer has no such scale, since delta_0 does not vary with mu: it is
         refused, as is the law of every alpha.  All parameters are numbers, no arrays.
@@ -295,7 +295,7 @@ def build(
     Notes
     -----
     For programs that look up tables.  The file of a law is smaller and exact
-    (:func:`viscoroll.tables.law_dataset`).
+    (:func:`viscoroll.tables.law`).
     """
     import xarray as xr
 

@@ -32,7 +32,7 @@ class Interpolant:
 
     Parameters
     ----------
-    table : a Dataset of :func:`viscoroll.tables.grid_build` or :func:`viscoroll.tables.load`.
+    table : a Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
         The spline of a field is computed at its first use, from the values at that time.
     linear : whether to interpolate linearly in V, delta and alpha, as look-up blocks do; else by
         cubic splines in ln V, delta and ln alpha.  Tables over (V, delta) that version 0.1.0 wrote
@@ -240,7 +240,7 @@ def interpolate(
 
     Parameters
     ----------
-    table : Dataset of :func:`viscoroll.tables.grid_build` or :func:`viscoroll.tables.load`.
+    table : Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
     fields : a name or names out of the table's fields; default all, which need a coordinate on
         every axis.
     **points : coordinates, numbers or arrays that broadcast, in the table's units: ``V``, ``delta``
@@ -283,7 +283,7 @@ def interpolate(
     beta occur where full slip begins, as beta falls there with a vertical tangent.  Tables over (V,
     delta) of version 0.1.0 are interpolated linearly, as their files state.  Each call builds the
     splines anew, which takes most of its time; keep an :class:`tables.Interpolant` for repeated
-    calls.  A law (:func:`viscoroll.tables.law_dataset`, :func:`viscoroll.contact`) has none of
+    calls.  A law (:func:`viscoroll.tables.law`, :func:`viscoroll.contact`) has none of
     these errors.
     """
     return Interpolant(table)(fields, **points)

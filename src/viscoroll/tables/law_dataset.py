@@ -407,7 +407,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
 
     Parameters
     ----------
-    table : dataset of :func:`viscoroll.tables.law_dataset`, of :func:`viscoroll.tables.grid_build`
+    table : dataset of :func:`viscoroll.tables.law`, of :func:`viscoroll.tables.build`
         for a scene of one relaxation time, or of :func:`viscoroll.tables.load`.
     count : number of random points, >= 1; of a layer that of the speeds, of every alpha as of
         :func:`measured_errors`.
