@@ -1,8 +1,9 @@
 """Covers of finite thickness against boundary elements, of data/reference/check_elements.json.
 
 The law of a cover takes Q from its own contact, as :class:`viscoroll.Cover` says; the elements
-solve the stick zone without that, and without coupling.  The bound of the difference is the error
-that ``validity`` states.
+solve the stick zone without that, and without coupling.  Compared are states at one share of the
+way from free rolling to full slip.  The bound of the difference is the error that ``validity``
+states.
 """
 
 from __future__ import annotations
@@ -33,9 +34,10 @@ def placed(truth: dict[str, Any]) -> tuple[vr.Scene, Any, str]:
     cover = vr.Cover(vr.Prony(**truth["series"]), **truth["cover"])
     scene = vr.Scene(material=cover, kappa=_KAPPA, mu=_MU, coupled=False)
     free = vr.contact(scene, truth["V"], delta=0.0, fields="delta_0").delta_0
+    fields = ("lam", "epsilon", "M", "delta_star", "delta_0", "delta_minus", "delta_plus")
     return (
         scene,
-        vr.contact(scene, truth["V"], delta=free),
+        vr.contact(scene, truth["V"], delta=free, fields=fields),
         at(V=truth["V"], eta=truth["eta"]) + f", {cover!r}",
     )
 
@@ -49,7 +51,10 @@ def states(_: np.random.Generator, count: int) -> Found:
         (scene, state, where) = placed(truth)
         V = truth["V"]
         z = truth["z"]
-        delta = state.delta_0 + _MU * V * truth["d"]
+        # the onsets of the law lie unlike far from free rolling, those without coupling do not
+        shift = 0.5 * (state.delta_plus + state.delta_minus) - state.delta_0
+        share = _MU * V * truth["d"] / state.delta_star
+        delta = state.delta_0 + state.delta_star * share + shift * min(share**2, 1.0)
         Q = vr.contact(scene, V, delta=delta, fields="Q").Q
         yield (
             where,

@@ -93,6 +93,7 @@ def _calls() -> dict[str, Callable[[], Any]]:
     Returns a dict, name for the progress bar -> function without arguments, whose result is not
     used; each makes its call when it is called, and nothing is written but the cache.
     """
+    from ..contact_mechanics.coupled_tables import coupled_law
     from ..motion import flow
 
     scene = vr.presets.PAPER_SECTION_5
@@ -114,7 +115,8 @@ def _calls() -> dict[str, Callable[[], Any]]:
         "contact with an array of Prony series": lambda: vr.contact(many, 0.5, delta=0.01),
         "unsteady rolling": lambda: vr.contact(series, 0.5, delta=0.01, fields="N"),
         "bound law": lambda: vr.law(scene),
-        # the first makes the table of the coupled solution
+        # a table of few nodes, also where that of the scene is on disk
+        "table of the coupled solution": lambda: coupled_law(covered, nodes=(4, 9)),
         "contact on a cover": lambda: vr.contact(covered, 0.5, delta=0.01),
         "motions on a cover": lambda: vr.roll(covered, 0.5, 0.5, 0.1),
         "steady rolling on a cover": lambda: vr.steady(covered, force=0.01),
