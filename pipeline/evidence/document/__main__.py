@@ -28,6 +28,8 @@ CONTRIBUTING = ROOT / "CONTRIBUTING.md"
 DOCUMENTS = [ROOT / "README.md", *sorted((ROOT / "docs").rglob("*.md"))]
 _BLOCK = re.compile(r"(<!-- measured:(\w+) -->\n).*?(<!-- end -->)", re.DOTALL)
 _MARK = re.compile(r"<!-- (?:measured:\w+|end) -->")
+#: Parts of results that a sentence names; of more it states the number.
+_NAMED = 4
 
 
 class DocumentError(ViscorollError):
@@ -81,13 +83,17 @@ def provenance(results: Results) -> str:
         return ""
     alone = len(set(read.values())) == 1
     named = (
-        f"`{digest}`" + ("" if alone else f" ({', '.join(parts)})")
-        for digest, parts in others.items()
+        f"`{digest}`" + ("" if alone else f" ({_listed(parts)})") for digest, parts in others.items()
     )
     return (
         "\nMeasured with an earlier version of the compiled code, source hash "
         f"{' and '.join(named)}.\n"
     )
+
+
+def _listed(parts: list[str]) -> str:
+    """Return the names of parts of results in a sentence, of many their number."""
+    return ", ".join(parts) if len(parts) <= _NAMED else f"{len(parts)} of them"
 
 
 def document(files: list[Path], results: Path, check: bool) -> int:
