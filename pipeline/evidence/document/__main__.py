@@ -83,7 +83,8 @@ def provenance(results: Results) -> str:
         return ""
     alone = len(set(read.values())) == 1
     named = (
-        f"`{digest}`" + ("" if alone else f" ({_listed(parts)})") for digest, parts in others.items()
+        f"`{digest}`" + ("" if alone else f" ({_listed(parts)})")
+        for digest, parts in others.items()
     )
     return (
         "\nMeasured with an earlier version of the compiled code, source hash "
