@@ -388,8 +388,8 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
         f"{float(np.max(theta, initial=0.0)):.2g} times the "
         f"thickness; up to {np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is "
         "allowed, where the contact "
-        f"sticks in front and slips behind (beyond: method='coupled'); the error of Q is up to "
-        f"{100.0 * stated_error(thickness):.1f} % of mu P"
+        "sticks in front and slips behind (beyond: method='coupled'); the error of Q by the fast "
+        f"law is up to {100.0 * stated_error(thickness):.1f} % of mu P"
     )
     return ContactLengths.of(state["lam"], state["epsilon"], scene.kappa), Assumption(
         holds, theta, sentence

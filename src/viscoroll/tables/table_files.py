@@ -358,9 +358,9 @@ def info(path: str | PathLike[str]) -> str:
     size = Path(path).stat().st_size / 1e3
     lines = [f"{path}: {about[KIND]}, {size:.0f} kB", about["title"], ""]
     if is_law(table):
-        lines += [f"  {'function':<14}largest error"]
+        lines += [f"  {'function':<18}largest error"]
         lines += [
-            f"  {name:<14}{error:.1e}"
+            f"  {name:<18}{error:.1e}"
             for name, error in checked_netcdf.stated_errors(table).items()
         ]
     else:
