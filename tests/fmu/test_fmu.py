@@ -38,7 +38,7 @@ CYLINDERS = {
         R=0.05, m=9.0, material=RUBBER, base=STEEL, mu=0.6, load=2000.0, coupled=False
     ),
 }
-#: a steel roller with a rubber cover
+#: a steel roller with a rubber cover, by the fast law that FMUs have
 COVERED = vr.Cylinder(
     R=0.05,
     m=9.0,
@@ -46,6 +46,7 @@ COVERED = vr.Cylinder(
     base=vr.Material.rigid(),
     mu=0.6,
     load=2000.0,
+    coupled=False,
 )
 ROLLERS = CYLINDERS | {"covered": COVERED}
 OUTPUTS = ("force", "torque", "moment_half_space", "moment_cylinder")
