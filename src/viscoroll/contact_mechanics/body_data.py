@@ -1,12 +1,11 @@
-"""The strain of a contact, beside that of the data of its materials: :func:`assess_strain`.
+"""Data of the bodies of a cylinder in SI units, and the assumptions that need them:
+:class:`BodyData`; among them the strain of a contact, beside that of the data of its materials:
+:func:`assess_strain`.
 
 Under an elliptic pressure p_0 sqrt(1 - (x/a)^2) on a half-space the largest shear stress at the
 axis is 0.300 p_0, at the depth 0.786 a (K. L. Johnson, Contact Mechanics, 1985, Sect. 4.2), with
 p_0 = E* a/(2 R).  In a layer it follows from the field of the layer under such a pressure of the
 same load.
-
-Data of the bodies of a cylinder in SI units, and the assumptions that need them:
-:class:`BodyData`.
 """
 
 from __future__ import annotations
@@ -60,7 +59,7 @@ def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
     """Compare the amplitude of engineering shear strain at the axis with that of the data of the
     bodies.
 
-    data: the bodies, a :class:`.body_data.BodyData`.
+    data: the bodies, a :class:`BodyData`.
     V, length: speed, m/s, and contact length, m, arrays of one shape; load: N/m, which broadcasts
     with them.
     Returns the assumption ``strain``, whose value is the strain of the softest body, dimensionless;

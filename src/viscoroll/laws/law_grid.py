@@ -71,7 +71,7 @@ class LawGrid:
 
     Attributes
     ----------
-    rows : :class:`.law_rows.CoupledRows` over V and delta, of kappa = 1: Q over its limit, or
+    rows : :class:`.coupled_rows.CoupledRows` over V and delta, of kappa = 1: Q over its limit, or
         itself without one, and M, in the units of the grid.
     most : largest abs(Q); 1 where it is not known.
     V : slowest and fastest speed, > 0; dimensionless, or m/s.

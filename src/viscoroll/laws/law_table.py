@@ -224,7 +224,7 @@ class LawTable:
     cover : rows that a cover of finite thickness has in addition, :class:`.row_layout.CoverRows`;
         None for half-spaces.
     coupled : the solution in which shear acts on pressure, at one mu,
-        :class:`.law_rows.CoupledRows`, which is then the law; None without.  All but
+        :class:`.coupled_rows.CoupledRows`, which is then the law; None without.  All but
         ``material``, ``unlike``, ``pair`` and ``T_ref`` are those of half-spaces then.
     """
 
@@ -329,7 +329,7 @@ def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
     """Return the law of coupled rows as a :class:`LawTable`.
 
     material: alpha, a series, bodies or a cover, of one scene.
-    rows: :class:`.law_rows.CoupledRows` of it.
+    rows: :class:`.coupled_rows.CoupledRows` of it.
     """
     total = total_series(material)
     base = law_table(total if total.E.size else 1.0)
