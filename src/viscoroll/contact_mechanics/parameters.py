@@ -406,8 +406,10 @@ class Parameters(Roller):
 
     @property
     def uncoupled(self) -> Self:
-        """The scene by the law without a table; the scene itself where a law was given."""
-        return self if self._law is not None else self.replace(coupled=False)
+        """The scene by the law without a table; the scene itself where that is its law, or where a
+        law was given.
+        """
+        return self.replace(coupled=False) if self._law is None and self.tabulated else self
 
     @property
     def like_bodies(self) -> bool:
