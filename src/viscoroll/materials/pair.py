@@ -8,6 +8,7 @@ beta_D is 0 at all times.
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, NamedTuple
@@ -38,6 +39,11 @@ class Solid(NamedTuple):
     prony: Prony
     T_ref: float
     thickness: Any = None
+
+    @property
+    def G(self) -> Any:
+        """Long-time shear modulus E/(2 (1 + nu)), Pa, a number or (n,)."""
+        return self.E / (2.0 * (1.0 + self.nu))
 
 
 @dataclass(frozen=True)
@@ -261,15 +267,10 @@ class Pair:
 
         The moduli relax from one end to the other; the two numbers serve the check that shear and
         pressure do not couple.  Body 1 of the formula of :func:`dundurs` is the cylinder; one body
-        may be rigid.  It is exactly (0.0, 0.0) for like bodies.  Both must be a :class:`Material`:
-        a :class:`Solid` has no shear modulus, which is an AttributeError.
+        may be rigid.  It is exactly (0.0, 0.0) for like bodies.  Both must be a :class:`Material`;
+        of many bodies :attr:`most_coupled` is the largest.
         """
-        one = self.cylinder
-        other = self.half_space
-        instant = one.G * one.prony.alpha, other.G * other.prony.alpha
-        return tuple(
-            dundurs(G, one.nu, G_2, other.nu, self.plane) for G, G_2 in ((one.G, other.G), instant)
-        )  # type: ignore[return-value]
+        return self._at_both_ends(dundurs)
 
     @property
     def most_coupled(self) -> float:
@@ -278,15 +279,20 @@ class Pair:
         A float >= 0, dimensionless.  Bodies may be of either class; a :class:`Solid` may have
         arrays of E and nu, and many series.
         """
-        bodies = (self.cylinder, self.half_space)
-        long = [body.E / (2.0 * (1.0 + np.asarray(body.nu))) for body in bodies]
-        instant = [G * body.prony.alpha for G, body in zip(long, bodies, strict=True)]
         of_pairs = np.vectorize(dundurs, otypes=[float])
-        first, second = (np.asarray(body.nu) for body in bodies)
-        return max(
-            float(np.abs(of_pairs(G[0], first, G[1], second, self.plane)).max())
-            for G in (long, instant)
+        return max(float(np.abs(each).max()) for each in self._at_both_ends(of_pairs))
+
+    def _at_both_ends(self, function: Callable[..., Any]) -> tuple[Any, Any]:
+        """Return what a function with the arguments of :func:`dundurs` gives for the long-time
+        moduli and for the instantaneous ones.
+        """
+        one = self.cylinder
+        other = self.half_space
+        long, instant = (
+            function(one.G * part, one.nu, other.G * other_part, other.nu, self.plane)
+            for part, other_part in ((1.0, 1.0), (one.prony.alpha, other.prony.alpha))
         )
+        return long, instant
 
 
 def effective_modulus(E: Any, nu: Any, plane: str) -> Any:
