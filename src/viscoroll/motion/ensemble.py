@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_mechanics.assumptions import Validity
-from ..contact_mechanics.contact_table import refuse_beyond
+from ..contact_mechanics.contact_table import FASTEST, refuse_beyond
 from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
 from ..contact_mechanics.parameters import Roller, scale_of
 from ..contact_mechanics.validity import validity
@@ -447,8 +447,10 @@ def ensemble(
     scene = problem.scene
     several = scene.material_array is not None or np.ndim(scene.alpha) > 0
     law = None if several else scene.rolling_law
-    if law is not None and law.coupled is not None and "V" not in names:
-        names = (*names, "V")  # a table of another program ends at a speed
+    # a table of another program ends at a speed; those of the package do not
+    ends = law is not None and law.coupled is not None and law.coupled.fastest < FASTEST
+    if ends and "V" not in names:
+        names = (*names, "V")
     batch = Batch(
         problem=problem,
         inputs=inputs,
@@ -462,7 +464,7 @@ def ensemble(
         solution = solve_batch(batch, method, make_dimensionless("speed", speed, scale))
     except ParameterError as error:
         raise with_scales(error, scale) from error
-    if law is not None and law.coupled is not None:
+    if law is not None and ends:
         kappa = np.reshape(inputs["kappa"], (-1, 1))
         found = solution.motions.out[batch.rows.index("V")]
         for V in (np.reshape(inputs["V0"], (-1, 1)), found):
