@@ -269,7 +269,7 @@ RAW = {
 KNOWN = {
     "files.py: fix_texts(dataset).to_netcdf",
     "coupled_tables.py: np.savez",
-    "flow_store.py: np.savez",
+    "flow.py: np.savez",
     "run_results.py: h5netcdf.File",
     "run_results.py: path.open",
     "cache_folder.py: temporary.write_bytes",
