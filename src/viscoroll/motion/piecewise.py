@@ -120,13 +120,17 @@ def _follow_corners(times: Floats, values: Floats) -> Piecewise:
     times, values: corners, (1 or m, k) each, times ascending, in T_ref; values dimensionless.
     """
     values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
-    first = values[:, :-1]
-    second = values[:, 1:]
-    terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
+    terms = np.empty((len(values), times.shape[1] + 1, 2))
+    np.add(values[:, 1:], values[:, :-1], out=terms[..., 0])
+    np.subtract(values[:, 1:], values[:, :-1], out=terms[..., 1])
+    terms *= 0.5
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
     starts = np.pad(times, [(0, 0), (1, 0)])
     kept = (_ends(starts) > starts).any(axis=0)
-    return Piecewise(starts[:, kept], terms[:, kept], corners=times.shape[1])
+    if not kept.all():
+        starts = starts[:, kept]
+        terms = terms[:, kept]
+    return Piecewise(starts, terms, corners=times.shape[1])
 
 
 def _ends(starts: Floats) -> Floats:
