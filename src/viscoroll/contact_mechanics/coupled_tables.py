@@ -43,11 +43,11 @@ from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, grow
 
 # --- Tables of the coupled solution ---
 
-#: Nodes over creep.
-NODES = 33
+#: Nodes over creep: splines over speed, not these, determine the error of motions (1e-7 at 33).
+NODES = 27
 #: Nodes in a decade of speed: of bodies whose compliance changes little, and what is added where it
 #: grows like time.
-_PER_DECADE = (4.0, 6.5)
+_PER_DECADE = (5.0, 8.1)
 #: Places in a decade at which the growth of the compliance is looked at.
 _LOOKS = 8
 #: First node of speed times the longest retardation time, and last node times the shortest
@@ -71,7 +71,7 @@ def coupled_law(
     """Compute the table of the coupled solution of one scene, as a law.
 
     scene: dimensionless parameters of one material, alpha, kappa and mu, numbers.
-    nodes: numbers of nodes over speed and over creep, the second odd; None: 4 to 11 a decade of
+    nodes: numbers of nodes over speed and over creep, the second odd; None: 5 to 13 a decade of
         speed between the rates of the bodies, the more the faster their compliance grows, and 33.
     progress: whether a progress bar is drawn on standard error, after one second.
     Returns the :class:`LawTable`, whose ``coupled`` rows state their errors.

@@ -106,10 +106,12 @@ _M_WITHOUT = np.uint64(17 * TOGETHER)
 _FREE = np.uint64(18 * TOGETHER)
 #: Place in the scratch of :func:`contact_loop` of g_b of a cover; g_c follows.
 _EXCESS = np.uint64(20 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of the factor by which M of a cover falls with Q.
+#: Place in the scratch of :func:`contact_loop` of the factor by which M_half_space of a cover falls
+#: with Q; that of M_cylinder follows.
 _FACTOR = np.uint64(22 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of the excess of that factor in full slip.
-_FACTOR_EXCESS = np.uint64(23 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of the excess of that factor in full slip; that of
+#: M_cylinder follows.
+_FACTOR_EXCESS = np.uint64(24 * TOGETHER)
 
 
 @inline_kernel
@@ -497,8 +499,10 @@ def _write_other_fields(n, c, law, scratch, request):
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon + epsilon_change, n, request)
     slopes = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
-    bodies = max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
+    bodies = max(to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
     bodies = bodies or max(to.dM_half_space_domega, to.dM_cylinder_domega) >= 0
+    if max(to.M_half_space, to.M_cylinder) >= 0:
+        _write_body_moments(n, c, law, law.cover_rows, scratch, request)
     _write_reaction(n, position, u, state, law, law.cover_rows, request)
     if slopes or bodies:
         slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
@@ -546,12 +550,35 @@ def _write_reaction(n, position, u, state, law, cover_rows, request):
 
 
 @inline_kernel
-def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
-    """Write the moments of the bodies, and the slopes of Q and of the moments, of those that are
-    requested.
+def _write_body_moments(n, c, law, cover_rows, scratch, request):
+    """Write the moments of both bodies, of those that are requested.
 
     n, c, law, scratch, request : as of :func:`_write_other_fields`.
-    bodies : bool, whether a quantity of one body is requested.
+    cover_rows : ``law.cover_rows``; None of half-spaces, whose moments do not depend on Q.
+    Returns nothing.
+    """
+    u = scratch[_U + c]
+    position = _position(_POSITION, c, scratch)
+    scale = length_and_moment(position, u, law).scale
+    factor = moment_factor(position, u, scale, _state(c, scratch, request))
+    half_space, cylinder, _, _ = body_moments(position, u, law)
+    half_space *= factor
+    cylinder *= factor
+    if cover_rows is not None:
+        Q = scratch[_Q + c]
+        used = abs(Q) / scratch[_MU + c]
+        half_space -= Q * (scratch[_FACTOR + c] + scratch[_FACTOR_EXCESS + c] * used)
+        cylinder -= Q * (scratch[_FACTOR + _T + c] + scratch[_FACTOR_EXCESS + _T + c] * used)
+    write_field(request.to.M_half_space, half_space, n, request)
+    write_field(request.to.M_cylinder, cylinder, n, request)
+
+
+@inline_kernel
+def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
+    """Write the slopes of Q and of the moments, of those that are requested.
+
+    n, c, law, scratch, request : as of :func:`_write_other_fields`.
+    bodies : bool, whether a slope of the moment of one body is requested.
     slopes_of_Q : bool, whether a slope of Q is requested, or of a moment of a cover.
     Returns nothing.  Of half-spaces M depends on the speed alone: its slopes in delta and omega are
     0.
@@ -583,10 +610,7 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
         )
     write_field(to.dM_dV, slope, n, request)
     if bodies:
-        factor = moment_factor(position, u, functions.scale, state)
-        half_space, cylinder, half_space_slope, cylinder_slope = body_moments(position, u, law)
-        write_field(to.M_half_space, factor * half_space + change.half_space, n, request)
-        write_field(to.M_cylinder, factor * cylinder + change.cylinder, n, request)
+        _, _, half_space_slope, cylinder_slope = body_moments(position, u, law)
         if _is_cover(law.cover_rows):
             half_space_slope += moment_slope_over_V(
                 change.half_space_du, change.half_space_dQ, over_V, state
@@ -649,6 +673,8 @@ def _write_cover(begin, end, cover_rows, scratch, request):
     Returns nothing.
     """
     if cover_rows is not None:
+        to = request.to
+        moments = max(to.M, to.M_half_space, to.M_cylinder) >= 0
         for k in range(begin, end):
             c = np.uint64(k)
             free = _values(scratch[_FREE + c], scratch[_FREE + _T + c])
@@ -657,10 +683,12 @@ def _write_cover(begin, end, cover_rows, scratch, request):
             L = scratch[_L + c]
             scratch[_FREE_CREEP + c] = free.first + free.second
             scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
-            if request.to.M >= 0:
+            if moments:
                 reaction = shear_reaction(pairs, scratch[_KAPPA + c], mu, L, 0.0, cover_rows)
-                scratch[_FACTOR + c] = reaction.half_space + reaction.cylinder
-                scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess + reaction.cylinder_excess
+                scratch[_FACTOR + c] = reaction.half_space
+                scratch[_FACTOR + _T + c] = reaction.cylinder
+                scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess
+                scratch[_FACTOR_EXCESS + _T + c] = reaction.cylinder_excess
 
 
 @inline_kernel
@@ -700,7 +728,8 @@ def _write_moment_of_cover(Q, n, c, cover_rows, scratch, request):
         scratch[_Q + c] = Q
         if request.to.M >= 0:
             used = abs(Q) / scratch[_MU + c]
-            factor = scratch[_FACTOR + c] + scratch[_FACTOR_EXCESS + c] * used
+            factor = scratch[_FACTOR + c] + scratch[_FACTOR + _T + c]
+            factor += (scratch[_FACTOR_EXCESS + c] + scratch[_FACTOR_EXCESS + _T + c]) * used
             write_field(request.to.M, scratch[_M_WITHOUT + c] - Q * factor, n, request)
 
 
