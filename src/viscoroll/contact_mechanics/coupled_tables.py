@@ -218,15 +218,7 @@ def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Float
         raise ConvergenceError(
             f"coupled solution: no state was found at {where} (status {int(states.status[n])})"
         )
-    own = (
-        states.Q_over_mu,
-        states.kM_base,
-        states.kM_cylinder,
-        states.lam,
-        states.epsilon,
-        states.beta,
-    )
-    return np.stack([*own, states.work_base, states.work_cylinder], axis=-1)
+    return np.stack(states[: len(FIELDS)], axis=-1)
 
 
 def _spline(t: Floats, values: Floats, place: float) -> Any:
@@ -305,15 +297,11 @@ def is_coupled(pair: CoupledPair) -> bool:
     """
     if any(math.isfinite(body.thickness) for body in pair.bodies):
         return True
-    for parts in ([1.0 for _ in pair.bodies], [1.0 - math.fsum(body.J) for body in pair.bodies]):
-        shares = [part * body.share for part, body in zip(parts, pair.bodies, strict=True)]
-        local = (
-            (share if body.side == "base" else -share)
-            * (1.0 - 2.0 * body.nu)
-            / (2.0 - 2.0 * body.nu)
-            for share, body in zip(shares, pair.bodies, strict=True)
-        )
-        if abs(math.fsum(local)) > DUNDURS_LIMIT * math.fsum(shares):
+    shares = [body.share for body in pair.bodies]
+    at_once = [body.share * body.instant for body in pair.bodies]
+    for parts in (shares, at_once):
+        coupling = (part * body.sign * body.local for part, body in zip(parts, pair.bodies))
+        if abs(math.fsum(coupling)) > DUNDURS_LIMIT * math.fsum(parts):
             return True
     return False
 

@@ -46,6 +46,7 @@ from ..core.drive_arguments import Feedback, make_dimensionless
 from ..core.errors import ParameterError, described_error
 from ..core.labels import strip_labels
 from ..laws.law_table import LawTable
+from .contact_table import contact_fields_at, free_creep
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
 from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
@@ -60,9 +61,7 @@ from .steady_result import Diagnosis, Steady, pack_result
 from .steady_states import (
     Field,
     States,
-    contact_fields_at,
     find_crossings,
-    free_creep,
     state_rows,
     states_at,
 )

@@ -113,15 +113,11 @@ class Diagnosis(NamedTuple):
         scale : units of the roller, in which the sentence states its numbers but Q and mu, which
             are dimensionless; of a scene all are.
         """
-        name = "force + torque"
-        moment = "rolling moment"
-        of_load = ""
-        of_speed = ""
-        if scale.si:
-            name = "force + torque/R"
-            moment = "rolling moment over R"
-            of_load = " N/m"
-            of_speed = " m/s"
+        name, moment, of_load, of_speed = (
+            ("force + torque/R", "rolling moment over R", " N/m", " m/s")
+            if scale.si
+            else ("force + torque", "rolling moment", "", "")
+        )
         loads = self.loads
         load, speed = (np.broadcast_to(scale[of], loads.shape).ravel()[n] for of in ("force", "V"))
         at_rest = loads.force[n] + loads.torque[n]
@@ -454,15 +450,11 @@ def pack_result(
     found: dict[str, Any] = dict(zip(_FIELDS, rows, strict=False))
     if scale.si:
         for name in found.keys() & DIMENSIONS.keys():
-            unit = scale[name]
-            per_load = isinstance(unit, np.ndarray)
-            found[name] = found[name] * (unit[..., np.newaxis] if per_load else unit)
+            found[name] = found[name] * append_axis(scale[name])
     fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)
-    eigenvalues.real[..., 0] = fast
-    eigenvalues.real[..., 1] = slow
-    eigenvalues.imag[..., 0] = -imaginary
-    eigenvalues.imag[..., 1] = imaginary
+    eigenvalues.real = np.stack([fast, slow], axis=-1)
+    eigenvalues.imag = np.stack([-imaginary, imaginary], axis=-1)
     found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
     found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
     if labels is not None:

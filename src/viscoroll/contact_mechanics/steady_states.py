@@ -27,7 +27,7 @@ from numpy.typing import NDArray
 from ..core.blocks import run_blocks
 from ..core.checks import Floats, Integers
 from ..laws.law_table import LawTable
-from .contact_table import evaluate_law
+from .contact_table import contact_fields_at, free_creep
 from .rolling_resistance import branches
 from .steady_loads import (
     Gains,
@@ -286,35 +286,6 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
                 np.where(real, 0.0, root),
             ]
         )
-
-
-def contact_fields_at(
-    law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str
-) -> Floats:
-    """Return fields of the contact at V > 0 and a creepage, one row for each of ``names``.
-
-    law : table of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V : speeds, dimensionless, > 0, which is not checked, (n,).
-    delta : creepage, dimensionless, any sign, a number or (n,).
-    names : fields that kernels compute, as ``Q`` or ``dQ_dV``; ``full_slip`` is 0 or 1, ``dQ_dV``
-        is at fixed delta.
-    Returns the fields, (names, n), dimensionless.
-    """
-    return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
-
-
-def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
-    """Return delta_0 at V > 0, the creepage of free rolling, at which Q = 0.
-
-    law : table of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,); mu is only passed on,
-        delta_0 does not depend on it.
-    V : speeds, dimensionless, > 0, which is not checked, (n,).
-    Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float 0.0
-    of half-spaces.
-    """
-    return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
 
 
 def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
