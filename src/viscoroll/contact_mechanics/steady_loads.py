@@ -472,14 +472,23 @@ def fields_at(law: LawTable, kappa: Any, V: Floats, delta: Floats) -> dict[str, 
     )
 
 
-def moments_of_losses(law: LawTable, kappa: Any, V: Floats, delta: Floats) -> Floats:
+def moments_of_losses(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floats) -> Floats:
     """Return the moments by which the losses in base and cylinder are V and omega times these, (2,
     n).
+
+    Where the bodies would take more than the load gives, by the error of the table alone, both take
+    less in proportion: nothing is lost in slip there.
+    kappa, mu : of the scene, numbers or (n,).  V, delta : speeds and creepages, (n,).
     """
     found = fields_at(law, kappa, V, delta)
     half_space = found["M_half_space"] + 0.5 * found["work_half_space"]
     cylinder = found["M_cylinder"] + 0.5 * found["work_cylinder"] / (1.0 + delta)
-    return np.stack([half_space, cylinder]) / kappa
+    factor = 1.0 + delta
+    taken = half_space + factor * cylinder
+    given = found["M_half_space"] + factor * found["M_cylinder"]
+    given += kappa * mu * delta * found["Q_over_mu"]
+    share = np.divide(given, taken, out=np.ones_like(taken), where=taken > 0.0)
+    return np.clip(share, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa
 
 
 def _torque_left(

@@ -359,7 +359,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
         spin = loads.given == "torque"
         delta, rest = balance(law, kappa, mu, V, torque if spin else -force, spin)
         rows = state_rows(law, kappa, mu, V, delta)
-        losses = moments_of_losses(law, kappa, V, delta)
+        losses = moments_of_losses(law, kappa, mu, V, delta)
         rows[Field.DELTA, rest != 0.0] = np.nan
         rows[Field.Q] += rest
         return States.of(loads, load, sign, rows, losses)
