@@ -223,7 +223,7 @@ def contact(
     names = field_names(fields, slopes, method, like=like, si=scale.si, cover=cover)
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])
-    creep = check_array(creep_name, given[creep_name])
+    creep, _ = check_array_extent(creep_name, given[creep_name])
     given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:

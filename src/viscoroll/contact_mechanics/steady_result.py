@@ -450,11 +450,15 @@ def pack_result(
     found: dict[str, Any] = dict(zip(_FIELDS, rows, strict=False))
     if scale.si:
         for name in found.keys() & DIMENSIONS.keys():
-            found[name] = found[name] * append_axis(scale[name])
+            unit = scale[name]
+            per_load = isinstance(unit, np.ndarray)
+            found[name] = found[name] * (unit[..., np.newaxis] if per_load else unit)
     fast, slow, imaginary = rows[-3:] * append_axis(scale["rate_fast"])
     eigenvalues = np.empty((*fast.shape, 2), np.complex128)
-    eigenvalues.real = np.stack([fast, slow], axis=-1)
-    eigenvalues.imag = np.stack([-imaginary, imaginary], axis=-1)
+    eigenvalues.real[..., 0] = fast
+    eigenvalues.real[..., 1] = slow
+    eigenvalues.imag[..., 0] = -imaginary
+    eigenvalues.imag[..., 1] = imaginary
     found |= {"stable": (fast < 0.0) & (slow < 0.0), "eigenvalues": eigenvalues}
     found["count"] = count.reshape(loads.shape) if loads.shape else int(count[0])
     if labels is not None:

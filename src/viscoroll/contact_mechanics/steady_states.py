@@ -91,6 +91,8 @@ class Field(IntEnum):
     FREE_CYLINDER = 11
 
 
+#: number of rows
+_COUNT = len(Field)
 #: slopes over V, each with that over omega: at fixed omega the first lacks (1 + delta) times the
 #: second
 _SLOPES = (
@@ -176,15 +178,15 @@ class States(NamedTuple):
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
         limit, free = creep_at_rest(law)
         kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
-        shear = shear_at(law, kappa, mu, np.zeros(load.size))
+        still = np.zeros(load.size)
+        shear = shear_at(law, kappa, mu, still)
         Q = shear.traction_of_torque(loads.torque[load])
         if loads.given == "force":
             Q = shear.traction_of_force(-loads.force[load])
         part = np.abs(Q) / mu
-        rows = np.zeros((2 + len(_ROWS), load.size))
+        rows = np.zeros((_COUNT, load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
         star = 0.5 * limit * mu / kappa * part / (1.0 + beta)
-        still = np.zeros(load.size)
         forth, back = (
             creep_beyond_free(law, kappa, mu, still, sign * star)
             for sign in (np.sign(Q), -np.sign(Q))
@@ -209,7 +211,7 @@ class States(NamedTuple):
     @classmethod
     def _at_rest_on_table(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
         """Return the states of rest on a table; arguments as of :meth:`at_rest`."""
-        rows = np.zeros((2 + len(_ROWS), load.size))
+        rows = np.zeros((_COUNT, load.size))
         rows[Field.DELTA], found, rate = rest_on_table(law, loads, load)
         rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.BETA]] = found
         rows[Field.OMEGA] = 0.0 * rows[Field.DELTA]
@@ -220,7 +222,7 @@ class States(NamedTuple):
     @classmethod
     def none(cls) -> States:
         """No state."""
-        return cls(np.empty(0, np.int64), np.empty((len(_ROWS) + 2, 0)))
+        return cls(np.empty(0, np.int64), np.empty((_COUNT, 0)))
 
     @classmethod
     def joined(cls, *parts: States) -> States:
@@ -298,7 +300,7 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
     Returns rows of :class:`Field` with slopes, (12, n); row 6 is dQ/dV at fixed omega.  In full
     slip Q is mu or -mu, and beta and the slopes of Q are 0.
     """
-    rows = np.empty((2 + len(_ROWS), V.size))
+    rows = np.empty((_COUNT, V.size))
     rows[Field.V] = V
     rows[Field.DELTA] = delta
     rows[2:] = contact_fields_at(law, kappa, mu, V, delta, *_ROWS)
@@ -363,7 +365,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
         rows[Field.DELTA, rest != 0.0] = np.nan
         rows[Field.Q] += rest
         return States.of(loads, load, sign, rows, losses)
-    delta_0 = 0.0 if law.cover is None else free_creep(law, kappa, mu, V)
+    delta_0 = free_creep(law, kappa, mu, V)
     free = contact_fields_at(
         law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
     )
@@ -388,7 +390,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
     (star, lam, rise) = free[2:]
     faster = V / root
-    rolling = delta_0 if law.cover is None else free_creep(law, kappa, mu, faster)
+    rolling = free_creep(law, kappa, mu, faster)
     less_star, less_lam = contact_fields_at(law, kappa, mu, faster, rolling, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
     creep = creep_beyond_free(law, kappa, mu, V, np.copysign(size, Q))
@@ -402,6 +404,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     rows[[Field.M_HALF_SPACE, Field.M_CYLINDER]] = moments
     rows[Field.BETA] = root * less_lam / lam
     if not exists.all():
-        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], (~exists).nonzero()[0]] = 0.0
-        rows[Field.DELTA, ~exists] = np.nan
+        missing = (~exists).nonzero()[0]
+        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], missing] = 0.0
+        rows[Field.DELTA, missing] = np.nan
     return States.of(loads, load, sign, rows, None if law.cover is None else free[:2])
