@@ -33,7 +33,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.blocks import block_reader, run_blocks
 from ..core.checks import Floats, broadcast_shape, check_choice, extent
@@ -241,8 +240,8 @@ _FASTEST_DIRECT = 1e12
 
 def evaluate_contact(
     scene: Parameters,
-    V: NDArray,
-    creep: NDArray,
+    V: Floats,
+    creep: Floats,
     creep_is_omega: bool,
     names: tuple[str, ...],
     method: str = "table",
@@ -443,7 +442,7 @@ def _kernel(direct: bool) -> tuple[Any, Any]:
 
 def _laws_of_block(
     material: Any, alpha: Floats, parts: tuple[Floats, ...], direct: bool
-) -> tuple[Any, NDArray]:
+) -> tuple[Any, Any]:
     """Make the laws of the states of a block, and choose the order in which the states are
     evaluated.
 
@@ -529,7 +528,7 @@ def refuse_beyond(law: LawTable, u: Any) -> None:
         raise OutOfTableError("kappa |V|", largest, 0.0, most)
 
 
-def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
+def refuse_overflow(kappa: Floats, V: Floats, fastest: float = FASTEST) -> None:
     """Raise ParameterError where kappa |V| exceeds its largest allowed value; else do nothing, as
     without elements.
 

@@ -11,7 +11,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.blocks import run_blocks
 from ..core.checks import Floats, broadcast_shape
@@ -56,7 +55,7 @@ class _States:
     have in common.
     """
 
-    def __init__(self, scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool) -> None:
+    def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:
         """Broadcast and check the states; creep: omega if ``creep_is_omega``, else delta.
 
         Raises ParameterError for kappa |V| that is too large, and shapes that do not broadcast.
@@ -94,7 +93,7 @@ class _States:
 
 
 def evaluate_coupled(
-    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...]
+    scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool, names: tuple[str, ...]
 ) -> dict[str, Any]:
     """Return dimensionless fields of the contact by name, with pressure and shear solved together.
 
@@ -175,7 +174,7 @@ def _fields_of_row(
 
 
 def coupled_stress(
-    scene: Parameters, x: NDArray, V: NDArray, creep: NDArray, creep_is_omega: bool
+    scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
 ) -> Floats:
     """Return pressure and shear stress on the cylinder along +x over E' at places x over l0.
 

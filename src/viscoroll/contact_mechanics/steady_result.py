@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import Floats, Integers
 from ..core.labels import Labels, dataset_axes
@@ -85,7 +84,7 @@ class Diagnosis(NamedTuple):
     """
 
     loads: Loads
-    states: tuple[NDArray, NDArray, NDArray]
+    states: tuple[Integers, Floats, Floats]
     number: Integers
     maximum: tuple[float, float]
     elastic: bool

@@ -22,7 +22,6 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.blocks import run_blocks
 from ..core.checks import Floats, Integers
@@ -120,10 +119,10 @@ class States(NamedTuple):
     def of(
         cls,
         loads: Loads,
-        load: NDArray,
-        sign: NDArray,
-        answers: NDArray,
-        free: NDArray | None = None,
+        load: Integers,
+        sign: Floats,
+        answers: Floats,
+        free: Floats | None = None,
     ) -> States:
         """Make the states from the law at them: give V, Q and M their signs, and add omega and the
         eigenvalues.
@@ -157,7 +156,7 @@ class States(NamedTuple):
         return cls(load, rows)
 
     @classmethod
-    def at_rest(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
+    def at_rest(cls, loads: Loads, load: Integers, law: LawTable) -> States:
         """Return the states of V = omega = 0, the limit of slow rolling.
 
         The contact is that of Carter (of two elastic bodies); of a cover its creep limit and its
@@ -176,7 +175,7 @@ class States(NamedTuple):
         if law.coupled is not None:
             return cls._at_rest_on_table(loads, load, law)
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
-        limit, free = creep_at_rest(law)
+        limit, free_limit = creep_at_rest(law)
         kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
         still = np.zeros(load.size)
         shear = shear_at(law, kappa, mu, still)
@@ -191,7 +190,7 @@ class States(NamedTuple):
             creep_beyond_free(law, kappa, mu, still, sign * star)
             for sign in (np.sign(Q), -np.sign(Q))
         )
-        free = 0.5 * free / kappa
+        free = 0.5 * free_limit / kappa
         rows[Field.OMEGA] = 0.0 * beta
         rows[Field.DELTA] = forth + free
         rows[Field.Q] = Q
@@ -209,7 +208,7 @@ class States(NamedTuple):
         return cls(load, rows)
 
     @classmethod
-    def _at_rest_on_table(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
+    def _at_rest_on_table(cls, loads: Loads, load: Integers, law: LawTable) -> States:
         """Return the states of rest on a table; arguments as of :meth:`at_rest`."""
         rows = np.zeros((_COUNT, load.size))
         rows[Field.DELTA], found, rate = rest_on_table(law, loads, load)
@@ -242,7 +241,7 @@ class States(NamedTuple):
         return States(self.load[chosen], self.rows[:, chosen])
 
 
-def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
+def _eigenvalues(slopes: Floats, gains: Gains, j: Floats) -> Floats:
     """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
     slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega,
@@ -290,7 +289,7 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
         )
 
 
-def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
+def state_rows(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floats) -> Floats:
     """Return the law at V > 0 and a creepage, as the rows from which :meth:`States.of` makes
     states.
 
@@ -309,7 +308,7 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
     return rows
 
 
-def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
+def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[Integers, Floats, Floats]:
     """Find the speeds at which kappa (M - gain V) equals a given total, in both directions of
     motion.
 
@@ -338,7 +337,7 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
     return which % total.size, np.where(which < total.size, 1.0, -1.0), u
 
 
-def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
+def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floats) -> States:
     """Return the steady states at given V > 0, whether or not the friction suffices.
 
     law : table of the material.
