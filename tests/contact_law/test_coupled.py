@@ -259,6 +259,8 @@ def test_tractions_carry_load_and_creep_force():
     back = vr.stress(scene, -x, -0.1, delta=0.01, method="coupled")
     assert (back.p == found.p).all()
     assert (back.tau == -found.tau).all()
+    one = vr.stress(scene, x[9000], 0.1, delta=0.01, method="coupled")
+    assert (one.p, one.tau) == (found.p[9000], found.tau[9000])
 
 
 def test_depth_is_that_of_the_surface_in_the_middle():
