@@ -645,19 +645,6 @@ def test_magnitudes_of_any_kind(made):
     )
 
 
-@pytest.mark.parametrize(
-    "magnitude",
-    [True, 1j, None, "1.0", np.array([1j]), np.array([True]), np.array(["1.0"]), 10**400],
-)
-def test_magnitudes_that_are_no_numbers(magnitude):
-    class Quantity(NamedTuple):
-        magnitude: Any
-        units = "mm"
-        to = None
-
-    refused(lambda: CYLINDER.replace(R=Quantity(magnitude)), "R = ", "number")
-
-
 def test_ranges_of_unknowns_carry_units():
     data = experiments.resistance(seed=3)
     plain, found = (

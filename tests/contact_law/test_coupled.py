@@ -295,8 +295,3 @@ def test_what_it_does_not_have_is_refused(more, words):
     scene = scene_of(ONE)
     with pytest.raises(vr.ParameterError, match=words):
         scene.contact(0.1, delta=0.0, **({"method": "coupled"} | more))
-
-
-def test_several_materials_are_refused():
-    with pytest.raises(vr.ParameterError, match="one material"):
-        coupled(scene_of(BELT.of_thickness([0.5, 0.6])), 0.1, delta=0.0)

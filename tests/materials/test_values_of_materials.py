@@ -7,7 +7,7 @@ from math import inf, nan, pi
 import numpy as np
 import pytest
 import tolerances as tol
-from calls import HARD, MANY, MEASURED, PAPER, ROLLER, RUBBER, SERIES, SI, STEEL, TREAD, file, pair
+from calls import HARD, MANY, PAPER, RUBBER, SERIES, SI, STEEL, TREAD, pair
 from closeness import close
 
 import viscoroll as vr
@@ -307,35 +307,6 @@ def test_a_scene_and_a_series_are_values():
         1.0,
         3.0,
     ]  # (tau^2 + J T^2)/(J T) of E = 1: J = 1/2, T = 2
-
-
-def test_odd_kinds_of_materials_covers_and_counts():
-    """Odd kinds of materials, covers and counts."""
-    assert close(
-        [vr.Prony([3.0], [unit]).T.item() / unit for unit in (1e-140, 1e-30, 1e24, 1e100, 1e140)],
-        [4.0] * 5,
-        tol.MATERIAL,
-    )
-    assert close(
-        vr.Prony.creep([0.3, 0.5], [1e60, 1e59]).tau / 1e60,
-        vr.Prony.creep([0.3, 0.5], [1.0, 0.1]).tau,
-        tol.MATERIAL,
-    )
-    assert close(
-        vr.Prony([1e11, 1.0], [1e140, 1e110]).slow_time / 1e140,
-        vr.Prony([1e11, 1.0], [1.0, 1e-30]).slow_time,
-        tol.MATERIAL,
-    )
-    assert vr.Cover(np.float32(11.0), nu=0.5, thickness=1.0) == vr.Cover(11, nu=0.5, thickness=1.0)
-    path = file("", "m.nc")
-    assert [
-        vr.Material(1000000.0, 0.5, measured=MEASURED.measured, name="r").to_netcdf(path),
-        repr(vr.Material.from_netcdf(path)).count("np.str_"),
-    ] == [None, 0]
-    assert (ROLLER.contact(1e-310, omega=1e300).delta, ROLLER.contact(1e-320, omega=0.0).zeta) == (
-        inf,
-        inf,
-    )
 
 
 def test_bessel_ratios_at_their_ends():
