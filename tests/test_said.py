@@ -200,15 +200,11 @@ WARNED = {
         lambda: vr.WLF(T0=20.0)(293.15),
         lambda: vr.fit_prony(*DMA, temperature=293.15),
     ],
-    "T0 is outside -150 to 200": [lambda: vr.Arrhenius(energy=8e4, T0=-153.15)],
     "too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a "
     "tenth of the distance": [
         lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0),
-        lambda: vr.roll(DMA_ROLLER, 0.0, 9.0, 1.0),
-        lambda: vr.ensemble(DMA_ROLLER, [30.0, 3.0], [30.0, 3.0], 1.0),
         lambda: vr.ensemble(UNSURE, 3.0, 3.0, 1.0),
         lambda: vr.ensemble(ONE.replace(alpha=[2.0, 11.0]), 1.0, 1.0, 1.0),
-        lambda: vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, 0.001),
     ],
     "kappa = R/l0 is below 1": [lambda: vr.roll(vr.Scene(11.0, 0.5, 0.2, 0.1), 9.0, 9.0, 0.001)],
     "it starts in full slip at a creep": [
@@ -217,8 +213,6 @@ WARNED = {
     "speeds exceed the shear wave speed": [
         lambda: ROLLER.roll(100.0, 1000.0, 0.01),
         lambda: ROLLER.steady(V=-99.0, torque=0.0),
-        lambda: ROLLER.law()(99.0, 999.0),
-        lambda: ROLLER.ensemble([1.0, 99.0], 10.0, 0.01),
     ],
     "the model does not hold for this contact: speeds exceed the shear wave speed": [
         lambda: ROLLER.contact([1.0, 99.0], delta=0.0)
@@ -226,21 +220,13 @@ WARNED = {
     "as measured | the contact needs the moduli from 0 to 1.9e+03 rad/s": [
         lambda: BELT.contact([0.0, 0.1, 2.895], delta=0.0)
     ],
-    "as measured | the contact needs the moduli from 6.4e+02 to 1.9e+03 rad/s": [
-        lambda: BELT.contact(-2.895, delta=0.0)
-    ],
-    "as measured | the contact needs the moduli from 0.00": [
-        lambda: BELT.contact(1e-05, delta=0.0)
-    ],
     "as measured | the base was measured from 0.06 to 1.88e+03 rad/s, misfit 1 % (dma.csv)": [
         lambda: BELT.stress(0.0, 10.0, delta=0.0)
     ],
     "as measured | the contact needs the moduli from": [
         lambda: BELT.roll(10.0, 100.0, 0.01),
         lambda: BELT.roll(0.0, 0.0, [0.1, 1.0], force=300.0, torque=300.0),
-        lambda: BELT.ensemble([1.0, 10.0], [10.0, 100.0], 0.01),
         lambda: BELT.steady(V=10.0, torque=0.0),
-        lambda: BELT.replace(R=[0.1, 0.01]).contact([0.1, 2.8], delta=0.0),
     ],
     "the fit of the base misses its data | 20 %": [
         lambda: BELT.replace(
@@ -257,29 +243,20 @@ SILENT = {
     "": [
         lambda: vr.Arrhenius(energy=8e4, T0=180.0)(-60.0),
         lambda: vr.roll(DMA_ROLLER, 30.0, 30.0, 1.0),
-        lambda: vr.roll(DMA_ROLLER, 9.0, 0.0, 1.0),
         lambda: vr.roll(DMA_ROLLER, 0.0, 0.0, 1.0),
         lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0, force=0.1),
-        lambda: vr.ensemble(DMA_ROLLER, [30.0, 20.0], 30.0, 1.0),
-        lambda: vr.ensemble(UNSURE, 30.0, 30.0, 1.0),
-        lambda: ROLLER.roll(0.01, 0.1, 1.0),
         lambda: ROLLER.contact([1.0, 9.0], delta=0.0),
         lambda: ROLLER.replace(material=dataclasses.replace(ROLLER.material, density=None)).contact(
             99.0, delta=0.0
         ),
-        lambda: vr.Resistance(0.01, -0.01, sigma=0.01),
     ],
     "as measured": [
         lambda: BELT.contact([0.0, 0.1, 2.837], delta=0.0),
-        lambda: BELT.contact([], delta=0.0),
         lambda: BELT.roll(1.0, 10.0, [1.0, 4000.0]),
-        lambda: BELT.roll(1.0, 10.0, 10.0),
-        lambda: BELT.ensemble([1.0, 2.0], [10.0, 20.0], 0.01, fields=("x",)),
         lambda: BELT.steady(V=0.1, torque=0.0),
         lambda: BELT.replace(base=dataclasses.replace(BELT.base, measured=None)).contact(
             10.0, delta=0.0
         ),
-        lambda: BELT.replace(R=[0.1, 0.01]).contact([2.8, 0.1], delta=0.0),
     ],
 }
 

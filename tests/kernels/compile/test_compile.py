@@ -10,7 +10,6 @@ import pickle
 import pwd
 import re
 import shutil
-import sys
 import threading
 import warnings
 import zlib
@@ -395,32 +394,6 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
 
 
 # --- what is said ---
-
-
-@pytest.fixture
-def untold(monkeypatch):
-    monkeypatch.setattr(cache_folder, "announced", False)
-    monkeypatch.delenv("VISCOROLL_QUIET", raising=False)
-
-
-def test_nothing_is_said_where_it_is_not_wanted(untold, capsys, monkeypatch):
-    with monkeypatch.context() as quiet:
-        quiet.setenv("VISCOROLL_QUIET", "1")
-        cache_folder.announce_compiling()
-    with monkeypatch.context() as child:
-        child.setattr(
-            cache_folder.multiprocessing, "parent_process", lambda: "this process has one"
-        )
-        cache_folder.announce_compiling()
-    with monkeypatch.context() as worker:
-        worker.setitem(
-            sys.modules, "distributed", SimpleNamespace(get_worker=lambda: "a worker of dask")
-        )
-        cache_folder.announce_compiling()
-    with monkeypatch.context() as window:
-        window.setattr(sys, "stderr", None)
-        cache_folder.announce_compiling()
-    assert capsys.readouterr() == ("", "")
 
 
 def test_numba_switched_off_is_one_line():
