@@ -15,10 +15,7 @@ and gamma is P T^2/(m R).
 from __future__ import annotations
 
 import hashlib
-import io
 import math
-import warnings
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from pathlib import Path
@@ -30,8 +27,8 @@ from numpy.typing import NDArray
 from ..contact_mechanics.parameters import Parameters
 from ..core.blocks import broadcast_vector, run_blocks
 from ..core.checks import Floats, Integers
-from ..core.files import seal, seal_matches
-from ..kernels.numerics.cache_folder import cache_root, read_private, write_private
+from ..core.files import load_kept, save_kept
+from ..kernels.numerics.cache_folder import cache_root
 from ..kernels.records import Motions
 from ..materials.prony import Prony
 from .motion_problem import integrate_motions
@@ -152,50 +149,31 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     write to it or to a folder above it, or if one belongs to another user; None with a
     RuntimeWarning if its content is damaged or of other parameters.
     """
-    try:
-        content = read_private(path)
-    except OSError:
-        return None
-    try:
-        found = _read(content, parameters)
-    except Exception as error:
-        warnings.warn(
-            f"{path}: flow map is damaged ({error}) and is built again",
-            RuntimeWarning,
-            stacklevel=2,
-        )
-        return None
-    with suppress(OSError):  # a folder that is read-only
-        path.touch()
-    return found
+    damaged = "flow map is damaged ({}) and is built again"
+    return load_kept(path, damaged, lambda data: _read(data, parameters))
 
 
-def _read(content: bytes, parameters: tuple[Any, ...]) -> FlowMap:
-    """Return the :class:`FlowMap` in the bytes of a file.
+def _read(data: Any, parameters: tuple[Any, ...]) -> FlowMap:
+    """Return the :class:`FlowMap` in the arrays of a file.
 
-    content: bytes of the file.
+    data: arrays by name.
     parameters: (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
-    Raises ValueError for a file without a seal, with one that is not that of its bytes, of another
-    scene or with a table of another size, KeyError for one that lacks an array, and what numpy
-    raises for what is no file of arrays.
+    Raises ValueError for one of another scene or with a table of another size, and KeyError for one
+    that lacks an array.
     """
     from ..kernels.motion.flow_layout import SIZE
 
-    if not seal_matches(content):
-        raise ValueError("its bytes differ from the SHA-256 at their end")
-    with np.load(io.BytesIO(content)) as data:
-        if not np.array_equal(data["parameters"], _numbers(parameters)):
-            raise ValueError("it belongs to another scene")
-        if data["table"].shape != (SIZE,):
-            raise ValueError("the size of its table is wrong")
-        errors = tuple(data["errors"].tolist())
-        return FlowMap(
-            parameters=parameters,
-            first=int(data["first"]),
-            table=data["table"],
-            errors=errors,
-            problem=str(data["problem"]),
-        )
+    if not np.array_equal(data["parameters"], _numbers(parameters)):
+        raise ValueError("it belongs to another scene")
+    if data["table"].shape != (SIZE,):
+        raise ValueError("the size of its table is wrong")
+    return FlowMap(
+        parameters=parameters,
+        first=int(data["first"]),
+        table=data["table"],
+        errors=tuple(data["errors"].tolist()),
+        problem=str(data["problem"]),
+    )
 
 
 def save(new_map: FlowMap, path: Path) -> None:
@@ -208,16 +186,7 @@ def save(new_map: FlowMap, path: Path) -> None:
     new_map : the :class:`FlowMap`.
     path : path of the file, as of :func:`path_of`; it is replaced if it exists.
     """
-    try:
-        content = io.BytesIO()
-        numbers = _numbers(new_map.parameters)
-        np.savez(content, **(vars(new_map) | {"parameters": numbers}))
-        write_private(path, seal(content.getvalue()))
-        oldest = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
-        for file in oldest[:-KEPT]:
-            file.unlink()
-    except OSError:
-        pass
+    save_kept(path, KEPT, vars(new_map) | {"parameters": _numbers(new_map.parameters)})
 
 
 # --- Its construction, and motions looked up in it ---
