@@ -15,9 +15,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import Floats, check_array
-from ..core.drive_arguments import Feedback, Schedule, require_time_argument
-from ..core.errors import described_error, mark_dimensionless, shape_error
+from ..core import (
+    Feedback,
+    Floats,
+    Schedule,
+    check_array,
+    described_error,
+    mark_dimensionless,
+    require_time_argument,
+    shape_error,
+)
 from ..kernels.records import COL_COEFFICIENTS, COL_SCALE, COL_START
 from .drive_fit import fit_callable
 
