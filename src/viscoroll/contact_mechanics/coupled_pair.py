@@ -388,7 +388,7 @@ class CoupledPair(NamedTuple):
 
 
 class CoupledStates(NamedTuple):
-    """Fields of states of one row in the order of :data:`.coupled_rows.FIELDS`, and their status,
+    """Fields of states of one row in the order of :data:`.law_rows.FIELDS`, and their status,
     (n,) each, dimensionless.
 
     Q_over_mu : traction over mu P.

@@ -32,7 +32,7 @@ from ..core.errors import ConvergenceError, ParameterError
 from ..core.files import load_kept, save_kept
 from ..kernels.numerics.cache_folder import cache_root, is_quiet
 from ..kernels.numerics.jit import sources_digest
-from ..laws.coupled_rows import FIELDS, CoupledRows, grade
+from ..laws.law_rows import FIELDS, CoupledRows, grade
 from ..laws.law_table import LawTable, coupled_table
 from ..materials.prony import lock_array
 from .assumptions import DUNDURS_LIMIT

@@ -41,8 +41,8 @@ from ..materials.material_toml import (
 from ..materials.pair import Pair
 from ..materials.prony import Prony, lock_array
 from ..materials.prony_forms import HIGHEST_ALPHA
-from .coupled_rows import FIELDS, CoupledRows
 from .law_grid import load_grid
+from .law_rows import FIELDS, CoupledRows
 from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table
 from .row_layout import COVER_FUNCTIONS, CoverRows, steady_columns, steady_table
 
