@@ -121,7 +121,7 @@ class Branches:
         for first, last in zip(self.first.tolist(), self.last.tolist(), strict=True):
             values = self.resistance[first : last + 1]
             rising = values[-1] > values[0]
-            low, high = sorted(values[[0, -1]])
+            low, high = (values[0], values[-1]) if rising else (values[-1], values[0])
             inside = (load > low) & (load < high)
             if self.extremum[first]:
                 inside &= np.abs(load - values[0]) > tolerance
