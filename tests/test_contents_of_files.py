@@ -10,7 +10,6 @@ from calls import (
     CYLINDER_FILE,
     DRUM_M,
     DRUM_V,
-    LABELLED,
     OMEGA,
     PAPER,
     ROLLER,
@@ -36,9 +35,8 @@ from viscoroll.materials.material_toml import read_materials
 from viscoroll.presets import PAPER_CYLINDER
 from viscoroll.roller_toml import read_law_source, read_roller
 from viscoroll.runs import estimate
-from viscoroll.runs.run_blocks import attributes, block_inputs
+from viscoroll.runs.run_blocks import block_inputs
 from viscoroll.runs.uncertain_inputs import read_column
-from viscoroll.tables.law_dataset import check_table
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 
@@ -210,43 +208,7 @@ def test_measurements_and_fits():
         DRUM_V,
         tol.WRITTEN,
     )
-    # few points, whose largest N is far below that of the law
-    assert [
-        check.name
-        for n in (1, 2)
-        for seed in range(9)
-        for check in check_table(vr.tables.law(SERIES), n, seed)
-        if not check.passed
-    ] == []
-    assert np.array_equal(
-        vr.tables.creep_nodes(ROLLER, xr.DataArray([1.8], dims="V", attrs={"units": "km/h"}), 5),
-        vr.tables.creep_nodes(ROLLER, 0.5, 5),
-    )
     assert [*measured("[[data]]", '[[data]]\nname = "unknown"').records] == ["unknown"]
-
-
-def test_names_of_the_inputs_of_runs():
-    """Names of the inputs of runs."""
-    assert attributes("base_tau_1", si=True) == {
-        "long_name": "base: relaxation time 1 divided by T_ref",
-        "units": "1",
-    }
-    # coordinates of every argument stay with the result, those that name no axis too
-    assert sorted(
-        vr.contact(
-            PAPER,
-            LABELLED,
-            delta=xr.DataArray(
-                [0.0, 0.1, 0.2], dims="creep", coords={"letter": ("creep", ["x", "y", "z"])}
-            ),
-        ).Q.coords
-    ) == ["day", "letter", "run"]
-    assert [attributes(name, si=True)["units"] for name in ("m", "g")] == ["kg m-1", "m s-2"]
-    assert attributes("base_E", si=True)["units"] == "Pa"
-    assert (
-        attributes("E_2", si=False)["long_name"]
-        == "strength 2 of relaxation, divided by the long-time modulus"
-    )
 
 
 @pytest.mark.parametrize(

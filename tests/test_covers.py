@@ -351,21 +351,6 @@ def test_a_law_of_a_roller_on_disk(tmp_path):
     )
 
 
-def test_the_shear_of_a_cover_is_not_computed(monkeypatch):
-    """Nor read: memory that was never written may hold infinite numbers, whose product with 0
-    warns.
-    """
-    vr.stress(ALL[0], 0.0, 0.2, delta=0.0)  # the law is made here
-    empty = np.empty
-
-    def unwritten(shape, *more, **named):
-        """Memory as it may be: of the two fields of one point, infinite."""
-        return np.full(shape, np.inf) if shape == (2, 1) else empty(shape, *more, **named)
-
-    monkeypatch.setattr(np, "empty", unwritten)
-    assert np.isfinite(vr.stress(ALL[0], 0.0, 0.2, delta=0.0).p)
-
-
 @pytest.mark.parametrize(
     ("scene", "V"), [(ALL[1], 0.0), (ALL[3], 2e-3), *((scene, 0.2) for scene in ALL)]
 )
@@ -529,42 +514,6 @@ def test_a_thickness_in_SI_units():
     )
     other = roller_of(THIN, thick).contact(1.0, omega=10.0), roller.contact(1.0, omega=10.0)
     assert close(other[0].length, other[1].length, rel=tol.COVER_MIRROR)
-
-
-def test_the_same_nip_from_either_side():
-    """The bodies change sides: strain and traction their signs, and M its body."""
-    other = vr.Cover(
-        ONE,
-        nu=0.3,
-        thickness=0.8,
-        part=0.4,
-        on="base",
-        other=THREE,
-        other_nu=0.45,
-        other_thickness=0.5,
-    )
-    one, two = (free(scene_on(cover), np.logspace(-4.0, 2.0, 7)) for cover in (NIP, other))
-    for name, mirrored in (
-        ("M_half_space", two.M_cylinder),
-        ("delta_0", -two.delta_0),
-        ("lam", two.lam),
-    ):
-        assert close(one[name], mirrored, rel=tol.COVER_MIRROR, scale=1.0 / KAPPA)
-
-
-def test_two_like_covers_do_not_couple():
-    """On like rollers both surfaces stretch alike: no creepage in free rolling, no reaction, equal
-    shares of M.
-    """
-    like = vr.Cover(
-        THREE, nu=0.4, thickness=0.5, part=0.5, other=THREE, other_nu=0.4, other_thickness=0.5
-    )
-    V = np.logspace(-4.0, 2.0, 7)
-    alone, free_rolling = (vr.contact(scene_on(like), V, delta=delta) for delta in (1.0, 0.0))
-    assert close(free_rolling.delta_0, 0.0, rel=tol.COVER_MIRROR, scale=1.0)
-    assert close(free_rolling.Q, 0.0, rel=tol.COVER_MIRROR, scale=1.0)
-    assert close(free_rolling.M_half_space, free_rolling.M_cylinder, rel=tol.COVER_MIRROR)
-    assert close(alone.lam, free_rolling.lam, rel=tol.COVER_MIRROR)
 
 
 #: nu, h/l0, u; 2 kappa delta_0* of a cover on the base, of solves with boundary elements

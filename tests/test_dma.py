@@ -3,7 +3,6 @@ refused.
 """
 
 import sys
-from functools import cache
 
 import numpy as np
 import pytest
@@ -14,8 +13,7 @@ from hypothesis import strategies as st
 from places import DATA, ROOT
 
 import viscoroll as vr
-from viscoroll.measurements.dynamic_moduli import Curve
-from viscoroll.measurements.spectrum import FLOOR, _minimize
+from viscoroll.measurements.spectrum import FLOOR
 
 PYVISCO = DATA / "materials/pyvisco_freq_user_master.csv"
 #: a rubber of ten modes over eight decades, times in s
@@ -69,25 +67,6 @@ def test_two_modes_are_found_exactly():
         found = *fit.prony.tau, *fit.prony.E, fit.E, fit.T_ref
         assert close(found, (1.0, 1e-3, 2.0, 6.0, 1.0, 1.0), tol.DMA_EXACT)
         assert not fit.outside.any()
-
-
-@pytest.mark.parametrize("seed", range(2))
-def test_a_window_of_two_decades(seed):
-    """As good as a trial on 14 measured points of an EPDM rubber; M inside the window needs neither
-    E nor alpha.
-    """
-    omega = np.logspace(0, 2, 14)
-    tau = np.logspace(4, -4, 10)
-    fit = vr.fit_prony(*curve(omega, tau=tau, noise=0.005, seed=seed), misfit=0.006)
-    assert fit.misfit.storage <= tol.DMA_WINDOW[0]
-    assert fit.misfit.loss <= tol.DMA_WINDOW[1]
-    assert fit.prony.E.size <= 6
-    found = fit.admissible
-    true = moment(vr.Prony(STRENGTHS / E, tau), np.sqrt(E / fit.E), found.V / fit.T_ref)
-    assert close(found.M, true, tol.DMA_WINDOW_MOMENT)
-    assert (np.abs(true / found.M - 1.0) < found.error).all()
-    ends = found.error[[0, found.error.size // 2, -1]]
-    assert f"M: {', '.join(f'+-{error:.2%}' for error in ends)}, at the lowest" in str(fit)
 
 
 def test_data_of_less_than_an_octave_tell_of_no_speed():
@@ -220,41 +199,6 @@ def test_temperatures_as_they_were_measured():
         assert close(fit.shifts.a_T, exact.shifts.a_T, tol.DMA_SHIFTED_TIMES)
         assert "were combined into 8" in str(fit)
         assert "were taken for" not in str(exact)
-
-
-@cache
-def fit_at(reference):
-    return vr.fit_prony(
-        *isotherms(7, 0.0), temperature=TEMPERATURES, shift=wlf, reference=reference
-    )
-
-
-@settings(max_examples=15, deadline=None)
-@given(
-    st.permutations(range(8)),
-    st.sampled_from([None, -30.0, 0.0, 20.0]),
-    st.booleans(),
-    st.floats(1e-3, 1e3),
-)
-def test_the_order_of_curves_and_the_unit_of_factors_do_not_matter(
-    order, reference, by_points, scale
-):
-    """Curves in any order with factors in the same, all factors times a number: one fit, at the
-    reference.
-    """
-    curves = isotherms(7, 0.0)
-    base = 0.0 if reference is None else reference
-    expected = fit_at(base)
-    turned = [[column[n] for n in order] for column in curves]
-    temperature = TEMPERATURES[list(order)]
-    factors = (wlf(TEMPERATURES) * (scale if reference is not None else 1.0))[list(order)]
-    if by_points:
-        turned = [np.concatenate(column) for column in turned]
-        temperature = np.repeat(temperature, 7)
-    fit = vr.fit_prony(*turned, temperature=temperature, shift=factors, reference=reference)
-    assert fit.temperature == base
-    assert close(fit.omega, expected.omega, tol.DMA_SHIFTED_TIMES)
-    assert close(fit.shifts.a_T, expected.shifts.a_T, tol.DMA_SHIFTED_TIMES)
 
 
 @pytest.mark.usefixtures("two_speeds")
@@ -496,31 +440,6 @@ def test_pyvisco_file_is_read_and_its_report_says_that_storage_and_loss_differ()
     assert "are inconsistent" in text
 
 
-@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")  # units that are not given
-@pytest.mark.parametrize(
-    ("text", "factors"),
-    [
-        ("# a comment\nomega E' E''\n\n1\t2\t3\n4 5 6\n", (1, 1, 1)),
-        ("f, E_stor, E_loss\nHz, MPa, kPa\n1,2,3\n4,5,6\n", (2 * np.pi, 1e6, 1e3)),
-        ("omega (rad/s); G' [GPa]; G'' [Pa]\n1;2;3\n4;5;6\n", (1, 1e9, 1)),
-        ("# omega (rad/s)   E' (MPa)   E'' (MPa)\n1 2 3\n4 5 6\n", (1, 1e6, 1e6)),
-        (
-            "Frequency (Hz), Storage Modulus (MPa), Loss Modulus (MPa)\n1,2,3\n4,5,6",
-            (2 * np.pi, 1e6, 1e6),
-        ),
-        ("T, f, E_loss, E_stor\nC, Hz, Pa, MPa\n20,1,3,2\n20,4,6,5\n", (2 * np.pi, 1e6, 1)),
-    ],
-)
-def test_forms_of_a_file(tmp_path, text, factors):
-    (tmp_path / "dma.txt").write_text(text, encoding="utf-8-sig")
-    found = vr.read_dma(tmp_path / "dma.txt")
-    assert close(
-        np.array(found),
-        np.array(factors)[:, None] * np.array([[1.0, 4.0], [2.0, 5.0], [3.0, 6.0]]),
-        tol.DMA_READ,
-    )
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="names of files that are no UTF-8")
 def test_source_is_a_text(tmp_path):
     """A name of a file that is no UTF-8 is a source that files can hold."""
@@ -542,18 +461,6 @@ def test_units_are_asked_for(tmp_path):
     assert close(vr.read_dma(file, units=("rad/s", "MPa")), [[1.0], [2e6], [3e6]], 1e-15)
     file.write_text("f [kHz], E_stor [MPa], E_loss [kPa]\n1,2,3\n")
     assert close(vr.read_dma(file, units=("Hz", "Pa")), [[2e3 * np.pi], [2e6], [3e3]], 1e-15)
-
-
-@pytest.mark.usefixtures("two_speeds")
-def test_what_the_contact_sees_of_the_data():
-    """As of the cylinder, of which ``si/test_warned.py`` holds where the data end."""
-    fit = vr.fit_prony(*vr.read_dma(ROOT / "src/viscoroll/datasets/dma.csv"))
-    cylinder = vr.Cylinder(R=0.1, m=30.0, material=fit.material(0.5), mu=0.5)
-    V = np.geomspace(1e-6, 1e4, 30)
-    found = fit.validity(cylinder, V)
-    assert close(found.value, cylinder.validity(V).measured.value, 1e-14)
-    assert found.holds.any()
-    assert not found.holds[[0, -1]].any()
 
 
 @pytest.mark.parametrize("noise", [0.0, 0.01])
@@ -592,11 +499,6 @@ def test_the_accuracy_of_M_bounds_its_error_and_contact_states_it(noise, seed):
     assert np.isnan(unknown)
     with pytest.raises(vr.ParameterError, match="M_error"):
         vr.contact(vr.Scene(alpha=2.0, kappa=10.0, mu=0.5), 1.0, delta=0.0, fields="M_error")
-
-
-def test_a_search_ends_where_every_logarithm_is_at_its_bound():
-    start = np.log([E, STRENGTHS[0], TAU[0]])
-    assert np.array_equal(_minimize(Curve(*curve(WHOLE)), start, start, start, 10), start)
 
 
 def test_what_was_measured_stays_with_the_material():

@@ -8,8 +8,6 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from viscoroll.cli import main
-from viscoroll.materials.material_toml import material_as_toml
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
@@ -165,18 +163,6 @@ def test_cover_follows_its_own_law():
     known = np.isfinite(rolling.V)
     assert known.any(axis=-1).all()
     assert close(rolling.C_rr[known], np.tan(0.004), 1e-3)  # but for the moment of the shear
-
-
-def test_slope_of_a_cover_in_a_shell(tmp_path, capsys):
-    """Of a cover, whose law depends on the slope, one number is allowed."""
-    rubber = dataclasses.replace(RUBBER, thickness=0.03)
-    scene = tmp_path / "wheel.toml"
-    head = "[cylinder]\nR = 0.1\nm = 60.0\nmu = 0.6\nload = 2e4\n"
-    base = "[base]\nname = 'steel'\nE = 2.1e11\nnu = 0.3\n"
-    scene.write_text(head + material_as_toml(rubber) + base, encoding="utf-8")
-    for more in (["steady"], ["heat", "--ambient", "0", "--conductance", "6"]):
-        assert main([more[0], str(scene), *more[1:], "--slope", "0.004"]) == 0
-        assert " stable " in capsys.readouterr().out
 
 
 def test_two_bodies_with_a_temperature_each():

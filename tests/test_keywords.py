@@ -1,7 +1,6 @@
 """A misspelt argument of a public call: the TypeError names the one that was meant."""
 
 import inspect
-import pickle
 
 import pytest
 
@@ -64,12 +63,6 @@ def test_every_misspelt_argument_of_public_calls_is_told():
 def test_objects_of_presets_and_results_tell_it_once(call, meant):
     with pytest.raises(TypeError, match=rf"argument '\w+'; did you mean '{meant}'\?$"):
         call(vr.presets.RUBBER_CYLINDER)
-
-
-def test_public_functions_are_methods_have_signatures_and_are_pickled():
-    assert vr.Cylinder.roll is vr.roll
-    assert "torque" in inspect.signature(vr.roll).parameters
-    assert pickle.loads(pickle.dumps(vr.tables.build)) is vr.tables.build
 
 
 def test_a_type_error_of_a_users_function_stays_as_it_is():

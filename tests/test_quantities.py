@@ -470,47 +470,6 @@ def test_odd_values_are_right_or_refused(call):
                 )
 
 
-@functools.cache
-def results():
-    """What functions give of a scene and of a cylinder."""
-    return [*compute_results()]
-
-
-def compute_results():
-    for kind, roller in (("a Scene", SCENE), ("a Cylinder", CYLINDER)):
-        yield kind, roller.contact(0.5, omega=0.501).to_xarray()
-        yield kind, roller.stress(1e-4, 0.5, delta=1e-3).to_xarray()
-        yield kind, roller.steady(torque=1e-3, slope=1e-4).to_xarray()
-        yield kind, roller.roll(0.5, 0.5, [0.1, 0.25], torque=1e-3).to_xarray()
-        yield (
-            kind,
-            roller.ensemble(
-                [0.5], 0.5, [0.1, 0.25], fields=("V", "omega", "x", "delta")
-            ).to_xarray(),
-        )
-
-
-@pytest.mark.parametrize("call", [call for call in CALLS if " of a " in call])
-def test_fields_of_results_go_back(call):
-    for argument in arguments_of(call):
-        for kind, data in results():
-            given = data.get(argument.name)
-            if given is None or not (some := given.values[np.isfinite(given.values)].ravel()).size:
-                continue
-            field = xr.DataArray(some[-1], attrs=given.attrs)
-            if kind in call or {argument.unit, given.attrs["units"]} <= {"1", "rad"}:
-                assert works(argument, field) == works(argument, some[-1])
-                if works(argument, field):
-                    pairs = zip(
-                        numbers_of(argument(field)), numbers_of(argument(some[-1])), strict=True
-                    )
-                    assert all(np.array_equal(*pair, equal_nan=True) for pair in pairs)
-            else:
-                refused(
-                    lambda argument=argument, field=field: argument(field), argument.name, "must be"
-                )
-
-
 DRIVEN = (
     ("force", "N/m"),
     ("torque", "N*m/m"),
@@ -645,19 +604,6 @@ def test_magnitudes_of_any_kind(made):
     )
 
 
-@pytest.mark.parametrize(
-    "magnitude",
-    [True, 1j, None, "1.0", np.array([1j]), np.array([True]), np.array(["1.0"]), 10**400],
-)
-def test_magnitudes_that_are_no_numbers(magnitude):
-    class Quantity(NamedTuple):
-        magnitude: Any
-        units = "mm"
-        to = None
-
-    refused(lambda: CYLINDER.replace(R=Quantity(magnitude)), "R = ", "number")
-
-
 def test_ranges_of_unknowns_carry_units():
     data = experiments.resistance(seed=3)
     plain, found = (
@@ -669,22 +615,3 @@ def test_ranges_of_unknowns_carry_units():
         lambda: vr.identify(experiments.roller(), {"E": UNITS.Quantity([1.0, 2.0], "m")}, data),
         "E is in meter",
     )
-
-
-def test_labels_stay():
-    V = xr.DataArray([1.8, 3.6], dims="run", coords={"run": ["a", "b"]}, attrs={"units": "km h-1"})
-    assert np.array_equal(
-        CYLINDER.contact(V, delta=0.0).M.sel(run="b"), CYLINDER.contact(1.0, delta=0.0).M
-    )
-    data = CYLINDER.ensemble(V, 0.5, pd.to_timedelta([0.5], "s")).to_xarray()
-    assert list(data["motion"]) == ["a", "b"]
-    assert float(data.t[0]) == 0.5
-    speeds = pd.Series([0.5, 1.0], index=["a", "b"])
-    speeds.attrs["units"] = "m/s"
-    assert list(CYLINDER.contact(speeds, delta=0.0).M.index) == ["a", "b"]
-    of_table = vr.tables.build(
-        CYLINDER, UNITS.Quantity(np.array([360.0, 720.0, 1080.0]), "cm/s"), delta=[0.0, 1e-3]
-    )
-    assert close(of_table.V, [3.6, 7.2, 10.8], tolerances.UNIT_CONVERTED)
-    at = vr.tables.interpolate(of_table, "M", V=UNITS.Quantity(5.0, "m/s"))
-    assert at.M == vr.tables.interpolate(of_table, "M", V=5.0).M

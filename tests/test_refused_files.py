@@ -1,15 +1,13 @@
 """Bad files: one line with the file, the place in it, and what is allowed."""
 
-from math import inf, nan
+from math import nan
 
-import numpy as np
 import pytest
 import xarray as xr
 from calls import (
     CYLINDER_FILE,
     OTHER_GRID,
     PAPER,
-    ROLLER,
     ROLLER_FILE,
     RUBBER_FILE,
     SCENE_FILE,
@@ -61,51 +59,19 @@ REFUSED = [
         {
             "'1e999' is larger than a double can be": "omega [rad/s];E' [Pa];E'' "
             "[Pa]\n1;2;3\n2;1e999;3\n3;2.5;3\n",
-            "line 2: the storage modulus is not > 0 and finite": "f [Hz],J' [1/MPa],J'' "
-            "[1/MPa]\n1,0,0\n2,1,1\n",
-            "line 3: the frequency is not > 0 and finite": [
-                "log f [Hz],E' [Pa],E'' [Pa]\n2,1,1\n400,1,1\n",
-                "f [Hz],E' [Pa],E'' [Pa]\n1,1,1\n1e308,1e308,1e308\n",
-            ],
-            "line 3: the loss modulus is not > 0 and finite": "f [Hz],E' [Pa],E'' "
-            "[Pa]\n1,1,1\n2,1,-1\n",
-            "line 3: the phase angle is not below 90 degrees": "f [Hz],E' [Pa],delta "
-            "[deg]\n1,1,1\n2,1,90\n",
-            "line 3: the temperature is not finite and above -273.15 °C": "f [Hz],E' [Pa],E'' "
-            "[Pa],T [°C]\n1,1,1,20\n2,1,1,-300\n",
+            "line 3: the frequency is not > 0 and finite": "log f [Hz],E' [Pa],E'' [Pa]\n2,1,1\n"
+            "400,1,1\n",
             "unit 'Hz and rad/s' is not a unit of frequency | unit 'MPa and kPa' is not a unit "
             "of storage": "f [Hz],E' [MPa],E'' [MPa]\nrad/s,kPa,kPa\n1,1,1\n2,1,1\n",
-            "'word' is not a number": "omega [rad/s];E' [Pa];E'' "
-            "[Pa]\n1;word;3\n2;2,5;3\n3;2.5;3\n",
-            'line 2: "E\' [Pa]" and "E\' [Pa]" contradict each other: rename or remove one in '
-            "the file": "omega [rad/s], E' [Pa], E'' [Pa], E' [Pa]\n1,2,3,4\n2,3,4,5\n",
         },
         vr.FileError,
     ),
     *each(
         of_materials,
         {
-            "line 4: [material.prony] tau = 1e+300: must be in [1e-140, 1e+140]": "[material]\nE = "
-            "1e6\nnu = 0.5\nprony = { E = [1.0], tau = [1e300] }",
-            "line 6: [material] reference = -300.0: must be finite and > -273.15": RUBBER_FILE
-            + "reference = -300\ntemperature = 60\nwlf = { T0 = 20.0 }\n",
-            "file.toml | [material] is missing": "",
-            "file.toml | line 3 | 'mu' | did you mean 'nu'?": RUBBER_FILE.replace("nu =", "mu ="),
-            "file.toml | [material.prony] | 'tua' | did you mean 'tau'?": RUBBER_FILE.replace(
-                "tau", "tua"
-            ),
-            "file.toml | line 4: [material.prony] E = -6 | finite and >= 0": RUBBER_FILE.replace(
-                "6]", "-6]"
-            ),
-            "file.toml | tau = 0.0": RUBBER_FILE.replace("1e-4]", "0.0]"),
-            "file.toml: line 4: [material.prony] tau has shape (1,): must be one time for each "
-            "E, of shape (2,)": RUBBER_FILE.replace(", 1e-4]", "]"),
-            "file.toml | line 3 | nu = 0.6": RUBBER_FILE.replace("0.5", "0.6"),
-            "file.toml | line 5 | T_ref = -0.3": RUBBER_FILE.replace("0.3", "-0.3"),
             "file.toml | line 2 | E = inf | finite for "
             "a viscoelastic material": RUBBER_FILE.replace("2.3e5", "inf"),
             "file.toml | prony and creep": RUBBER_FILE + "creep = { J = [0.5], T = [1.0] }",
-            "file.toml | without T_ref": RUBBER_FILE + "T_epsilon = 1.0\nT_sigma = 1.0",
             "file.toml: line 1: [material] T_epsilon and T_sigma (s) must be given together, "
             "and without T_ref": "[material]\nE = 1\nnu = 0.5\nT_epsilon = 1.0",
             "file.toml: line 6: [material] temperature = 30: "
@@ -121,58 +87,17 @@ REFUSED = [
             "file.toml | line 1: [material] needs nu": "\ufeff[material]\nE = 1.0",
             "line 2 | none.nc": '[material]\nfile = "none.nc"\n',
             "line 3 | E: must be left out beside file": '[material]\nfile = "none.nc"\nE = 1.0\n',
-            "is not TOML (Expected newline | 3,5 must have a decimal point": "[material]\nE = "
-            "3,5e6\nnu = 0.5\n",
-            "20,0 must have a decimal point": "[material]\nE = 3e6\nnu = 0.5\nwlf = { T0 = "
-            "20,0, C1 = 8.8, C2 = 101.0 }\n",
         },
         vr.FileError,
     ),
     *each(
         None,
         {
-            "given.nc | attribute load is missing: must be given, in N/m": lambda: vr.load_law(
-                netcdf(vr.tables.build(ROLLER, [0.1, 0.2], delta=[0.0, 0.1]), "load")
-            ),
-            "given.nc | load = -5.0: must be finite and > 0": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign_attrs(mu=0.2, load=-5.0))
-            ),
-            "given.nc | load = nan: must be finite and > 0": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign_attrs(mu=0.2, load=nan))
-            ),
-            "given.nc | mu = 0.0: must be finite and > 0": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign_attrs(mu=0.0))
-            ),
-            "given.nc | mu = inf: must be finite and > 0": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign_attrs(mu=inf))
-            ),
-            "given.nc | mu = -1.0: must be finite and > 0": lambda: vr.load_law(
-                netcdf(grid().assign_attrs(mu=-1.0)), alpha=1.5
-            ),
-            "given.nc | Q = | of type <U3 | must be real numbers": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign(Q=OTHER_GRID.Q.astype(str).assign_attrs(units="N/m")))
-            ),
-            "given.nc | Q = | of type complex128 | must be real numbers": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign(Q=OTHER_GRID.Q.astype(complex).assign_attrs(units="N/m")))
-            ),
             "given.nc | V = | shape (0,) | must be real numbers, at least one": lambda: vr.load_law(
                 netcdf(OTHER_GRID.isel(V=slice(0)))
             ),
-            "variable 'V' is in 'km/h': must be in '1'": lambda: vr.tables.interpolate(
-                grid().assign_coords(V=("V", 3.6 * grid().V.values, {"units": "km/h"})),
-                V=0.5,
-                delta=0.01,
-                alpha=1.5,
-            ),
             "variable 'Q' is in 'N': must be in '1'": lambda: vr.tables.save(
                 grid().assign(Q=grid().Q.assign_attrs(units="N")), "x.nc"
-            ),
-            "given.nc | variable 'V' is in 'm s-1' | a grid in "
-            "SI units has the attribute load": lambda: vr.tables.load(
-                netcdf(vr.tables.build(ROLLER, [0.1, 0.2], delta=[0.0, 0.1]), "load")
-            ),
-            "variable 'V' has the dimensions (): must be ('V',)": lambda: vr.tables.interpolate(
-                grid().isel(V=0), "Q", V=0.1, delta=0.01, alpha=1.5
             ),
             "variable 'delta' has the dimensions (): must be ('delta',)": lambda: vr.tables.export(
                 grid().isel(delta=0), "x.csv"
@@ -191,9 +116,6 @@ REFUSED = [
                 lambda: vr.tables.export(grid(), None),
                 lambda: vr.Material.from_netcdf(None),
             ],
-            "given.nc: is the law of every alpha": lambda: vr.tables.export(
-                vr.tables.load(netcdf(vr.tables.law(alpha=(1.0, 2.0)))), "e2.h"
-            ),
             "given.nc: lacks a part of the result that its axes announce": [
                 lambda: _figure_of_netcdf(netcdf(xr.Dataset({"V": ("motion", [1.0, 2.0])}))),
                 lambda: _figure_of_netcdf(netcdf(xr.Dataset({"V": ("input", [1.0, 2.0])}))),
@@ -206,34 +128,12 @@ REFUSED = [
                 file("omega [rad/s], E' [Pa], E'' [Pa], E' [Pa]\n1,2,3,4\n2,3,4,5\n"),
                 columns={"storage": "E' [Pa]"},
             ),
-            "dma.txt | no row of numbers": [
-                lambda: vr.read_dma(file("", "dma.txt")),
-                lambda: vr.read_dma(file("f, E_stor, E_loss\n", "dma.txt")),
-            ],
+            "dma.txt | no row of numbers": lambda: vr.read_dma(file("", "dma.txt")),
             "dma.txt | 2 columns": lambda: vr.read_dma(file("1 2\n3 4\n", "dma.txt")),
             "dma.txt | line 2 has 2 columns": lambda: vr.read_dma(file("1 2 3\n4 5\n", "dma.txt")),
-            "dma.txt: line 2, column 'column 0': 'nan' is a "
-            "missing value: remove its row": lambda: vr.read_dma(
-                file("1 2 3\nnan 5 6\n", "dma.txt")
-            ),
-            "dma.txt | has 4 columns, and no headings for angular frequency and storage and "
-            "loss; they are called 'column 0'": lambda: vr.read_dma(file("1 2 3 4\n", "dma.txt")),
-            "dma.txt | 'E_stor (psy)': unit 'psy'": lambda: vr.read_dma(
-                file("f (Hz), E_stor (psy), E_loss (psy)\n1,2,3\n", "dma.txt")
-            ),
-            "dma.txt | is not a unit of": [
-                lambda: vr.read_dma(file("f, E_stor, E_loss\nHz, m, m\n1,2,3\n", "dma.txt")),
-                lambda: vr.read_dma(file("f, E_stor, E_loss\nMPa, Pa, Pa\n1,2,3\n", "dma.txt")),
-            ],
-            "interpolate: needs a dataset, not 'grid.nc': read a file by vr.tables.load": lambda: (
-                vr.tables.interpolate("grid.nc", "Q", V=0.5, delta=0.01)
-            ),
             "interpolate: needs a dataset, not None": lambda: vr.tables.interpolate(None, V=1.0),
             "interpolate: is a law, not a grid: load it by vr.load_law, and evaluate it by "
             "vr.contact": lambda: vr.tables.interpolate(vr.tables.law(11.0), V=1.0),
-            "given.nc: is a law, not a grid": lambda: vr.tables.interpolate(
-                vr.tables.load(netcdf(law_file())), V=1.0
-            ),
             "is the law of every alpha": lambda: vr.tables.export(
                 vr.tables.law(alpha=(1, 2)), "law.h"
             ),
@@ -248,19 +148,11 @@ REFUSED = [
                     "= 10.0\n[run]\nn = 2\nt = [1.0]"
                 )
             ),
-            'line 2: [start] omega0 is missing: must be a number, or "rolling" for V0/R': lambda: (
-                read_run(
-                    file('preset = "paper-section-5"\n[start]\nV0 = 1.0\n[run]\nn = 2\nt = [1e-3]')
-                )
-            ),
             "line 2: [start] V0 is missing: must be a number": lambda: read_run(
                 file('preset = "paper-section-5"\n[start]\nomega0 = 1.0\n[run]\nn = 2\nt = [1e-3]')
             ),
             "given.nc | law schema 2, but viscoroll": lambda: vr.load_law(
                 netcdf(law_file().assign_attrs(law_schema=2))
-            ),
-            "given.nc | its numbers are not those of its sha256_of_numbers": lambda: vr.load_law(
-                netcdf(law_file().assign(press=2.0 * law_file().press))
             ),
             "given.nc | its numbers are not those": lambda: vr.load_law(
                 netcdf(law_file().assign_attrs(sha256_of_numbers="0" * 64))
@@ -273,52 +165,25 @@ REFUSED = [
                 lambda: vr.load_law(netcdf(law_file(), without="material")),
             ],
             "variable 'beta' is missing": lambda: vr.tables.save(grid().drop_vars("beta"), "x.nc"),
-            "given.nc | variable 'beta' is missing": lambda: vr.tables.load(
-                netcdf(grid().drop_vars("beta"))
-            ),
             "finite": lambda: vr.tables.save(grid().assign(Q=grid().Q * nan), "x.nc"),
-            "given.nc | finite": lambda: vr.tables.load(netcdf(grid().assign(Q=grid().Q * nan))),
             "has the table schema 2.0, but viscoroll": lambda: vr.tables.save(
                 grid().assign_attrs(schema_version="2.0"), "x.nc"
             ),
-            "given.nc | has the table schema 2.0, but viscoroll": lambda: vr.tables.load(
-                netcdf(grid().assign_attrs(schema_version="2.0"))
+            "is not a table of viscoroll": lambda: vr.tables.save(
+                grid().assign_attrs(viscoroll_table="other"), "x.nc"
             ),
-            "is not a table of viscoroll": [
-                lambda: vr.tables.save(grid().assign_attrs(viscoroll_table="other"), "x.nc"),
-                lambda: vr.tables.load(netcdf(grid().assign_attrs(viscoroll_table=[1, 2]))),
-            ],
             "is not a law file of viscoroll": lambda: vr.load_law(
                 netcdf(vr.tables.law(PAPER.alpha).assign_attrs(viscoroll_table=[1, 2]))
             ),
-            "given.nc | is not a table of viscoroll": lambda: vr.tables.load(
-                netcdf(grid().assign_attrs(viscoroll_table="other"))
-            ),
-            "has the dimensions": lambda: vr.tables.save(
-                grid().transpose("alpha", "V", "delta"), "x.nc"
-            ),
-            "given.nc | has the dimensions": lambda: vr.tables.load(
-                netcdf(grid().transpose("alpha", "V", "delta"))
-            ),
             "must increase": lambda: vr.tables.save(grid().isel(V=slice(None, None, -1)), "x.nc"),
-            "given.nc | must increase": lambda: vr.tables.load(
-                netcdf(grid().isel(V=slice(None, None, -1)))
-            ),
             "given.nc: is not a grid of a law: variable 'M' "
             "is missing: must be given over V": lambda: vr.load_law(
                 netcdf(OTHER_GRID.drop_vars("M"))
             ),
             "given.nc: is not a grid of a law: attribute R "
             "is missing: must be given, in m": lambda: vr.load_law(netcdf(OTHER_GRID, without="R")),
-            "given.nc | R = -1 | > 0": lambda: vr.load_law(netcdf(OTHER_GRID.assign_attrs(R=-1.0))),
             "given.nc | unit of Q = N m2 | N/m": lambda: vr.load_law(
                 netcdf(OTHER_GRID.assign(Q=OTHER_GRID.Q.assign_attrs(units="N m2")))
-            ),
-            "given.nc | unit of Q = 1 | N/m": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign(Q=OTHER_GRID.Q.assign_attrs(units="1")))
-            ),
-            "given.nc | unit of Q = missing": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign(Q=(("V", "delta"), np.ones((3, 3)))))
             ),
             "given.nc: is not a grid of a law: M = nan at V[1]: must be finite": lambda: (
                 vr.load_law(netcdf(OTHER_GRID.assign(M=OTHER_GRID.M.copy(data=[1.0, nan, 1.0]))))
@@ -337,25 +202,13 @@ REFUSED = [
                 file("t,V\n0,1\n", "coast.csv"),
                 read_materials(file('[material]\nfile = "coast.csv"\n')),
             ],
-            "is not a grid of a law": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign_attrs(mu=[0.1, 0.2]))
-            ),
             "coordinate 'alpha' must be > 0 and increase strictly": lambda: vr.load_law(
                 netcdf(OTHER_GRID.expand_dims(alpha=[3.0, 2.0])), alpha=2.5
             ),
             "is damaged": lambda: vr.load_law(
                 netcdf(vr.tables.law(PAPER.alpha).assign(lam=("row", ["a", "b"])))
             ),
-            "given.nc: is not a grid of a law: V must increase strictly": lambda: vr.load_law(
-                netcdf(OTHER_GRID.isel(V=slice(None, None, -1)))
-            ),
-            "given.nc | V = 0 | > 0": lambda: vr.load_law(
-                netcdf(OTHER_GRID.assign_coords(V=OTHER_GRID.V.copy(data=[0.0, 1.0, 2.0])))
-            ),
             "not a material file": [
-                lambda: vr.Material.from_netcdf(
-                    netcdf(material_as_dataset(SOFT).assign(E=-material_as_dataset(SOFT).E))
-                ),
                 lambda: vr.Material.from_netcdf(netcdf(material_as_dataset(SOFT).drop_vars("tau"))),
                 lambda: vr.Material.from_netcdf(
                     netcdf(material_as_dataset(SOFT).assign_attrs(given="both", schema="other"))
@@ -384,14 +237,7 @@ REFUSED = [
             "V is in m/s and km/h: must be in a unit of the dimension of m s-1": lambda: data(
                 "V [m/s],M [N]\nkm/h,N\n1,2\n2,3\n"
             ),
-            "None: is not a path: must be a text without null characters, or a Path": lambda: (
-                vr.read_dma(None)
-            ),
-            "'a\\x00b': is not a path": [
-                lambda: vr.read_dma("a\x00b"),
-                lambda: SOFT.to_netcdf("a\x00b"),
-            ],
-            "none.csv | cannot be read": lambda: vr.read_dma("none.csv"),
+            "'a\\x00b': is not a path": lambda: SOFT.to_netcdf("a\x00b"),
             "3: is not a path": [
                 lambda: vr.load_law(3),
                 lambda: PAPER.contact(V=[1.0, 2.0], delta=0.0).plot(3),
@@ -400,13 +246,7 @@ REFUSED = [
             "none.nc: cannot be read (No such file or "
             "directory): it must be a law or grid": lambda: vr.load_law("none.nc"),
             "b'x.nc': is not a path": lambda: vr.tables.load(b"x.nc"),
-            "names no format": lambda: ROLLER.material.plot("a.xyz"),
-            "cannot be read": [
-                lambda: read_roller("missing.toml"),
-                lambda: read_roller("."),
-                lambda: read_law_source("missing.toml"),
-                lambda: read_law_source("."),
-            ],
+            "cannot be read": lambda: read_roller("missing.toml"),
             "suffix '.xyz'": lambda: SOFT.plot("picture.xyz"),
             "nowhere/picture.png | cannot be written": lambda: SOFT.plot("nowhere/picture.png"),
         },
@@ -415,39 +255,11 @@ REFUSED = [
     *each(
         measured,
         {
-            "drum.csv: has no column 'F', but speed [m/s], moment [N m/m]": (
-                "sigma",
-                'units = { F = "N/m" }\nsigma',
-            ),
             "line 2: prior = 3: must be a section [prior]": ("[cylinder]", "prior = 3\n[cylinder]"),
-            "data = {'kind': 'resistance' | must be a section [[data]]": ("[[data]]", "[data]"),
             "is not a path: must be a text without null characters": ('"drum.csv"', '"a\\u0000"'),
-            "data.toml: line 20: [data] kind = 'drum': must be one of resistance, traction, "
-            "coastdown": (
-                '"resistance"',
-                '"drum"',
-            ),
-            "line 20: [data] kind = 'coast-down': must be one of resistance, traction, "
-            "coastdown; did you mean 'coastdown'?": (
-                '"resistance"',
-                '"coast-down"',
-            ),
             "line 19: [data] needs kind: must be one of resistance, traction, coastdown": (
                 'kind = "resistance"',
                 "",
-            ),
-            "line 20: [data] kind = ['resistance']: must be one of resistance, traction, "
-            "coastdown": (
-                '"resistance"',
-                '["resistance"]',
-            ),
-            "line 26: [data 2] kind = 'drum'": (
-                "0.01\ntemperature = 20.0",
-                '0.01\n\n[[data]]\nkind = "drum"',
-            ),
-            "line 29: [data 2] unknown key 'column'": (
-                "0.01\ntemperature = 20.0",
-                '0.01\n\n[[data]]\nkind = "coastdown"\nfile = "a.csv"\nsigma = 1\ncolumn = 2',
             ),
         },
         vr.FileError,
@@ -462,53 +274,16 @@ REFUSED = [
             "T_epsilon, T_sigma are both given": CYLINDER_FILE + RUBBER_FILE,
             "file.toml | [cylinder] | give material=, or all "
             "of E, nu, T_epsilon and T_sigma": ROLLER_FILE,
-            "file.toml | [material] nu = 0.6": ROLLER_FILE + RUBBER_FILE.replace("0.5", "0.6"),
             "file.toml | base = rigid": ROLLER_FILE + "[material]\nE = inf\nnu = 0.5",
             "file.toml: line 5: [material] needs a section [cylinder]": SCENE_FILE + RUBBER_FILE,
-            "file.toml | alpha and prony are both given": SCENE_FILE
-            + "prony = { E = [1.0], tau = [1.0] }",
-            "file.toml | [scene.prony] E = -1.0": SCENE_FILE.replace(
-                "alpha = 11", "prony = { E = [-1.0], tau = [1.0] }"
-            ),
-            "file.toml | [scene] | 'alhpa' | did you mean 'alpha'?": SCENE_FILE.replace(
-                "alpha", "alhpa"
-            ),
-            "file.toml | 'scnee' | preset, scene, "
-            "cylinder | did you mean 'scene'?": SCENE_FILE.replace("[scene]", "[scnee]"),
-            "file.toml | [cylinder] | 'Tsigma' | did you mean 'T_sigma'?": CYLINDER_FILE
-            + "Tsigma = 1",
-            "file.toml | [cylinder] | 'zzz' | must be one of R, m, E": CYLINDER_FILE + "zzz = 1",
             "file.toml | [scene] needs mu": SCENE_FILE.replace("mu = 0.2", ""),
-            "file.toml | [cylinder] needs R": CYLINDER_FILE.replace("R = 0.1", ""),
-            "file.toml | line 2: [cylinder] R = '0.1 m': "
-            "must be a number without a unit": CYLINDER_FILE.replace("0.1", '"0.1 m"'),
-            "file.toml | line 2: [scene] alpha = True: must be a number": SCENE_FILE.replace(
-                "11", "true"
-            ),
-            "file.toml | line 2: [scene] alpha = [1.0, 2.0]: must be a number": SCENE_FILE.replace(
-                "11", "[1.0, 2.0]"
-            ),
-            "file.toml: line 2: [scene] alpha = nan: must be in [1, 1e+12]": SCENE_FILE.replace(
-                "11", "nan"
-            ),
-            "file.toml: line 2: [scene] alpha = 0.5: must be in [1, 1e+12]": SCENE_FILE.replace(
-                "11", "0.5"
-            ),
-            "file.toml | alpha": SCENE_FILE.replace("11", "1" + "0" * 400),
-            "file.toml: line 6: [cylinder] nu = 0.7: must be in (-1, 0.5]": CYLINDER_FILE.replace(
-                "0.49", "0.7"
-            ),
             "file.toml | [cylinder] | 'sideways' | plane": CYLINDER_FILE + 'plane = "sideways"',
             "file.toml | preset: 'paper' is not | paper-section-5": 'preset = "paper"',
-            "file.toml | preset: [1] is not | paper-section-5": "preset = [1]",
             "file.toml | scene = 3 | section [scene]": "scene = 3",
             "file.toml | one of preset, [scene] and [cylinder] is needed": "",
             "file.toml: line 5: [cylinder] and scene are both given: give one of them": SCENE_FILE
             + CYLINDER_FILE,
             "file.toml | not TOML | line 1": "[scene\nalpha = 1",
-            "file.toml | not TOML | overwrite": SCENE_FILE + "alpha = 12",
-            "file.toml | not TOML | digits": SCENE_FILE.replace("11", "1" * 5000),
-            "file.toml | not TOML | recursion": "a = " + "[" * 100000,
             "file.toml | not TOML | byte 0": b"\xff\xfe",
         },
         vr.FileError,
@@ -516,19 +291,6 @@ REFUSED = [
     *each(
         run,
         {
-            "line 4: [scene] mu: support [1e+308, 1e+308]: must have low < high and a "
-            "probability above 0": (
-                "a preset",
-                '"lognorm", s = 0.3, scale = 0.2, truncate = [0.05, 0.6]',
-                '"uniform", loc = 1e308, scale = 0.5',
-            ),
-            "line 7: [start] | unknown key 'Vo' | did you mean 'V0'?": (
-                "a preset",
-                "V0 = {",
-                "Vo = {",
-            ),
-            "line 13: [run] | did you mean 'seed'?": ("a preset", "seed = 5", "sead = 5"),
-            "line 6 | did you mean 'start'?": ("a preset", "[start]", "[strat]"),
             "line 4: [scene] mu: unknown key 'distribtion'; did you mean 'distribution'?": (
                 "a preset",
                 'distribution = "lognorm"',
@@ -538,11 +300,6 @@ REFUSED = [
                 "a preset",
                 '"lognorm"',
                 '"lognrom"',
-            ),
-            "line 4 | is not a continuous distribution of scipy.stats": (
-                "a preset",
-                '"lognorm"',
-                '"poisson"',
             ),
             "line 4 | unknown key 'sigma'": ("a preset", "s = 0.3", "sigma = 0.3"),
             "line 4 | lognorm also needs s": ("a preset", "s = 0.3, ", ""),
@@ -558,97 +315,34 @@ REFUSED = [
                 "[0.05, 0.6]",
                 "[0.05, nan]",
             ),
-            "line 4 | truncate = [False, True] | must be [low, high]": (
-                "a preset",
-                "[0.05, 0.6]",
-                "[false, true]",
-            ),
-            "line 4: [scene] mu = 0.0: must be finite and > 0": (
-                "a preset",
-                '"lognorm", s = 0.3, scale = 0.2, truncate = [0.05, 0.6]',
-                '"norm", scale = 0.2',
-            ),
-            "file.toml: line 4: [scene] mu: draws extend from -1.45847 to 1.84191: mu = "
-            "-1.4584722151627194 at | add truncate = [low, high]": (
-                "a preset",
-                '"lognorm", s = 0.3, scale = 0.2, truncate = [0.05, 0.6]',
-                '"norm", loc = 0.2, scale = 0.2',
-            ),
             "line 5 | j = -0.4 | > 0": ("a preset", "j = 0.4", "j = -0.4"),
-            "line 5 | j = '3 mm': must be a number without a unit": (
-                "a preset",
-                "j = 0.4",
-                'j = "3 mm"',
-            ),
-            "line 5 | number": ("a preset", "j = 0.4", "j = true"),
             "line 5 | no.csv": ("a preset", "j = 0.4", "j = { file = 'no.csv', column = 'j' }"),
             "line 10 | did you mean 'omega0'?": ("a preset", "V0.mu = 0.7", "V0.omega = 0.7"),
-            "line 10 | (-1, 1)": ("a preset", "V0.mu = 0.7", "V0.mu = 1.7"),
             "line 9 | these correlations contradict each other: their matrix must be positive "
             "definite": (
                 "a preset",
                 "V0.mu = 0.7",
                 "V0.mu = 0.9\nmu.omega0 = 0.9\nV0.omega0 = -0.9",
             ),
-            "file.toml: line 10: [correlation] V0.mu = 0.0: must be equal to mu.V0 = 0.9": (
-                "a preset",
-                "V0.mu = 0.7",
-                "V0.mu = 0.0\nmu.V0 = 0.9",
-            ),
-            "line 12 | >= 1": ("a preset", "n = 30", "n = 0"),
-            "line 12 | n = '3000': must be a whole number": ("a preset", "n = 30", 'n = "3000"'),
-            "line 13 | design = 'grid': must be one of 'random', 'latin', 'sobol'": (
-                "a preset",
-                "seed = 5",
-                'design = "grid"',
-            ),
-            "line 14 | unknown key 'step'": ("a preset", "count = 3 }", "count = 3, step = 1 }"),
             "line 14 | ascending": ("a preset", "t = {", "t = [2.0, 1.0] # {"),
             "line 14 | high = 1e+308: must be less than": (
                 "a preset",
                 "low = 0.0, high = 3e-3",
                 "low = -1e308, high = 1e308",
             ),
-            "line 15 | rtol": ("a preset", "rtol = 1e-6", "rtol = 1.0"),
             "line 16 | scenes differ": ("a preset", "block = 12", 'method = "flow"'),
-            "line 18 | onset": ("a preset", '["V", "x"]', '["onset"]'),
             "line 18: [run] summaries = []: must name at least one quantity": (
                 "a preset",
                 '["V", "x"]',
                 "[]",
             ),
             "line 1 | choose from paper-section-5": ("a preset", '"paper-section-5"', '"paper"'),
-            "file.toml: line 8: [start] omega0: draws extend from -inf to inf: omega0 = -inf "
-            "at row 0, and 1 | add truncate = [low, high]": (
-                "a preset",
-                '"norm", scale = 0.5',
-                '"dweibull", c = 1e-3',
-            ),
-            "file.toml: line 5: [scene] j: draws extend from 1e+308 to inf: j = inf at row 1: "
-            "must be finite and | add truncate = [low, high]": (
-                "a preset",
-                "j = 0.4",
-                'j = { distribution = "uniform", loc = 1e308, scale = 1e308 }',
-            ),
-            "line 8 | does not allow these parameters": (
-                "a preset",
-                '"norm", scale = 0.5',
-                '"norm", scale = 0.0',
-            ),
             "line 8 | at most 1e+100": (
                 "a preset",
                 '"norm", scale = 0.5',
                 '"uniform", loc = 1e308, scale = 1e308',
             ),
             "alpha and prony are both given": ("strengths", "mu =", "alpha = 3.0\nmu ="),
-            "line 3 | did you mean 'prony'?": ("strengths", "prony", "pony"),
-            "'E_2' has none: must be one of the inputs with a distribution": (
-                "strengths",
-                "prony =",
-                "# prony =",
-            ),
-            "'E_1' has none": ("strengths", "E_2.omega0", "E_1.omega0"),
-            "method = 'flow'": ("strengths", "[run]", '[run]\nmethod = "flow"'),
             "file.toml: line 3: [scene.creep] J_2: draws extend from 0.3 to 0.9: sum of J = "
             "1.0999999999999999 | add truncate = [low, high]": (
                 "compliances",
@@ -663,22 +357,11 @@ REFUSED = [
                 "E = {",
                 "thickness = 0.1\nE = {",
             ),
-            "line 11 | V0 = '3 m/s': must be a number without a unit": (
-                "numbers",
-                "V0 = {",
-                "V0 = '3 m/s' # {",
-            ),
-            "line 12 | omega0 = '3 rpm': must be a number without a unit": (
-                "numbers",
-                "omega0 = {",
-                "omega0 = '3 rpm' # {",
-            ),
             "line 14: [run] rest needs the same R and T_ref (or T_epsilon)": (
                 "numbers",
                 "n = 20",
                 "rest = 0.01\nn = 20",
             ),
-            "line 15 | t = '3 s': must be a number": ("numbers", "t = [", "t = '3 s' # ["),
             "file.toml: line 7: [cylinder] T_epsilon: draws extend from 0.5 to 3.5: T_epsilon "
             "= | add truncate = [low, high]": (
                 "numbers",
@@ -697,58 +380,8 @@ REFUSED = [
                 "\n[base]\nE = 2.3e5\nnu = 0.49\nprony = { E = [2.0, 6.0], tau = [1.0, 1e-3] "
                 "}\nT_ref = 3.0\n[cylinder]",
             ),
-            "line 12 | E = -0.3 at row 0 | >= 0": (
-                "rubber",
-                '{ distribution = "lognorm", s = 0.2, scale = 0.3 }',
-                "-0.3",
-            ),
-            "line 12 | E = -0.7 at row 0": (
-                "rubber",
-                '{ distribution = "lognorm", s = 0.2, scale = 0.3 }',
-                '{ distribution = "lognorm", s = 0.2, scale = 0.3 , loc = -1.0 }',
-            ),
-            "line 12 | prony.E = '0.3 GPa': must be a number": (
-                "rubber",
-                '{ distribution = "lognorm", s = 0.2, scale = 0.3 }',
-                "'0.3 GPa'",
-            ),
             "tau | one time for each E": ("rubber", "1e-3, 1e-5]", "1e-3]"),
-            "tau = 0.0 at row 2 | > 0": ("rubber", "1e-3, 1e-5]", "1e-3, 0.0]"),
-            "line 9 | nu = 0.6": ("rubber", "nu = 0.5", "nu = 0.6"),
-            "line 10 | unknown key 'EE'": ("rubber", "nu = 0.5", "nu = 0.5\nEE = 2"),
-            "T_epsilon and T_sigma": ("rubber", "nu = 0.5", "nu = 0.5\nT_sigma = 0.1"),
-            "file.toml: line 7: [material] needs a section [cylinder]": (
-                "rubber",
-                "[cylinder]",
-                "[scene]",
-            ),
-            "line 37: [base.prony] tau = -0.5": ("rubber on rubber", "loc = 1.0", "loc = -1.0"),
-            "file.toml: line 37: [base.prony] base_tau_1: draws extend from -0.1 to 0.9: tau = "
-            "| add truncate = [low, high]": (
-                "rubber on rubber",
-                "loc = 1.0",
-                "loc = -0.1",
-            ),
-            "[base] | unknown key 'mu'": ("rubber on rubber", "nu = 0.5\nT_ref", "mu = 0.5\nT_ref"),
-            "base_E | scale": ("rubber on rubber", "scale = 3e6", "scale = '3 MPa'"),
-            "line 10: [drive] brake = -0.01: must be finite and >= 0": (
-                "driven",
-                "brake = 0.01",
-                "brake = -0.01",
-            ),
-            "brake = '1 N': must be a number without a unit": (
-                "driven",
-                "brake = 0.01",
-                'brake = "1 N"',
-            ),
-            "did you mean 'brake'?": ("driven", "brake = 0.01", "brkae = 0.01"),
             "add truncate": ("driven", "brake = 0.01", 'brake = { distribution = "norm" }'),
-            "brake = nan": ("driven", "brake = 0.01", "brake = nan"),
-            "did you mean 'values'?": (
-                "driven",
-                "brake = 0.01",
-                "brake = { times = [0.0], valeus = [1.0] }",
-            ),
             "times (2,), values (1,)": (
                 "driven",
                 "brake = 0.01",
@@ -759,32 +392,11 @@ REFUSED = [
                 "brake = 0.01",
                 "brake = { times = [1.0, 0.0], values = [1.0, 2.0] }",
             ),
-            "times = []: must be of length >= 1": (
-                "driven",
-                "brake = 0.01",
-                "brake = { times = [], values = [] }",
-            ),
-            "brake: times fall after 2: must be in asc": (
-                "driven",
-                "brake = 0.01",
-                'brake = { times = [2.0, { distribution = "uniform" }], values = [1.0, 2.0] }',
-            ),
             "file.toml: line 10: [drive.brake] drive_brake_time_1: draws extend from "
             "5.55112e-17 to 1: brake | add truncate = [low, high]": (
                 "driven",
                 "brake = 0.01",
                 'brake = { times = [{ distribution = "uniform" }, 0.5], values = [1.0, 2.0] }',
-            ),
-            "brake.times = 'same': must be a number": (
-                "driven",
-                "brake = 0.01",
-                'brake = { times = ["same"], values = [1.0] }',
-            ),
-            "or twice for a jump": (
-                "driven",
-                "brake = 0.01",
-                "brake = { times = [{ distribution = \"uniform\" }, 'same', 'same'], values = "
-                "[1.0, 2.0, 3.0] }",
             ),
             "file.toml: line 4: [start] V0 = 0.0: must be None, or 0.01, the prescribed speed "
             "at t = 0": (
@@ -792,64 +404,17 @@ REFUSED = [
                 "brake = 0.01",
                 "V = 0.01",
             ),
-            "file.toml: line 8: [drive] drive_slope: draws extend from -4.14618 to 4.10477: "
-            "slope = -4.14618 | add truncate = [low, high]": (
-                "driven",
-                "scale = 0.01, truncate = [-0.1, 0.1]",
-                "scale = 0.5",
-            ),
-            "'drive_force' has none": ("driven", "force = {", "force = inf\n#"),
             "file.toml: line 15: [run] rest = 0.001 is given, but a load or a prescribed speed "
             "acts at the end": (
                 "driven",
                 "n = 12",
                 "n = 12\nrest = 1e-3",
             ),
-            "method = 'flow': must be 'auto' or 'integrate'": (
-                "driven",
-                "n = 12",
-                'n = 12\nmethod = "flow"',
-            ),
-            "'torque' has none": ("driven", "drive_torque_2.drive_force", "torque.drive_force"),
-            "is not TOML": ("driven", "[correlation]", "[correlation]\ndrive = 1\n[[drive]]\n#"),
-            "file.toml: line 4: [start] V0 = 1.0: must be None, or 0, the prescribed speed at "
-            "t = 0": (
-                "given V",
-                "omega0 = 0.0",
-                "V0 = 1.0\nomega0 = 0.0",
-            ),
             "V and omega are both given": ("given V", "[run]", "omega = 1.0\n[run]"),
             "force is given together with V=: leave it out": (
                 "given V",
                 "[run]",
                 "force = 1.0\n[run]",
-            ),
-            "file.toml: line 10: [run] rest = 0.001 is given, but a load or a prescribed speed "
-            "acts at the end": (
-                "given V",
-                "n = 12",
-                "n = 12\nrest = 1e-3",
-            ),
-            "file.toml: line 5: [start] omega0 = 1.0: must be None, or 0, the prescribed speed "
-            "at t = 0": (
-                "given omega",
-                "V0 = 0.0",
-                "V0 = 0.0\nomega0 = 1.0",
-            ),
-            "brake is given together with omega=: leave it out": (
-                "given omega",
-                "[run]",
-                "brake = 1.0\n[run]",
-            ),
-            "rested = -1.0: must be finite and >= 0": (
-                "unsteady",
-                "rested = 60.0",
-                "rested = -1.0",
-            ),
-            "must be 'auto' or 'integrate'": (
-                "unsteady",
-                "unsteady = true",
-                'unsteady = true\nmethod = "flow"',
             ),
         },
         vr.FileError,
@@ -871,38 +436,18 @@ REFUSED = [
             "unknown key 'sigmma' | did you mean 'sigma' | line 23": ("sigma", "sigmma"),
             "V is in km | of the dimension of m s-1": ("speed [m/s]", "speed [km]"),
             "has no column 'moment' | force [N]": ("moment [N m/m]", "force [N]"),
-            "M is in N m | of the dimension of N m m-1, per metre of length of the cylinder": (
-                "moment [N m/m]",
-                "moment [N m]",
-            ),
             "drum.csv: has no column M or F, but 'moment [N m/m]': if one of them is M, name "
             "it in columns = { M = ... }; to plan a test": (
                 'columns = { V = "speed", M = "moment" }',
                 'columns = { V = "speed" }',
             ),
-            "has no column 'torque', but speed [m/s], moment [N m/m]: name one of these in "
-            "columns = { M = ... }": (
-                'M = "moment"',
-                'M = "torque"',
-            ),
             "[data.columns] unknown key 'Q' | V, M, F": (
                 'M = "moment"',
                 'M = "moment", Q = "moment"',
             ),
-            "line 2, column 'moment [N m/m]': 'much' is not a number": ("# a remark", "0.1,much"),
-            "drum.csv: line 2, column 'moment [N m/m]': 'nan' is a missing value: remove its row": (
-                "# a remark",
-                "0.1,nan",
-            ),
-            "unknown key 'V0' | line 24": ("sigma = 0.01", "sigma = 0.01\nV0 = 3.0"),
-            "columns | must be a text": ('M = "moment"', "M = 3"),
-            "[data] needs file": ('file = "drum.csv"', ""),
             "no.csv | cannot be read": ('"drum.csv"', '"no.csv"'),
             "unknown E = 3000000.0 | (low, high)": ("E = [3e5, 3e7]", "E = 3e6"),
-            "section [unknown] is missing": ("[unknown]\nE = [3e5, 3e7]\nT_ref = [1e-4, 1e-2]", ""),
-            "data.toml: line 7: [material] needs a section [cylinder]": ("[cylinder]", "[scene]"),
             "unknown key 'more'": ("[[data]]", "[more]\n[[data]]"),
-            "sigma of M = 0.0 | > 0": ("sigma = 0.01", "sigma = 0.0"),
         },
         vr.ViscorollError,
     ),

@@ -96,22 +96,6 @@ def test_axes_are_named_after_what_varies(results):
     assert table["V"].iloc[0] == 1.5
 
 
-def test_a_table_of_pandas_has_a_row_each(results):
-    """Of a driven motion too, whose drive has corners of its own."""
-    table = results["driven"].to_pandas()
-    assert np.array_equal(table["torque"], results["driven"].torque)
-
-
-def test_figures_bend_as_results_do():
-    """A motion to one time in few steps; terminal speeds of a gentle slope beside the unstable
-    ones.
-    """
-    m = ROLLER.roll(2.0, 0.0, 10.0)
-    t, x = m.plot().axes[2].lines[0].get_data()
-    assert close(np.interp(5.0, t, x), m.at([5.0]).x[0], tol.FIGURE)
-    assert ROLLER.steady(slope=np.radians([0.0, 0.1, 0.2])).plot().axes[0].get_yscale() == "symlog"
-
-
 def test_a_motion_tells_its_peak(results):
     """First, largest with its time, last: a roller that is spun up and rolls out was fastest
     between the two.

@@ -25,7 +25,7 @@ from calls import (
     pair,
 )
 from drives import ON_DMA as DMA_ROLLER
-from experiments import HUMP, ranges, resistance, roller, thrown
+from experiments import HUMP, ranges, roller, thrown
 
 import viscoroll as vr
 from viscoroll.contact_mechanics.free_rolling import FreeRolling
@@ -41,7 +41,6 @@ def here(tmp_path, monkeypatch):
 
 
 SAID = [
-    (lambda: vr.roll(PAPER, 1.0, 1.0, 1e-3, unsteady=np.False_, rested=np.False_).V.shape, "(1,)"),
     (
         lambda: (
             vr.Cylinder(R=xr.DataArray(10.0, attrs={"units": "cm"}), m=1.0, mu=0.3, material=SOFT).R
@@ -58,19 +57,6 @@ SAID = [
     ),
     (lambda: vr.WLF(T0=xr.DataArray(300.15, attrs={"units": "K"}), C2=50.0).T0, "27"),
     (lambda: str(vr.steady(ROLLER, V=xr.DataArray(0.5), torque=0.0)), "stable | 0.5 m s-1"),
-    (lambda: vr.contact(ROLLER, [[1.0, 2.0]], delta=0.0).plot(), "Figure"),
-    (
-        lambda: vr.contact(
-            ROLLER, pd.Series([1.0, 2.0, 3.0], index=pd.interval_range(0, 3)), delta=0.0
-        ).plot(),
-        "Figure",
-    ),
-    (
-        lambda: vr.contact(
-            ROLLER, pd.Series([1.0, 2.0, 3.0], index=[1, "a", "b"]), delta=0.0
-        ).plot(),
-        "Figure",
-    ),
     (
         lambda: vr.contact(
             ROLLER, pd.Series([1.0, 2.0, 3.0], index=pd.date_range("2026", periods=3)), delta=0.0
@@ -91,32 +77,12 @@ SAID = [
         ),
         "1.0",
     ),
-    (
-        lambda: (
-            vr.Resistance(
-                xr.DataArray(HUMP, dims="speed", attrs={"units": "m s^-1"}), sigma=0.1
-            ).V.shape
-        ),
-        "(40,)",
-    ),
     (lambda: vr.identify(roller(), ranges("E"), [vr.Resistance(HUMP, sigma=0.01)]), "planned"),
-    (
-        lambda: vr.identify(
-            roller().replace(base=vr.Material.rigid()),
-            ranges("E"),
-            [vr.Resistance(HUMP, sigma=0.01)],
-        ),
-        "planned",
-    ),
     (
         lambda: vr.identify(
             roller(), ranges("mu"), thrown(seed=1, t=np.linspace(0.0, 60.0, 200)), starts=1
         ),
         "throw has only 2 points in full slip, which determine mu",
-    ),
-    (
-        lambda: vr.identify(roller(), ranges("E", "E_1", "T_ref"), resistance(seed=3), starts=1),
-        "3 unknowns, 40 points; chi2  | E_1 and T_ref are correlated: -0.999",
     ),
     (
         lambda: vr.identify(
@@ -140,12 +106,6 @@ SAID = [
     ),
     (
         lambda: ROLLER.roll(
-            0.0, 0.0, [0.0, 1.0], torque=vr.Schedule([0.0, 0.5, 1.0], [0.0, 1.0, 0.0])
-        ),
-        "3 corners, 0 to 1 N m m-1",
-    ),
-    (
-        lambda: ROLLER.roll(
             0.0, 0.0, [0.0, 1.0], torque=vr.Feedback(0.5, omega=-0.1), force=lambda t: 0.1 * t
         ),
         "0.5 N m m-1 - 0.1 omega | a function of t",
@@ -154,7 +114,6 @@ SAID = [
         lambda: vr.steady(PAPER, force=0.05, torque=0.07).reason,
         "force + torque = 0.12 exceeds the largest rolling moment 0.0847415 (at V = 0.235061)",
     ),
-    (lambda: vr.steady(PAPER, slope=0.1).reason, "exceeds the largest rolling moment"),
     (
         lambda: vr.presets.PAPER_CYLINDER.steady(slope=0.1).reason,
         "force + torque/R =  | N/m exceeds  | over R  | N/m (at V = 0. | m/s)",
@@ -163,7 +122,6 @@ SAID = [
         lambda: vr.steady(PAPER, force=0.3, torque=-0.28).reason,
         "which exceeds the friction mu = 0.2",
     ),
-    (lambda: vr.steady(PAPER, force=0.3, torque=-0.3).reason, "which exceeds the friction mu ="),
     (
         lambda: vr.steady(PAPER, force=-0.3, torque=vr.Feedback(5.0, omega=1.0)).reason,
         "at no speed",
@@ -177,24 +135,12 @@ SAID = [
         "no isolated steady speed: elastic bodies roll without resistance, so every V is steady",
     ),
     (
-        lambda: vr.steady(PAPER.replace(alpha=1.0), force=-0.1, torque=0.1).reason,
-        "no isolated steady speed: elastic bodies roll without resistance, so every V is steady",
-    ),
-    (lambda: vr.steady(PAPER.replace(alpha=1.0), force=0.1).reason, "elastic"),
-    (lambda: vr.steady(PAPER.replace(alpha=1.0), force=-0.3, torque=0.3).reason, "friction"),
-    (
         lambda: pair(SOFT, None).validity(1.0).bodies,
         "yes | cylinder and half-space have the same material: Dundurs' constant is 0",
     ),
     (
         lambda: pair(SOFT, STEEL).validity(1.0).bodies,
         "yes | -0.02 for long times and -0.02 for the instant",
-    ),
-    (
-        lambda: (
-            pair(vr.Material.elastic(1e6, 0.5), vr.Material.elastic(3e7, 0.5)).validity(1.0).bodies
-        ),
-        "yes | Dundurs' constant is 0:",
     ),
     (
         lambda: pair(vr.Material.elastic(1e6, 0.3), STEEL, coupled=False).validity(1.0).bodies,
@@ -206,20 +152,8 @@ SAID = [
     ),
     (lambda: pair(SOFT, STEEL).validity(1.0).quasistatic, "the density of the base is not known"),
     (
-        lambda: pair(HEAVY, replace(SOFT, density=None)).validity(1.0).quasistatic,
-        "?: inertia | ; the density of the base is not known",
-    ),
-    (
         lambda: pair(replace(SOFT, density=None), HEAVY).validity(1e4).quasistatic,
         "no: | ; the density of the cylinder is not known",
-    ),
-    (
-        lambda: (
-            pair(vr.Material.rigid(density=7850.0), replace(SOFT, density=None))
-            .validity(1.0)
-            .quasistatic
-        ),
-        "?: inertia | ; the density of the base is not known",
     ),
     (
         lambda: (
@@ -230,33 +164,18 @@ SAID = [
         "yes: the speed is 11.9 % of",
     ),
     (
-        lambda: (
-            pair(vr.Material.rigid(density=7850.0), replace(SOFT, density=None))
-            .roll(1.0, 10.0, [0.0, 1.0])
-            .success
-        ),
-        "True",
-    ),
-    (
         lambda: pair(SOFT, SOFT).validity(1.0).thick,
         "?: no thickness is given: the law is that of a half-space",
-    ),
-    (
-        lambda: vr.presets.PAPER_CYLINDER.validity(0.99 * 1.6525, density=1130.0).quasistatic,
-        "the speed is",
     ),
     (lambda: vr.presets.PAPER_SECTION_5.validity([0.0, 1.5]).failed, "('steady',)"),
     (
         lambda: vr.presets.PAPER_SECTION_5.validity([0.0, 1.5]),
         "steady         no | small_contact  yes | plane          ?",
     ),
-    (lambda: vr.presets.RUBBER_CYLINDER.validity(2.0).failed, "()"),
     (lambda: ROLLER.roll(2.0, 20.0, np.linspace(0.0, 4.0, 5), brake=5.0), "held at t ="),
     (lambda: ROLLER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity().plane, "?:"),
     (lambda: ROLLER.roll(2.0, 0.0, np.linspace(0.0, 10.0, 201)).validity().creep, "no:"),
-    (lambda: vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]), "2 series of 2 modes"),
     (lambda: DMA_ROLLER.validity(1.3).steady, "would not leave its indentation"),
-    (lambda: DMA_ROLLER.validity(1.0).steady, "the error of V is below 10 % above 1.2"),
     (
         lambda: vr.Scene(1.0, 29.1, 0.2, 1e9).validity(0.1).steady,
         "0 | an elastic cylinder never stops",
@@ -281,15 +200,11 @@ WARNED = {
         lambda: vr.WLF(T0=20.0)(293.15),
         lambda: vr.fit_prony(*DMA, temperature=293.15),
     ],
-    "T0 is outside -150 to 200": [lambda: vr.Arrhenius(energy=8e4, T0=-153.15)],
     "too slow for the quasi-steady assumption: the error of V exceeds 10 % on more than a "
     "tenth of the distance": [
         lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0),
-        lambda: vr.roll(DMA_ROLLER, 0.0, 9.0, 1.0),
-        lambda: vr.ensemble(DMA_ROLLER, [30.0, 3.0], [30.0, 3.0], 1.0),
         lambda: vr.ensemble(UNSURE, 3.0, 3.0, 1.0),
         lambda: vr.ensemble(ONE.replace(alpha=[2.0, 11.0]), 1.0, 1.0, 1.0),
-        lambda: vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, 0.001),
     ],
     "kappa = R/l0 is below 1": [lambda: vr.roll(vr.Scene(11.0, 0.5, 0.2, 0.1), 9.0, 9.0, 0.001)],
     "it starts in full slip at a creep": [
@@ -298,8 +213,6 @@ WARNED = {
     "speeds exceed the shear wave speed": [
         lambda: ROLLER.roll(100.0, 1000.0, 0.01),
         lambda: ROLLER.steady(V=-99.0, torque=0.0),
-        lambda: ROLLER.law()(99.0, 999.0),
-        lambda: ROLLER.ensemble([1.0, 99.0], 10.0, 0.01),
     ],
     "the model does not hold for this contact: speeds exceed the shear wave speed": [
         lambda: ROLLER.contact([1.0, 99.0], delta=0.0)
@@ -307,21 +220,13 @@ WARNED = {
     "as measured | the contact needs the moduli from 0 to 1.9e+03 rad/s": [
         lambda: BELT.contact([0.0, 0.1, 2.895], delta=0.0)
     ],
-    "as measured | the contact needs the moduli from 6.4e+02 to 1.9e+03 rad/s": [
-        lambda: BELT.contact(-2.895, delta=0.0)
-    ],
-    "as measured | the contact needs the moduli from 0.00": [
-        lambda: BELT.contact(1e-05, delta=0.0)
-    ],
     "as measured | the base was measured from 0.06 to 1.88e+03 rad/s, misfit 1 % (dma.csv)": [
         lambda: BELT.stress(0.0, 10.0, delta=0.0)
     ],
     "as measured | the contact needs the moduli from": [
         lambda: BELT.roll(10.0, 100.0, 0.01),
         lambda: BELT.roll(0.0, 0.0, [0.1, 1.0], force=300.0, torque=300.0),
-        lambda: BELT.ensemble([1.0, 10.0], [10.0, 100.0], 0.01),
         lambda: BELT.steady(V=10.0, torque=0.0),
-        lambda: BELT.replace(R=[0.1, 0.01]).contact([0.1, 2.8], delta=0.0),
     ],
     "the fit of the base misses its data | 20 %": [
         lambda: BELT.replace(
@@ -338,29 +243,20 @@ SILENT = {
     "": [
         lambda: vr.Arrhenius(energy=8e4, T0=180.0)(-60.0),
         lambda: vr.roll(DMA_ROLLER, 30.0, 30.0, 1.0),
-        lambda: vr.roll(DMA_ROLLER, 9.0, 0.0, 1.0),
         lambda: vr.roll(DMA_ROLLER, 0.0, 0.0, 1.0),
         lambda: vr.roll(DMA_ROLLER, 3.0, 3.0, 1.0, force=0.1),
-        lambda: vr.ensemble(DMA_ROLLER, [30.0, 20.0], 30.0, 1.0),
-        lambda: vr.ensemble(UNSURE, 30.0, 30.0, 1.0),
-        lambda: ROLLER.roll(0.01, 0.1, 1.0),
         lambda: ROLLER.contact([1.0, 9.0], delta=0.0),
         lambda: ROLLER.replace(material=dataclasses.replace(ROLLER.material, density=None)).contact(
             99.0, delta=0.0
         ),
-        lambda: vr.Resistance(0.01, -0.01, sigma=0.01),
     ],
     "as measured": [
         lambda: BELT.contact([0.0, 0.1, 2.837], delta=0.0),
-        lambda: BELT.contact([], delta=0.0),
         lambda: BELT.roll(1.0, 10.0, [1.0, 4000.0]),
-        lambda: BELT.roll(1.0, 10.0, 10.0),
-        lambda: BELT.ensemble([1.0, 2.0], [10.0, 20.0], 0.01, fields=("x",)),
         lambda: BELT.steady(V=0.1, torque=0.0),
         lambda: BELT.replace(base=dataclasses.replace(BELT.base, measured=None)).contact(
             10.0, delta=0.0
         ),
-        lambda: BELT.replace(R=[0.1, 0.01]).contact([2.8, 0.1], delta=0.0),
     ],
 }
 

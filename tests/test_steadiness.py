@@ -2,7 +2,6 @@
 small, warnings.
 """
 
-import warnings
 from itertools import pairwise
 
 import numpy as np
@@ -176,20 +175,6 @@ def test_along_a_motion():
 
 
 # --- warnings of roll and ensemble ---
-
-
-def test_a_program_is_told_once_a_line():
-    """By Python's own registry, whatever the numbers."""
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("default")
-        for V in (3.0, 2.9, 2.8):
-            vr.roll(ROLLER, V, V, [0.01])
-    assert len(found) == 1
-
-
-def test_workers_are_quiet(monkeypatch):
-    monkeypatch.setattr(model_warnings, "is_worker", lambda: True)
-    vr.roll(ROLLER, 3.0, 3.0, 1.0)  # warnings are errors here
 
 
 @pytest.mark.filterwarnings(

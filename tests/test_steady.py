@@ -24,7 +24,6 @@ TWO = vr.Prony([2.0, 6.0], [1.0, 1e-2])
 #: a hump a mode, of ever smaller height
 TEN = vr.Prony(2.0 ** np.arange(10), 10.0 ** np.linspace(0.0, -18.0, 10))
 UNLIKE = vr.Bodies(TWO, vr.Prony([1.0, 3.0], [0.3, 3e-4]), 0.3)
-COVER = vr.Cover(TWO, nu=0.3, thickness=1.0, on="base")
 
 
 def series_scene(material, kappa=10.0, mu=0.2, j=0.5):

@@ -24,7 +24,6 @@ pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_waves():
     """A fifth of sqrt(G/density) in SI; the circumference counts."""
     wave = math.sqrt(2.3e5 / 2.98 / 1130.0)
-    extremes = ((3e208, 3e208), (1e300, 1e308), (0.0, 1e308), (1e-300, 5e-324))
     assert PAPER_CYLINDER.validity(
         np.array([0.99, 1.01, -1.01]) * WAVE_LIMIT * wave, density=1130.0
     ).quasistatic.holds.tolist() == [True, False, False]
@@ -35,23 +34,6 @@ def test_waves():
     )
     assert close((found.quasistatic.value, found.creep.value), (0.5, 4.0), tol.PAIR)
     assert not PAPER_CYLINDER.validity(0.1, omega=5.0, density=1130.0).creep.holds
-    # beyond all bounds no NaN: a ratio that no double can hold is infinite
-    assert [
-        PAPER_CYLINDER.validity(V, density=density).quasistatic.holds for V, density in extremes
-    ] == [False, False, True, True]
-    assert [
-        "nan" in str(PAPER_CYLINDER.validity(V, density=density)) for V, density in extremes
-    ] == [False] * 4
-    assert [
-        vr.Scene(11.0, kappa, 0.2 * kappa)
-        .validity([0.0, 1e-300, 1.0, 1e300])
-        .small_contact.holds.all()
-        for kappa in (1e-300, 1e300)
-    ] == [False, True]
-    assert [
-        "nan" in str(vr.Scene(11.0, kappa, 0.2 * kappa).validity([0.0, 1e-300, 1.0, 1e300]))
-        for kappa in (1e-300, 1e300)
-    ] == [False, False]
 
 
 def test_validity():
@@ -107,11 +89,6 @@ def test_validity():
         np.full(4, 1.0 / math.sqrt(SOFT.G / 1100.0)),
         tol.PAIR,
     )
-    assert [
-        "not known" in pair(*bodies).validity(1.0).quasistatic.sentence
-        for bodies in ((SOFT, None), (SOFT, HEAVY), (HEAVY, SOFT))
-    ] == [False] * 3
-    assert "not known" not in pair(SOFT, rigid).validity(1.0).quasistatic.sentence
     assert PAPER_CYLINDER.validity(1.0).quasistatic.holds is None
 
 
@@ -153,9 +130,6 @@ def test_labels_of_xarray_and_pandas():
         assert np.array_equal(of_labels.M.sel(run="b"), b.contact(0.2, delta=[0.0, 0.01]).M)
         assert of_frame.M["y"] == b.contact(0.2, delta=0.01).M
         assert of_frame.to_pandas().index.name == "roller"
-        assert b.contact(
-            LABELLED.rename(run="V").assign_coords(V=[0.1, 0.2]), delta=0.0
-        ).to_xarray()["M"].dims == ("V",)
         # equilibria
         assert steady.V.dims == ("run", "equilibrium")
         assert np.array_equal(steady.V.sel(run="b"), plain.V[1])
@@ -163,9 +137,6 @@ def test_labels_of_xarray_and_pandas():
         assert steady.loss.slip.dims == ("run", "equilibrium")
         assert b.steady(slope=3.5 * LABELLED).count.sel(run="b").item() == 0
         assert b.steady(slope=0.0001 * FRAME["V"]).V.loc["y", 0] == plain.V[1, 0]
-        assert b.steady(
-            force=xr.DataArray([0.001, 0.002], dims="force", coords={"force": [0.001, 0.002]})
-        ).to_xarray()["V"].dims == ("given_force", "equilibrium")
         # ensembles
         assert np.array_equal(many.V, b.ensemble([0.1, 0.2], [0.1, 0.2], [0.001, 0.002]).V)
         assert many.to_xarray().V.sel(motion="y", t=0.002).item() == many.V[1, 1]
@@ -179,15 +150,6 @@ def test_labels_of_xarray_and_pandas():
                 force=vr.Schedule([0.0, 1.0], [0.0, 0.0]),
             ).to_xarray()["motion"]
         ) == ["a", "b"]
-        assert list(
-            b.ensemble(
-                FRAME["V"].set_axis(
-                    pd.MultiIndex.from_tuples([("p", 1), ("q", 2)], names=["maker", "batch"])
-                ),
-                0.0,
-                0.001,
-            ).to_xarray()["maker"]
-        ) == ["p", "q"]
     assert [
         b.contact(FRAME["V"], delta=FRAME["delta"]).to_pandas()[name]["y"]
         for b, name in zip(BOTH, ("M", "M [N m m-1]"))
@@ -213,18 +175,6 @@ def test_labels_of_arguments_and_results():
         ROLLER, xr.DataArray([0.5, 0.7], dims="r", coords={"V": ("r", [1, 2])}), delta=0.01
     ).to_xarray()
     assert [found.V.values.tolist(), found.given_V.values.tolist()] == [[0.5, 0.7], [1, 2]]
-    assert vr.contact(
-        ROLLER, xr.DataArray([0.5, 0.7], dims="delta"), delta=0.01
-    ).to_xarray().Q.dims == ("given_delta",)
-    assert dict(
-        vr.contact(
-            ROLLER,
-            xr.DataArray([0.5, 0.7], dims="V", coords={"V": [0.5, 0.7]}),
-            delta=xr.DataArray([0.1], dims="delta", coords={"delta": [0.1]}),
-        )
-        .to_xarray()
-        .sizes
-    ) == {"V": 2, "delta": 1}
     assert sorted(
         vr.ensemble(
             ROLLER,
@@ -239,15 +189,6 @@ def test_labels_of_arguments_and_results():
         .to_xarray()
         .coords
     ) == ["given_V", "given_t", "motion", "t"]
-    assert dict(
-        vr.steady(ROLLER, V=xr.DataArray([0.5, 0.7], dims="equilibrium"), torque=0.0)
-        .to_xarray()
-        .sizes
-    ) == {"given_equilibrium": 2, "equilibrium": 1}
-    assert vr.steady(ROLLER, V=xr.DataArray([0.5, 0.7], dims="equilibrium"), torque=0.0).V.dims == (
-        "given_equilibrium",
-        "equilibrium",
-    )
     # arrays of the roller add axes in front of those with labels
     assert [
         each.dims
@@ -261,19 +202,6 @@ def test_labels_of_arguments_and_results():
             vr.steady(ONE.replace(mu=[[0.3], [0.4]]), force=LABELLED / 100.0)
         )
     ] == [("state_0", "run", "equilibrium")] * 2
-    assert np.array_equal(
-        vr.stress(
-            ROLLER.replace(mu=[[0.3], [0.4]]),
-            xr.DataArray([0.0, 1e-3, 2e-3], dims="r"),
-            0.1,
-            delta=0.1,
-        )
-        .plot()
-        .axes[0]
-        .lines[0]
-        .get_xdata(),
-        np.array([0.0, 1.0, 2.0]),
-    )
     # units in the titles of columns
     frame = pd.DataFrame({"t [min]": [0.0, 1.0], "F [N/m]": [1.0, 2.0]})
     assert vr.Schedule(frame["t [min]"], frame["F [N/m]"]).units == {
@@ -302,14 +230,6 @@ def test_labels_of_arguments_and_results():
             vr.Schedule([0.0], [[1.0]]),
         )
     ] == [(), (2,), (1,)]
-    assert [
-        vr.ensemble(many, [1.0, 2.0], 1.0, 0.1).to_xarray().sizes["motion"]
-        for many in (
-            ROLLER.replace(mu=[0.3]),
-            ONE.replace(mu=[0.3]),
-            vr.Scene(kappa=3.0, mu=0.3, gamma=1.0, material=vr.Prony([[2.0, 6.0]], [1.0, 1e-4])),
-        )
-    ] == [2, 2, 2]
     # results with labels can be pickled
     assert [
         pickle.loads(pickle.dumps(vr.contact(ROLLER, each, delta=0.0))).M.equals(
@@ -317,21 +237,6 @@ def test_labels_of_arguments_and_results():
         )
         for each in (FRAME["V"], LABELLED)
     ] == [True, True]
-    assert pickle.loads(
-        pickle.dumps(vr.steady(ROLLER, V=LABELLED, torque=0.0))
-    ).to_xarray().V.dims == ("run", "equilibrium")
-    assert pickle.loads(
-        pickle.dumps(vr.ensemble(ROLLER, FRAME["V"], 10.0, 0.1))
-    ).to_xarray().motion.values.tolist() == ["x", "y"]
-    # numbers of other kinds
-    assert [
-        vr.ensemble(ROLLER, each, 10.0, 0.1).V0.tolist()
-        for each in (pd.Index([1.0, 2.0]), xr.Variable("x", [1.0, 2.0]))
-    ] == [[1.0, 2.0]] * 2
-    assert np.array_equal(
-        vr.roll(ROLLER, 0.5, __import__("decimal").Decimal("0.5"), 0.1).V,
-        vr.roll(ROLLER, 0.5, 0.5, 0.1).V,
-    )
 
 
 def test_slopes_and_states_at_rest():

@@ -392,12 +392,6 @@ DMA_ALPHA = 0.01
 #: M over nine decades of speed at the same load; measured 0.52 %, between the fit and wider grids
 #: 1.1 %.
 DMA_MOMENT = 0.02
-#: A window of two decades, 14 points, 0.5 % noise: misfits of G' and G'' of a trial on a measured
-#: EPDM rubber.
-DMA_WINDOW = (0.009, 0.006)
-#: M inside that window at the same load, though neither alpha nor E is seen; measured 7.6 % (six
-#: seeds, four of them below 4.1 %).
-DMA_WINDOW_MOMENT = 0.1
 #: Shift factors that are given, once more: a few roundings.
 DMA_REPEATED = 1e-14
 #: Numbers read from a file, times the factor of a unit.
@@ -486,10 +480,6 @@ FMU_SLOPES = 1e-9
 FMU_QUOTIENTS = 1e-6
 #: A roller as co-simulation at rtol 1e-8 against ``roll`` at 1e-11, of the largest of V, omega, x.
 FMU_ROLLER = 1e-9
-#: from next to rest, of V itself: the start counts.
-FMU_FROM_REST = 1e-6
-#: A roller by CVode of fmpy at rtol 1e-8 and its own absolute tolerance.
-FMU_TOOL = 1e-4
 #: The same at the tolerance that the FMU declares, 1e-5, through rest, of the largest speed or 1
 #: m/s: CVode's errors add up to some tens of its tolerance.
 FMU_NEAR_REST = 1e-3
@@ -539,10 +529,6 @@ INTERVAL = 0.02
 IDENTIFIED_DRIVEN = 1e-4
 #: Slopes at a step of their own against differences at another: the truncation of both.
 IDENTIFIED_SLOPES = 1e-5
-#: Outside of a range slopes are one-sided: a step of 3e-4 times half the second derivative.
-IDENTIFIED_OUTSIDE = 1e-3
-#: A product of powers computed a second time: a few roundings.
-PRODUCT = 1e-14
 #: Rise of chi2 at the ends of an interval of 95 %.
 CHI2_95 = 3.841
 #: A standard deviation from some 40 residuals: three of its own.

@@ -223,51 +223,6 @@ def test_a_fit_that_misses_writes_no_file(here, capsys):
             (here / name).unlink()
 
 
-def test_a_fit_of_shear_at_several_temperatures(run, here):
-    """Columns by their names, WLF whose constants are of another temperature than the reference."""
-    rubber = vr.Material(3e6, 0.5, vr.Prony([1.0, 2.0], [1.0, 0.01]))
-    shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
-    f = np.geomspace(0.01, 100.0, 13)
-    rows = []
-    for T in (0.0, 20.0, 40.0):
-        omega = 2.0 * np.pi * f
-        at = rubber.at(T, shift)
-        rows += [
-            *zip(f, at.storage(omega) / 3e6, at.loss(omega) / 3e6, np.full(f.size, T), strict=True)
-        ]
-    np.savetxt(
-        here / "a.csv",
-        rows,
-        delimiter=";",
-        header="f [Hz];Module A [MPa];Module B [MPa];T [°C]",
-        encoding="utf8",
-    )
-    run(
-        "material",
-        "fit",
-        "a.csv",
-        "--column",
-        "storage=Module A",
-        "--column",
-        "loss=Module B",
-        "--mode",
-        "shear",
-        "--wlf",
-        f"{8.86 * 101.6 / 61.6},61.6,-20",
-        "--reference",
-        "40",
-        "--nu",
-        "0.5",
-        "-o",
-        "a.toml",
-    )
-    found = read_materials(here / "a.toml")["material"]
-    true = rubber.at(40.0, shift)
-    assert found.temperature == 40.0
-    assert close(found.storage(omega), true.storage(omega), 0.01)
-    assert close(found.loss(omega), true.loss(omega), 0.05)
-
-
 def test_a_belt_of_a_fit_that_was_saved(run, here, capsys):
     """From columns without units to the resistance of a steel roller: each step reads what the one
     before wrote.

@@ -299,11 +299,6 @@ def test_what_it_does_not_have_is_refused(more, words):
         scene.contact(0.1, delta=0.0, **({"method": "coupled"} | more))
 
 
-def test_several_materials_are_refused():
-    with pytest.raises(vr.ParameterError, match="one material"):
-        coupled(scene_of(BELT.of_thickness([0.5, 0.6])), 0.1, delta=0.0)
-
-
 def test_losses_in_slip_of_free_rolling_on_a_table_are_not_below_zero():
     """They are differences of much larger powers there."""
     layer = vr.Cover(vr.Prony([10.0], [1.0 / 11.0]), nu=0.5, thickness=0.5, on="base")

@@ -3,12 +3,11 @@ here.
 """
 
 import json
-import tomllib
 
 import pytest
 import tolerances as tol
-from places import PIPELINE, ROOT
-from processes import made, stage_refused
+from places import PIPELINE
+from processes import made
 
 from pipeline.evidence.bench.figures import draw
 from pipeline.evidence.results import Results
@@ -93,36 +92,3 @@ def test_first_calls(results):
     assert full["peak_mb"] < empty["peak_mb"]
     assert full["files"] == empty["files"] == 2  # what makes the rows of a law, and motions
     assert 0.0 < full["cache_mb"] == empty["cache_mb"]
-
-
-def test_last_release(tmp_path):
-    """Told for every case, here of a release that is this commit; a clone without the commit says
-    so.
-    """
-    section = tomllib.loads(CONFIG.read_text())["bench"]["last-release"]
-
-    def at(commit):
-        config = tmp_path / "config.toml"
-        text = CONFIG.read_text().replace(section["commit"], commit).replace("20_000", "5000")
-        config.write_text(text)
-        return (
-            "--only",
-            "last-release",
-            "--quick",
-            "--config",
-            config,
-            "-o",
-            tmp_path / "bench.json",
-        )
-
-    assert "no commit 0000000 here; a shallow clone has few" in stage_refused(
-        "evidence.bench", *at("0000000")
-    )
-    if not (ROOT / ".git").exists():
-        pytest.skip("not a clone")
-    said = made("evidence.bench", *at("HEAD"))
-    rows = json.loads((tmp_path / "bench.json").read_text())["parts"]["last-release"]["rows"]
-    assert [row["case"] for row in rows] == [*section["cases"]]
-    for row in rows:
-        assert min(row["ns"], row["ns_before"], row["ratio"]) > 0.0
-        assert f"contact, {row['case']}: " in said

@@ -3,7 +3,6 @@ behind them.
 """
 
 import csv
-import json
 import re
 import runpy
 from html import escape
@@ -119,14 +118,6 @@ def demo(tmp_path_factory):
         made("", "--config", config, "-o", out, "--tables", folder) == ""
     )  # nothing is out of date
     return config, out
-
-
-def test_stages_leave_records(demo):
-    _, out = demo
-    for name in ("offline", "runtime", "ensemble", "validate", "benchmark", "figures"):
-        record = json.loads((out / f"stages/{name}.json").read_text())
-        assert (record["stage"], bool(record["failed"])) == (name, False)
-        assert all((out / file).exists() for file in record["files"])
 
 
 def test_motions_from_tables_are_those_of_root_solves(demo):

@@ -2,10 +2,9 @@
 
 import json
 
-import numpy as np
 import tolerances as tol
 from closeness import close
-from experiments import TRUTH, ranges, roller, traction
+from experiments import TRUTH, roller, traction
 from places import kept
 from processes import made
 
@@ -46,34 +45,9 @@ def test_committed_numbers_hold():
     assert len(committed_rows("said")) == 6
 
 
-def test_share_of_few_data_sets_is_no_fault():
-    """Of one, as --quick has it, the share is 0 or 1."""
-    row = {"experiment": "any", "held": {"mu": 1.0}}
-    assert complaint(row | {"sets": 1}) is None
-    assert "mu held" in complaint(row | {"sets": 200})
-
-
 # --- profiles of wide ranges take minutes ---
 
 WIDE = {"mu": (3e-3, 30.0), "E": (3e4, 3e8), "E_1": (0.09, 900.0), "T_ref": (1e-5, 1e-1)}
-
-
-def test_what_holds_near_the_values_alone_is_told_beside_what_holds_everywhere():
-    """M above its maximum: one product is known far better as long as no unknown goes far."""
-    data = [vr.Resistance(np.geomspace(1.5, 20.0, 10), sigma=5e-3)]
-    fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), data)
-    *wide, sharp = fit.products()
-    assert [one.near for one in wide] == [False] * len(wide) != []
-    assert sharp.near
-    assert sharp.high - sharp.low < 0.1 * min(one.high - one.low for one in wide)
-    assert "determined; near these values also E T_ref^0.79 E_1^0.42" in str(fit)
-    for E in (0.8, 1.2):
-        measured = [vr.Resistance(data[0].V, fit.predict(data[0]).M.value, sigma=5e-3)]
-        other = vr.identify(roller(E=E * TRUTH["E"]), ranges("E_1", "T_ref"), measured, starts=1)
-        values = fit.values | {"E": E * TRUTH["E"]} | other.values
-        assert other.chi2 < 3.841
-        there = np.prod([values[name] ** power for name, power in sharp.powers.items()])
-        assert sharp.low < there / sharp.value < sharp.high
 
 
 def test_an_end_that_a_range_makes_is_told():

@@ -4,7 +4,7 @@ import tomllib
 
 import pytest
 
-from pipeline.evidence import citation, release
+from pipeline.evidence import release
 from pipeline.evidence.results import RESULTS
 from pipeline.evidence.stamps import outdated
 
@@ -53,19 +53,6 @@ def test_planted_faults_are_told(packages):
     ):
         assert each in told
     assert "has no licence" in problems("licences", wrong)
-
-
-def test_names_and_identifiers_of_the_owner_reach_every_file():
-    of = citation.facts() | {"doi": "10.5281/zenodo.1", "orcid": {"Ada Love": "0000-0001"}}
-    of |= {"authors": [{"name": "Ada Love"}], "urls": {"Repository": "https://example.org/x"}}
-    found = {name: text(of) for name, text in citation.FILES.items()}
-    assert all("Love" in text and "0000-0001" in text for text in found.values())
-    assert all(of["version"] in text and of["date"] in text for text in found.values())
-    assert all("10.1007/s00707-020-02643-5" in text for text in found.values())
-    for name in ("CITATION.cff", "codemeta.json"):
-        assert "10.5281/zenodo.1" in found[name]
-        assert "https://example.org/x" in found[name]
-    assert "    given-names: Ada\n    orcid: https://orcid.org/0000-0001\n" in found["CITATION.cff"]
 
 
 def test_the_owner_is_told_what_is_left(tmp_path, monkeypatch):

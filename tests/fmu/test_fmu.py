@@ -260,24 +260,6 @@ def test_the_law_of_a_cover_holds_at_its_load(built, tmp_path):
         )
 
 
-def test_roller_starts_from_rest_and_stays_there_without_a_drive(built):
-    path = built("alike", "Roller", 2)
-    t = [0.0, 0.1, 0.2]
-    assert np.abs(simulated(path, t, v0=0.0)["v"]).max() < 1e-6  # v_min
-    pulled = simulated(path, t, v0=0.0, drive_force=-20.0)
-    exact = CYLINDERS["alike"].roll(0.0, 0.0, [0.1, 0.2], rtol=1e-10, force=-20.0)
-    assert close(pulled["v"][1:], exact.V, tol.FMU_FROM_REST)
-
-
-def test_roller_by_an_integrator_of_the_tool(built):
-    cylinder = CYLINDERS["unlike"]
-    t = np.linspace(0.0, 0.3, 4)
-    found = simulated(built("unlike", "Roller", 3), t, "ModelExchange", 1e-8, v0=1.0)
-    exact = cylinder.roll(1.0, 0.0, t, rtol=1e-11)
-    assert close(found["v"], exact.V, tol.FMU_TOOL)
-    assert close(found["omega"], exact.omega, tol.FMU_TOOL, scale=np.abs(exact.omega).max())
-
-
 #: ways to come to rest, to pass through it and to leave it: V0, omega0, force on the axis, torque
 NEAR_REST = {
     "slowly": (1e-3, 1e-2, 0.0, 0.0),
@@ -345,19 +327,6 @@ def test_a_state_that_was_taken_is_gone_on_from_with_the_same_bits(built, versio
             )
         one.fmu.freeFMUState(state)
         other.fmu.freeFMUState(same)
-
-
-@pytest.mark.parametrize("version", [2, 3])
-@pytest.mark.parametrize("model", MODELS)
-def test_that_states_can_be_taken_is_declared(built, model, version):
-    about = fmpy.read_model_description(built("alike", model, version))
-    for kind in (
-        (about.modelExchange, about.coSimulation)
-        if MODELS[model].states
-        else (about.modelExchange,)
-    ):
-        assert kind.canGetAndSetFMUstate
-        assert kind.canSerializeFMUstate
 
 
 @pytest.mark.parametrize("version", [2, 3])

@@ -2,8 +2,6 @@
 them.
 """
 
-import itertools
-
 import numpy as np
 import pytest
 import tolerances as tol
@@ -26,9 +24,6 @@ from experiments import (
 from scipy.signal import lfilter
 
 import viscoroll as vr
-from viscoroll.measurements.identification_report import _product_text
-from viscoroll.measurements.least_squares import Minimum
-from viscoroll.measurements.profile import Likelihood
 
 V = HUMP
 M = roller().contact(V, delta=0.0, fields="M").M
@@ -147,13 +142,6 @@ def test_a_product_that_a_range_limits_is_told():
         "E^-1 T_ref = 3.333e-10 (95%: -33 % to +39 %, both ends by the range of T_ref) are bounded "
         "within the ranges" in said
     )
-
-
-def test_a_product_by_slopes_is_told_to_hold_near_the_values():
-    V = 0.3 * np.ones(3)
-    fit = vr.identify(roller(), ranges("E", "T_ref"), [vr.Resistance(V, sigma=0.01)])
-    assert any(product.near for product in fit.products())
-    assert "linearised, valid only while each unknown changes by less than a fifth" in str(fit)
 
 
 # --- what is not a fit of one minimum of good data ---
@@ -282,37 +270,6 @@ def test_motions_that_fail_are_far_off_and_end_no_fit(monkeypatch):
     assert fit.residuals({"mu": 0.5}).max() == fit.residuals({"mu": 0.1}).max() == 1e6
 
 
-def test_slopes_outside_of_a_range_are_those_of_the_residuals():
-    """Not the secants to the ends of the ranges, which are far."""
-    fit = vr.identify(roller(), ranges("mu", "E"), [thrown(), traction()], starts=1)
-    for name, factor in itertools.product(("mu", "E"), (0.5, 2.0)):
-        low, high = ranges(name)[name]
-        at = fit.values | {name: (low if factor < 1.0 else high) * factor}
-        step = 1e-4 * at[name]
-        up, down = (fit.residuals(at | {name: at[name] + sign * step}) for sign in (1.0, -1.0))
-        column = fit.jacobian(at)[:, [*fit.values].index(name)]
-        expected = (up - down) / (2.0 * step)
-        assert close(column, expected, tol.IDENTIFIED_OUTSIDE, scale=np.abs(expected).max()), (
-            name,
-            factor,
-        )
-
-
-def test_a_product_with_a_negative_speed_is_real():
-    t = np.linspace(0.0, 5.0, 40)
-    run = vr.Coastdown(t, roller().roll(-4.0, -40.0, t).V, sigma=5e-3, omega0=-40.0, name="run")
-    fit = vr.identify(roller(), ranges("E") | {"V0:run": (-5.0, -3.0)}, [run], starts=1)
-    powers = np.array([1.0 if name == "E" else 0.5 for name in fit.values])
-    (product,) = fit._likelihood._bounded_products([powers], tol.CHI2_95, near=True)
-    name, exponent = next((name, p) for name, p in product.powers.items() if name != "E")
-    assert close(
-        product.value,
-        fit.values["E"] ** product.powers["E"] * abs(fit.values[name]) ** exponent,
-        tol.PRODUCT,
-    )
-    assert f"|{name}|^" in _product_text(product, fit.values)
-
-
 def test_slopes_are_those_of_the_residuals():
     fit = vr.identify(
         roller(), ranges("mu", "E") | {"V0:throw": (3.0, 5.0)}, [thrown(), traction()], starts=1
@@ -324,14 +281,6 @@ def test_slopes_are_those_of_the_residuals():
         assert close(
             J[:, i], (up - down) / (2.0 * step), tol.IDENTIFIED_SLOPES, scale=np.abs(J[:, i]).max()
         ), name
-
-
-def test_slopes_take_values_with_units():
-    fit = vr.identify(roller(), ranges("mu", "E"), [traction()], starts=1)
-    labelled = xr.DataArray(fit.values["E"] * 1e-6, attrs={"units": "MPa"})
-    expected = fit.jacobian(fit.values)
-    found = fit.jacobian({"E": labelled, "mu": fit.values["mu"]})
-    assert close(found, expected, tol.IDENTIFIED_SLOPES, scale=np.abs(expected).max(axis=0))
 
 
 def test_a_dataset_and_a_figure_hold_all_of_it(tmp_path):
@@ -361,50 +310,6 @@ def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
     assert close(far.chi2, near.chi2, tol.IDENTIFIED)
 
 
-class Slow:
-    """Least squares of one coordinate whose root of chi2 rises to 99 % of the bound at 1, then by
-    2.8 % of it per unit, or no more.
-    """
-
-    low = np.array([-6.0])
-    high = np.array([6.0])
-    start = np.array([0.0])
-    active = np.array([0])
-    points = 1
-    columns = ()
-
-    def __init__(self, rate):
-        self.rate = rate
-
-    def weighted(self, u):
-        return np.zeros(1), np.ones((1, 1))
-
-    def noise(self, u):
-        return {}
-
-    def minimize(self, u, *_):
-        far = abs(u[0])
-        return Minimum(u, tol.CHI2_95 * min(far, 0.99 + self.rate * max(far - 1.0, 0.0)) ** 2)
-
-    def cost(self, u):
-        return self.minimize(u).chi2
-
-    def at_bounds(self, u):
-        return []
-
-
-@pytest.mark.parametrize(("rate", "end"), [(0.028, 1.0 + 0.01 / 0.028), (0.0, None)])
-def test_a_walk_does_not_stop_just_below_the_bound(rate, end):
-    problem = Slow(rate)
-    ends = (
-        Likelihood(problem, [problem.minimize(problem.start)]).profile(np.ones(1), tol.CHI2_95).ends
-    )
-    if end is None:
-        assert ends == [None, None]
-    else:
-        assert close(ends, [-end, end], tol.INTERVAL, scale=2.0 * end)
-
-
 @pytest.mark.parametrize(
     ("points", "least"), [(40, tol.IDENTIFY_COVERAGE_FEW), (200, tol.IDENTIFY_COVERAGE)]
 )
@@ -432,15 +337,3 @@ def test_intervals_of_autocorrelated_residuals_cover_the_truth(points, least):
     wide = fit.intervals()["E"]
     one = fit.values["E"]
     assert wide[0] < one - 1.5 * fit.stderr["E"] < one + 1.5 * fit.stderr["E"] < wide[1]
-
-
-def test_residuals_that_are_only_large_are_named_as_such():
-    """White noise of three times the sigma that is given: the cause is its size, and no correlation
-    is named.
-    """
-    data = resistance(seed=1, sigma=0.03)
-    fit = vr.identify(
-        roller(), ranges("E", "T_ref"), [vr.Resistance(data.V, data.M, sigma=0.01)], starts=1
-    )
-    assert "are larger than noise (rms 2.77 sigma)" in str(fit)
-    assert "autocorrelated" not in str(fit)

@@ -7,7 +7,7 @@ from math import inf, nan, pi
 import numpy as np
 import pytest
 import tolerances as tol
-from calls import HARD, MANY, MEASURED, PAPER, ROLLER, RUBBER, SERIES, SI, STEEL, TREAD, file, pair
+from calls import HARD, MANY, PAPER, RUBBER, SERIES, SI, STEEL, TREAD, pair
 from closeness import close
 
 import viscoroll as vr
@@ -105,13 +105,6 @@ def test_moduli_and_times_of_pairs():
     assert close(under_steel.pair.share + on_steel.pair.share, 1.0, tol.SCENE)
     assert (on_rigid.E_prime, on_rigid.pair.share) == (2.0 * pi * 2.3e5 / 0.75, 1.0)
     assert (under_rigid.E_prime, under_rigid.pair.share) == (2.0 * pi * 2.3e5 / 0.75, 0.0)
-    assert [
-        pair(RUBBER, base).E_prime for base in (None, RUBBER, replace(RUBBER, name="the same"))
-    ] == [pi * 2.3e5 / 0.75] * 3
-    assert [
-        pair(RUBBER, base).scene().material
-        for base in (None, RUBBER, replace(RUBBER, name="the same"))
-    ] == [SERIES] * 3
     # the time is the cylinder's, or the base's where the cylinder does not relax
     assert [
         (c.T_ref, c.scale["t"], 1.0 / c.scale["V"]) for c in (on_hard, on_steel, under_steel)
@@ -119,9 +112,6 @@ def test_moduli_and_times_of_pairs():
     assert [
         (c.T_ref, c.scale["t"], 1.0 / c.scale["V"]) for c in (pair(HARD, RUBBER), pair(HARD, rigid))
     ] == [(2.0, 2.0, 2.0 / 0.1)] * 2
-    assert [(c.T_ref, c.scale["t"], 1.0 / c.scale["V"]) for c in (pair(rigid, HARD),)] == [
-        (2.0, 2.0, 2.0 / 0.1)
-    ]
     assert on_hard.scene().material == vr.Bodies(
         SERIES, HARD.prony.slower(2.0 / 0.3), on_hard.pair.share, (0.5, 0.5)
     )
@@ -193,11 +183,6 @@ def test_constants_of_lsdyna_and_bulk_terms():
     assert close(dyna.E, 28.571497e6, tol.MATERIAL_PRINTED)
     # modes of G and of 3 K + G
     assert dyna.prony.E.size == 4
-    # bulk terms equal to those of shear leave nu alone
-    assert (
-        vr.Material.abaqus(1e6, 0.3, [0.2, 0.3], [0.1, 10.0], k=[0.2, 0.3]).prony.E.size
-        == vr.Material.abaqus(1e6, 0.3, [0.2, 0.3], [0.1, 10.0]).prony.E.size
-    )
     assert vr.Material.ansys(1e6, 0.5, [0.2], [0.1], k=[0.7]) == vr.Material.ansys(
         1e6, 0.5, [0.2], [0.1]
     )
@@ -230,12 +215,6 @@ def test_series():
         [11.0, 10.0, 1.0 / 11.0, 10.0 / 11.0, 1.0],
         tol.SERIES_FORMS,
     )
-    p = vr.Prony.creep([10.0 / 11.0], [1.0], alpha=11.0)
-    assert close(
-        [p.alpha, *p.E, *p.tau, *p.J, *p.T],
-        [11.0, 10.0, 1.0 / 11.0, 10.0 / 11.0, 1.0],
-        tol.SERIES_FORMS,
-    )
     # equal times are added up, zeros are dropped
     p = vr.Prony(E=[6.0, 0.0, 2.0, 1.0], tau=[1e-05, 3.0, 1.0, 1.0])
     assert (p.E.tolist(), p.tau.tolist()) == ([3.0, 6.0], [1.0, 1e-05])
@@ -249,21 +228,10 @@ def test_arrays_of_materials():
     material.
     """
     assert (len(MANY), MANY.shape, vr.Prony([1.0], [1.0]).shape) == (2, (2,), ())
-    assert ((MANY, hash(MANY))) == (
-        vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1]),
-        hash(vr.Prony([[1.0, 2.0], [3.0, 4.0]], [1.0, 0.1])),
-    )
-    assert isinstance(MANY[:1], vr.Prony)
     assert vr.Prony([1.0, 2.0], [[1.0, 0.1], [2.0, 0.1]])[1] == vr.Prony([1.0, 2.0], [2.0, 0.1])
     assert vr.Prony.creep(
         [[0.3, 0.6], [0.2, 0.7]], [1.0, 0.1], alpha=[10.0, 10.000000000000002]
     ).alpha.tolist() == [10.0, 10.000000000000002]
-    assert vr.Scene(material=MANY, kappa=[[1.0], [2.0], [3.0]], mu=0.1).shape == (3, 2)
-    assert vr.Bodies(MANY, vr.Prony.elastic()).shape == (2,)
-    one = vr.ensemble(
-        vr.Scene(material=MANY, kappa=2.91, mu=0.2, gamma=700.0), 1.0, 0.0, 0.001
-    ).scene.material
-    assert one.tau.tolist() == MANY.tau.tolist()
 
 
 def test_a_scene_keeps_its_law():
@@ -301,41 +269,11 @@ def test_a_scene_and_a_series_are_values():
     )
     assert (PAPER.replace(mu=0.3).mu, PAPER.mu) == (0.3, 0.2)
     assert eval(repr(PAPER), {"Scene": vr.Scene}) == PAPER
-    assert len(repr(PAPER.replace(mu=np.linspace(0.1, 0.3, 1000)[:, None]))) < 120
     assert vr.Scene([1.0, 2.0, 3.0], [[1.0], [2.0]], 0.2).shape == (2, 3)
     assert vr.Prony([[0.0], [1.0]], [1.0]).slow_time.tolist() == [
         1.0,
         3.0,
     ]  # (tau^2 + J T^2)/(J T) of E = 1: J = 1/2, T = 2
-
-
-def test_odd_kinds_of_materials_covers_and_counts():
-    """Odd kinds of materials, covers and counts."""
-    assert close(
-        [vr.Prony([3.0], [unit]).T.item() / unit for unit in (1e-140, 1e-30, 1e24, 1e100, 1e140)],
-        [4.0] * 5,
-        tol.MATERIAL,
-    )
-    assert close(
-        vr.Prony.creep([0.3, 0.5], [1e60, 1e59]).tau / 1e60,
-        vr.Prony.creep([0.3, 0.5], [1.0, 0.1]).tau,
-        tol.MATERIAL,
-    )
-    assert close(
-        vr.Prony([1e11, 1.0], [1e140, 1e110]).slow_time / 1e140,
-        vr.Prony([1e11, 1.0], [1.0, 1e-30]).slow_time,
-        tol.MATERIAL,
-    )
-    assert vr.Cover(np.float32(11.0), nu=0.5, thickness=1.0) == vr.Cover(11, nu=0.5, thickness=1.0)
-    path = file("", "m.nc")
-    assert [
-        vr.Material(1000000.0, 0.5, measured=MEASURED.measured, name="r").to_netcdf(path),
-        repr(vr.Material.from_netcdf(path)).count("np.str_"),
-    ] == [None, 0]
-    assert (ROLLER.contact(1e-310, omega=1e300).delta, ROLLER.contact(1e-320, omega=0.0).zeta) == (
-        inf,
-        inf,
-    )
 
 
 def test_bessel_ratios_at_their_ends():

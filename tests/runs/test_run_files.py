@@ -18,7 +18,7 @@ from run_files import CERTAIN, FILES, PAPER, run_of
 import viscoroll as vr
 from viscoroll.motion.many_motions import FLOW_PAYS
 from viscoroll.runs import export_netcdf, open_run, roll_inputs, run_ensemble, verify
-from viscoroll.runs.run_blocks import attributes, block_inputs, roll_block
+from viscoroll.runs.run_blocks import block_inputs, roll_block
 from viscoroll.runs.run_records import identity
 from viscoroll.runs.run_rollers import roller_of
 from viscoroll.runs.run_store import columns_of
@@ -284,16 +284,6 @@ def test_results_state_the_units_of_a_dimensionless_run(read, tmp_path):
     assert "1 time to 0.001" in text
 
 
-def test_a_drive_that_ends_goes_with_a_rest(read):
-    text = FILES["driven"]
-    run = read(
-        (text[: text.index("slope")] + text[text.index("[run]") :]).replace(
-            "n = 12", "n = 4\nrest = 1e-3"
-        )
-    )
-    assert (roll_block(run, 0)[1].status <= 1).all()
-
-
 @pytest.mark.parametrize(
     ("name", "inputs"),
     [
@@ -388,23 +378,3 @@ def test_each_motion_has_the_temperature_that_was_drawn(read):
         )
         alone = vr.Cylinder(R=0.1, m=35.5, mu=0.5, material=rubber).roll(2.0, 0.0, run.t)
         assert close(motions.V[i], alone.V, tol.MOTION_RTOL * run.settings.rtol)
-
-
-def test_a_cylinder_of_its_own_numbers_on_a_base_that_is_uncertain(read):
-    run = read("""
-        cylinder = { R = 0.1, m = 35.5, mu = 0.5, E = 2.3e5, nu = 0.5, T_epsilon = 0.2, T_sigma = 0.02 }
-        start = { V0 = 2.0, omega0 = 0.0 }
-        run = { n = 5, t = [0.5, 1.0], fields = ["V", "omega"], keep = "all" }
-        base = { E = { distribution = "uniform", loc = 1e6, scale = 1e6 }, nu = 0.5 }
-    """)  # noqa: E501
-    values, motions = roll_block(run, 0)
-    for i in range(5):
-        assert close(motions.V[i], alone(run, values, i).V, tol.MOTION_RTOL * run.settings.rtol)
-
-
-@pytest.mark.parametrize("name", ["E", "nu", "temperature", "thickness", "tau_2"])
-def test_numbers_of_a_material_have_a_meaning(name):
-    own, base = (attributes(prefix + name, si=True) for prefix in ("", "base_"))
-    assert own["long_name"]
-    assert base["long_name"] == "base: " + own["long_name"].removesuffix(" of the cylinder")
-    assert base["units"] == own["units"]

@@ -19,7 +19,7 @@ import viscoroll as vr
 from viscoroll.cli import main
 from viscoroll.core import files
 from viscoroll.runs import export_netcdf, open_run, read_run, run_ensemble, verify
-from viscoroll.runs.run_store import Store, locked
+from viscoroll.runs.run_store import locked
 
 refused_file = partial(refused, error=vr.FileError)
 pytestmark = pytest.mark.filterwarnings(
@@ -157,20 +157,6 @@ def test_a_full_disk(run_file, tmp_path, whole, monkeypatch):
     assert content(store) == content(whole)
 
 
-def test_what_a_killed_worker_leaves_is_removed(run_file, tmp_path, whole, monkeypatch):
-    """It dies in a write while the run goes on with another worker."""
-    store = tmp_path / "store.zarr"
-    work = Store.evaluate
-
-    def killed_before(self, block):
-        (store / "records" / f".1-{block}.tmp-x").touch()
-        return work(self, block)
-
-    monkeypatch.setattr(Store, "evaluate", killed_before)
-    run_ensemble(read_run(run_file), store)
-    assert content(store) == content(whole)
-
-
 def test_other_folders_are_refused(run_file, tmp_path, whole):
     run_file.write_text(RUN.replace("seed = 3", "seed = 4"))
     run = read_run(run_file)
@@ -186,16 +172,6 @@ def test_other_folders_are_refused(run_file, tmp_path, whole):
     assert [path.name for path in thesis.iterdir()] == ["chapter.tex"]
     with locked(tmp_path / "store.zarr"):
         refused_file(partial(run_ensemble, run, tmp_path / "store.zarr"), "another process")
-
-
-def test_a_folder_that_may_not_be_read_is_no_damaged_store(run_file, tmp_path, whole, monkeypatch):
-    monkeypatch.setattr(os, "access", lambda *_: False)
-    for call in (
-        lambda: verify(whole),
-        lambda: open_run(whole),
-        lambda: run_ensemble(read_run(run_file), whole),
-    ):
-        refused_file(call, "whole.zarr: cannot be read (Permission denied)")
 
 
 # --- more motions ---

@@ -1,8 +1,6 @@
 """Designs, distributions and summaries of runs, and what a run is expected to take."""
 
 import itertools
-from importlib import import_module
-from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -10,16 +8,13 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
-from refusals import refused
 from run_files import run_of
 from scipy import stats
 from scipy.stats import qmc
 
 import viscoroll as vr
 from viscoroll import sampling
-from viscoroll.laws.cover_rows import cover_rows
 from viscoroll.motion.summaries import QUANTITIES, Histogram, merge_summaries, summarise
-from viscoroll.runs import estimate, run_store
 from viscoroll.runs.run_blocks import roll_block
 from viscoroll.runs.uncertain_inputs import Distribution, Inputs, read_column
 
@@ -148,80 +143,6 @@ def test_merged_summaries_are_those_of_all(run):
             assert np.array_equal(one.counts, Histogram.of(values).counts)
             assert close(one.mean, np.nanmean(values), tol.MOMENT, scale=1.0)
             assert close(one.spread / one.count, np.nanvar(values), tol.MOMENT, scale=1.0)
-
-
-def test_an_estimate_does_not_scale_up_what_happens_once(run, monkeypatch):
-    """By a clock that goes by the work alone: 100 s for what a process does once, as to import,
-    then 1 s a trial.
-    """
-    clock = [0.0]
-
-    def summarised(*given):
-        clock[0] += 100.0 if clock[0] == 0.0 else 1.0
-        return summarise(*given)
-
-    module = import_module("viscoroll.runs.run_engine")  # whose name is the function's
-    monkeypatch.setattr(run_store, "summarise", summarised)
-    monkeypatch.setattr(module, "time", SimpleNamespace(perf_counter=lambda: clock[0]))
-    assert run.blocks == 5
-    assert estimate(run, threads=1).seconds == 5.0
-    assert estimate(run, threads=2).seconds == 3.0  # three blocks for one of the two
-    assert estimate(run, threads=9).seconds == 1.0
-
-
-LOADS = ("2e3", '{ distribution = "uniform", loc = 1.1e3, scale = 0.8e3 }')
-
-
-def test_an_estimate_states_the_time_of_the_laws_of_covers(tmp_path, monkeypatch):
-    """One law for one thickness over l0, fourteen for each octave of it, once however many the
-    motions are.
-
-    By a clock that goes by laws alone; one law stands for all.
-    """
-    rows = []
-
-    def computed(cover, *_):
-        rows.append(rows[0] if rows else cover_rows(cover))
-        return rows[0]
-
-    for module in ("laws.cover_rows", "laws.laws_per_element", "laws.law_table"):
-        monkeypatch.setattr(import_module(f"viscoroll.{module}"), "cover_rows", computed)
-    clock = SimpleNamespace(perf_counter=lambda: float(len(rows)))
-    monkeypatch.setattr(import_module("viscoroll.runs.run_engine"), "time", clock)
-    text = """
-[cylinder]
-R = 0.1
-m = 30.0
-mu = 0.5
-load = {load}
-coupled = false
-[material]
-E = 2e6
-nu = 0.49
-thickness = 0.01
-prony = {{ E = [2.0], tau = [0.1] }}
-[base]
-E = 2e11
-nu = 0.3
-[start]
-V0 = 1.0
-omega0 = {{ distribution = "uniform", loc = 9.0, scale = 2.0 }}
-[run]
-n = 20
-t = 0.1
-"""
-    one, many = (estimate(run_of(text.format(load=load), tmp_path), threads=1) for load in LOADS)
-    assert "once for the laws of covers" in str(one)
-    assert (one.law_seconds, one.seconds) == (1.0, 1.0)
-    assert (many.law_seconds, many.seconds) == (14.0, 14.0)
-    text = text.format(load=LOADS[0]).replace(
-        "nu = 0.49", 'nu = { distribution = "uniform", loc = 0.4, scale = 0.1 }'
-    )
-    words = (
-        "[material] nu: E or nu of a body has several values: must be",
-        "or make the other body rigid (E = inf)",
-    )
-    assert "truncate" not in refused(lambda: run_of(text, tmp_path), *words, error=vr.FileError)
 
 
 def test_columns_of_parquet_and_netcdf_state_their_unit_or_warn(tmp_path):

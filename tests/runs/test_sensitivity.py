@@ -16,7 +16,6 @@ from scipy import stats
 
 import viscoroll as vr
 from viscoroll.cli import main
-from viscoroll.core.plots import draw
 from viscoroll.runs.sensitivity import sobol_indices
 
 pytestmark = pytest.mark.filterwarnings(
@@ -177,26 +176,7 @@ def test_what_some_motions_lack_is_refused_and_said():
     assert np.isfinite(indices["V_S1"][1]).all()
 
 
-def test_rounding_is_no_variation():
-    """The energy lost at t = 0 is 1 - 1 to rounding: indices of that would be noise."""
-    text = ONSET.replace('["V", "onset_time"]', '["lost"]').replace(
-        "start.V0 = 1.0", "start.V0 = 1.1"
-    )
-    indices = sobol_indices(run_of(text), 64)
-    assert indices.attrs["refused"].startswith("lost at t = 0: it varies by no more")
-    assert np.isfinite(indices["lost_S1"][1]).all()
-
-
 # --- figure and command ---
-
-
-def test_bars_are_the_indices(sliding):
-    figure = draw(sliding)
-    axes = figure.axes[0]
-    first, total = ([bar.get_height() for bar in axes.containers[k]] for k in (1, 3))
-    order = np.argsort(-np.maximum(sliding["V_ST"][-1], sliding["x_ST"][-1]).values, kind="stable")
-    assert close(first, sliding["V_S1"][-1].values[order], tol.FIGURE, scale=1.0)
-    assert close(total, sliding["V_ST"][-1].values[order], tol.FIGURE, scale=1.0)
 
 
 def test_command(here, capsys):

@@ -91,14 +91,6 @@ def test_a_word_once_a_material_and_none_in_workers(monkeypatch, worker):
     )
 
 
-def test_a_temperature_in_kelvin_is_said_once_for_a_line():
-    """A material is made by ``dataclasses.replace``, whose frame is no line of the program."""
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("default")
-        RUBBER.at(293.15, shift=vr.WLF(T0=20.0))
-    assert [(each.category, each.filename) for each in found] == [(vr.ModelWarning, __file__)]
-
-
 @pytest.mark.parametrize(
     "call",
     [
@@ -172,7 +164,6 @@ t = [0.01]
 method = "integrate"
 summaries = ["x"]
 """
-UNSURE = '{ distribution = "lognorm", s = 0.1, scale = 2.0e6 }'
 
 
 WARM = """
@@ -201,27 +192,3 @@ def test_the_share_of_motions_that_were_not_measured(tmp_path, monkeypatch):
     (said,) = [str(each.message) for each in found if "as measured" in str(each.message)]
     share = float(said.split("%")[0].split()[-1]) / 100.0
     assert close(share, stats.norm(20.0, 5.0).cdf(17.0), tol.SHARE)
-
-
-@pytest.mark.parametrize("E", ["2.0e6", UNSURE])
-@pytest.mark.parametrize("spread", [1.0, 9.0])
-def test_a_run_file_beyond_what_was_measured(tmp_path, monkeypatch, E, spread):
-    """Of materials that are known and of uncertain ones, by the share of the starts."""
-    monkeypatch.setattr(model_warnings, "_warned_records", set())
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("always")
-        estimate(run_of(RUN.format(E=E, spread=spread), tmp_path), 1)
-    said = [str(each.message) for each in found if "as measured" in str(each.message)]
-    assert len(said) == (spread == 9.0)
-    assert not said or "% of the motions" in said[0]
-    assert not said or "measured from 0.06 to 1.88e+03" in said[0]
-
-
-def test_a_layer_in_millimetres_gives_one_warning():
-    rubber = vr.Material(E=2e6, nu=0.49, prony=vr.Prony([1.0], [1.0]), T_ref=0.01, thickness=8.0)
-    roller = vr.Cylinder(
-        R=0.0795, m=20.0, material=vr.Material.rigid(), base=rubber, mu=0.5, load=2e3, coupled=False
-    )
-    with pytest.warns(vr.ModelWarning, match="divide those in mm by 1000") as found:
-        roller.contact(1.0, delta=0.0, fields="M")
-    assert len(found) == 1

@@ -164,19 +164,6 @@ def test_splines_keep_the_bounds_of_the_law(name, table):
         assert np.abs(found.Q).max() == most
 
 
-def test_interpolation(table):
-    axes = table_files.axes_of(table)
-    points = dict(
-        zip(axes, np.meshgrid(*(table[axis].values for axis in axes), indexing="ij"), strict=True)
-    )
-    found = vr.tables.interpolate(table, **points)
-    for field in table_files.fields_of(table):
-        expected = table[field].broadcast_like(table.beta).transpose(*axes).values
-        assert close(
-            getattr(found, field), expected, tol.TABLE_SPLINE_NODE, scale=np.abs(expected).max()
-        ), field
-
-
 def test_root_solves_meet_the_rows():
     """The paper's way to the nodes, of a scene and of a cylinder in SI units, and what the grid
     says of them.
@@ -211,17 +198,6 @@ def test_validation_finds_a_wrong_node(alphas):
         for check in check_table(stated, 2000, 1)
         if check.name == "grid: beta, splines"
     ] == [0.5]
-
-
-def test_validation_refuses_a_grid_whose_error_is_the_range_of_a_field():
-    scene = vr.presets.PAPER_SECTION_5
-    speeds = np.linspace(1e-3, 2e-3, 4)
-    star = vr.contact(scene, speeds[0], delta=0.0).delta_star
-    grid = vr.tables.build(scene, speeds, delta=star * np.array([0.0, 0.99, 0.9999, 0.999999, 1.1]))
-    assert grid.beta.attrs["spline_error"] > 0.9
-    assert [check.name for check in check_table(grid, 2000, 1) if not check.passed] == [
-        "grid: beta, splines"
-    ]
 
 
 def test_creep_nodes_have_less_error_than_equal_steps():
@@ -297,12 +273,6 @@ def test_files_of_the_first_version(kind, tmp_path):
     assert abs(found - truth) <= table[name].attrs["interpolation_error"]
 
 
-def test_a_grid_that_is_refused_leaves_no_file(alphas, tmp_path):
-    save = partial(vr.tables.save, alphas.drop_vars("beta"), tmp_path / "grid.nc")
-    refused(save, "variable 'beta' is missing", error=vr.FileError)
-    assert not [*tmp_path.iterdir()]
-
-
 # --- nodes that no contact has ---
 
 FILL = 9.969209968386869e36
@@ -314,14 +284,9 @@ WRONG = [
         lambda Q: FILL,
         "Q = 9.969209968386869e+36 at V[7], delta[5]: must be given",
     ),
-    ("Q", np.s_[7, 5], lambda Q: -9999.0, "V[7], delta[5]"),
-    ("Q", np.s_[0, 0], lambda Q: 1e20, "V[0], delta[0]"),
-    ("M", np.s_[20], lambda M: -9999.0, "M = -9999.0 at V[20]: must be given"),
     ("M", np.s_[3], lambda M: -M, "at V[3]: must be >= 0"),
     ("M", np.s_[3], lambda M: np.nan, "M = nan at V[3]: must be finite"),
-    ("Q", np.s_[:], lambda Q: -Q, "of the sign of delta"),
     ("Q", np.s_[4], lambda Q: -Q, "V[4], delta[0]: must be of the sign of delta"),
-    ("Q", np.s_[2, 30], lambda Q: 0.0, "V[2], delta[30]: must be at least"),
     ("Q", np.s_[6, 32], lambda Q: 1.001 * Q, "V[6], delta[32]: must be within +-mu P"),
 ]
 
@@ -346,14 +311,6 @@ def test_a_node_that_no_contact_has_is_refused_with_its_place(
     refused(partial(vr.load_law, path), words, error=vr.FileError)
 
 
-@pytest.mark.parametrize("beta", [1.001, -0.01])
-def test_a_stick_zone_that_no_contact_has_is_refused(beta, tmp_path):
-    table = built("scene")
-    table.beta[3, 4] = beta
-    words = f"beta = {beta} at V[3], delta[4]: must be in [0, 1]"
-    refused(partial(vr.tables.save, table, tmp_path / "b.nc"), words, error=vr.FileError)
-
-
 def test_a_declared_fill_value_is_refused_and_six_digits_are_read(tmp_path):
     other = built("cylinder")[["Q", "M"]].assign_attrs(mu=0.3, load=1.0, R=0.1)
     other["Q"] = (other.Q / np.abs(other.Q).max() * 0.3).round(6).assign_attrs(units="N/m")
@@ -363,13 +320,6 @@ def test_a_declared_fill_value_is_refused_and_six_digits_are_read(tmp_path):
     other.Q[1, 2] = np.nan
     other.to_netcdf(path, engine="h5netcdf", encoding={"Q": {"_FillValue": -7.5}})
     refused(partial(vr.load_law, path), "Q = nan at V[1], delta[2]", error=vr.FileError)
-
-
-@pytest.mark.parametrize("V", [0.5 * (1.0 - 1e-15), 3.0000001, 3.0 * (1.0 + 1e-15)])
-def test_a_refused_value_is_told_with_all_digits_that_it_needs(V):
-    grid = vr.tables.build(vr.presets.RUBBER_CYLINDER, [0.5, 1.0, 3.0], delta=[-0.02, 0.0, 0.02])
-    words = f"V = {V!r}: must be within the table's range [0.5, 3]"
-    refused(partial(vr.tables.interpolate, grid, "Q", V=V, delta=0.0), words)
 
 
 # --- formats of other programs ---

@@ -7,7 +7,6 @@ import json
 import shutil
 import subprocess
 from dataclasses import fields
-from functools import partial
 
 import h5py
 import numpy as np
@@ -15,7 +14,6 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
-from refusals import refused
 
 import viscoroll as vr
 from viscoroll.core import files
@@ -191,22 +189,6 @@ def test_json_has_the_same_bits(saved, tmp_path):
         checksum({name: np.array(found[name]) for name in law.variables})
         == found["sha256_of_numbers"]
     )
-
-
-def test_refused_exports(saved, tmp_path):
-    law = vr.tables.load(saved)
-    wrong = law.assign(press=law.press * 2.0)
-    refused(
-        partial(vr.tables.export, wrong, tmp_path / "rubber.h"),
-        "its numbers are not those",
-        error=vr.FileError,
-    )
-    refused(
-        partial(vr.tables.save, wrong, tmp_path / "rubber.nc"),
-        "its numbers are not those",
-        error=vr.FileError,
-    )
-    assert not list(tmp_path.iterdir())
 
 
 #: evaluates the header beside full slip, where the stick zone is a rounding of the contact

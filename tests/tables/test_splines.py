@@ -174,36 +174,6 @@ def test_the_law_of_a_grid_is_that_of_rows_within_its_stated_error(grid, path):
     assert "for vr.law alone" in repr(law)
 
 
-def test_slopes_of_the_law_of_a_grid(path):
-    law = vr.law(vr.load_law(path, alpha=11.0))
-    step = 1e-7
-    for V, omega in ((0.3, 0.301), (-0.3, -0.301), (2.0, 1.99), (1e-5, 0.99e-5), (0.5, -0.5)):
-        found = law(V, omega, slopes=True)
-        over_V = [
-            (high - low) / (2.0 * step * V)
-            for low, high in zip(law(V * (1 - step), omega), law(V * (1 + step), omega))
-        ]
-        over_omega = (law(V, omega * (1 + step)).Q - law(V, omega * (1 - step)).Q) / (
-            2.0 * step * omega
-        )
-        scale = 1.0 / abs(V)
-        assert close(found.dQ_dV, over_V[0], tol.COMPILED_SLOPE, scale=scale)
-        assert close(found.dM_half_space_dV, over_V[2], tol.COMPILED_SLOPE, scale=scale)
-        assert close(found.dM_cylinder_dV, over_V[3], tol.COMPILED_SLOPE, scale=scale)
-        assert close(found.dQ_domega, over_omega, tol.COMPILED_SLOPE, scale=scale)
-
-
-def test_the_law_of_a_grid_beyond_its_axes(path):
-    law = vr.law(vr.load_law(path, alpha=11.0))
-    assert law(0.0, 0.1)[:2] == (SCENE.mu, 0.0)
-    assert law(-0.5, 3.0).Q == SCENE.mu
-    slow = law(1e-4, 1.01e-4)
-    assert close(law(1e-6, 1.01e-6).Q, slow.Q, tol.COMPILED_SLOPE)
-    assert close(law(1e-6, 1.01e-6).M, 1e-2 * slow.M, tol.COMPILED_SLOPE)
-    assert np.isnan(law.jitted(4.1, 4.1)).all()
-    assert np.isnan(called(law.jitted, np.nan, 0.1)).all()
-
-
 @pytest.mark.parametrize("form", ["NETCDF4", "NETCDF3_64BIT"])
 def test_a_grid_of_another_program(si_grid, tmp_path, form):
     """Other units and order of dimensions, netCDF 3 and 4, no attribute of this package."""

@@ -10,7 +10,6 @@ import pickle
 import pwd
 import re
 import shutil
-import sys
 import threading
 import warnings
 import zlib
@@ -102,13 +101,6 @@ def test_a_process_waits_for_what_another_one_compiles(kernels, monkeypatch):
     assert not [*kernels.rglob("*.lock")]
 
 
-def test_a_cache_folder_that_cannot_be_searched(kernels, monkeypatch):
-    """Its name is too long; a folder of another user gives the same error class."""
-    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(kernels / ("long" * 80)))
-    with pytest.warns(RuntimeWarning, match="compiled kernels are not cached"):
-        assert kernel(cubed.py_func)(2.0) == 8.0
-
-
 def test_an_ordinary_function_between_kernels_works(kernels):
     """It is compiled by itself, with all below it: LLVM would end the process for a symbol that it
     misses.
@@ -143,16 +135,6 @@ def test_without_an_inner_name_of_numba_kernels_still_compile(kernels, monkeypat
     ):
         assert cubed(2.0) == 8.0
     assert square(2.0) == 4.0  # told once, and warnings are errors here
-
-
-def test_an_error_in_a_kernel_is_no_reason_to_fall_back(kernels):
-    @kernel
-    def wrong(x):
-        return x.nothing_of_the_kind
-
-    with pytest.raises(numba.TypingError, match="nothing_of_the_kind"):
-        wrong(1.0)
-    assert deferred_compilation._deferring
 
 
 # --- the cache ---
@@ -287,29 +269,6 @@ def test_what_others_may_have_written_is_not_run(cache, place):
     assert fresh() == 1
 
 
-def test_a_file_that_others_may_write_to_is_replaced(cache):
-    (path,) = cache.iterdir()
-    trace = plant(path)
-    path.chmod(0o666)
-    assert fresh() == 0
-    assert not trace.exists()
-    assert path.stat().st_mode & 0o022 == 0
-    assert fresh() == 1
-
-
-def test_a_link_leads_to_where_it_leads(cache, tmp_path, monkeypatch):
-    """A folder that is one's own in one that is everybody's."""
-    everybodys = tmp_path / "everybody's"
-    everybodys.mkdir()
-    cache.rename(everybodys / cache.name)
-    (tmp_path / "mine").symlink_to(everybodys)
-    monkeypatch.setenv("VISCOROLL_CACHE_DIR", str(tmp_path / "mine"))
-    assert fresh() == 1
-    everybodys.chmod(0o777)
-    with pytest.warns(RuntimeWarning, match=SHARED):
-        assert fresh() == 0
-
-
 @pytest.mark.skipif(os.geteuid() != 0, reason="the superuser alone gives files away")
 def test_what_belongs_to_another_is_not_run(cache):
     (path,) = cache.iterdir()
@@ -435,41 +394,6 @@ def test_who_has_no_home_has_a_folder_for_temporary_files(tmp_path, monkeypatch)
 
 
 # --- what is said ---
-
-
-@pytest.fixture
-def untold(monkeypatch):
-    monkeypatch.setattr(cache_folder, "announced", False)
-    monkeypatch.delenv("VISCOROLL_QUIET", raising=False)
-
-
-def test_nothing_is_said_where_it_is_not_wanted(untold, capsys, monkeypatch):
-    with monkeypatch.context() as quiet:
-        quiet.setenv("VISCOROLL_QUIET", "1")
-        cache_folder.announce_compiling()
-    with monkeypatch.context() as child:
-        child.setattr(
-            cache_folder.multiprocessing, "parent_process", lambda: "this process has one"
-        )
-        cache_folder.announce_compiling()
-    with monkeypatch.context() as worker:
-        worker.setitem(
-            sys.modules, "distributed", SimpleNamespace(get_worker=lambda: "a worker of dask")
-        )
-        cache_folder.announce_compiling()
-    with monkeypatch.context() as window:
-        window.setattr(sys, "stderr", None)
-        cache_folder.announce_compiling()
-    assert capsys.readouterr() == ("", "")
-
-
-def test_a_client_of_dask_is_told(untold, capsys, monkeypatch):
-    def get_worker():
-        raise ValueError("No worker found")
-
-    monkeypatch.setitem(sys.modules, "distributed", SimpleNamespace(get_worker=get_worker))
-    cache_folder.announce_compiling()
-    assert re.fullmatch(NOTICE, capsys.readouterr().err)
 
 
 def test_numba_switched_off_is_one_line():
