@@ -216,6 +216,8 @@ def complete(
         found |= {name: found[of] for name, of in _MULTIPLES.items() if name in names}
     if "full_slip" in names:
         found["full_slip"] = found["full_slip"] != 0.0
+    if not shape and computed == names:
+        return found
     return {name: found[name].reshape(shape) if shape else found[name] for name in names}
 
 

@@ -40,7 +40,7 @@ from numpy.typing import ArrayLike
 from ..core.checks import Booleans, Floats, Integers, broadcast_shape, check_array
 from ..core.drive_arguments import Feedback, slope_tan_cos
 from ..core.errors import ParameterError, described_error
-from ..laws.coupled_rows import FIELDS
+from ..laws.law_rows import FIELDS
 from ..laws.law_table import LawTable
 from .contact_table import contact_fields_at, free_creep, refuse_overflow
 from .parameters import Parameters

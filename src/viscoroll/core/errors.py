@@ -192,11 +192,10 @@ def check_one_given(**values: Any) -> str:
     Returns the name of the one that is given.
     Raises ParameterError if none or both are given.
     """
-    given = [name for name, value in values.items() if value is not None]
-    if len(given) != 1:
-        first, second = values
-        raise exactly_one_error(first, second, both=bool(given))
-    return given[0]
+    (first, one), (second, other) = values.items()
+    if (one is None) == (other is None):
+        raise exactly_one_error(first, second, both=one is not None)
+    return second if one is None else first
 
 
 def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
