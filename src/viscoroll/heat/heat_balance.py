@@ -121,58 +121,41 @@ def zeros_of(
     other sign at the extremum; zeros at which f only touches 0 are not found.
     Returns the :class:`Zeros`, to the rounding of f.
     """
-    from scipy.optimize.elementwise import find_root
+    from scipy.optimize.elementwise import find_minimum, find_root
 
-    def rest(rise: Floats, n: Integers) -> Floats:
-        return heat(n, ambient[n] + rise) / conductance[n] - rise
+    def rest(rise: Floats, n: Integers, sign: Any = 1.0) -> Floats:
+        return sign * (heat(n, ambient[n] + rise) / conductance[n] - rise)
 
-    parts = []
-    for at in range(0, ambient.size, _BLOCK):
-        n = np.arange(at, min(at + _BLOCK, ambient.size))
-        nodes = curve.nodes(ambient[n].min() - 1.0, hottest[n].max() + 1.0)
-        rise = nodes - ambient[n, np.newaxis]
-        each = np.repeat(n, nodes.size)
-        f = rest(rise.ravel(), each).reshape(rise.shape)
-        parts.append(_brackets(rest, n, rise, f))
-    if not parts:
-        return Zeros(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))
-    n, low, high, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
-    theta = ambient[n] + find_root(rest, (low, high), args=(n,), tolerances=_TOLERANCE).x
+    parts = [(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))]
+    for first in range(0, ambient.size, _BLOCK):
+        own = np.arange(first, min(first + _BLOCK, ambient.size))
+        nodes = curve.nodes(ambient[own].min() - 1.0, hottest[own].max() + 1.0)
+        rise = nodes - ambient[own, np.newaxis]
+        f = rest(rise.ravel(), np.repeat(own, nodes.size)).reshape(rise.shape)
+        n, k = _extrema(f)
+        if n.size:  # they take the places of their nodes
+            triple = rise[n, k - 1], rise[n, k], rise[n, k + 1]
+            sign = np.sign(f[n, k])
+            found = find_minimum(rest, triple, args=(own[n], sign))
+            rise[n, k] = found.x
+            f[n, k] = sign * found.f_x
+        positive = f > 0.0
+        n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
+        ends = rise[n, k], rise[n, k + 1]
+        found = find_root(rest, ends, args=(own[n],), tolerances=_TOLERANCE)
+        parts.append((own[n], ambient[own[n]] + found.x, positive[n, k]))
+    n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
     found = theta <= hottest[n]
     return Zeros(n[found], theta[found], stable[found])
 
 
-def _brackets(rest: Any, states: Integers, rise: Floats, f: Floats) -> tuple[Any, ...]:
-    """Find intervals of the rise in which f of states, by their indices, changes its sign.
-
-    rest: function of rises and indices that returns f; rise, f: at nodes, ascending, (states,
-    nodes).
-    Returns (indices of the states; lower and upper ends, K; whether f > 0 at the lower end), (m,)
-    each.
+def _extrema(f: Floats) -> tuple[Integers, Integers]:
+    """Return (rows, columns) of nodes of f, (states, nodes), at which |f| has a minimum near which
+    a parabola reaches 0.
     """
-    from scipy.optimize.elementwise import find_minimum
-
-    positive = f > 0.0
-    n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
-    crossings = states[n], rise[n, k], rise[n, k + 1], positive[n, k]
     size = np.abs(f)
-    near = size[:, 1:-1] < np.abs(f[:, :-2] - 2.0 * f[:, 1:-1] + f[:, 2:])
-    near &= size[:, 1:-1] <= np.minimum(size[:, :-2], size[:, 2:])
-    near &= (positive[:, :-2] == positive[:, 1:-1]) & (positive[:, 2:] == positive[:, 1:-1])
-    n, k = near.nonzero()
-    if not n.size:
-        return crossings
-    triple = rise[n, k], rise[n, k + 1], rise[n, k + 2]
-    up = positive[n, k + 1]
-    n = states[n]
-    found = find_minimum(
-        lambda r, n, sign: sign * rest(r, n), triple, args=(n, np.where(up, 1.0, -1.0))
-    )
-    beyond = found.f_x < 0.0
-    pairs = (
-        np.repeat(n[beyond], 2),
-        np.stack([triple[0], found.x], axis=1)[beyond].ravel(),
-        np.stack([found.x, triple[2]], axis=1)[beyond].ravel(),
-        np.stack([up, ~up], axis=1)[beyond].ravel(),
-    )
-    return tuple(map(np.concatenate, zip(crossings, pairs, strict=True)))
+    before, at, after = (size[:, k : f.shape[1] - 2 + k] for k in range(3))
+    near = (at <= before) & (at <= after) & (at < np.abs(np.diff(f, 2)))
+    one_sign = np.abs(np.diff(np.sign(f), axis=1)) == 0.0
+    n, k = (near & one_sign[:, 1:] & one_sign[:, :-1]).nonzero()
+    return n, k + 1

@@ -103,14 +103,10 @@ class HeatStates:
         """Return the fields of a result by name, in SI units, (m,) each; arguments as of
         :meth:`heat`.
 
-        NaN, but for V and temperature, outside the range of the shift; ``loss`` is NaN where the
-        friction does not suffice.
+        ``a_T`` is NaN outside of the range of the shift, and ``loss`` where the friction does not
+        suffice: the others mean nothing there.
         """
-        a_T, root_b = self.curve.factors(theta)
-        unknown = np.isnan(a_T)
-        if unknown.any():
-            root_b = np.where(unknown, 1.0, root_b)
-        factors = np.where(unknown, 1.0, a_T), root_b
+        factors = self.curve.factors(theta)
         load = self.load[n]
         if self.loads is None:
             unlike = not isinstance(self.law, LawTable) or self.law.unlike or self.remade
@@ -125,8 +121,7 @@ class HeatStates:
             contact = dict(zip(MOMENTS, (moments[:2].sum(axis=0), *moments[:2]), strict=True))
         found = {name: each * (load * self.R[n]) for name, each in contact.items()}
         found |= {"C_rr": contact["M"], "loss": loss, "loss_slip": slip}
-        if unknown.any():
-            found = {name: np.where(unknown, np.nan, each) for name, each in found.items()}
+        a_T = np.where(theta > self.curve.high, np.nan, factors[0])
         return found | {"V": V, "temperature": theta, "a_T": a_T}
 
     def _free(

@@ -11,6 +11,7 @@ import math
 import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -61,23 +62,24 @@ class ShiftCurve:
 
     def factors(self, theta: Floats) -> tuple[Floats, Floats]:
         """Return a_T and sqrt(b_T) relative to the reference at temperatures (n,), to the bits of
-        ``Material.at``.
-
-        NaN where the shift is not defined.
+        ``Material.at``; outside of low to high those of the nearer end.
         """
         shift: Any = self.material.shift
         vertical = self.material.vertical_shift
         reference = self.material.temperature
-        different, index = np.unique(theta, return_inverse=True) if theta.size > 1 else (theta, ...)
-        found = np.full((2, different.size), np.nan)
+        inside = theta.clip(self.low, self.high)
+        different, index = (
+            np.unique(inside, return_inverse=True) if inside.size > 1 else (inside, ...)
+        )
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", ModelWarning)  # of temperatures that look like kelvin
             unit = 1.0 if reference is None else shift(reference)
-            for n, at in enumerate(different.tolist()):
-                if self.low <= at <= self.high:
-                    b_T = vertical_factor(vertical, at, reference)
-                    found[:, n] = shift(at) / unit, math.sqrt(b_T)
-        return found[0, index], found[1, index]
+            found = [
+                (shift(at) / unit, math.sqrt(vertical_factor(vertical, at, reference)))
+                for at in different.tolist()
+            ]
+        a_T, root_b = np.reshape(found, (-1, 2)).T
+        return a_T[index], root_b[index]
 
     def at(self, theta: Floats) -> tuple[Floats, Any]:
         """Return :meth:`factors` at temperatures (n,), of a WLF or Arrhenius to rounding, and
@@ -86,10 +88,10 @@ class ShiftCurve:
         if self.slope:
             log2 = self.slope / np.maximum(theta - self.pole, _LEAST) - self.own
             return np.exp2(log2.clip(-FARTHEST, FARTHEST)), 1.0
-        inside = theta.clip(self.low, self.high)
-        a_T, root_b = self.factors(inside)
-        beyond = np.where(theta > inside, self.ends[1], self.ends[0]) * (theta - inside)
-        return np.exp2((np.log2(a_T) + beyond).clip(-FARTHEST, FARTHEST)), root_b
+        a_T, root_b = self.factors(theta)
+        below = self.ends[0] * np.minimum(theta - self.low, 0.0)
+        above = self.ends[1] * np.maximum(theta - self.high, 0.0)
+        return np.exp2((np.log2(a_T) + below + above).clip(-FARTHEST, FARTHEST)), root_b
 
     def nodes(self, cold: float, hot: float) -> Floats:
         """Return temperatures from ``cold`` to ``hot``, ascending, between which log2 a_T falls by
@@ -101,25 +103,24 @@ class ShiftCurve:
 
 
 def shift_curve(material: Material) -> ShiftCurve:
-    """Return the curve of a material's shift, which the material keeps.
+    """Return the curve of a material's shift, which is kept.
 
     Raises ParameterError for a material without a shift, for a shift that is not defined at the
     reference or does not fall with temperature.
     """
-    found: Any = material.__dict__.get("_shift_curve")
-    if found is None:
-        found = material.__dict__["_shift_curve"] = _make_curve(material)
-    return found
+    return _make_curve(material, material.shift, material.vertical_shift)
 
 
-def _make_curve(material: Material) -> ShiftCurve:
-    """Return :func:`shift_curve` of a material that has none yet."""
-    shift: Any = material.shift
+@lru_cache(maxsize=64)
+def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
+    """Return :func:`shift_curve` of a material with these shifts, by which materials do not
+    differ.
+    """
     reference = material.temperature
     if shift is None:
         allowed = "given to the Material of a body that relaxes: a WLF, an Arrhenius or a function"
         raise ParameterError("shift", None, allowed)
-    if isinstance(shift, WLF | Arrhenius) and material.vertical_shift is None:
+    if isinstance(shift, WLF | Arrhenius) and vertical is None:
         pole = shift.pole
         slope = shift.slope / math.log(2.0)
         own = slope / ((shift.T0 if reference is None else reference) - pole)
@@ -150,7 +151,7 @@ def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
 
     shift: function of a temperature in degrees Celsius, whose attribute ``range``, if it has one,
         is (lowest, highest) temperature.
-    reference: temperature of the material; None: that at which a_T is nearest to 1.
+    reference: temperature of the material; None: that at which a_T is 1.
     Raises ParameterError for a shift that is not defined at the reference.
     """
     low, high = getattr(shift, "range", _SAMPLED_RANGE)
@@ -163,14 +164,12 @@ def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
                 a_T[n] = relative_shift(shift, at, reference)
             except (ViscorollError, ArithmeticError, ValueError):
                 continue
-    far = np.abs(np.log(a_T) if reference is None else theta - reference)
-    far[np.isnan(far)] = math.inf
-    own = int(np.argmin(far))
     unknown = np.flatnonzero(np.isnan(a_T))
-    if own in unknown or far[own] == math.inf:
+    if unknown.size == theta.size:
         raise described_error(
             "shift", "is not defined at the temperature of the material", "defined there"
         )
+    own = np.nanargmin(np.abs(np.log(a_T)))  # at the reference a_T is 1
     first = unknown[unknown < own].max(initial=-1) + 1
     last = unknown[unknown > own].min(initial=theta.size)
     return theta[first:last], a_T[first:last]

@@ -124,8 +124,9 @@ def temperature(
     roller : a :class:`Cylinder` whose material has a ``shift``.  One body relaxes, or both are of
         one material; of such each loses half of M, and both have one temperature.
     V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, of half-spaces without
-        loss in slip; with one of force and torque (or a slope, which counts as the force) the loss in slip heats
-        too.  None: the speed follows from the load at each temperature, as of :func:`steady`.
+        loss in slip; with one of force and torque (or a slope, which counts as the force) the loss
+        in slip heats too.  None: the speed follows from the load at each temperature, as of
+        :func:`steady`.
     ambient : temperature of the surroundings, degrees Celsius.
     conductance : heat that the body gives off per kelvin, W/(m K), > 0
     (:func:`viscoroll.conductance`).
@@ -237,7 +238,8 @@ def _under_load(
     a_T = states.curve.factors(zeros.theta)[0]
     rows = {name: at[name][k] for name in MOMENTS}
     rows |= {name: at[of][k] / a_T for name, of in _PER_TIME.items()}
-    rows |= {"temperature": zeros.theta, "a_T": a_T}
+    rows["temperature"] = zeros.theta
+    rows["a_T"] = np.where(zeros.theta > states.curve.high, np.nan, a_T)
     rows["C_rr"] = rows["M"] / (states.load * states.R)[n[k]]
     return rows, Zeros(n[k], zeros.theta, zeros.stable & at["stable"][k])
 
@@ -253,7 +255,7 @@ def _pack(
     low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
     speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
     inside = (speed == 0.0) | (speed >= low) & (speed <= high)
-    known = np.isfinite(rows["loss"])
+    known = np.isfinite(rows["loss"] + rows["a_T"])
     reason = _reasons(states, zeros, known, inside, rows)
     order = np.lexsort((zeros.theta, zeros.state))
     order = order[known[order]]

@@ -16,9 +16,9 @@ from ..core.labels import strip_labels
 from ..core.results import Values
 from .heated_bodies import heat_states
 
-#: Tolerance of the integrator beside which its own default is loose: the energy then balances to
-#: 1e-6 of itself.
-RTOL = 1e-9
+#: Relative tolerance of the integrator, and the absolute one in K: the energy then balances to 1e-6
+#: of itself.
+_TOLERANCE = 1e-9
 
 
 def warming(
@@ -30,7 +30,6 @@ def warming(
     conductance: Numbers,
     capacity: Numbers,
     start: Numbers | None = None,
-    rtol: float = RTOL,
 ) -> Values:
     """Integrate the temperature of a freely rolling cylinder over time, with the law at the
     temperature of each time.
@@ -45,8 +44,6 @@ def warming(
     capacity : heat that the body stores per kelvin, J/(m K), > 0: the sum of density, specific heat
         and cross section of what warms together.
     start : temperature at t = 0, degrees Celsius; default: ``ambient``.
-    rtol : relative tolerance of the integrator, in [1e-12, 1e-3]; the absolute one is as many
-        kelvin.
 
     Returns
     -------
@@ -97,7 +94,6 @@ def warming(
         raise shape_error("t", times.shape, "a vector (t,) of at least one time")
     if (np.diff(times) <= 0.0).any():
         raise described_error("t", "does not ascend", "in ascending order")
-    rtol = check_number("rtol", rtol, low=1e-12, high=1e-3)
     speed, corners = _speed_of(V, scale)
     every = np.arange(theta.size)
 
@@ -112,7 +108,7 @@ def warming(
     time = 0.0
     for stop in np.unique(np.append(corners[(corners > 0.0) & (corners < times[-1])], times[-1])):
         own = times[(times > time) & (times <= stop)] if time else times[times <= stop]
-        y, outputs = _integrate(solve_ivp, rates, (time, float(stop)), y, own, rtol)
+        y, outputs = _integrate(solve_ivp, rates, (time, float(stop)), y, own)
         found.append(outputs)
         time = float(stop)
     course, heat, off = np.split(np.concatenate(found, axis=1), 3)
@@ -155,20 +151,21 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
 
 
 def _integrate(
-    solver: Any, rates: Any, span: tuple[float, float], y: Floats, times: Floats, rtol: float
+    solver: Any, rates: Any, span: tuple[float, float], y: Floats, times: Floats
 ) -> tuple[Floats, Floats]:
     """Integrate over one stretch without corners.
 
     solver: ``scipy.integrate.solve_ivp``.
     rates: function of time and y; span: begin and end, s; y: values at its begin, (k,); times:
         outputs within it.
-    rtol: relative tolerance.
     Returns (y at the end, (k,); y at the times, (k, outputs)).
     Raises ParameterError where the integrator finds no step that is small enough.
     """
     if span[1] == span[0]:
         return y, np.repeat(y[:, np.newaxis], times.size, axis=1)
-    found = solver(rates, span, y, "DOP853", np.union1d(times, span[1]), rtol=rtol, atol=rtol)
+    found = solver(
+        rates, span, y, "DOP853", np.union1d(times, span[1]), rtol=_TOLERANCE, atol=_TOLERANCE
+    )
     if not found.success:
         raise described_error(
             "temperature", f"cannot be integrated ({found.message})", "one that a balance has"
