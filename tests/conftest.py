@@ -12,7 +12,7 @@ from memory import forget
 
 from viscoroll.contact_mechanics import model_warnings
 from viscoroll.measurements import spectrum
-from viscoroll.motion import flow_store
+from viscoroll.motion import flow
 
 # what a user chose for other work does not reach the tests
 os.environ.pop("VISCOROLL_THREADS", None)
@@ -57,7 +57,7 @@ def two_speeds(monkeypatch):
 @pytest.fixture
 def own_maps(tmp_path, monkeypatch):
     """Flow maps of a test are its own; compiled kernels stay where they are."""
-    monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "maps")
+    monkeypatch.setattr(flow, "folder", lambda: tmp_path / "maps")
     forget()
     yield
     forget()
@@ -67,7 +67,7 @@ def own_maps(tmp_path, monkeypatch):
 def maps_of_this_file(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         folder = tmp_path_factory.mktemp("maps")
-        patch.setattr(flow_store, "folder", lambda: folder)
+        patch.setattr(flow, "folder", lambda: folder)
         forget()
         yield
     forget()

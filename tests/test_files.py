@@ -268,8 +268,7 @@ RAW = {
 #: temporary folder
 KNOWN = {
     "files.py: fix_texts(dataset).to_netcdf",
-    "coupled_tables.py: np.savez",
-    "flow_store.py: np.savez",
+    "files.py: np.savez",
     "run_results.py: h5netcdf.File",
     "run_results.py: path.open",
     "cache_folder.py: temporary.write_bytes",

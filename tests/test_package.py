@@ -76,6 +76,12 @@ def test_import_is_light(code):
     assert not HEAVY & set(loaded.split())
 
 
+def test_a_contact_imports_no_motions_and_no_heat():
+    call = "vr.Scene(2, 2, 0.2).contact(1, delta=0); print(*sys.modules)"
+    loaded = printed(f"import sys, viscoroll as vr; {call}")
+    assert not re.search(r"viscoroll\.(motion|heat|tables|runs)", loaded)
+
+
 def test_kernels_import_numpy_and_numba_only():
     """And for the cache of their machine code filelock."""
     for path in (PACKAGE / "kernels").rglob("*.py"):

@@ -7,28 +7,28 @@ import numpy as np
 import pytest
 
 from viscoroll.kernels.motion.flow_layout import SIZE
-from viscoroll.motion import flow_store
+from viscoroll.motion import flow
 
 
 @pytest.fixture
 def folder(tmp_path, monkeypatch):
-    monkeypatch.setattr(flow_store, "folder", lambda: tmp_path / "made")
+    monkeypatch.setattr(flow, "folder", lambda: tmp_path / "made")
     return tmp_path / "made"
 
 
 def place(alpha):
     """Parameters of a map, and its file."""
     parameters = alpha, 10.0, 0.3, 0.5
-    return parameters, flow_store.path_of(parameters, 4)
+    return parameters, flow.path_of(parameters, 4)
 
 
 def kept(alpha):
     """Whether the map of this alpha is there; else it is made."""
     parameters, path = place(alpha)
-    made = flow_store.FlowMap(parameters, -16, np.full(SIZE, alpha), (1e-9, 2e-9, 3e-9), "")
-    found = flow_store.load(path, parameters)
+    made = flow.FlowMap(parameters, -16, np.full(SIZE, alpha), (1e-9, 2e-9, 3e-9), "")
+    found = flow.load(path, parameters)
     if found is None:
-        flow_store.save(made, path)
+        flow.save(made, path)
         return False
     assert np.array_equal(found.table, made.table)
     assert vars(found) | {"table": None} == vars(made) | {"table": None}
@@ -93,7 +93,7 @@ def test_a_read_only_folder_is_used(folder, monkeypatch):
 
 
 def test_those_used_last_are_kept(folder, monkeypatch):
-    monkeypatch.setattr(flow_store, "KEPT", 2)
+    monkeypatch.setattr(flow, "KEPT", 2)
     for number in (2.0, 3.0):
         kept(number)
         os.utime(place(number)[1], (0.0, number))  # long ago

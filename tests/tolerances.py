@@ -706,3 +706,7 @@ TABLE_HEADER = 1e-11
 TABLE_FREE = 1e-3
 #: A grid of 200 by 401 nodes in place of the rows, in V and omega at the end of motions; seen 1e-8.
 GRID_MOTION = 1e-6
+
+# Losses of steady states on a table beside the load's power: force and torque come from a balance
+# solved to 1e-14 of mu P; seen 5e-11 where the power is 1e-4 of that.
+BALANCE_OF_STEADY = 1e-9

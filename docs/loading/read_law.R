@@ -4,7 +4,8 @@ library(ncdf4)
 
 read_law <- function(path) {
   file <- nc_open(path)
-  read <- function(names) sapply(names, function(name) ncvar_get(file, name), simplify = FALSE)
+  read <- function(names) sapply(names, function(name) ncvar_get(file, name, collapse_degen = FALSE),
+                                      simplify = FALSE)
   names <- c("lam", "epsilon", "m_half_space", "m_cylinder", "N", "share", "press")
   if ("limits" %in% names(file$var)) {
     # A layer: shear acts back on the pressure, and N is not known.

@@ -57,7 +57,7 @@ from .measurements.measurement_records import Resistance as Resistance
 from .measurements.measurement_records import Traction as Traction
 from .motion.ensemble import Ensemble as Ensemble
 from .motion.ensemble import ensemble as ensemble
-from .motion.motion_result import Motion as Motion
+from .motion.roll import Motion as Motion
 from .motion.roll import roll as roll
 from .rollers import Cylinder as Cylinder
 from .rollers import Scene as Scene

@@ -11,35 +11,42 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from .contact_mechanics.assumptions import DUNDURS_LIMIT
 from .contact_mechanics.body_data import BodyData
-from .contact_mechanics.bound_law import law
-from .contact_mechanics.contact import contact, stress
 from .contact_mechanics.parameters import Parameters, Roller
-from .contact_mechanics.rolling_resistance import resistance_extrema
-from .contact_mechanics.steady import steady
-from .contact_mechanics.validity import validity
 from .core.checks import broadcast_shape, check_array, check_bool, check_choice, read_only
 from .core.drive_arguments import slope_tan_cos
 from .core.errors import ParameterError, described_error, exactly_one_error, shape_error
 from .core.results import Result, SummaryRow, format_value
 from .core.scale import MEASURED, SI, Scale
-from .heat.heated_pairs import pair_temperatures
-from .heat.limits import heat_limit, turning_points
-from .heat.temperature import temperature
-from .heat.warming import warming
 from .laws.law_table import LawTable
 from .materials.bodies import Bodies, Cover
 from .materials.material import Material, refuse_short_retardation
 from .materials.pair import Pair, Plane, effective_modulus
 from .materials.prony import Prony
-from .motion.ensemble import ensemble
-from .motion.roll import roll
+
+if TYPE_CHECKING:
+    from . import (
+        contact,
+        ensemble,
+        heat_limit,
+        law,
+        pair_temperatures,
+        resistance_extrema,
+        roll,
+        steady,
+        stress,
+        temperature,
+        turning_points,
+        validity,
+        warming,
+    )
 
 # --- A dimensionless roller, Scene, and the methods that it shares with a cylinder ---
 
@@ -49,19 +56,62 @@ class Methods(Roller):
     ...)`` is ``roller.contact(V, ...)``, with the same arguments and results.
     """
 
-    contact = contact
-    stress = stress
-    steady = steady
-    resistance_extrema = resistance_extrema
-    law = law
-    roll = roll
-    ensemble = ensemble
-    validity = validity
-    temperature = temperature
-    warming = warming
-    heat_limit = heat_limit
-    turning_points = turning_points
-    pair_temperatures = pair_temperatures
+    if TYPE_CHECKING:
+        contact = contact
+        stress = stress
+        steady = steady
+        resistance_extrema = resistance_extrema
+        law = law
+        roll = roll
+        ensemble = ensemble
+        validity = validity
+        temperature = temperature
+        warming = warming
+        heat_limit = heat_limit
+        turning_points = turning_points
+        pair_temperatures = pair_temperatures
+
+
+class _PublicFunction:
+    """A public function of the package as a method, imported at its first use: a contact imports no
+    motions and no heat.
+    """
+
+    def __init__(self, name: str) -> None:
+        """Keep the name.
+
+        name: public name of a function whose first argument is a roller.
+        """
+        self.name = name
+
+    def __get__(self, roller: Methods | None, owner: type[Methods]) -> Any:
+        """Import the function, and put it in the place of this object in :class:`Methods`.
+
+        roller, owner: scene or cylinder, None where the class is asked, and its class.
+        Returns the method of the roller; the function of the class.
+        Raises ImportError where a package that its module needs is missing.
+        """
+        function = getattr(import_module(__package__), self.name)
+        setattr(Methods, self.name, function)
+        return function.__get__(roller, owner)
+
+
+for _name in (
+    "contact",
+    "stress",
+    "steady",
+    "resistance_extrema",
+    "law",
+    "roll",
+    "ensemble",
+    "validity",
+    "temperature",
+    "warming",
+    "heat_limit",
+    "turning_points",
+    "pair_temperatures",
+):
+    setattr(Methods, _name, _PublicFunction(_name))
 
 
 class Scene(Methods, Parameters):

@@ -49,13 +49,13 @@ folder = Path(sys.argv[1])
 sys.path.insert(0, sys.argv[2])
 import numpy as np
 import test_hosts as test
-from viscoroll.motion import flow_store
+from viscoroll.motion import flow
 library = folder / "register.so"
 register = ctypes.CDLL(str(library)) if library.exists() else None
 usual = register.get() if register else 0
 for name, bits in ({"usual": 0} | (test.MODES if register else {})).items():
     test.forget()
-    flow_store.folder = lambda: folder / name
+    flow.folder = lambda: folder / name
     if register:
         register.set(usual | bits)
     try:
@@ -66,7 +66,7 @@ for name, bits in ({"usual": 0} | (test.MODES if register else {})).items():
             register.set(usual)
     np.savez(folder / f"{name}.npz", register_after=register_after, **found)
 if "fork" in multiprocessing.get_all_start_methods():
-    flow_store.folder = lambda: folder / "fork"
+    flow.folder = lambda: folder / "fork"
     with multiprocessing.get_context("fork").Pool(1) as pool:
         (found,) = pool.map_async(test.work, range(1)).get(timeout=200)
     np.savez(folder / "fork.npz", **found)

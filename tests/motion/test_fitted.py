@@ -12,7 +12,7 @@ from drives import ROLLER
 
 import viscoroll as vr
 from viscoroll.motion import drive_fit
-from viscoroll.motion.piecewise import check_function, piecewise
+from viscoroll.motion.piecewise import piecewise
 
 END = 20.0
 #: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a
@@ -61,7 +61,7 @@ def test_a_callable_is_met_in_few_values(name, rtol):
     took no end of them.
     """
     function = Counted(CALLABLES[name])
-    curve = piecewise(check_function("torque", function, END, rtol))
+    curve = piecewise("torque", function, END, rtol)
     assert function.calls <= tol.CALLABLE_VALUES
     assert curve.starts.size <= tol.CALLABLE_PIECES
     assert (np.diff(curve.starts) > 0.0).all()

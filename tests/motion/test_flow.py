@@ -11,7 +11,7 @@ from memory import forget
 
 import viscoroll as vr
 from viscoroll.core.errors import MotionStatus
-from viscoroll.motion import flow, flow_store
+from viscoroll.motion import flow
 from viscoroll.motion.ensemble import FIELDS
 from viscoroll.motion.many_motions import FLOW_PAYS
 from viscoroll.motion.motion_arguments import LOSSES
@@ -247,7 +247,7 @@ def test_kept_on_disk_and_built_once(monkeypatch):
     assert len(calls) == 1
     assert np.array_equal(again.table, first.table)
     assert again.errors == first.errors
-    (path,) = flow_store.folder().iterdir()
+    (path,) = flow.folder().iterdir()
     assert path.stat().st_size < 3_000_000
 
 

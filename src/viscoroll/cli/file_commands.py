@@ -414,7 +414,7 @@ def build(arguments: Namespace) -> None:
         type=int,
         nargs=2,
         metavar=("SPEEDS", "CREEPS"),
-        help="numbers of nodes (default: 4 to 11 a decade of speed, 33)",
+        help="numbers of nodes (default: 5 to 13 a decade of speed, 27)",
     ),
     output(".nc", ".cdf", ".h"),
 )

@@ -300,9 +300,8 @@ class BodyData:
             return None
         if any(data.misfit > MISFIT_LIMIT for data in self.records.values()):
             return NO_SPEEDS
-        return self.measured_rates[0] * float(np.max(self.l0)), self.measured_rates[1] * float(
-            np.min(self.l0)
-        )
+        low, high = self.measured_rates
+        return low * float(np.max(self.l0)), high * float(np.min(self.l0))
 
     @cached_property
     def small_at_rest(self) -> bool:
@@ -384,18 +383,11 @@ class BodyData:
         if self.pair is not None:
             first = self.pair.cylinder
             second = self.pair.half_space
-            bodies = [
-                ("the cylinder", first.G, first.density),
-                ("the base", second.G, second.density),
-            ]
+            one = ("the cylinder", first.G, first.density)
+            bodies = [one, ("the base", second.G, second.density)]
             if self.pair.like:
-                bodies = [
-                    (
-                        "the material",
-                        first.G,
-                        second.density if first.density is None else first.density,
-                    )
-                ]
+                either = second.density if first.density is None else first.density
+                bodies = [("the material", first.G, either)]
             bodies = [body for body in bodies if not np.all(np.isinf(body[1]))]
         if density is not None:
             bodies[0] = (*bodies[0][:2], density)

@@ -17,6 +17,7 @@ time of the material, alpha the instantaneous over the long-time modulus.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from itertools import pairwise
 from typing import Any, Literal, overload
@@ -222,7 +223,7 @@ def contact(
     names = field_names(fields, slopes, method, like=like, si=scale.si, cover=cover)
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])
-    creep = check_array(creep_name, given[creep_name])
+    creep, _ = check_array_extent(creep_name, given[creep_name])
     given = {"V": speed, creep_name: creep}
     about = None
     if scale.si:
@@ -251,8 +252,6 @@ def contact(
 
 #: Points of a block: some milliseconds of work.
 _BLOCK = 1 << 15
-#: Fields of the contact that the stresses depend on.
-_FIELDS = "lam", "epsilon", "beta", "zeta", "delta"
 
 
 @overload
@@ -342,8 +341,6 @@ def stress(
     (``tests/test_stress.py``).  Where V or the creepage are arrays, the state of the contact takes
     56 bytes for each of their elements, beside the result.
     """
-    from ..kernels.law.modes import Points
-
     _, scene, scale = resolve_model(roller, "stress")
     creep_name = check_one_given(delta=delta, omega=omega)
     check_choice("method", method, "table", "coupled")
@@ -360,39 +357,55 @@ def stress(
             speed = divide_by_unit("V", speed, scale["V"])
             creep = divide_by_unit(creep_name, creep, scale[creep_name])
     if method == "coupled":
-        from .coupled_contact import coupled_stress
+        from .coupled_contact import coupled_stress as find
+    else:
+        find = _stress_of_law
+    stresses = find(scene, position, speed, creep, creep_name == "omega")
+    stresses *= scale["p"]  # in place: a copy would double the memory of a large call
+    found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
+    return Values(found, given, si=scale.si, title="Stresses", labels=labels)
 
-        both = coupled_stress(scene, position, speed, creep, creep_name == "omega")
-        parts = {name: scale["p"] * value for name, value in zip(("p", "tau"), both, strict=True)}
-        parts = {name: value if value.ndim else value.item() for name, value in parts.items()}
-        return Values(parts, given, si=scale.si, title="Stresses", labels=labels)
-    # no table of the coupled solution has stresses: they are of the law without one
+
+def _stress_of_law(
+    scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
+) -> Floats:
+    """Return pressure and shear stress by the law without a table, which has no stresses, over E'.
+
+    Arguments as of :func:`.coupled_contact.coupled_stress`.
+    Returns p and tau as rows of an array, each of the broadcast shape; of a cover p alone.
+    """
+    from ..kernels.law.modes import Points
+
     scene = scene.uncoupled
     lam, epsilon, beta, zeta, delta = evaluate_contact(
-        scene, speed, creep, creep_name == "omega", _FIELDS
+        scene, V, creep, creep_is_omega, ("lam", "epsilon", "beta", "zeta", "delta")
     ).values()
     # For V < 0 positions are mirrored, and tau changes its sign.
-    mirror = np.where(speed < 0.0, -1.0, 1.0)
+    mirror = np.where(V < 0.0, -1.0, 1.0)
     alpha = (
         scene.alpha
         if scene.material_array is None
         else np.arange(len(scene.material_array), dtype=np.float64)
     )
     arrays = {
-        "x": position,
+        "x": x,
         "kappa": scene.kappa,
         "mu": scene.mu,
         "lam": lam,
         "epsilon": epsilon,
         "beta": beta,
+        "zeta": zeta,
+        "alpha": alpha,
+        "mirror": mirror,
+        "sign": np.sign(delta) * mirror,
     }
-    arrays |= {"zeta": zeta, "alpha": alpha, "mirror": mirror, "sign": np.sign(delta) * mirror}
     arrays = {name: np.asarray(value, dtype=np.float64) for name, value in arrays.items()}
     shape = broadcast_shape(**arrays)
     read_x, *readers, read_alpha, read_mirror, read_sign = (
         block_reader(array, shape) for array in arrays.values()
     )
-    p, tau = np.empty((2, int(np.prod(shape))))
+    out = np.empty((2, math.prod(shape)))
+    p, tau = out
 
     def work(start: int, stop: int) -> None:
         """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1 of the flattened
@@ -407,14 +420,7 @@ def stress(
             tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 
     run_blocks(work, p.size, _BLOCK)
-    unit = scale["p"]
-    rows = {"p": p} if scene.cover is not None else {"p": p, "tau": tau}
-    found: dict[str, Any] = {}
-    for name, row in rows.items():
-        values = row.reshape(shape)
-        values *= unit  # in place: a copy would double the memory of a large call
-        found[name] = values if shape else values.item()
-    return Values(found, given, si=scale.si, title="Stresses", labels=labels)
+    return out.reshape(2, *shape)[: 2 if scene.cover is None else 1]
 
 
 def _compute_stresses(

@@ -33,7 +33,6 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.blocks import block_reader, run_blocks
 from ..core.checks import Floats, broadcast_shape, check_choice, extent
@@ -58,6 +57,7 @@ SLOPES_OF_BODIES = ("dM_half_space_dV", "dM_cylinder_dV")
 #: Slopes that are 0 of half-spaces, whose M depends on the speed alone; of a cover with
 #: ``slopes=True``.
 SLOPES_OF_COVERS = ("dM_ddelta", "dM_domega", "dM_half_space_domega", "dM_cylinder_domega")
+_ALL_SLOPES = SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS
 #: Added mass of slow speed changes.
 UNSTEADY = "N"
 #: Friction reserve 1 - |Q|/mu.
@@ -81,7 +81,7 @@ _HALVES = dict(zip(OF_BODIES + SLOPES_OF_BODIES, ("M", "M", "dM_dV", "dM_dV"), s
 _HALVES |= dict.fromkeys(SLOPES_OF_COVERS[2:], "dM_domega")
 #: All fields.
 _KNOWN = (
-    *(*FIELDS, *OF_BODIES, *SLOPES, *SLOPES_OF_BODIES, *SLOPES_OF_COVERS),
+    *(*FIELDS, *OF_BODIES, *_ALL_SLOPES),
     *(UNSTEADY, GRIP, FREE_CREEP, *_MULTIPLES, *ONSETS, *OF_COUPLED),
 )
 
@@ -131,45 +131,33 @@ def field_names(
     if slopes:
         more = SLOPES + (() if like else SLOPES_OF_BODIES) + (SLOPES_OF_COVERS if cover else ())
         names += tuple(name for name in more if name not in names)
+    added: tuple[str, ...] = (FREE_CREEP,) if cover else ()
     if method == "coupled":
-        return _coupled_names(names, fields is None)
-    only = next((name for name in names if name in OF_COUPLED), None)
-    if only is not None:
-        raise ParameterError("fields", repr(only), "left out, or computed with method='coupled'")
-    if method == "direct":
-        if set(names) & set(SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS):
-            raise ParameterError(
-                "method", "'direct'", "'table' for slopes: the equations of the paper give none"
-            )
-        for name in (UNSTEADY, GRIP, FREE_CREEP, *ONSETS):
-            if name in names:
-                raise ParameterError(
-                    "fields", repr(name), "left out, or computed with method='table'"
-                )
-    if not cover:
-        return names
-    if UNSTEADY in names:
-        allowed = "left out for a cover: N of a layer of finite thickness is not available"
-        raise ParameterError("fields", repr(UNSTEADY), allowed)
-    return (*names, FREE_CREEP) if fields is None else names
+        refuse_fields(
+            names, (*_ALL_SLOPES, UNSTEADY), "left out: method 'coupled' has no slopes and no N"
+        )
+        added = (*OF_BODIES, *ONSETS, *OF_COUPLED[:-1])
+    else:
+        refuse_fields(names, OF_COUPLED, "left out, or computed with method='coupled'")
+        if method == "direct":
+            if not set(_ALL_SLOPES).isdisjoint(names):
+                allowed = "'table' for slopes: the equations of the paper give none"
+                raise ParameterError("method", "'direct'", allowed)
+            only_table = (UNSTEADY, GRIP, FREE_CREEP, *ONSETS)
+            refuse_fields(only_table, names, "left out, or computed with method='table'")
+        if cover:
+            allowed = "left out for a cover: N of a layer of finite thickness is not available"
+            refuse_fields((UNSTEADY,), names, allowed)
+    return tuple(dict.fromkeys(names + added)) if added and fields is None else names
 
 
-def _coupled_names(names: tuple[str, ...], default: bool) -> tuple[str, ...]:
-    """Return the fields of a call with method "coupled".
-
-    names: fields of the call; default: whether they are the default ones, to which those of the
-    method are added.
-    Raises ParameterError for slopes and N.
+def refuse_fields(names: Iterable[str], refused: Iterable[str], allowed: str) -> None:
+    """Raise ParameterError for the first of ``names`` that is among ``refused``; ``allowed``: what
+    the error says.
     """
     for name in names:
-        if name in SLOPES + SLOPES_OF_BODIES + SLOPES_OF_COVERS + (UNSTEADY,):
-            raise ParameterError(
-                "fields", repr(name), "left out: method 'coupled' has no slopes and no N"
-            )
-    if not default:
-        return names
-    extra = (*OF_BODIES, *ONSETS, *OF_COUPLED[:-1])
-    return names + tuple(name for name in extra if name not in names)
+        if name in refused:
+            raise ParameterError("fields", repr(name), allowed)
 
 
 @lru_cache(maxsize=64)
@@ -252,8 +240,8 @@ _FASTEST_DIRECT = 1e12
 
 def evaluate_contact(
     scene: Parameters,
-    V: NDArray,
-    creep: NDArray,
+    V: Floats,
+    creep: Floats,
     creep_is_omega: bool,
     names: tuple[str, ...],
     method: str = "table",
@@ -308,11 +296,8 @@ def evaluate_contact(
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):
-        if UNSTEADY in names:
-            allowed = (
-                "left out for many materials in one call: compute it for one of them, material[i]"
-            )
-            raise ParameterError("fields", repr(UNSTEADY), allowed)
+        allowed = "left out for many materials in one call: compute it for one of them, material[i]"
+        refuse_fields(names, (UNSTEADY,), allowed)
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
@@ -457,7 +442,7 @@ def _kernel(direct: bool) -> tuple[Any, Any]:
 
 def _laws_of_block(
     material: Any, alpha: Floats, parts: tuple[Floats, ...], direct: bool
-) -> tuple[Any, NDArray]:
+) -> tuple[Any, Any]:
     """Make the laws of the states of a block, and choose the order in which the states are
     evaluated.
 
@@ -483,6 +468,35 @@ def _laws_of_block(
     return records_of_alphas(alpha, _ALPHAS_TOGETHER), sort_by_octave(alpha, parts[0], parts[2])
 
 
+def contact_fields_at(
+    law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Any, *names: str
+) -> Floats:
+    """Return fields of the contact at V > 0 and a creepage, one row for each of ``names``.
+
+    law : table of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    V : speeds, dimensionless, > 0, which is not checked, (n,).
+    delta : creepage, dimensionless, any sign, a number or (n,).
+    names : fields that kernels compute, as ``Q`` or ``dQ_dV``; ``full_slip`` is 0 or 1, ``dQ_dV``
+        is at fixed delta.
+    Returns the fields, (names, n), dimensionless.
+    """
+    return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
+
+
+def free_creep(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Any:
+    """Return delta_0 at V > 0, the creepage of free rolling, at which Q = 0.
+
+    law : table of the material.
+    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,); mu is only passed on,
+        delta_0 does not depend on it.
+    V : speeds, dimensionless, > 0, which is not checked, (n,).
+    Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float 0.0
+    of half-spaces.
+    """
+    return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
+
+
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     """Return fields of the contact without traction, for kappa = mu = 1 and the speed V = u.
 
@@ -495,15 +509,11 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     Returns a new array (names, n), dimensionless, rows in the order of ``names``; N of a cover is
     NaN.
     """
-    if law.cover is None:
-        return evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, names)
-    free = evaluate_law(law, [1.0, 1.0, 1.0, u, 0.0], u.shape, False, ("delta_0",))[0]
-    state = [1.0, 1.0, 1.0, u, free]
-    found = evaluate_law(law, state, u.shape, False, names)
-    if "dM_dV" in names:  # along free rolling, whose creepage changes with the speed
-        of_M, of_V, of_Q = evaluate_law(
-            law, state, u.shape, False, ("dM_ddelta", "dQ_dV", "dQ_ddelta")
-        )
+    free = free_creep(law, 1.0, 1.0, u)
+    found = contact_fields_at(law, 1.0, 1.0, u, free, *names)
+    if law.cover is not None and "dM_dV" in names:  # along free rolling, whose creepage changes
+        slopes = "dM_ddelta", "dQ_dV", "dQ_ddelta"
+        of_M, of_V, of_Q = contact_fields_at(law, 1.0, 1.0, u, free, *slopes)
         found[names.index("dM_dV")] -= of_M * of_V / of_Q
     return found
 
@@ -518,7 +528,7 @@ def refuse_beyond(law: LawTable, u: Any) -> None:
         raise OutOfTableError("kappa |V|", largest, 0.0, most)
 
 
-def refuse_overflow(kappa: NDArray, V: NDArray, fastest: float = FASTEST) -> None:
+def refuse_overflow(kappa: Floats, V: Floats, fastest: float = FASTEST) -> None:
     """Raise ParameterError where kappa |V| exceeds its largest allowed value; else do nothing, as
     without elements.
 

@@ -11,13 +11,12 @@ from functools import lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.blocks import run_blocks
 from ..core.checks import Floats, broadcast_shape
 from ..core.errors import ConvergenceError, ParameterError
 from .contact_table import DEPTH, FREE_CREEP, complete, refuse_overflow
-from .coupled_pair import CoupledPair, CoupledProfile, CoupledRow, CoupledStates, depth
+from .coupled_pair import CoupledPair, CoupledRow, depth
 from .parameters import Parameters
 
 #: What each status of the kernels says.
@@ -56,7 +55,7 @@ class _States:
     have in common.
     """
 
-    def __init__(self, scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool) -> None:
+    def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:
         """Broadcast and check the states; creep: omega if ``creep_is_omega``, else delta.
 
         Raises ParameterError for kappa |V| that is too large, and shapes that do not broadcast.
@@ -73,12 +72,12 @@ class _States:
         self.kappa, self.mu, self.V, given = (
             np.broadcast_to(each, self.shape).ravel() for each in arrays.values()
         )
+        self.sign = np.where(self.V < 0.0, -1.0, 1.0)
         if creep_is_omega:
             self.slip = given - self.V
             with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-                self.delta = np.where(
-                    self.slip == 0.0, 0.0, self.slip / np.abs(self.V) * np.where(self.V < 0, -1, 1)
-                )
+                delta = self.slip / np.abs(self.V) * self.sign
+                self.delta = np.where(self.slip == 0.0, 0.0, delta)
         else:
             self.slip = given * self.V
             self.delta = given
@@ -94,7 +93,7 @@ class _States:
 
 
 def evaluate_coupled(
-    scene: Parameters, V: NDArray, creep: NDArray, creep_is_omega: bool, names: tuple[str, ...]
+    scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool, names: tuple[str, ...]
 ) -> dict[str, Any]:
     """Return dimensionless fields of the contact by name, with pressure and shear solved together.
 
@@ -136,31 +135,35 @@ def _fields_of_row(
     """
     first = which[0]
     row = coupled_row(pair, float(states.u[first]), float(states.mu[first]))
-    kappa, mu, V, delta = (
-        each[which] for each in (states.kappa, states.mu, states.V, states.delta)
+    kappa, mu, V, sign, slip, delta, creep = (
+        vars(states)[name][which] for name in ("kappa", "mu", "V", "sign", "slip", "delta", "creep")
     )
-    creep = states.creep[which]
     found = row.states(creep, apart=True)
     refuse_unsolved(found.status, creep, row.u, row.mu)
-    fields = _losses(found, states.slip[which], V, kappa, mu)
-    sign = np.where(V < 0.0, -1.0, 1.0)
+    half = 0.5 * np.abs(V) / kappa
+    strain = found.work_base + found.work_cylinder
     low, high = row.onsets()
     with np.errstate(divide="ignore", over="ignore"):
-        fields["zeta"] = 0.5 * found.lam / row.u if row.u > 0.0 else np.inf
-    fields |= {
+        zeta = 0.5 * found.lam / row.u if row.u > 0.0 else np.inf
+    fields: dict[str, Any] = {
         "lam": found.lam,
         "length": found.lam,
         "epsilon": found.epsilon,
         "beta": found.beta,
+        "zeta": zeta,
         "delta": delta,
+        "delta_minus": 0.5 * low / kappa,
+        "delta_plus": 0.5 * high / kappa,
+        "delta_star": 0.25 * (high - low) / kappa,
+        "full_slip": (creep <= low) | (creep >= high),
+        "Q": sign * mu * found.Q_over_mu,
+        "grip": 1.0 - np.abs(found.Q_over_mu),
+        "M_half_space": sign * found.kM_base / kappa,
+        "M_cylinder": sign * found.kM_cylinder / kappa,
+        "loss_slip": sign * slip * mu * found.Q_over_mu - half * strain,
+        "loss_half_space": half * (2.0 * found.kM_base + found.work_base),
+        "loss_cylinder": half * (2.0 * found.kM_cylinder + found.work_cylinder),
     }
-    fields |= {"delta_minus": 0.5 * low / kappa, "delta_plus": 0.5 * high / kappa}
-    fields["delta_star"] = 0.25 * (high - low) / kappa
-    fields["full_slip"] = (creep <= low) | (creep >= high)
-    fields["Q"] = sign * mu * found.Q_over_mu
-    fields["grip"] = 1.0 - np.abs(found.Q_over_mu)
-    fields["M_half_space"] = sign * found.kM_base / kappa
-    fields["M_cylinder"] = sign * found.kM_cylinder / kappa
     fields["M"] = fields["C_rr"] = fields["M_half_space"] + fields["M_cylinder"]
     if FREE_CREEP in names:
         fields[FREE_CREEP] = 0.5 * row.free_creep() / kappa
@@ -170,30 +173,13 @@ def _fields_of_row(
     return fields
 
 
-def _losses(
-    found: CoupledStates, slip: Floats, V: Floats, kappa: Floats, mu: Floats
-) -> dict[str, Any]:
-    """Return the power lost in slip and in each body, by name, over P R/T_ref.
-
-    found: states of a row.  slip: omega - V.  V, kappa, mu: of the states.
-    """
-    sign = np.where(V < 0.0, -1.0, 1.0)
-    half = 0.5 * np.abs(V) / kappa
-    strain = found.work_base + found.work_cylinder
-    return {
-        "loss_slip": sign * slip * mu * found.Q_over_mu - half * strain,
-        "loss_half_space": half * (2.0 * found.kM_base + found.work_base),
-        "loss_cylinder": half * (2.0 * found.kM_cylinder + found.work_cylinder),
-    }
-
-
 def coupled_stress(
-    scene: Parameters, x: NDArray, V: NDArray, creep: NDArray, creep_is_omega: bool
-) -> tuple[Floats, Floats]:
+    scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
+) -> Floats:
     """Return pressure and shear stress on the cylinder along +x over E' at places x over l0.
 
     scene, V, creep, creep_is_omega: as of :func:`evaluate_coupled`.  x: broadcasts with the states.
-    Returns (p, tau), arrays of the broadcast shape, 0 outside the contact.
+    Returns p and tau as rows of an array, each of the broadcast shape, 0 outside the contact.
     Raises as :func:`evaluate_coupled`.
     """
     pair = CoupledPair.of_scene(scene)
@@ -201,23 +187,15 @@ def coupled_stress(
     shape = broadcast_shape(x=x, V=np.empty(states.shape))
     number = np.broadcast_to(np.arange(states.V.size).reshape(states.shape), shape)
     x = np.broadcast_to(x, shape)
-    p, tau = np.empty((2, *shape))
+    out = np.empty((2, *shape))
     for n in range(states.V.size):
         row = coupled_row(pair, float(states.u[n]), float(states.mu[n]))
         found = row.profile(float(states.creep[n]))
         refuse_unsolved([found.status], [states.creep[n]], row.u, row.mu)
         place = number == n
-        sign = -1.0 if states.V[n] < 0.0 else 1.0
-        p[place], tau[place] = _tractions(found, sign * x[place]) / (4.0 * np.pi * states.kappa[n])
-        tau[place] *= sign
-    return p, tau
-
-
-def _tractions(found: CoupledProfile, x: Floats) -> Floats:
-    """Return pressure and shear of a state at places x from the axis, over l0: (2, n), 0 outside
-    the contact.
-    """
-    y = x - found.shift
-    return np.array(
-        [np.interp(y, found.nodes, each, left=0.0, right=0.0) for each in (found.p, found.q)]
-    )
+        sign = states.sign[n]
+        y = sign * x[place] - found.shift
+        both = [np.interp(y, found.nodes, each, left=0.0, right=0.0) for each in (found.p, found.q)]
+        out[:, place] = np.array(both) / (4.0 * np.pi * states.kappa[n])
+        out[1, place] *= sign
+    return out

@@ -36,7 +36,7 @@ from ..core.errors import ParameterError
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
 from ..laws.cover_solve import layer_nodes
 from ..materials.bodies import Bodies
-from ..materials.prony import Prony, series_of_alpha
+from ..materials.prony import series_of_alpha
 
 # --- Kernels of the boundary elements at one speed ---
 
@@ -182,24 +182,23 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
     u: kappa |V|, >= 0 or infinite: elastic at rest, and with the instantaneous compliance.
     """
     size, fit = _fit()
-    instant = 1.0 if u == 0.0 else max(1.0 - math.fsum(body.J), 0.0)
+    instant = 1.0 if u == 0.0 else body.instant
     modes = (
         []
         if u == 0.0 or math.isinf(u)
         else [(J, T * u) for J, T in zip(body.J, body.T, strict=True)]
     )
-    local = (1.0 - 2.0 * body.nu) / (2.0 - 2.0 * body.nu)
     values = np.zeros((2, 3, size.size))
     for row, sign in enumerate((1.0, -1.0)):
         normal, coupling = _half_space(instant, modes, sign * size)
         values[row, 0] = values[row, 1] = normal
-        values[row, 2] = local * coupling
+        values[row, 2] = body.local * coupling
     if math.isfinite(body.thickness):
         values += _layer(body.nu, body.thickness, instant, modes)
-    values[:, 2] *= 1.0 if body.side == "base" else -1.0
+    values[:, 2] *= body.sign
     table = values.reshape(2, 3, BINS, DEGREE + 1) @ fit.T
-    sign = body.share if body.side == "base" else -body.share
-    parts = [(sign * local * strength, length) for strength, length in [(instant, 0.0), *modes]]
+    local = body.sign * body.share * body.local
+    parts = [(local * strength, length) for strength, length in [(instant, 0.0), *modes]]
     return BodyKernels(
         body.share * table.transpose(2, 0, 1, 3), body.share * instant, np.array(parts)
     )
@@ -213,7 +212,7 @@ def growth(bodies: Any, times: Floats) -> Floats:
     compliance = np.zeros_like(times)
     rate = np.zeros_like(times)
     for body in bodies:
-        compliance += body.share * max(1.0 - math.fsum(body.J), 0.0)
+        compliance += body.share * body.instant
         for strength, time in zip(body.J, body.T, strict=True):
             x = times / time
             compliance -= body.share * strength * np.expm1(-x)
@@ -284,13 +283,12 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
     q = transforms(profile.nodes, profile.q, k)
     total = 0.0
     for body in bodies:
-        compliance = np.full(k.size, complex(max(1.0 - math.fsum(body.J), 0.0)))
+        compliance = np.full(k.size, complex(body.instant))
         for strength, time in zip(body.J, body.T, strict=True):
             with np.errstate(over="ignore", invalid="ignore"):
                 compliance += strength / (1.0 - 1j * k * (time * u)) if math.isfinite(u) else 0.0
         L, _, C = layer_transforms(body.nu, k * body.thickness)
-        side = 1.0 if body.side == "base" else -1.0
-        work = compliance / k * (L * np.abs(p) ** 2 + 1j * side * C * q * np.conj(p))
+        work = compliance / k * (L * np.abs(p) ** 2 + 1j * body.sign * C * q * np.conj(p))
         total += body.share * float(weights @ work.real) / np.pi
     middle = 0.5 * (profile.nodes[:-1] + profile.nodes[1:])
     lengths = np.diff(profile.nodes)
@@ -333,6 +331,21 @@ class CoupledBody(NamedTuple):
     J: tuple[float, ...]
     T: tuple[float, ...]
 
+    @property
+    def sign(self) -> float:
+        """Sign of the strain of its surface by shear in creep: 1 of the base, else -1."""
+        return 1.0 if self.side == "base" else -1.0
+
+    @property
+    def instant(self) -> float:
+        """Instantaneous compliance over the long-time one, >= 0."""
+        return max(1.0 - math.fsum(self.J), 0.0)
+
+    @property
+    def local(self) -> float:
+        """Coupling of its surface as a half-space, (1 - 2 nu)/(2 - 2 nu)."""
+        return (1.0 - 2.0 * self.nu) / (2.0 - 2.0 * self.nu)
+
 
 class CoupledPair(NamedTuple):
     """Both bodies of a roller, one record for each that deforms; equal pairs have one hash."""
@@ -355,52 +368,44 @@ class CoupledPair(NamedTuple):
             )
         if isinstance(material, Bodies):
             shares = {"base": 1.0 - material.share, "cylinder": material.share}
-            made = [
-                _body(side, *material.body(side), share)
-                for side, share in shares.items()
-                if share > 0.0
-            ]
+            parts = [(side, share, *material.body(side)) for side, share in shares.items()]
         else:
-            made = [_body(side, material, 0.5, None, 0.5) for side in ("base", "cylinder")]
+            parts = [(side, 0.5, material, 0.5, None) for side in ("base", "cylinder")]
+        made = [
+            CoupledBody(
+                side=side,
+                share=float(share),
+                nu=float(nu),
+                thickness=float(thickness or math.inf),
+                J=tuple(series.J.tolist()),
+                T=tuple(series.T.tolist()),
+            )
+            for side, share, series, nu, thickness in parts
+            if share > 0.0
+        ]
         return cls(tuple(made))
 
 
-def _body(
-    side: str, series: Prony, nu: float, thickness: float | None, share: float
-) -> CoupledBody:
-    """Return one body; arguments as the fields of :class:`CoupledBody`, ``series`` for its modes,
-    None for infinite.
-    """
-    J, T = (tuple(each.tolist()) for each in (series.J, series.T))
-    return CoupledBody(
-        side=side,
-        share=float(share),
-        nu=float(nu),
-        thickness=math.inf if thickness is None else float(thickness),
-        J=J,
-        T=T,
-    )
-
-
 class CoupledStates(NamedTuple):
-    """Fields of states of one row, (n,) each, dimensionless.
+    """Fields of states of one row in the order of :data:`.coupled_rows.FIELDS`, and their status,
+    (n,) each, dimensionless.
 
-    lam, epsilon : contact length over l0, shift over half of it.
     Q_over_mu : traction over mu P.
     kM_base, kM_cylinder : kappa times the parts of M by the slope of each body.
-    work_base, work_cylinder : 2 kappa int q u'_b dx/P: strain of each body (module).
+    lam, epsilon : contact length over l0, shift over half of it.
     beta : length of the stick zone over the contact length.
+    work_base, work_cylinder : 2 kappa int q u'_b dx/P: strain of each body (module).
     status : 0 where solved (:mod:`.coupled_states`).
     """
 
-    lam: Floats
-    epsilon: Floats
     Q_over_mu: Floats
     kM_base: Floats
     kM_cylinder: Floats
+    lam: Floats
+    epsilon: Floats
+    beta: Floats
     work_base: Floats
     work_cylinder: Floats
-    beta: Floats
     status: Floats
 
     @property
@@ -568,12 +573,11 @@ class CoupledRow:
             self._row, self.mu, d, self.n, self._length, self._slope, sign, out
         )
         p, q = (np.concatenate([[0.0], each, [0.0]]) for each in (found.p, found.q))
-        load = np.trapezoid(p, found.nodes)
-        shift = 0.5 * out[0] * out[1]
+        unit = coupled_states.LOAD / np.trapezoid(p, found.nodes)
         return CoupledProfile(
             nodes=found.nodes,
-            shift=shift,
-            p=p * (coupled_states.LOAD / load),
-            q=q * (coupled_states.LOAD / load),
+            shift=0.5 * out[0] * out[1],
+            p=p * unit,
+            q=q * unit,
             status=int(out[8]),
         )

@@ -11,7 +11,6 @@ moment over P R.
 from __future__ import annotations
 
 import math
-import warnings
 from bisect import bisect
 from collections.abc import Iterable
 from dataclasses import replace
@@ -20,7 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import ModelWarning, caller_level
+from ..core.errors import warn_of_model
 from ..kernels.numerics.cache_folder import is_worker
 from ..materials.bodies import Bodies, Cover
 from ..materials.measured_data import Measured
@@ -83,7 +82,7 @@ def _warn(text: str) -> None:
     Returns None.
     """
     if not is_worker():
-        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        warn_of_model(text)
 
 
 def _warn_of_faults(faults: list[str], subject: str, report: str) -> None:

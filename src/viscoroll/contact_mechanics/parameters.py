@@ -169,6 +169,7 @@ class Parameters(Roller):
     material: Prony | Bodies | LawTable | None = None
     coupled: bool | None = None
     _law: ClassVar[LawTable | None] = None
+    _made: ClassVar[LawTable | None] = None
     shape: ClassVar[tuple[int, ...]] = ()
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
 
@@ -191,35 +192,33 @@ class Parameters(Roller):
         if isinstance(material, LawGrid):
             material = material.table(check_number("kappa", values["kappa"], above=0.0))
         if isinstance(material, LawTable):
-            object.__setattr__(self, "_law", material)
+            vars(self)["_law"] = material
             refuse_other_friction(material, values["mu"])
             material = material.material
-            if not isinstance(material, Prony | Bodies):
-                values["alpha"] = material
-                material = None
-        if material is not None:
-            if not isinstance(material, Prony | Bodies):
-                allowed = (
-                    "a Prony, a Bodies, or a law of load_law (in SI units: a Material of a "
-                    "Cylinder)"
-                )
-                raise ParameterError("material", f"{material!r:.60}", allowed)
+        if isinstance(material, Prony | Bodies):
             values["alpha"] = material.alpha
+        elif self._law is not None:
+            values["alpha"] = material
+            material = None
+        elif material is not None:
+            allowed = (
+                "a Prony, a Bodies, or a law of load_law (in SI units: a Material of a Cylinder)"
+            )
+            raise ParameterError("material", f"{material!r:.60}", allowed)
         arrays = {"alpha": check_array("alpha", values.pop("alpha"), low=1.0, high=HIGHEST_ALPHA)}
         extents = {}
         for name, value in values.items():
             if name != "gamma" or value is not None:
                 arrays[name], extents[name] = check_array_extent(name, value, above=0.0)
-        object.__setattr__(self, "shape", broadcast_shape(**arrays))
-        object.__setattr__(self, "material", material)
+        shape = broadcast_shape(**arrays)
         if arrays["mu"].size and arrays["kappa"].size:
             low, high = RATIO_RANGE
-            (least_mu, most_mu) = extents["mu"]
-            (least_kappa, most_kappa) = extents["kappa"]
+            least_mu, most_mu = extents["mu"]
+            least_kappa, most_kappa = extents["kappa"]
             if not (least_mu >= low * most_kappa and most_mu <= high * least_kappa):
                 _refuse_ratio(arrays["mu"], arrays["kappa"])
-        for name, array in arrays.items():
-            object.__setattr__(self, name, read_only(array))
+        numbers = {name: read_only(array) for name, array in arrays.items()}
+        vars(self).update(numbers, shape=shape, material=material)
 
     @property
     def table(self) -> LawTable | None:
@@ -365,12 +364,10 @@ class Parameters(Roller):
         from .coupled_pair import CoupledPair
         from .coupled_tables import is_coupled
 
-        several = bool(self.material.shape)
-        if several and not len(self.material):
-            return False
-        return is_coupled(
-            CoupledPair.of_scene(self.replace(material=self.material[0]) if several else self)
-        )
+        if not self.material.shape:
+            return is_coupled(CoupledPair.of_scene(self))
+        firsts = [self.replace(material=one) for one in self.material[:1]]
+        return any(map(is_coupled, map(CoupledPair.of_scene, firsts)))
 
     @property
     def rolling_law(self) -> LawTable | None:
@@ -397,12 +394,10 @@ class Parameters(Roller):
                 "coupling to first order"
             )
             raise described_error("material" if several > 1 else "mu", found, allowed)
-        mu = float(mus[0])
-        made = getattr(self, "_made", None)
-        if made is None:
-            made = coupled_table(self.material, stored_rows(CoupledPair.of_scene(self), mu))
-            object.__setattr__(self, "_made", made)
-        return made
+        if self._made is None:
+            rows = stored_rows(CoupledPair.of_scene(self), float(mus[0]))
+            vars(self)["_made"] = coupled_table(self.material, rows)
+        return self._made
 
     @property
     def uncoupled(self) -> Self:

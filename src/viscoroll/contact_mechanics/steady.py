@@ -39,13 +39,13 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core.checks import Integers, Numbers
+from ..core.checks import Floats, Integers, Numbers
 from ..core.drive_arguments import Feedback, make_dimensionless
 from ..core.errors import ParameterError, described_error
 from ..core.labels import strip_labels
 from ..laws.law_table import LawTable
+from .contact_table import contact_fields_at, free_creep
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
 from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
@@ -60,9 +60,7 @@ from .steady_result import Diagnosis, Steady, pack_result
 from .steady_states import (
     Field,
     States,
-    contact_fields_at,
     find_crossings,
-    free_creep,
     state_rows,
     states_at,
 )
@@ -92,11 +90,11 @@ class _FreeRolling(NamedTuple):
         at the onset of full slip with Q = mu, (3, n).
     """
 
-    V: NDArray
-    M: NDArray
-    M_half_space: NDArray
-    M_cylinder: NDArray
-    slips: NDArray
+    V: Floats
+    M: Floats
+    M_half_space: Floats
+    M_cylinder: Floats
+    slips: Floats
 
 
 class _ScanProblem(NamedTuple):
@@ -110,11 +108,11 @@ class _ScanProblem(NamedTuple):
     """
 
     law: LawTable
-    load_rows: NDArray
+    load_rows: Floats
     kappa: float
     mu: float
 
-    def free_rolling(self, x: NDArray) -> _FreeRolling:
+    def free_rolling(self, x: Floats) -> _FreeRolling:
         """Return the contact at given speeds as :class:`_FreeRolling`.
 
         x: log2(kappa V), (n,).
@@ -141,13 +139,13 @@ class _ScanProblem(NamedTuple):
             slips=np.stack([low * V, delta_0 * V, high * V]),
         )
 
-    def loads_at(self, V: Any, omega: Any) -> NDArray:
+    def loads_at(self, V: Any, omega: Any) -> Floats:
         """Return force and torque at the speeds V and omega, numbers or (n,), as two rows: (2,) or
         (2, n).
         """
         return self.load_rows @ np.array([np.ones_like(V), V, omega])
 
-    def slip(self, free: _FreeRolling) -> NDArray:
+    def slip(self, free: _FreeRolling) -> Floats:
         """Return omega - V at which a traction balances both equations, (n,).
 
         free : the contact at some speeds, (n,).  Of half-spaces force + torque equal M there; their
@@ -167,7 +165,7 @@ class _ScanProblem(NamedTuple):
             return (on_axis + by_base - Q) / of_force
         return (by_cylinder + Q - on_spin) / of_torque
 
-    def residual(self, x: NDArray, slip: NDArray) -> NDArray:
+    def residual(self, x: Floats, slip: Floats) -> Floats:
         """Return R = Q - M_half_space + force, 0 in equilibrium, at x = log2(kappa V) and slip =
         omega - V, (n,).
         """
@@ -177,7 +175,7 @@ class _ScanProblem(NamedTuple):
         )
         return Q - M_half_space + self.loads_at(V, V + slip)[0]
 
-    def rows(self, V: NDArray, slip: NDArray) -> tuple[NDArray, NDArray]:
+    def rows(self, V: Floats, slip: Floats) -> tuple[Floats, Floats]:
         """Evaluate the law and the residuals of the equations of equilibrium, full slip included.
 
         V, slip : speed and omega - V, (n,), dimensionless, in the frame where V > 0.
@@ -264,7 +262,7 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
     return [spinning]
 
 
-def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
+def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     """Find the states of a load by a scan over V, where the sum of the equations gives omega at
     each V.
 
@@ -275,7 +273,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     :func:`_polish` refines them and drops those that are none.
     """
 
-    def beyond(x: NDArray, which: int) -> NDArray:
+    def beyond(x: Floats, which: int) -> Floats:
         free = problem.free_rolling(x)
         return problem.slip(free) - free.slips[which]
 
@@ -304,7 +302,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     return found, problem.slip(problem.free_rolling(found))
 
 
-def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
+def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
     """Find the states of a load by a scan over the slip, where the sum of the equations gives V
     alone.
 
@@ -324,7 +322,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
         limit = free.slips[2, 0]
         rest = free.M_half_space - problem.loads_at(free.V, free.V)[0]  # Q + gain slip
 
-        def residual(part: NDArray, x: float = x, limit: float = limit) -> NDArray:
+        def residual(part: Floats, x: float = x, limit: float = limit) -> Floats:
             return problem.residual(np.full(part.size, x), limit * part)
 
         sides = np.array([1.0, -1.0])
@@ -335,7 +333,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[NDArray, NDArray]:
     return np.concatenate(positions), np.concatenate(slips)
 
 
-def _polish(problem: _ScanProblem, V: NDArray, slip: NDArray) -> NDArray:
+def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     """Refine approximate states, and drop those that are no states or occur twice.
 
     It makes four Newton steps in V and slip on M = force + torque and R = 0, since the scans find V

@@ -42,7 +42,7 @@ from ..core.drive_arguments import Feedback, slope_tan_cos
 from ..core.errors import ParameterError, described_error
 from ..laws.coupled_rows import FIELDS
 from ..laws.law_table import LawTable
-from .contact_table import evaluate_law, refuse_overflow
+from .contact_table import contact_fields_at, free_creep, refuse_overflow
 from .parameters import Parameters
 from .rolling_resistance import find_zeros, speed_nodes
 
@@ -277,8 +277,9 @@ class Shear(NamedTuple):
         creep = 0.5 * limit * self.mu / self.kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
         delta = creep_beyond_free(law, self.kappa, self.mu, still, creep) + 0.5 * free / self.kappa
         names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
-        state = [1.0, self.kappa, self.mu, still, delta]
-        half_space, cylinder, over_V = evaluate_law(law, state, Q.shape, False, names)
+        half_space, cylinder, over_V = contact_fields_at(
+            law, self.kappa, self.mu, still, delta, *names
+        )
         return (
             on_axis,
             on_spin,
@@ -320,7 +321,7 @@ def creep_beyond_free(law: LawTable, kappa: Any, mu: Any, V: Floats, creep: Floa
     if law.cover is None:
         return creep
     names = "delta_minus", "delta_plus", "delta_star", "delta_0"
-    low, high, star, free = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, names)
+    low, high, star, free = contact_fields_at(law, kappa, mu, V, 0.0, *names)
     return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
 
 
@@ -330,17 +331,9 @@ def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:
     law : table of the material; of half-spaces all is 0.
     kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
     """
-    if law.cover is None:
-        nothing = np.zeros(V.size)
-        return Shear(
-            half_space=nothing,
-            cylinder=nothing,
-            half_space_excess=nothing,
-            cylinder_excess=nothing,
-            kappa=kappa,
-            mu=mu,
-        )
-    fields = evaluate_law(law, [1.0, kappa, mu, V, 0.0], V.shape, False, _REACTION)
+    fields = np.zeros((4, V.size))
+    if law.cover is not None:
+        fields = contact_fields_at(law, kappa, mu, V, 0.0, *_REACTION)
     return Shear(
         half_space=fields[0],
         cylinder=fields[1],
@@ -401,9 +394,10 @@ def _torque_left_of_cover(law: LawTable, load: Loads, x: Floats) -> Floats:
     kappa = load.kappa
     V = np.exp2(x) / kappa
     shear = shear_at(law, kappa, load.mu, V)
-    state = [1.0, kappa, load.mu, V, 0.0]
-    state[4] = evaluate_law(law, state, V.shape, False, ("delta_0",))[0]
-    half_space, cylinder = evaluate_law(law, state, V.shape, False, ("M_half_space", "M_cylinder"))
+    free = free_creep(law, kappa, load.mu, V)
+    half_space, cylinder = contact_fields_at(
+        law, kappa, load.mu, V, free, "M_half_space", "M_cylinder"
+    )
     Q = shear.traction_of_force(half_space - load.force - load.gains.force_V * V)
     return load.torque + load.gains.torque_V * V - cylinder - shear.moments(Q)[1] - Q
 
@@ -478,14 +472,23 @@ def fields_at(law: LawTable, kappa: Any, V: Floats, delta: Floats) -> dict[str, 
     )
 
 
-def moments_of_losses(law: LawTable, kappa: Any, V: Floats, delta: Floats) -> Floats:
+def moments_of_losses(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floats) -> Floats:
     """Return the moments by which the losses in base and cylinder are V and omega times these, (2,
     n).
+
+    Where the bodies would take more than the load gives, by the error of the table alone, both take
+    less in proportion: nothing is lost in slip there.
+    kappa, mu : of the scene, numbers or (n,).  V, delta : speeds and creepages, (n,).
     """
     found = fields_at(law, kappa, V, delta)
     half_space = found["M_half_space"] + 0.5 * found["work_half_space"]
     cylinder = found["M_cylinder"] + 0.5 * found["work_cylinder"] / (1.0 + delta)
-    return np.stack([half_space, cylinder]) / kappa
+    factor = 1.0 + delta
+    taken = half_space + factor * cylinder
+    given = found["M_half_space"] + factor * found["M_cylinder"]
+    given += kappa * mu * delta * found["Q_over_mu"]
+    share = np.divide(given, taken, out=np.ones_like(taken), where=taken > 0.0)
+    return np.clip(share, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa
 
 
 def _torque_left(

@@ -12,7 +12,6 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.checks import Floats, Integers
 from ..core.labels import Labels, dataset_axes
@@ -85,7 +84,7 @@ class Diagnosis(NamedTuple):
     """
 
     loads: Loads
-    states: tuple[NDArray, NDArray, NDArray]
+    states: tuple[Integers, Floats, Floats]
     number: Integers
     maximum: tuple[float, float]
     elastic: bool
@@ -113,15 +112,11 @@ class Diagnosis(NamedTuple):
         scale : units of the roller, in which the sentence states its numbers but Q and mu, which
             are dimensionless; of a scene all are.
         """
-        name = "force + torque"
-        moment = "rolling moment"
-        of_load = ""
-        of_speed = ""
-        if scale.si:
-            name = "force + torque/R"
-            moment = "rolling moment over R"
-            of_load = " N/m"
-            of_speed = " m/s"
+        name, moment, of_load, of_speed = (
+            ("force + torque/R", "rolling moment over R", " N/m", " m/s")
+            if scale.si
+            else ("force + torque", "rolling moment", "", "")
+        )
         loads = self.loads
         load, speed = (np.broadcast_to(scale[of], loads.shape).ravel()[n] for of in ("force", "V"))
         at_rest = loads.force[n] + loads.torque[n]

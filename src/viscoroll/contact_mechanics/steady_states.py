@@ -22,12 +22,11 @@ from enum import IntEnum
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core.blocks import run_blocks
 from ..core.checks import Floats, Integers
 from ..laws.law_table import LawTable
-from .contact_table import evaluate_law
+from .contact_table import contact_fields_at, free_creep
 from .rolling_resistance import branches
 from .steady_loads import (
     Gains,
@@ -91,6 +90,8 @@ class Field(IntEnum):
     FREE_CYLINDER = 11
 
 
+#: number of rows
+_COUNT = len(Field)
 #: slopes over V, each with that over omega: at fixed omega the first lacks (1 + delta) times the
 #: second
 _SLOPES = (
@@ -118,10 +119,10 @@ class States(NamedTuple):
     def of(
         cls,
         loads: Loads,
-        load: NDArray,
-        sign: NDArray,
-        answers: NDArray,
-        free: NDArray | None = None,
+        load: Integers,
+        sign: Floats,
+        answers: Floats,
+        free: Floats | None = None,
     ) -> States:
         """Make the states from the law at them: give V, Q and M their signs, and add omega and the
         eigenvalues.
@@ -155,7 +156,7 @@ class States(NamedTuple):
         return cls(load, rows)
 
     @classmethod
-    def at_rest(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
+    def at_rest(cls, loads: Loads, load: Integers, law: LawTable) -> States:
         """Return the states of V = omega = 0, the limit of slow rolling.
 
         The contact is that of Carter (of two elastic bodies); of a cover its creep limit and its
@@ -174,22 +175,22 @@ class States(NamedTuple):
         if law.coupled is not None:
             return cls._at_rest_on_table(loads, load, law)
         # of a half-space 2 kappa delta_star/mu = 1 at rest, and free rolling has no creep
-        limit, free = creep_at_rest(law)
+        limit, free_limit = creep_at_rest(law)
         kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
-        shear = shear_at(law, kappa, mu, np.zeros(load.size))
+        still = np.zeros(load.size)
+        shear = shear_at(law, kappa, mu, still)
         Q = shear.traction_of_torque(loads.torque[load])
         if loads.given == "force":
             Q = shear.traction_of_force(-loads.force[load])
         part = np.abs(Q) / mu
-        rows = np.zeros((2 + len(_ROWS), load.size))
+        rows = np.zeros((_COUNT, load.size))
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
         star = 0.5 * limit * mu / kappa * part / (1.0 + beta)
-        still = np.zeros(load.size)
         forth, back = (
             creep_beyond_free(law, kappa, mu, still, sign * star)
             for sign in (np.sign(Q), -np.sign(Q))
         )
-        free = 0.5 * free / kappa
+        free = 0.5 * free_limit / kappa
         rows[Field.OMEGA] = 0.0 * beta
         rows[Field.DELTA] = forth + free
         rows[Field.Q] = Q
@@ -207,9 +208,9 @@ class States(NamedTuple):
         return cls(load, rows)
 
     @classmethod
-    def _at_rest_on_table(cls, loads: Loads, load: NDArray, law: LawTable) -> States:
+    def _at_rest_on_table(cls, loads: Loads, load: Integers, law: LawTable) -> States:
         """Return the states of rest on a table; arguments as of :meth:`at_rest`."""
-        rows = np.zeros((2 + len(_ROWS), load.size))
+        rows = np.zeros((_COUNT, load.size))
         rows[Field.DELTA], found, rate = rest_on_table(law, loads, load)
         rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.BETA]] = found
         rows[Field.OMEGA] = 0.0 * rows[Field.DELTA]
@@ -220,7 +221,7 @@ class States(NamedTuple):
     @classmethod
     def none(cls) -> States:
         """No state."""
-        return cls(np.empty(0, np.int64), np.empty((len(_ROWS) + 2, 0)))
+        return cls(np.empty(0, np.int64), np.empty((_COUNT, 0)))
 
     @classmethod
     def joined(cls, *parts: States) -> States:
@@ -240,7 +241,7 @@ class States(NamedTuple):
         return States(self.load[chosen], self.rows[:, chosen])
 
 
-def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
+def _eigenvalues(slopes: Floats, gains: Gains, j: Floats) -> Floats:
     """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
     slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega,
@@ -288,36 +289,7 @@ def _eigenvalues(slopes: NDArray, gains: Gains, j: NDArray) -> Floats:
         )
 
 
-def contact_fields_at(
-    law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: Any, *names: str
-) -> Floats:
-    """Return fields of the contact at V > 0 and a creepage, one row for each of ``names``.
-
-    law : table of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V : speeds, dimensionless, > 0, which is not checked, (n,).
-    delta : creepage, dimensionless, any sign, a number or (n,).
-    names : fields that kernels compute, as ``Q`` or ``dQ_dV``; ``full_slip`` is 0 or 1, ``dQ_dV``
-        is at fixed delta.
-    Returns the fields, (names, n), dimensionless.
-    """
-    return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
-
-
-def free_creep(law: LawTable, kappa: Any, mu: Any, V: NDArray) -> Any:
-    """Return delta_0 at V > 0, the creepage of free rolling, at which Q = 0.
-
-    law : table of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,); mu is only passed on,
-        delta_0 does not depend on it.
-    V : speeds, dimensionless, > 0, which is not checked, (n,).
-    Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float 0.0
-    of half-spaces.
-    """
-    return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
-
-
-def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -> Floats:
+def state_rows(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floats) -> Floats:
     """Return the law at V > 0 and a creepage, as the rows from which :meth:`States.of` makes
     states.
 
@@ -327,7 +299,7 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
     Returns rows of :class:`Field` with slopes, (12, n); row 6 is dQ/dV at fixed omega.  In full
     slip Q is mu or -mu, and beta and the slopes of Q are 0.
     """
-    rows = np.empty((2 + len(_ROWS), V.size))
+    rows = np.empty((_COUNT, V.size))
     rows[Field.V] = V
     rows[Field.DELTA] = delta
     rows[2:] = contact_fields_at(law, kappa, mu, V, delta, *_ROWS)
@@ -336,7 +308,7 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: NDArray, delta: NDArray) -
     return rows
 
 
-def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, NDArray, NDArray]:
+def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[Integers, Floats, Floats]:
     """Find the speeds at which kappa (M - gain V) equals a given total, in both directions of
     motion.
 
@@ -365,7 +337,7 @@ def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[NDArray, 
     return which % total.size, np.where(which < total.size, 1.0, -1.0), u
 
 
-def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floats) -> States:
+def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floats) -> States:
     """Return the steady states at given V > 0, whether or not the friction suffices.
 
     law : table of the material.
@@ -388,11 +360,11 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
         spin = loads.given == "torque"
         delta, rest = balance(law, kappa, mu, V, torque if spin else -force, spin)
         rows = state_rows(law, kappa, mu, V, delta)
-        losses = moments_of_losses(law, kappa, V, delta)
+        losses = moments_of_losses(law, kappa, mu, V, delta)
         rows[Field.DELTA, rest != 0.0] = np.nan
         rows[Field.Q] += rest
         return States.of(loads, load, sign, rows, losses)
-    delta_0 = 0.0 if law.cover is None else free_creep(law, kappa, mu, V)
+    delta_0 = free_creep(law, kappa, mu, V)
     free = contact_fields_at(
         law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
     )
@@ -417,7 +389,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
     (star, lam, rise) = free[2:]
     faster = V / root
-    rolling = delta_0 if law.cover is None else free_creep(law, kappa, mu, faster)
+    rolling = free_creep(law, kappa, mu, faster)
     less_star, less_lam = contact_fields_at(law, kappa, mu, faster, rolling, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
     creep = creep_beyond_free(law, kappa, mu, V, np.copysign(size, Q))
@@ -431,6 +403,7 @@ def states_at(law: LawTable, loads: Loads, load: NDArray, sign: NDArray, V: Floa
     rows[[Field.M_HALF_SPACE, Field.M_CYLINDER]] = moments
     rows[Field.BETA] = root * less_lam / lam
     if not exists.all():
-        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], (~exists).nonzero()[0]] = 0.0
-        rows[Field.DELTA, ~exists] = np.nan
+        missing = (~exists).nonzero()[0]
+        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], missing] = 0.0
+        rows[Field.DELTA, missing] = np.nan
     return States.of(loads, load, sign, rows, None if law.cover is None else free[:2])

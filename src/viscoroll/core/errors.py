@@ -25,6 +25,7 @@ from __future__ import annotations
 import copyreg
 import inspect
 import sys
+import warnings
 from collections.abc import Collection, Iterable
 from datetime import date, timedelta
 from enum import IntEnum
@@ -414,6 +415,11 @@ def caller_level() -> int:
         level = level + 1
         frame = frame.f_back
     return level
+
+
+def warn_of_model(text: str) -> None:
+    """Give a :class:`ModelWarning` at the line of the user's program (:func:`caller_level`)."""
+    warnings.warn(text, ModelWarning, stacklevel=caller_level())
 
 
 # --- Imports of packages that only some functions need ---

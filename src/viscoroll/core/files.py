@@ -8,14 +8,17 @@ package detects damage before a library parses the file.
 from __future__ import annotations
 
 import hashlib
+import io
 import os
 import secrets
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
 from os import PathLike
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from ..kernels.numerics.cache_folder import read_private, write_private
 from .errors import FileError
 
 if TYPE_CHECKING:
@@ -131,6 +134,58 @@ def seal_matches(content: bytes) -> bool | None:
     """
     end = content[-_SEAL_SIZE:]
     return end == _seal_of(memoryview(content)[:-_SEAL_SIZE]) if end.startswith(_SEAL) else None
+
+
+def load_kept(path: Path, damaged: str, read: Callable[[Any], Any]) -> Any:
+    """Return what was kept in a sealed file of arrays in the folder of a cache.
+
+    The time of last change of the file is set to now if it can be: what was used last is kept.
+    path: path of the file.
+    damaged: sentence of the warning, with {} for the fault.
+    read: function of the arrays by name, whose result is returned; what it raises is a fault.
+    Returns None if there is no file that can be read, also if others may write to it or to a folder
+    above it, or if one belongs to another user; None with a RuntimeWarning if it is damaged.
+    """
+    try:
+        content = read_private(path)
+    except OSError:
+        return None
+    try:
+        with _sealed_arrays(content) as data:
+            found = read(data)
+    except Exception as error:
+        warnings.warn(f"{path}: {damaged.format(error)}", RuntimeWarning, stacklevel=3)
+        return None
+    with suppress(OSError):  # a folder that is read-only
+        path.touch()
+    return found
+
+
+def _sealed_arrays(content: bytes) -> Any:
+    """Return the arrays by name in the bytes of a sealed file, a context; ValueError without its
+    seal.
+    """
+    import numpy as np
+
+    if not seal_matches(content):
+        raise ValueError("its bytes differ from the SHA-256 at their end")
+    return np.load(io.BytesIO(content))
+
+
+def save_kept(path: Path, most: int, arrays: Mapping[str, Any]) -> None:
+    """Write arrays by name to a sealed file in the folder of a cache, and delete those of the
+    folder that were used longest ago, beyond the number ``most``; if it cannot be written, nothing
+    is kept.
+    """
+    import numpy as np
+
+    content = io.BytesIO()
+    np.savez(content, **arrays)
+    with suppress(OSError):
+        write_private(path, seal(content.getvalue()))
+        files = sorted(path.parent.glob("*.npz"), key=lambda file: file.stat().st_mtime)
+        for file in files[:-most]:
+            file.unlink()
 
 
 def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: str) -> bytes:

@@ -150,7 +150,6 @@ class SolveWork(NamedTuple):
     own: Any
     odd: Floats
     even: Floats
-    decays: Floats
     memory: Any
     exponentials: Exponentials
     matrix: Floats
@@ -483,7 +482,6 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
         own=own,
         odd=odd,
         even=even,
-        decays=D,
         memory=memory,
         exponentials=exponentials,
         matrix=matrix,

@@ -57,9 +57,7 @@ _FILL_VALUES = np.array(
 #: moments, which of a layer depend on the traction and have either sign
 _MOMENTS = "M", "M_half_space", "M_cylinder"
 #: field -> lowest and highest value that a contact has
-_BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(
-    ("lam", "delta_star", "M", "M_half_space", "M_cylinder"), (0.0, np.inf)
-)
+_BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(("lam", "delta_star", *_MOMENTS), (0.0, np.inf))
 #: largest file that is read, bytes
 _MOST_BYTES = 1 << 31
 
@@ -106,11 +104,8 @@ class LawGrid:
         if not self.slips:
             allowed = "states mu (in SI units with a load), and slips fully at both ends of delta"
             raise ParameterError("material", repr(self), f"a grid that {allowed}")
-        fields = self.rows.fields * [
-            1.0,
-            kappa / (self.load * self.R),
-            kappa / (self.load * self.R),
-        ]
+        of_moments = kappa / (self.load * self.R)
+        fields = self.rows.fields * [1.0, of_moments, of_moments]
         # lengths are not known, and the work of strain counts as that of slip
         fields = np.pad(fields, [(0, 0), (0, 0), (0, len(FIELDS) - fields.shape[-1])])
         u = kappa / self.R * self.rows.u
@@ -402,26 +397,13 @@ def _law_of(table: xr.Dataset) -> LawGrid:
     """
     V = check_array("V", table["V"].values, above=0.0)
     delta = table["delta"].values.astype(np.float64)
-    for name, unit in (("R", "m"), ("load", "N/m"))[: 2 if "mu" in table.attrs else 1]:
-        if name not in table.attrs:
-            raise described_error(
-                f"attribute {name}", "is missing", f"given, in {unit}, since V has a unit"
-            )
     limit = friction_limit(table.attrs)
     most = limit if limit < np.inf else 1.0
     Q = table["Q"].transpose("V", "delta").values
     slips = bool((abs(Q[:, [0, -1]]) >= (1.0 - _ROUNDING) * limit).all())
-    bodies = [
-        table[name] if name in table else 0.5 * table["M"]
-        for name in ("M_half_space", "M_cylinder")
-    ]
-    moments = [
-        field.expand_dims(delta=table["delta"]) if "delta" not in field.dims else field
-        for field in bodies
-    ]
-    fields = np.stack(
-        [Q / most, *(field.transpose("V", "delta").values for field in moments)], axis=-1
-    )
+    bodies = [table[name] if name in table else 0.5 * table["M"] for name in _MOMENTS[1:]]
+    moments = (field.broadcast_like(table["Q"]).transpose("V", "delta") for field in bodies)
+    fields = np.stack([Q / most, *(field.values for field in moments)], axis=-1)
     # at V = 0 Q as at the slowest speed, and M over V alone is 0
     still = [1.0, *(float("delta" in field.dims) for field in bodies)]
     fields = np.concatenate([fields[:1] * still, fields, fields[-1:]])

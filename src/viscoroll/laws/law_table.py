@@ -310,15 +310,13 @@ def law_table(
     """
     if isinstance(material, LawTable):
         return material
-    if isinstance(material, Prony | Bodies) and material.shape:
+    if not isinstance(material, Prony | Bodies):
+        material = float(material)
+    elif material.shape:
         raise ParameterError("material", repr(material), "one material, as material[i]")
-    if (
-        isinstance(material, Bodies)
-        and not isinstance(material, Cover)
-        and (material.like or material.alpha == 1.0)
-    ):
-        material = material.total if material.total.E.size else 1.0
-    material = material if isinstance(material, Prony | Bodies) else float(material)
+    elif isinstance(material, Bodies) and not isinstance(material, Cover):
+        if material.like or material.alpha == 1.0:
+            material = material.total if material.total.E.size else 1.0
     if coefficients is not None:
         return make_table(material, coefficients)
     with _lock:

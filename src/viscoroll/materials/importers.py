@@ -9,7 +9,6 @@ G(t) relaxes alike.  Where they are given and differ from those of shear, nu cha
 from __future__ import annotations
 
 import math
-import warnings
 from typing import Any
 
 import numpy as np
@@ -17,14 +16,13 @@ from numpy.typing import ArrayLike, NDArray
 
 from ..core.checks import Floats, check_array, check_bool, check_number
 from ..core.errors import (
-    ModelWarning,
     ParameterError,
-    caller_level,
     check_names,
     check_one_given,
     described_error,
     exactly_one_error,
     shape_error,
+    warn_of_model,
 )
 from ..core.scale import SI
 from .bodies import Bodies
@@ -409,7 +407,7 @@ def _warn_of_negative(late: float, early: float | None) -> None:
             f"bulk and shear moduli make nu = {lowest:.3g}: give both in one unit, and as "
             "moduli or as fractions"
         )
-        warnings.warn(f"{text}, as the program has them", ModelWarning, stacklevel=caller_level())
+        warn_of_model(f"{text}, as the program has them")
 
 
 def check_pairs(

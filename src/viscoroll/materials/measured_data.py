@@ -13,7 +13,6 @@ from __future__ import annotations
 
 import math
 import tomllib
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -22,7 +21,7 @@ from typing import Any, Literal, TypeVar
 import numpy as np
 
 from ..core.checks import check_array, check_number, check_text
-from ..core.errors import ModelWarning, ParameterError, caller_level, described_error
+from ..core.errors import ParameterError, described_error, warn_of_model
 from ..core.scale import SI, Units
 
 # --- Time-temperature shifts ---
@@ -355,7 +354,7 @@ class ShiftFactors:
                 f"{law} misses the factor found at {self.temperature[worst]:g} °C by "
                 f"{errors[worst]:+.2f} decades"
             )
-            warnings.warn(text, ModelWarning, stacklevel=caller_level())
+            warn_of_model(text)
         return law
 
 
@@ -391,7 +390,7 @@ def check_celsius(name: str, temperature: Any) -> float:
             f"{name} is outside {low:g} to {high:g}: temperatures are in degrees Celsius, and "
             "this looks like kelvin"
         )
-        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        warn_of_model(text)
     return found
 
 

@@ -11,7 +11,6 @@ Storage and loss modulus of a dynamic mechanical analysis: :class:`DynamicModuli
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
@@ -20,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.checks import Floats, check_array
-from ..core.errors import ModelWarning, ParameterError, caller_level, shape_error
+from ..core.errors import ParameterError, shape_error, warn_of_model
 from ..core.results import Result, SummaryRow
 
 if TYPE_CHECKING:
@@ -347,7 +346,7 @@ class DynamicModuli(Result):
                 "itself, "
                 f"fit_prony(record)"
             )
-            warnings.warn(text, ModelWarning, stacklevel=caller_level())
+            warn_of_model(text)
         return iter((self.omega, self.storage, self.loss))
 
     def __len__(self) -> int:

@@ -11,7 +11,6 @@ Results of the fits of measured moduli: :class:`Fit`, :class:`RelaxationFit`, an
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -28,7 +27,7 @@ from ..contact_mechanics.assumptions import (
 )
 from ..contact_mechanics.contact import contact
 from ..core.checks import Booleans, Floats, Numbers, check_array
-from ..core.errors import ModelWarning, caller_level, described_error
+from ..core.errors import described_error, warn_of_model
 from ..core.plots.result_figures import series_fit
 from ..core.results import Result, SummaryRow
 from ..materials.importers import check_poisson
@@ -418,7 +417,7 @@ class SeriesFit(Result):
         """
         if self._fault:
             text = f"{self._fault}: see the points that miss in fit.plot(), and docs/howto/dma.md"
-            warnings.warn(text, ModelWarning, stacklevel=caller_level())
+            warn_of_model(text)
         E = self.E
         measured = self.measured
         if self.mode == "shear":

@@ -9,7 +9,6 @@ A TOML file of measurements, a cylinder, [unknown], [prior] and [[data]], as arg
 from __future__ import annotations
 
 import dataclasses
-import warnings
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from operator import attrgetter
 from os import PathLike
@@ -22,12 +21,11 @@ import numpy as np
 from ..core.checks import Floats, check_bool, check_integer
 from ..core.errors import (
     FileError,
-    ModelWarning,
     ParameterError,
-    caller_level,
     check_names,
     described_error,
     suggestion,
+    warn_of_model,
 )
 from ..core.toml_sections import as_struct, check_keys, read_toml, section_error
 from ..materials.material_toml import SECTIONS, parse_shifts
@@ -489,7 +487,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         raise FileError(path, f"{problem}: {advice}")
     if others:
         text = f"{path.name}: unused columns: {', '.join(others)}"
-        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        warn_of_model(text)
     found = {}
     for name in present:
         unit = kind.unit(name)

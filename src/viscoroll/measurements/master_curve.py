@@ -10,7 +10,6 @@ Curves at several temperatures as one master curve, by horizontal shifts:
 from __future__ import annotations
 
 import math
-import warnings
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from itertools import pairwise, zip_longest
@@ -20,7 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ..core.checks import Floats, Integers, check_array
-from ..core.errors import ModelWarning, ParameterError, caller_level, described_error, shape_error
+from ..core.errors import ParameterError, described_error, shape_error, warn_of_model
 from ..core.quantities import to_unit
 from ..materials.measured_data import (
     NEAR,
@@ -405,17 +404,13 @@ def master_curve(
         )
     if rises:
         text = f"a_T rises with temperature {'; '.join(rises)}: check these curves, or give shift="
-        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        warn_of_model(text)
     if open_shifts:
         text = (
             f"the overlap does not determine the shift {'; '.join(open_shifts)}, where the "
             "curves are flat: give shift="
         )
-        warnings.warn(
-            text + (', or try on="storage"' if on == "both" else ""),
-            ModelWarning,
-            stacklevel=caller_level(),
-        )
+        warn_of_model(text + (', or try on="storage"' if on == "both" else ""))
     moduli = [each * vertical_factor(vertical_shift, base, coldest) for each in whole[1:]]
     return data_of(Curve, whole[0] * factor[sets.of_point], *moduli), shifts
 
@@ -477,7 +472,7 @@ def _shifts_by_overlap(
             f"E' and E'' overlap best at different shifts {', '.join(torn)}; the one that "
             "overlaps better decides"
         )
-        warnings.warn(text + ': compare with on="storage"', ModelWarning, stacklevel=caller_level())
+        warn_of_model(text + ': compare with on="storage"')
     steps, mismatch, freedom, *_ = np.reshape(found, (-1, len(_Alignment._fields))).T
     return np.append(0.0, np.cumsum(steps)), mismatch, freedom
 

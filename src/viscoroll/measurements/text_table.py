@@ -10,7 +10,6 @@ Columns of a table by the name that the user gives: :func:`named_table`,
 from __future__ import annotations
 
 import re
-import warnings
 from collections import Counter
 from collections.abc import Callable, Collection
 from dataclasses import dataclass
@@ -20,7 +19,7 @@ from typing import Any
 import numpy as np
 
 from ..core.checks import Floats
-from ..core.errors import FileError, ModelWarning, ParameterError, caller_level, suggestion
+from ..core.errors import FileError, ParameterError, suggestion, warn_of_model
 from ..core.quantities import is_unit
 from .text_cells import (
     NO_UNIT,
@@ -554,5 +553,5 @@ def conversion_of_column(
     """
     if unit in NO_UNIT and wanted not in ("", "1"):
         text = f"{path}: column {column!r} has no unit, and is taken in {wanted}: {advice}"
-        warnings.warn(text, ModelWarning, stacklevel=caller_level())
+        warn_of_model(text)
     return (1.0, 0.0) if unit in NO_UNIT else conversion(unit, wanted)

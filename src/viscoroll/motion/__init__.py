@@ -2,6 +2,6 @@
 
 A roller, a start, times and a drive enter :func:`.roll.roll` and :func:`.ensemble.ensemble`;
 :mod:`.motion_arguments` and :mod:`.drive_functions` check them, :mod:`.motion_problem` calls the
-integrator, :mod:`.flow` looks up free motions.  They leave as :class:`.motion_result.Motion` and
+integrator, :mod:`.flow` looks up free motions.  They leave as :class:`.roll.Motion` and
 :class:`.ensemble.Ensemble`, as datasets, and as summaries that merge (:mod:`.summaries`).
 """

@@ -23,20 +23,8 @@ from ..kernels.records import (
     PRESCRIBED_OMEGA,
     PRESCRIBED_V,
 )
-from .drive_fit import TERMS
 from .motion_arguments import Drive, start_speeds
-from .piecewise import (
-    Piecewise,
-    TimeFunction,
-    check_function,
-    count_corners,
-    count_motions,
-    differentiate,
-    pack_pieces,
-    piecewise,
-    take_motions,
-    values_at_start,
-)
+from .piecewise import Piecewise, differentiate, pack_pieces, piecewise, values_at_start
 
 #: Bytes of pieces that are packed at a time where motions have functions of their own: little
 #: beside the schedules, and yet many motions at once where these are short.
@@ -59,6 +47,8 @@ _GAINS = (
     "gain of torque on omega",
 )
 
+#: The function of time that is 0.
+_NOTHING = Piecewise(np.zeros((1, 1)), np.zeros((1, 1, 1)))
 #: Code in the kernels of the prescribed speed, by its name; "" for none.
 _PRESCRIBED_CODES = {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRIBED_V}
 
@@ -74,7 +64,7 @@ class DriveFunctions:
 
     Attributes
     ----------
-    functions : name -> :data:`.piecewise.TimeFunction`; always "force", "torque" and "brake" (0
+    functions : name -> :class:`.piecewise.Piecewise`; always "force", "torque" and "brake" (0
         where not given), and the prescribed speed, "omega" or "V", if there is one.
     tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
@@ -83,7 +73,7 @@ class DriveFunctions:
     end : last time, in T_ref.
     """
 
-    functions: dict[str, TimeFunction]
+    functions: dict[str, Piecewise]
     tangent: Floats
     prescribed: str
     gains: Floats
@@ -98,9 +88,8 @@ class DriveFunctions:
         Raises ParameterError if two of the functions, or a function and the slope, have values for
         different numbers of motions, both other than 1.
         """
-        counts = {
-            name: count_motions(f) for name, f in (self.functions | {"slope": self.tangent}).items()
-        }
+        counts = {name: len(f.terms) for name, f in self.functions.items()}
+        counts["slope"] = self.tangent.size
         shape = broadcast_shape(
             **{name: np.empty(count) for name, count in counts.items() if count != 1}
         )
@@ -122,14 +111,14 @@ class DriveFunctions:
         """Number of corners of a motion's schedules, and of pieces of its callables; 0 for numbers
         alone.
         """
-        return sum(map(count_corners, self.functions.values()))
+        return sum(f.corners for f in self.functions.values())
 
     @property
     def error(self) -> float:
         """Largest difference seen between a callable and its fit, dimensionless; 0.0 without
         callables.
         """
-        return max(getattr(function, "error", 0.0) for function in self.functions.values())
+        return max(f.error for f in self.functions.values())
 
     def block(self, most: int) -> int:
         """Return how many motions to pack at a time, so that their pieces take some
@@ -142,9 +131,7 @@ class DriveFunctions:
         """
         if self._function_motions == 1:
             return most
-        columns = 2 + 5 * (
-            TERMS if any(isinstance(f, Piecewise) for f in self.functions.values()) else 2
-        )
+        columns = 2 + 5 * max(f.terms.shape[-1] for f in self.functions.values())
         return min(max(_BLOCK_BYTES // (8 * columns * (self.corners + 1)), 1), most)
 
     def _blocks(self, count: int) -> list[slice]:
@@ -167,8 +154,8 @@ class DriveFunctions:
         speed = self.functions[name]
         firsts = []
         sizes = []
-        for part in self._blocks(count_motions(speed)):
-            curve = piecewise(take_motions(speed, part))
+        for part in self._blocks(len(speed.terms)):
+            curve = speed.take(part)
             differentiate(name, curve)
             firsts.append(values_at_start(curve.terms[:, 0]))
             sizes.append(np.abs(curve.terms).sum(axis=-1).max(axis=1, initial=0.0))
@@ -186,11 +173,9 @@ class DriveFunctions:
         number of motions that have functions, times or slopes of their own.
         Raises ParameterError where a prescribed speed jumps.
         """
-        zero = piecewise(np.zeros(()))
         name = self.prescribed
         force, torque, brake, speed = (
-            piecewise(self.functions[f]) if f in self.functions else zero
-            for f in ("force", "torque", "brake", name)
+            self.functions.get(f, _NOTHING) for f in ("force", "torque", "brake", name)
         )
         tilt = np.zeros((np.size(self.tangent), 1, force.terms.shape[-1]))
         tilt[:, 0, 0] = self.tangent
@@ -227,7 +212,7 @@ class DriveFunctions:
         Returns a new object; its functions and tangent are those of the selected motions, in the
         order of ``index``.
         """
-        functions = {name: take_motions(f, index) for name, f in self.functions.items()}
+        functions = {name: f.take(index) for name, f in self.functions.items()}
         return replace(
             self,
             functions=functions,
@@ -295,7 +280,7 @@ def prepare_drive(
     prescribed = next((name for name in ("omega", "V") if getattr(drive, name) is not None), "")
     names = ["force", "torque", "brake", *([prescribed] if prescribed else [])]
     functions = {
-        name: check_function(
+        name: piecewise(
             name,
             getattr(drive, name),
             end,
@@ -355,7 +340,7 @@ def _prescribed_start(name: str, stated: Any, functions: DriveFunctions, speed: 
     motions: a float if ``stated`` is a number or None, else an array in the shape of ``stated``.
     Of a callable it is the value of the callable itself, not of its fit.
     """
-    if isinstance(value := functions.functions[name], np.ndarray) and not value.size:
+    if not functions.functions[name].terms.size:
         raise described_error(
             name, "is empty", "a number, an array with one for each motion, or a function of t"
         )

@@ -32,7 +32,7 @@ dimensionless, times are gamma t.
 from __future__ import annotations
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
@@ -56,7 +56,6 @@ from .flow_pieces import (
     Rows,
     octaves,
 )
-from .flow_store import FlowMap
 
 # --- The slow manifold of a flow map ---
 
@@ -432,10 +431,10 @@ def _pad(powers: Floats) -> Floats:
 # --- The tables of a flow map ---
 
 
-def fill_tables(new_map: FlowMap, threads: int | None) -> str:
+def fill_tables(new_map: Any, threads: int | None) -> str:
     """Fill the tables of a new flow map.
 
-    new_map : the :class:`FlowMap`, whose ``table`` is written.
+    new_map : the :class:`.flow.FlowMap`, whose ``table`` is written.
     threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
     available.
     Returns "", or the reason why the scene has no map, a sentence; the table is then incomplete.

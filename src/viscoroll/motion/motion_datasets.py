@@ -267,6 +267,59 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     return variables, texts
 
 
+def describe_load(given: Any, unit: str) -> str:
+    """Return a text on a load or speed as it was given: its value with the unit, and the gains of a
+    feedback.
+
+    given: a number, a :class:`Schedule`, a function of t, or a :class:`Feedback` of one of these,
+    in the unit.
+    unit: its unit, "" of a dimensionless one.
+    Returns for example "0.5 N m m-1"; "4 corners, 0 to 1 N m m-1" of a schedule, with its smallest
+    and largest value; "a function of t"; and "0.5 N m m-1 - 0.1 omega" of a feedback, without gains
+    that are 0.
+    """
+    value = given
+    gains = {}
+    if isinstance(given, Feedback):
+        value = given.value
+        gains = {"V": given.V, "omega": given.omega}
+    if callable(value):
+        text = "a function of t"
+    elif isinstance(value, Schedule):
+        text = (
+            f"{value.times.size} corners, {value.values.min():.6g} to {value.values.max():.6g} "
+            f"{unit}"
+        ).rstrip()
+    else:
+        text = f"{value!s:.60} {unit}".rstrip()
+    return text + "".join(
+        f" {'-' if gain < 0.0 else '+'} {abs(gain):.6g} {name}"
+        for name, gain in gains.items()
+        if gain
+    )
+
+
+def describe_values(t: NDArray, values: NDArray) -> str:
+    """Return a text on values over time: the first, the last that was reached, the largest between
+    them with its time.
+
+    t, values: times and values, (times,), at least one, in the unit of the roller; values are NaN
+    at times that the motion did not reach.
+    Returns "first A, largest B (at t = T), last C", with B the value of the largest magnitude, the
+    first one of equal ones, and numbers to six digits; without it where it is printed like the
+    first or the last; the number alone for one time; "not reached" where all values are NaN.
+    """
+    if np.isnan(values).all():
+        return "not reached"
+    reached = values[~np.isnan(values)]
+    peak = int(np.nanargmax(np.abs(values)))
+    first, most, last = (f"{value:.6g}" for value in (reached[0], values[peak], reached[-1]))
+    if t.size == 1:
+        return first
+    largest = "" if most in (first, last) else f"largest {most} (at t = {t[peak]:.6g}), "
+    return f"first {first}, {largest}last {last}"
+
+
 def _shared(array: NDArray, own: int = 0) -> NDArray:
     """Return numbers of motions, without the axis of the motions if it has length 1: they are those
     of all motions.

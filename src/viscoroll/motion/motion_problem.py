@@ -33,6 +33,7 @@ from .drive_functions import (
     undriven,
 )
 from .motion_arguments import (
+    LEAST_ON_TABLE,
     LOSSES,
     ROWS,
     STATES,
@@ -40,6 +41,7 @@ from .motion_arguments import (
     controls,
     refuse_end,
     require_single,
+    start_speeds,
     with_scales,
 )
 
@@ -179,6 +181,8 @@ def make_problem(
         omega0 = make_dimensionless("omega0", start[1], scale)
         spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
         prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
+        if scene.tabulated:
+            start_speeds(prepared.V0, prepared.omega0, LEAST_ON_TABLE)
         functions = prepared.functions
         if functions is not None:  # a step ends at every corner
             limits = (*limits[:2], limits[2] + functions.corners)

@@ -41,24 +41,30 @@ class Piecewise(NamedTuple):
     terms : coefficients of powers of x in [-1, 1], ascending, (1 or m, k, terms); one row where the
     function is the same for all motions.
     error : largest absolute difference seen between a callable and this fit; 0 of other functions.
+    corners : number of times at which an integration step must end: the corners of a schedule, the
+    pieces of a fitted callable with that after the last time; 0 of numbers.
     """
 
     starts: Floats
     terms: Floats
     error: float = 0.0
+    corners: int = 0
 
     @property
     def ends(self) -> Floats:
         """When the pieces end, in the shape of ``starts``."""
         return _ends(self.starts)
 
+    def take(self, index: Any) -> Piecewise:
+        """Return the function of some of the motions; what is the same for all motions stays.
 
-#: A checked function of time: numbers (one, or one of each motion), corners, or the polynomials
-#: that follow a callable.
-TimeFunction = Floats | Schedule | Piecewise
+        index: index of numpy, a slice or a vector of integers, that selects the motions.
+        """
+        starts, terms = (a[index] if len(a) > 1 else a for a in (self.starts, self.terms))
+        return self._replace(starts=starts, terms=terms)
 
 
-def check_function(
+def piecewise(
     name: str,
     function: Any,
     end: float,
@@ -66,8 +72,10 @@ def check_function(
     *,
     low: float = -np.inf,
     resolve: float | None = None,
-) -> TimeFunction:
-    """Check a function of time that acts on motions; a callable is fitted by polynomials.
+) -> Piecewise:
+    """Return a function of time that acts on motions as piecewise polynomials, checked.
+
+    A schedule is linear between its times and constant outside; a callable is fitted.
 
     name: name of the argument, for refusals.
     function: None (0), a number, an array with one for each motion, a :class:`Schedule`, a callable
@@ -82,9 +90,10 @@ def check_function(
     several dimensions; values that are not finite or below ``low``; a callable that cannot be
     called with a time alone, or that polynomials do not follow; a ``resolve`` that requires too
     many samples.  Exceptions of the callable pass.
-    Returns the function as :class:`TimeFunction`: a float64 array, () for None or a number and (m,)
-    for m motions; the Schedule itself; or the fit of a callable as a :class:`Piecewise` of one row,
-    which beyond ``end`` keeps its value there.
+    Returns :class:`Piecewise`: of numbers one piece with one term, starts (1, 1) and terms (1 or m,
+    1, 1); of a schedule with k corners up to k + 1 pieces with two terms, since pieces that have no
+    length for any motion are left out; the fit of a callable, which beyond ``end`` keeps its value
+    there.
     """
     if isinstance(function, Feedback):
         function = function.value
@@ -93,77 +102,23 @@ def check_function(
         starts, terms, error = fit_callable(name, function, end, rtol, low, resolve)
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
-        return Piecewise(np.append(starts, end)[None], np.concatenate([terms, after])[None], error)
+        starts = np.append(starts, end)[None]
+        return Piecewise(starts, np.concatenate([terms, after])[None], error, starts.size)
     if isinstance(function, Schedule):
         check_array(f"values of {name}", function.values, low=low)
-        return function
+        return _follow_corners(*np.atleast_2d(function.times, function.values))
     values = check_array(name, 0.0 if function is None else function, low=low)
     if values.ndim > 1:
         allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
         raise shape_error(name, values.shape, allowed)
-    return values
+    return Piecewise(np.zeros((1, 1)), values.reshape(-1, 1, 1))
 
 
-def count_motions(function: TimeFunction) -> int:
-    """Return for how many motions a function of time is given, an int; 1 if all motions share it, 0
-    of an empty array.
+def _follow_corners(times: Floats, values: Floats) -> Piecewise:
+    """Return the :class:`Piecewise` of a schedule, linear between its times and constant outside.
 
-    function: :class:`TimeFunction`, as :func:`check_function` returns it: an array, () or (n,), a
-        :class:`Schedule`, or a :class:`Piecewise`, the fit of a callable.
+    times, values: corners, (1 or m, k) each, times ascending, in T_ref; values dimensionless.
     """
-    if isinstance(function, Piecewise):
-        return len(function.terms)
-    if isinstance(function, Schedule):
-        return max(len(array) for array in map(np.atleast_2d, (function.times, function.values)))
-    return function.size
-
-
-def count_corners(function: TimeFunction) -> int:
-    """Return the number of times at which an integration step must end, an int.
-
-    function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable.
-    Returns the number of corners of a schedule; of a fitted callable the number of its pieces, that
-    after the last time included; 0 of numbers.
-    """
-    if isinstance(function, Piecewise):
-        return function.starts.shape[-1]
-    return function.times.shape[-1] if isinstance(function, Schedule) else 0
-
-
-def take_motions(function: TimeFunction, index: Any) -> TimeFunction:
-    """Return a function of time for some of the motions; the function itself where it is the same
-    for all.
-
-    function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable.
-    index: index of numpy, a slice or a vector of integers, that selects the motions.
-    Returns a function of the same kind; times or values of a schedule that are the same for all
-    motions stay.
-    """
-    if isinstance(function, Piecewise) or count_motions(function) == 1:
-        return function
-    if isinstance(function, Schedule):
-        parts = (
-            a[index] if a.ndim == 2 and len(a) > 1 else a for a in (function.times, function.values)
-        )
-        return Schedule(*parts)
-    return function[index]
-
-
-def piecewise(function: TimeFunction) -> Piecewise:
-    """Return a function of time as piecewise polynomials; a schedule is linear between its times,
-    constant outside.
-
-    function: :class:`TimeFunction`: number, numbers of the motions, schedule or fitted callable;
-    dimensionless.
-    Returns :class:`Piecewise`: a fitted callable itself; of numbers one piece with one term, starts
-    (1, 1) and terms (1 or m, 1, 1); of a schedule with k corners up to k + 1 pieces with two terms,
-    since pieces that have no length for any motion are left out.
-    """
-    if isinstance(function, Piecewise):
-        return function
-    if not isinstance(function, Schedule):
-        return Piecewise(np.zeros((1, 1)), function.reshape(-1, 1, 1))
-    times, values = np.atleast_2d(function.times, function.values)
     values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
     first = values[:, :-1]
     second = values[:, 1:]
@@ -171,7 +126,7 @@ def piecewise(function: TimeFunction) -> Piecewise:
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
     starts = np.pad(times, [(0, 0), (1, 0)])
     kept = (_ends(starts) > starts).any(axis=0)
-    return Piecewise(starts[:, kept], terms[:, kept])
+    return Piecewise(starts[:, kept], terms[:, kept], corners=times.shape[1])
 
 
 def _ends(starts: Floats) -> Floats:

@@ -1,18 +1,446 @@
-"""One motion: :func:`roll` and its result."""
+"""One motion: :func:`roll`, and its result, :class:`Motion`."""
 
 from __future__ import annotations
 
 import warnings
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any, NamedTuple
 
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ..contact_mechanics.assumptions import Validity, assess_heat
+from ..contact_mechanics.contact import contact
 from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
 from ..contact_mechanics.parameters import Roller, scale_of
-from ..core.checks import Numbers
+from ..contact_mechanics.validity import validity
+from ..core.checks import Floats, Numbers, check_number
 from ..core.drive_arguments import Feedback, Schedule
+from ..core.errors import MotionStatus, ParameterError, described_error, digits_beside
 from ..core.labels import UNLABELLED_TYPES
-from .motion_arguments import Drive, output_times, strip_units
-from .motion_problem import SolverOptions, make_problem
-from .motion_result import Motion, integrate_motion
+from ..core.results import SummaryRow, Values
+from .motion_arguments import ROWS, SPEED_RANGE, Drive, output_times, strip_units
+from .motion_datasets import RollResult, describe_load, describe_values
+from .motion_problem import NO_NOTES, MotionProblem, SolverOptions, integrate_single, make_problem
+
+if TYPE_CHECKING:
+    import xarray as xr
+    from matplotlib.figure import Figure
+
+#: Changes of regime that are kept.
+_SWITCHES_KEPT = 1000
+#: Times of a figure, beside the ends of steps: lines between them are straight.
+_DRAWN = 201
+#: Steps, beside twice those of the motion, for which the ends are kept and which a repeated
+#: integration may take.
+_MORE_STEPS = 1000
+#: Names of the regimes by their codes.
+REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
+
+
+class Switch(NamedTuple):
+    """A change of regime.
+
+    t : when, in the unit of the roller.
+    regime : the new regime, a name of ``REGIMES``.
+    """
+
+    t: float
+    regime: str
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Motion(RollResult):
+    """One motion, in the units of its roller: dimensionless for a scene, for a cylinder SI units
+    per m of length.
+
+    Attributes
+    ----------
+    roller : the :class:`Scene` or :class:`Cylinder`, on its slope.
+    drive : loads and prescribed speeds as they were given.
+    t, V, omega : output times and speeds; s, m/s, rad/s.
+    x, angle : distance travelled, divided by R or in m, and angle turned in radians, both 0 at t =
+    0.
+    delta : creepage (infinite where V = 0 while sliding).
+    regime : 0 full slip, 1 partial slip, 2 rest, 3 locked by a brake (omega = 0, V not), 4 held by
+        a brake, or by a prescribed speed of 0 (both 0); see ``REGIMES``.  Without ``rest`` nothing
+        stops: a driven motion counts as at rest where V has decayed below the smallest double.
+    switches : changes of regime, a tuple of (t, regime), located to rounding; under a drive to a
+        small part of ``rtol``.  Only the first 1000 changes and reversals, counted together, are
+        kept.
+    reversals : times at which V changes its sign under a drive, (reversals,).
+    force, torque : divided by P and P R, or N/m and N m/m: the loads with the pull of a slope, or
+        the loads that a prescribed speed required; without the brake.
+    work_force, work_torque : work of either since t = 0, divided by m (R/T_ref)^2 or in J/m.
+    brake_loss, slip_loss, rolling_loss : energy lost since t = 0 in brake, slip and rolling,
+        likewise.  The works are the change of (V^2 + j omega^2)/2 plus the three losses.
+    power_force, power_torque : force V and torque omega, divided by P R/T_ref or in W/m.
+    drive_error : largest difference seen between a callable and the polynomials that fit it,
+    dimensionless.
+    onset_time : time of the first change from full to partial slip; NaN if there is none.
+    rest_time : when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
+    success, status, message : whether the motion reached its last output time or rest; how it
+        ended, a :class:`MotionStatus`; the same in words, with the last state of a motion that was
+        given up.  Outputs that it did not reach are NaN.
+    steps : integration steps taken, rejected ones included.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+    >>> motion.success, motion.V.shape
+    (True, (2,))
+    """
+
+    reversals: Floats
+    _problem: MotionProblem = field(repr=False)
+
+    @property
+    def message(self) -> str:
+        """How the motion ended, in words.
+
+        For one that was given up, but not one that stays in the indentation of a standstill, also
+        the state that it had reached, for which it is integrated anew.
+        """
+        text: str = self.status.message
+        if self.success or self.status == MotionStatus.CAUGHT:
+            return text
+        last = self._last_reached
+        t, V, omega = (
+            f"{x} = {float(last[x][0]):.6g} {self._unit(x)}".rstrip() for x in ("t", "V", "omega")
+        )
+        return f"{text}; the last state was {t} in {REGIMES[last.regime[0]]}, {V}, {omega}"
+
+    @cached_property
+    def _step_ends(self) -> Floats:
+        """Ends of the accepted integration steps, ascending, in T_ref, the dimensionless unit of
+        time, (accepted steps,).
+
+        The motion is integrated anew for them, with its last output time alone.  Empty for one that
+        stays in the indentation of a standstill.
+        """
+        ends = np.full(2 * self.steps + _MORE_STEPS, np.nan)
+        integrate_single(self._problem, np.array([self._problem.end]), NO_NOTES[0], ends)
+        return ends[~np.isnan(ends)]
+
+    @cached_property
+    def _last_reached(self) -> Motion:
+        """Return the motion at the end of its last step alone, for one that was given up before its
+        last output time.
+
+        It is integrated anew to that time.  If the last step, which is cut there, is given up
+        before it, the last output time that was reached or the end of an earlier step is taken.
+
+        Returns a :class:`Motion` with one output time, (1,), at which its speeds are finite; at t =
+        0 if no step was accepted.
+        """
+        outputs = self.t[self.regime >= 0] / self.scale["t"]
+        times = np.union1d(np.append(self._step_ends, 0.0), outputs)
+        # A last step that is cut at this end may take more steps than one that was not.
+        limits = (*self._problem.limits[:2], 2 * self.steps + _MORE_STEPS)
+        for reached in times[::-1].tolist():
+            problem = self._problem._replace(end=reached, limits=limits)
+            last = integrate_motion(problem, np.array([reached * self.scale["t"]]))
+            if np.isfinite(last.V[0]):
+                break
+        return last
+
+    @property
+    def power_force(self) -> Floats:
+        """Power of the force."""
+        return self.force * self.V
+
+    @property
+    def power_torque(self) -> Floats:
+        """Power of the torque."""
+        return self.torque * self.omega
+
+    def contact(self, fields: Iterable[str] | None = None, **options: Any) -> Values:
+        """Return the contact state (:func:`viscoroll.contact`) along the motion.
+
+        At rest, and where V passes through zero while sliding, the fields have their limits for
+        V -> 0; where V is -0 that from below.  At times that the motion did not reach all numbers
+        are NaN, and ``full_slip`` is False.
+
+        Parameters
+        ----------
+        fields : names of fields of the contact state; None: the default of
+        :func:`viscoroll.contact`.
+        **options : its other keywords, apart from creepage and angular velocity, which are those of
+        the motion.
+
+        Returns
+        -------
+        Values
+            Each field over t, (times,), in the units of the roller.  The law is exact to rounding:
+            errors are those of V and delta, which beta and Q magnify near full slip
+            (``tests/motion/test_motion.py``).
+
+        Raises
+        ------
+        ParameterError
+            Unknown fields or options out of range; ``omega`` as an option.
+        TypeError
+            An option that :func:`viscoroll.contact` does not have, or ``delta``.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.contact(["Q", "beta"]).beta.shape
+        (2,)
+        """
+        reached = self.regime >= 0
+        V = self.V[reached]
+        delta = self.delta[reached]
+        delta = np.where(np.isfinite(delta), delta, np.copysign(1e300, delta))
+        slowest = -SPEED_RANGE[0] * self.scale["V"]
+        V = np.where((V == 0.0) & np.signbit(V), slowest, V)  # -0: the limit from there
+        found = contact(self.roller, V, delta=delta, fields=fields, **options)
+        whole = {}
+        for name, values in found.as_dict().items():
+            whole[name] = np.full(reached.shape, False if values.dtype == bool else np.nan)
+            whole[name][reached] = values
+        return Values(whole, {"t": self.t}, si=self.scale.si, title="Contact along a motion")
+
+    def validity(self, capacity: float | None = None) -> Validity:
+        """Report which assumptions of the model the motion violates, at the ends of its steps and
+        at its output times.
+
+        See :func:`viscoroll.validity`; ``creep`` is that of the motion, and ``steady`` examines its
+        speeds so far; of a cover it is not decided.  States at rest count as the last state before
+        them, as the model has nothing to compute at rest.
+
+        Parameters
+        ----------
+        capacity : heat that a body stores per kelvin, J/(m K), > 0, of a Cylinder; default: the
+            heat of the motion is not examined.
+
+        Returns
+        -------
+        Validity
+            The report, with arrays over the output times that were reached; empty arrays where none
+            was.  Each entry has the value of the first violation since the output time before (for
+            the first one since t = 0), or, if there is none, that at the output time.  The report
+            is that of the same motion with more output times (``tests/test_steadiness.py``).
+
+        Raises
+        ------
+        ParameterError
+            A capacity that is not one number > 0, or that is given for a Scene.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.validity().steady.holds.shape
+        (2,)
+        """
+        outputs = self.t[self.regime >= 0]
+        whole = self.at(np.union1d(self.course.t, outputs)) if outputs.size else self
+        reached = whole.regime >= 0
+        t = whole.t[reached]
+        V = whole.V[reached]
+        omega = whole.omega[reached]
+        moving = np.maximum.accumulate(np.where((V != 0.0) | (omega != 0.0), np.arange(V.size), 0))
+        report = validity(self.roller, V[moving], omega=omega[moving])
+        if capacity is not None:
+            if not self.scale.si:
+                raise described_error(
+                    "capacity", "is given for a Scene", "left out: a Scene has no temperature"
+                )
+            capacity = check_number("capacity", capacity, unit=self.scale, above=0.0)
+            report = report._replace(
+                heat=assess_heat((whole.slip_loss + whole.rolling_loss)[reached], capacity)
+            )
+        if not outputs.size:
+            return report
+        if self.scene.cover is None:
+            rolls = whole.regime[reached] > 0
+            x = whole.x[reached]
+            report = self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
+        last = np.searchsorted(t, outputs)
+        return Validity(
+            *(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report)
+        )
+
+    def _summary(self) -> tuple[str, list[SummaryRow]]:
+        """Return title and rows of the printed report, a list of :class:`SummaryRow`.
+
+        The rows are: output times; V, omega and x; the drive as it was given; the onset of partial
+        slip, if there is one; number of changes of regime and of reversals of V, if there are any,
+        and the last change; how the motion ended.
+        """
+        rows = [self._row_of_times()]
+        rows += [
+            SummaryRow(name, describe_values(self.t, self[name]), self._unit(name))
+            for name in ("V", "omega", "x")
+        ]
+        for name, given in self.drive.given.items():
+            title = (
+                f"prescribed {name}" if name in ("V", "omega") else name
+            )  # V and omega have rows of their own above
+            rows.append(SummaryRow(title, describe_load(given, self._unit(name))))
+        if not np.isnan(self.onset_time):
+            rows.append(
+                SummaryRow("onset of partial slip", f"t = {self.onset_time:.6g}", self._unit("t"))
+            )
+        if self.switches:
+            last = self.switches[-1]
+            end = (
+                ": V fell to 0 in double precision"
+                if last.regime == "rest" and np.isnan(self.rest_time)
+                else ""
+            )
+            when = f"t = {last.t:.6g} {self._unit('t')}".rstrip()
+            rows.append(
+                SummaryRow(
+                    "changes of regime",
+                    f"{len(self.switches)}, the last to {last.regime} at {when}{end}",
+                )
+            )
+        if self.reversals.size:
+            rows.append(SummaryRow("reversals of V", str(self.reversals.size)))
+        return "Motion", [
+            *rows,
+            SummaryRow("ended", f"{self.message} ({self.steps} step{'s' * (self.steps != 1)})"),
+        ]
+
+    def at(self, t: ArrayLike) -> Motion:
+        """Return the same motion at other times within [0, end], by the dense output of the steps.
+
+        Parameters
+        ----------
+        t : times, a number or (times,), ascending, in the unit of the motion's own times.
+
+        Returns
+        -------
+        Motion
+            With these output times; it is integrated anew.  As accurate between the steps as at
+            their ends (``tests/motion/test_motion.py``).  NaN at times that a motion which was
+            given up did not reach.
+
+        Raises
+        ------
+        ParameterError
+            No times, times of several axes, in a unit of another dimension, negative, not finite or
+            not ascending, or that lie beyond the end of the motion.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, 2.0)
+        >>> motion.at([0.5, 1.5]).V.shape
+        (2,)
+        """
+        times = output_times(t, self.scale)
+        end = self._problem.end * self.scale["t"]
+        if times[-1] > end and float(times[-1]) / self.scale["t"] > self._problem.end:
+            raise ParameterError(
+                "t", times[-1], f"within the motion, [0, {digits_beside(end, times[-1])}]"
+            )
+        return integrate_motion(self._problem, times)
+
+    @cached_property
+    def course(self) -> Motion:
+        """The same motion at 0, at the ends of its steps and at the last output time, each time
+        once, ascending.
+
+        One that was given up before is NaN there, and at the end of its last step, where outputs
+        are written by the step after it.
+        """
+        ends = self._step_ends
+        end = self._problem.end
+        return self.at(
+            np.unique(np.concatenate(([0.0], ends[ends < end], [end]))) * self.scale["t"]
+        )
+
+    def _figure(self) -> Figure:
+        """Return the figure of the motion at its output times; where only one was requested, at the
+        ends of its steps and at 201 times evenly spread over the whole motion, for which it is
+        integrated anew.
+        """
+        if self.t.size > 1:
+            return RollResult._figure(self)
+        t = self.course.t
+        return RollResult._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
+
+    def to_xarray(self) -> xr.Dataset:
+        """Return the dataset over t with V, omega, x, angle, delta and regime, and the scene as
+        attributes.
+
+        Returns
+        -------
+        xarray.Dataset
+            In the units of the roller; regime is int8, -1 where it was not reached.  The dataset of
+            a motion with a drive also has force, torque, work_force, work_torque, brake_loss,
+            slip_loss and rolling_loss over t, what was given as ``drive_force`` and so on (of a
+            function of time a text among the attributes), and ``reversals``, the times at which V
+            changes its sign.  Attributes are those of :func:`.motion_datasets.motion_dataset`.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> motion = vr.roll(vr.presets.RUBBER_CYLINDER, 1.0, 10.0, [1.0, 2.0])
+        >>> motion.to_xarray()["V"].attrs["units"]
+        'm s-1'
+        """
+        from .motion_datasets import motion_dataset
+
+        return motion_dataset(self)
+
+
+def integrate_motion(problem: MotionProblem, times: Floats) -> Motion:
+    """Integrate one motion.
+
+    problem: :class:`MotionProblem` of one motion, which the result keeps, to be integrated anew at
+    other times.
+    times: output times, (times,), at least one, ascending, in the unit of its roller; a time beyond
+    the end of the motion counts as its end.  The motion is integrated to its end in any case, so
+    that steps and status do not depend on them.
+    Returns the :class:`Motion`, in the units of its roller; where it did not reach an output time,
+    quantities are NaN and ``regime`` is -1.  It keeps the first 1000 changes of regime and
+    reversals of V, counted together.  The status of a motion that stays in the indentation of a
+    standstill is CAUGHT, and it reaches no output time.
+    """
+    scale = problem.roller.scale
+    end = problem.end
+    T = scale["t"]
+    t = np.minimum(times / scale["t"], end)
+    if t[-1] != end:
+        t = np.append(t, end)
+    noted = np.empty((_SWITCHES_KEPT, 2))
+    noted.fill(np.nan)
+    out, (status, steps, _, onset_time, rest_time) = integrate_single(
+        problem, t, noted, NO_NOTES[1]
+    )
+    rows = dict(zip(ROWS, out[:, : times.size], strict=True))
+    codes = rows.pop("regime")
+    if scale.si:
+        rows = {name: row * scale[name] for name, row in rows.items()}
+    codes[np.isnan(codes)] = -1.0
+    noted = noted[~np.isnan(noted[:, 1])]
+    switches = tuple(
+        Switch(float(when) * T, REGIMES[int(code)]) for when, code in noted if code >= 0.0
+    )
+    return Motion(
+        problem.roller,
+        problem.drive,
+        times,
+        **rows,
+        regime=codes.astype(np.int8),
+        switches=switches,
+        onset_time=onset_time * T,
+        rest_time=rest_time * T,
+        status=MotionStatus(int(status)),
+        steps=int(steps),
+        reversals=noted[noted[:, 1] < 0.0, 0] * T,
+        drive_error=problem.drive_error,
+        _problem=problem,
+    )
+
 
 #: A function of time.
 Function = float | Schedule | Callable[[float], float]

@@ -15,8 +15,6 @@ from ..core.checks import Floats, check_array
 from ..core.drive_arguments import Schedule
 from ..core.errors import ParameterError, described_error
 from ..core.scale import Scale
-from ..heat.shift_curve import shift_curve
-from ..heat.temperature import temperature
 from ..materials.material import Material
 from ..materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
 from ..materials.measured_data import Measured
@@ -135,7 +133,7 @@ def _warm_bodies(
             allowed = "certain beside [heat]: its temperature follows from the law of one material"
             raise described_error(name, "has uncertain numbers", allowed)
     given = {name: heat[name] for name in ("ambient", "conductance")}
-    found = temperature(Cylinder(**numbers, **bodies), speed, **given).temperature
+    found = Cylinder(**numbers, **bodies).temperature(speed, **given).temperature
     if not found.size or np.isnan(found[..., 0]).any():
         raise described_error(
             "ambient", "leads to no temperature within the range of the shift", "another"
@@ -146,6 +144,8 @@ def _warm_bodies(
         if body.prony.alpha > 1.0 and not theta.ndim:
             warm[name] = body.at(float(theta))
         elif body.prony.alpha > 1.0:
+            from ..heat.shift_curve import shift_curve
+
             a_T, root_b = shift_curve(body).factors(theta)
             warm[name] = Solid(
                 E=body.E * root_b**2,

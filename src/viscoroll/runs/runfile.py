@@ -40,7 +40,6 @@ from ..motion.motion_problem import SolverOptions, make_problem
 from ..motion.summaries import LEVELS, QUANTITIES
 from ..roller_toml import check_sections, locate_error
 from ..sampling import Design
-from ..tables import spread
 from .run_rollers import Rollers, drive_of, roller_of
 from .uncertain_inputs import Inputs, correlated, inputs_in, inputs_of
 
@@ -344,8 +343,12 @@ def read_run(path: str | PathLike[str]) -> Run:
     inputs = correlated(path, replace(inputs, content=inputs.content | certain))
     settings = msgspec.convert(content["run"], RunSection)
     with as_section_error(path, "run", "t"):
-        t = settings.t
-        times = output_times(spread(**msgspec.to_builtins(t)) if isinstance(t, TimesSection) else t)
+        t: Any = settings.t
+        if isinstance(t, TimesSection):
+            from ..tables import spread
+
+            t = spread(**msgspec.to_builtins(t))
+        times = output_times(t)
     with as_section_error(path, "run"):
         check_names("fields", settings.fields, FIELDS, "a field")
         check_names("summaries", settings.summaries, QUANTITIES, "a summary")

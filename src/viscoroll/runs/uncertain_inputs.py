@@ -26,8 +26,6 @@ from ..core.errors import FileError, import_extra, suggestion
 from ..core.scale import si_unit
 from ..core.toml_sections import check_keys, section_error
 from ..materials.material_toml import SECTIONS
-from ..measurements.text_cells import readings
-from ..measurements.text_table import column_in_unit, conversion_of_column, named_table
 from ..roller_toml import SCHEMA
 from ..sampling import LARGEST, SMALLEST
 
@@ -544,6 +542,9 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     has several axes or has values that are no finite numbers; MissingDependencyError for .parquet
     without pyarrow.
     """
+    from ..measurements.text_cells import readings
+    from ..measurements.text_table import column_in_unit, conversion_of_column, named_table
+
     if path.suffix == ".csv":
         values = column_in_unit(named_table(path, (column,)), column, unit)
     elif path.suffix == ".parquet":

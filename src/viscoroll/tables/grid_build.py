@@ -246,8 +246,8 @@ def build(
         together, at nodes of speed and creepage that the package chooses, so that V, delta and
         alpha are left out; the table is a law at this mu, which :func:`viscoroll.load_law` reads.
     nodes : of method "coupled", numbers of nodes over speed and over creepage, the second odd;
-        None: 4 to 11 a decade between the rates of the bodies, the more the faster their compliance
-        grows, and 33.
+        None: 5 to 13 a decade between the rates of the bodies, the more the faster their compliance
+        grows, and 27.
     progress : of method "coupled", whether to draw a progress bar on standard error, after one
     second.
     command : recorded in ``history``; default: the command line of this process.

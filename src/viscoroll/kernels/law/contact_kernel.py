@@ -41,11 +41,10 @@ from ..numerics.jit import inline_kernel, kernel
 from .cover_law import (
     MomentChange,
     PairOverSpeed,
-    asymmetry_of,
+    asymmetry_at,
     length_change,
     moment_change,
     pairs_at,
-    reaction_of,
     shear_reaction,
     sliding_creep,
     slope_over_speed,
@@ -101,9 +100,18 @@ _T = np.uint64(TOGETHER)
 _DT_DX = np.uint64(2 * TOGETHER)
 #: Place in the scratch of :func:`contact_loop` of the asymmetry c of a cover.
 _ASYMMETRY = np.uint64(16 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of f_b of a cover; f_c, g_b and g_c follow, each
-#: TOGETHER further.
-_PAIRS = np.uint64(17 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of M of a cover without traction.
+_M_WITHOUT = np.uint64(17 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of f_b of a cover; f_c follows.
+_FREE = np.uint64(18 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of g_b of a cover; g_c follows.
+_EXCESS = np.uint64(20 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of the factor by which M_half_space of a cover falls
+#: with Q; that of M_cylinder follows.
+_FACTOR = np.uint64(22 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of the excess of that factor in full slip; that of
+#: M_cylinder follows.
+_FACTOR_EXCESS = np.uint64(24 * TOGETHER)
 
 
 @inline_kernel
@@ -319,13 +327,12 @@ def Q_slopes(u, L, dL, D, state, law):
 
 
 @inline_kernel
-def traction_on_moments(position, u, functions, Q, state, cover_rows):
+def traction_on_moments(pairs, functions, Q, state, cover_rows):
     """Return what the traction changes in the rolling moments of a state, as
     :class:`.cover_law.MomentChange`.
 
-    position : :class:`RowPosition` of u.
-    u : float, kappa |V|, dimensionless, >= 0.
-    functions : :class:`LengthAndMoment` at u, of which L and dL are read.
+    pairs : of :func:`.cover_law.pairs_at` at the speed.
+    functions : :class:`LengthAndMoment` at that speed, of which L and dL are read.
     Q : float, traction of the state, dimensionless.
     state : :class:`State` of numbers, of which kappa and mu are read.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
@@ -340,9 +347,7 @@ def traction_on_moments(position, u, functions, Q, state, cover_rows):
             half_space_du=0.0,
             cylinder_du=0.0,
         )
-    reaction = shear_reaction(
-        position, u, state.kappa, state.mu, functions.L, functions.dL, cover_rows
-    )
+    reaction = shear_reaction(pairs, state.kappa, state.mu, functions.L, functions.dL, cover_rows)
     return moment_change(Q, state.mu, reaction)
 
 
@@ -494,8 +499,10 @@ def _write_other_fields(n, c, law, scratch, request):
         write_field(to.zeta, 0.5 * lam / u, n, request)
         write_field(to.epsilon, epsilon + epsilon_change, n, request)
     slopes = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
-    bodies = max(to.M_half_space, to.M_cylinder, to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
+    bodies = max(to.dM_half_space_dV, to.dM_cylinder_dV) >= 0
     bodies = bodies or max(to.dM_half_space_domega, to.dM_cylinder_domega) >= 0
+    if max(to.M_half_space, to.M_cylinder) >= 0:
+        _write_body_moments(n, c, law, law.cover_rows, scratch, request)
     _write_reaction(n, position, u, state, law, law.cover_rows, request)
     if slopes or bodies:
         slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
@@ -532,8 +539,9 @@ def _write_reaction(n, position, u, state, law, cover_rows, request):
             >= 0
         ):
             functions = length_and_moment(position, u, law)
+            pairs = pairs_at(position, u, cover_rows)
             shear = shear_reaction(
-                position, u, state.kappa, state.mu, functions.L, functions.dL, cover_rows
+                pairs, state.kappa, state.mu, functions.L, functions.dL, cover_rows
             )
             write_field(to.reaction_half_space, shear.half_space, n, request)
             write_field(to.reaction_cylinder, shear.cylinder, n, request)
@@ -542,12 +550,35 @@ def _write_reaction(n, position, u, state, law, cover_rows, request):
 
 
 @inline_kernel
-def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
-    """Write the moments of the bodies, and the slopes of Q and of the moments, of those that are
-    requested.
+def _write_body_moments(n, c, law, cover_rows, scratch, request):
+    """Write the moments of both bodies, of those that are requested.
 
     n, c, law, scratch, request : as of :func:`_write_other_fields`.
-    bodies : bool, whether a quantity of one body is requested.
+    cover_rows : ``law.cover_rows``; None of half-spaces, whose moments do not depend on Q.
+    Returns nothing.
+    """
+    u = scratch[_U + c]
+    position = _position(_POSITION, c, scratch)
+    scale = length_and_moment(position, u, law).scale
+    factor = moment_factor(position, u, scale, _state(c, scratch, request))
+    half_space, cylinder, _, _ = body_moments(position, u, law)
+    half_space *= factor
+    cylinder *= factor
+    if cover_rows is not None:
+        Q = scratch[_Q + c]
+        used = abs(Q) / scratch[_MU + c]
+        half_space -= Q * (scratch[_FACTOR + c] + scratch[_FACTOR_EXCESS + c] * used)
+        cylinder -= Q * (scratch[_FACTOR + _T + c] + scratch[_FACTOR_EXCESS + _T + c] * used)
+    write_field(request.to.M_half_space, half_space, n, request)
+    write_field(request.to.M_cylinder, cylinder, n, request)
+
+
+@inline_kernel
+def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
+    """Write the slopes of Q and of the moments, of those that are requested.
+
+    n, c, law, scratch, request : as of :func:`_write_other_fields`.
+    bodies : bool, whether a slope of the moment of one body is requested.
     slopes_of_Q : bool, whether a slope of Q is requested, or of a moment of a cover.
     Returns nothing.  Of half-spaces M depends on the speed alone: its slopes in delta and omega are
     0.
@@ -557,7 +588,8 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
     u = scratch[_U + c]
     position = _position(_POSITION, c, scratch)
     functions = length_and_moment(position, u, law)
-    change = traction_on_moments(position, u, functions, scratch[_Q + c], state, law.cover_rows)
+    pairs = pairs_at(position, u, law.cover_rows)
+    change = traction_on_moments(pairs, functions, scratch[_Q + c], state, law.cover_rows)
     over_V = 0.0
     over_delta = 0.0
     over_omega = 0.0
@@ -578,10 +610,7 @@ def _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request):
         )
     write_field(to.dM_dV, slope, n, request)
     if bodies:
-        factor = moment_factor(position, u, functions.scale, state)
-        half_space, cylinder, half_space_slope, cylinder_slope = body_moments(position, u, law)
-        write_field(to.M_half_space, factor * half_space + change.half_space, n, request)
-        write_field(to.M_cylinder, factor * cylinder + change.cylinder, n, request)
+        _, _, half_space_slope, cylinder_slope = body_moments(position, u, law)
         if _is_cover(law.cover_rows):
             half_space_slope += moment_slope_over_V(
                 change.half_space_du, change.half_space_dQ, over_V, state
@@ -608,11 +637,10 @@ def _is_cover(cover_rows):
 
 
 @inline_kernel
-def _write_creep(c, position, functions, cover_rows, scratch):
-    """Store in the scratch what a cover has besides at the speed of a state: 2 kappa delta_0, the
-    asymmetry and the pairs f and g.
+def _write_pairs(c, position, functions, cover_rows, scratch, request):
+    """Store in the scratch what the rows of a cover give besides at the speed of a state.
 
-    c, scratch : as of :func:`_write_other_fields`.
+    c, scratch, request : as of :func:`_write_other_fields`.
     position, functions : :class:`RowPosition` of u, and :class:`LengthAndMoment` there.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces, of which delta_0 = 0 alone is written.
@@ -621,14 +649,46 @@ def _write_creep(c, position, functions, cover_rows, scratch):
     if cover_rows is None:
         scratch[_FREE_CREEP + c] = 0.0
     else:
-        free, excess = pairs_at(position, scratch[_U + c], cover_rows)
-        scratch[_FREE_CREEP + c] = free.first + free.second
-        scratch[_PAIRS + c] = free.first
-        scratch[_PAIRS + _T + c] = free.second
-        scratch[_PAIRS + _DT_DX + c] = excess.first
-        scratch[_PAIRS + _DT_DX + _T + c] = excess.second
-        mu = scratch[_MU + c]
-        scratch[_ASYMMETRY + c] = asymmetry_of(excess, mu, functions.L, 0.0, 0.0).value
+        u = scratch[_U + c]
+        free, excess = pairs_at(position, u, cover_rows)
+        scratch[_FREE + c] = free.first
+        scratch[_FREE + _T + c] = free.second
+        scratch[_EXCESS + c] = excess.first
+        scratch[_EXCESS + _T + c] = excess.second
+        if request.to.M >= 0:
+            state = _state(c, scratch, request)
+            factor = moment_factor(position, u, functions.scale, state)
+            scratch[_M_WITHOUT + c] = factor * functions.m
+
+
+@inline_kernel
+def _write_cover(begin, end, cover_rows, scratch, request):
+    """Store what the pairs of :func:`_write_pairs` mean: 2 kappa delta_0, the asymmetry, and the
+    factors of Q in M.
+
+    It is a stage of its own, without polynomials, which becomes vector instructions.
+    begin, end : int, columns of the scratch.
+    cover_rows : as of :func:`_write_pairs`; of half-spaces nothing is written.
+    scratch, request : as of :func:`_write_other_fields`.
+    Returns nothing.
+    """
+    if cover_rows is not None:
+        to = request.to
+        moments = max(to.M, to.M_half_space, to.M_cylinder) >= 0
+        for k in range(begin, end):
+            c = np.uint64(k)
+            free = _values(scratch[_FREE + c], scratch[_FREE + _T + c])
+            pairs = free, _values(scratch[_EXCESS + c], scratch[_EXCESS + _T + c])
+            mu = scratch[_MU + c]
+            L = scratch[_L + c]
+            scratch[_FREE_CREEP + c] = free.first + free.second
+            scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
+            if moments:
+                reaction = shear_reaction(pairs, scratch[_KAPPA + c], mu, L, 0.0, cover_rows)
+                scratch[_FACTOR + c] = reaction.half_space
+                scratch[_FACTOR + _T + c] = reaction.cylinder
+                scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess
+                scratch[_FACTOR_EXCESS + _T + c] = reaction.cylinder_excess
 
 
 @inline_kernel
@@ -655,28 +715,22 @@ def _write_moment_of_half_space(n, c, position, functions, cover_rows, scratch, 
 
 
 @inline_kernel
-def _write_moment_of_cover(Q, n, c, law, cover_rows, scratch, request):
+def _write_moment_of_cover(Q, n, c, cover_rows, scratch, request):
     """Store Q of a state on a cover in the scratch, and write M, which depends on it, if that is
     requested.
 
     Q : float, traction, dimensionless.
-    n, c, law, scratch, request : as of :func:`_write_other_fields`; the entry of Q is written.
-    cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written.
+    n, c, scratch, request : as of :func:`_write_other_fields`; the entry of Q is written.
+    cover_rows : ``cover_rows`` of the law; None for half-spaces, of which nothing is written.
     Returns nothing.
     """
     if cover_rows is not None:
         scratch[_Q + c] = Q
         if request.to.M >= 0:
-            state = _state(c, scratch, request)
-            u = scratch[_U + c]
-            position = _position(_POSITION, c, scratch)
-            functions = length_and_moment(position, u, law)
-            free = _values(scratch[_PAIRS + c], scratch[_PAIRS + _T + c])
-            excess = _values(scratch[_PAIRS + _DT_DX + c], scratch[_PAIRS + _DT_DX + _T + c])
-            reaction = reaction_of(free, excess, state.kappa, state.mu, functions.L, 0.0)
-            change = moment_change(Q, state.mu, reaction)
-            M = moment_factor(position, u, functions.scale, state) * functions.m
-            write_field(request.to.M, M + (change.half_space + change.cylinder), n, request)
+            used = abs(Q) / scratch[_MU + c]
+            factor = scratch[_FACTOR + c] + scratch[_FACTOR + _T + c]
+            factor += (scratch[_FACTOR_EXCESS + c] + scratch[_FACTOR_EXCESS + _T + c]) * used
+            write_field(request.to.M, scratch[_M_WITHOUT + c] - Q * factor, n, request)
 
 
 @kernel
@@ -731,7 +785,7 @@ def contact_loop(laws, request, scratch, count):
                 position = _position(_POSITION, c, scratch)
                 functions = length_and_moment(position, u, law)
                 scratch[_L + c] = functions.L
-                _write_creep(c, position, functions, law.cover_rows, scratch)
+                _write_pairs(c, position, functions, law.cover_rows, scratch, request)
                 _write_moment_of_half_space(
                     _index(first + k, request),
                     c,
@@ -741,6 +795,7 @@ def contact_loop(laws, request, scratch, count):
                     scratch,
                     request,
                 )
+            _write_cover(begin, end, laws[0].cover_rows, scratch, request)
             for k in range(begin, end):
                 c = np.uint64(k)
                 L = scratch[_L + c]
@@ -767,9 +822,8 @@ def contact_loop(laws, request, scratch, count):
                         laws[k % len(laws)],
                     )
                     write_field(to.Q, Q, _index(first + k, request), request)
-                    law = laws[k % len(laws)]
                     _write_moment_of_cover(
-                        Q, _index(first + k, request), c, law, law.cover_rows, scratch, request
+                        Q, _index(first + k, request), c, laws[0].cover_rows, scratch, request
                     )
             if others:
                 for k in range(begin, end):

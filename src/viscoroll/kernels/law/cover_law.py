@@ -240,9 +240,13 @@ def free_creep_at(position, u, cover_rows):
     Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; a
     cover on the cylinder has the other sign than the same on the base; all are 0.0 for half-spaces.
     """
-    if cover_rows is None:
-        return 0.0, 0.0, 0.0
-    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
+    return free_creep_of(pairs_at(position, u, cover_rows))
+
+
+@inline_kernel
+def free_creep_of(pairs):
+    """Return what :func:`free_creep_at` does, from the ``pairs`` of :func:`pairs_at`."""
+    free = pairs[0]
     return (
         free.first + free.second,
         free.first_slope + free.second_slope,
@@ -274,34 +278,17 @@ def _relative_excess(excess, mu, L, dL, ddL):
 
 
 @inline_kernel
-def asymmetry_at(position, u, mu, L, dL, ddL, cover_rows):
+def asymmetry_at(pairs, mu, L, dL, ddL, cover_rows):
     """Return the asymmetry c of the onsets of full slip, as :class:`OverSpeed`; 0 of half-spaces.
 
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    pairs : of :func:`pairs_at` at that speed.
     mu, L, dL, ddL : as of :func:`_relative_excess`.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
     half-spaces.
     """
     if cover_rows is None:
         return OverSpeed(0.0, 0.0, 0.0)
-    return asymmetry_of(pairs_at(position, u, cover_rows)[1], mu, L, dL, ddL)
-
-
-@inline_kernel
-def pairs_at(position, u, cover_rows):
-    """Return (f_b and f_c; g_b and g_c) of a cover at one speed, two :class:`PairOverSpeed`.
-
-    position, u, cover_rows : as of :func:`asymmetry_at`, of a cover alone.
-    """
-    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
-    return free, _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
-
-
-@inline_kernel
-def asymmetry_of(excess, mu, L, dL, ddL):
-    """Return the asymmetry c, as :class:`OverSpeed`; arguments as of :func:`_relative_excess`."""
-    r = _relative_excess(excess, mu, L, dL, ddL)
+    r = _relative_excess(pairs[1], mu, L, dL, ddL)
     square = 4.0 * r.value * r.value
     power = square * square * square
     share = 1.0 / (1.0 + power)
@@ -315,6 +302,23 @@ def asymmetry_of(excess, mu, L, dL, ddL):
 
 
 @inline_kernel
+def pairs_at(position, u, cover_rows):
+    """Return (f_b and f_c; g_b and g_c) of a cover at one speed, two :class:`PairOverSpeed`;
+    zeros of half-spaces.
+
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    cover_rows : vector of the numbers that only a cover has, as in the module; None for
+    half-spaces.
+    """
+    if cover_rows is None:
+        zero = PairOverSpeed(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return zero, zero
+    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
+    return free, _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
+
+
+@inline_kernel
 def reduced_creep(creep, asymmetry):
     """Return d, of which d + c d^2 is a creep: the inverse of :func:`creep_of`, but linear beyond
     full slip.
@@ -323,9 +327,10 @@ def reduced_creep(creep, asymmetry):
     asymmetry : float, c, |c| < 1/2.
     Returns a float: at least 1 in modulus where the whole contact slips, 1 at its onset.
     """
-    if abs(creep) >= abs(asymmetry + np.copysign(1.0, creep)):
-        return creep - asymmetry
-    return 2.0 * creep / (1.0 + np.sqrt(1.0 + 4.0 * asymmetry * creep))
+    # Both are computed, so that a loop becomes vector instructions.
+    within = 2.0 * creep / (1.0 + np.sqrt(max(1.0 + 4.0 * asymmetry * creep, 0.0)))
+    full_slip = abs(creep) >= abs(asymmetry + np.copysign(1.0, creep))
+    return creep - asymmetry if full_slip else within
 
 
 class CreepCurve(NamedTuple):
@@ -388,15 +393,14 @@ class Reaction(NamedTuple):
 
 
 @inline_kernel
-def shear_reaction(position, u, kappa, mu, L, dL, cover_rows):
+def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
     """Return how shear acts back on the rolling moments at one speed, as :class:`Reaction`, by the
     module's equations.
 
     The excess g = g_b + g_c is limited by g/(1 + (g/s)^4)^(1/4) with s = mu L/2, both parts in
     proportion.
 
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
-    u : float, kappa |V|, dimensionless, >= 0.
+    pairs : of :func:`pairs_at` at that speed.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     mu : float, coefficient of friction, > 0.
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope over u, dimensionless.
@@ -414,15 +418,7 @@ def shear_reaction(position, u, kappa, mu, L, dL, cover_rows):
             half_space_excess_slope=0.0,
             cylinder_excess_slope=0.0,
         )
-    free, excess = pairs_at(position, u, cover_rows)
-    return reaction_of(free, excess, kappa, mu, L, dL)
-
-
-@inline_kernel
-def reaction_of(free, excess, kappa, mu, L, dL):
-    """Return the :class:`Reaction` of :func:`shear_reaction` from the :class:`PairOverSpeed` of f
-    and g at the speed.
-    """
+    free, excess = pairs
     on_base = 0.5 / kappa
     on_cylinder = 1.0 / (2.0 * kappa + free.first + free.second)
     on_cylinder_slope = -on_cylinder * on_cylinder * (free.first_slope + free.second_slope)
@@ -540,7 +536,7 @@ def slopes_of_cover(over_u, over_D, D, position, u, L, dL, state, cover_rows):
     """
     if cover_rows is None:
         return over_u, over_D
-    c = asymmetry_at(position, u, state.mu, L, dL, 0.0, cover_rows)
+    c = asymmetry_at(pairs_at(position, u, cover_rows), state.mu, L, dL, 0.0, cover_rows)
     d = (-D if state.V < 0.0 else D) / L
     over_creep = over_D / (1.0 + 2.0 * c.value * d)
     return over_u + np.sign(d) * over_creep * d * d * (c.value * dL - c.slope * L), over_creep
@@ -567,10 +563,10 @@ def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
 
 
 @inline_kernel
-def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
+def free_kinematics(pairs, u, kappa, k, uL_slope, cover_rows):
     """Return what the creepage of free rolling adds to the kinematics of partial slip at one speed.
 
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law.
+    pairs : of :func:`pairs_at` at that speed.
     u : float, kappa |V|, dimensionless, >= 0.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     k : float, mu/(2 kappa), dimensionless, > 0.
@@ -583,7 +579,7 @@ def free_kinematics(position, u, kappa, k, uL_slope, cover_rows):
     """
     if cover_rows is None:
         return FreeCreep(-0.0, -0.0, -0.0)
-    value, slope, second_derivative = free_creep_at(position, u, cover_rows)
+    value, slope, second_derivative = free_creep_of(pairs)
     factor = 0.5 / kappa
     return FreeCreep(
         factor * value,

@@ -45,7 +45,7 @@ from .contact_kernel import (
     stick_argument,
     traction_on_moments,
 )
-from .cover_law import COVER_FRONT_SIZE, COVER_ROW_SIZE, asymmetry_at, free_creep_at
+from .cover_law import COVER_FRONT_SIZE, COVER_ROW_SIZE, asymmetry_at, free_creep_of, pairs_at
 from .law_functions import body_moments, length_and_moment, locate_row, moment_factor
 from .law_record import PARTS_PER_ROW, ROW_SIZE, Law, State
 
@@ -154,14 +154,13 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     position = locate_row(u, law)
     functions = length_and_moment(position, u, law)
     factor = moment_factor(position, u, functions.scale, state)
-    free_creep = free_creep_at(position, u, cover_rows)[0]
-    c = asymmetry_at(
-        position, u, state.mu, functions.L, functions.dL, functions.ddL, cover_rows
-    ).value
+    pairs = pairs_at(position, u, cover_rows)
+    free_creep = free_creep_of(pairs)[0]
+    c = asymmetry_at(pairs, state.mu, functions.L, functions.dL, functions.ddL, cover_rows).value
     D = signed_creep(functions.L, free_creep, c, state, law)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
-    change = traction_on_moments(position, u, functions, out[0], state, cover_rows)
+    change = traction_on_moments(pairs, functions, out[0], state, cover_rows)
     out[1] = factor * functions.m + (change.half_space + change.cylinder)
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um

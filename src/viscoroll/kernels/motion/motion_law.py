@@ -39,6 +39,7 @@ from ..law.cover_law import (
     asymmetry_at,
     creep_of,
     moment_change,
+    pairs_at,
     reduced_creep,
     shear_reaction,
 )
@@ -172,52 +173,93 @@ _GAUSS = (
 )
 
 
+class SpeedFunctions(NamedTuple):
+    """What the law gives at one speed, dimensionless and finite, also at u = kappa |V| = 0.
+
+    L, dL, ddL : 2 kappa delta_star/mu, Eq. (9), and its derivatives in u.
+    half_space, cylinder : moments of the bodies without traction, Eq. (18), divided by V.
+    half_space_slope, cylinder_slope : slopes of these moments in V.
+    pairs : what a cover has besides, of :func:`.cover_law.pairs_at`.
+    """
+
+    L: float
+    dL: float
+    ddL: float
+    half_space: float
+    cylinder: float
+    half_space_slope: float
+    cylinder_slope: float
+    pairs: tuple
+
+
 @inline_kernel
 def evaluate_moments(u, scene):
     """Evaluate what the law gives at one speed: critical creepage, Eq. (9), and rolling moments,
     Eq. (18).
 
-    All seven numbers are finite at u = 0 too, where they are the limits of slow rolling.  The added
-    mass is not in the moments.  The moments are 0 where both bodies are elastic (alpha = 1).
+    The added mass is not in the moments.  The moments are 0 where both bodies are elastic
+    (alpha = 1).
 
     u: float, kappa |V|, dimensionless, at least 0 and finite.
     scene: Scene, of which ``law`` and ``moments_differ`` are read; with ``moments_differ`` False
     each body takes half of the moment.
-    Returns (L, L', L'', M_half_space/V, M_cylinder/V, dM_half_space/dV, dM_cylinder/dV), floats,
-    dimensionless; L = lam (1 + epsilon) = 2 kappa delta_star/mu and its derivatives in u.  The
-    quotients and the slopes are even in V, so that the moment of either body at a V of any sign is
-    V times its quotient.
+    Returns :class:`SpeedFunctions`.  Quotients and slopes are even in V, so that the moment of
+    either body at a V of any sign is V times its quotient.
     """
     law = by_value(scene.law)
     index = locate_row(u, law)
     law_at_u = length_and_moment(index, u, law)
     m = law_at_u.scale * law_at_u.m
-    slope = law_at_u.d_um
-    if not scene.moments_differ:
-        return law_at_u.L, law_at_u.dL, law_at_u.ddL, 0.5 * m, 0.5 * m, 0.5 * slope, 0.5 * slope
-    half_space, cylinder, half_space_slope, cylinder_slope = body_moments(index, u, law)
-    # The scale is 1, or less in the fast limit.
-    scale = m / (half_space + cylinder) if m > 0.0 else 1.0
-    return (
-        law_at_u.L,
-        law_at_u.dL,
-        law_at_u.ddL,
-        scale * half_space,
-        scale * cylinder,
-        half_space_slope,
-        cylinder_slope,
+    half_space = cylinder = 0.5 * m
+    half_space_slope = cylinder_slope = 0.5 * law_at_u.d_um
+    if scene.moments_differ:
+        half_space, cylinder, half_space_slope, cylinder_slope = body_moments(index, u, law)
+        # The scale is 1, or less in the fast limit.
+        scale = m / (half_space + cylinder) if m > 0.0 else 1.0
+        half_space *= scale
+        cylinder *= scale
+    return SpeedFunctions(
+        L=law_at_u.L,
+        dL=law_at_u.dL,
+        ddL=law_at_u.ddL,
+        half_space=half_space,
+        cylinder=cylinder,
+        half_space_slope=half_space_slope,
+        cylinder_slope=cylinder_slope,
+        pairs=pairs_at(index, u, law.cover_rows),
     )
 
 
 @inline_kernel
-def _change_at(u, Q, scene, cover_rows):
+def _lengths_and_pairs(u, scene):
+    """Return (:class:`.law_functions.LengthAndMoment`, ``pairs`` of :class:`SpeedFunctions`) at
+    one speed, for callers that do not read the moments of the bodies.
+
+    u: float, kappa |V|, dimensionless, at least 0 and finite.
+    scene: Scene, of which ``law`` is read.
+    """
+    law = by_value(scene.law)
+    position = locate_row(u, law)
+    return length_and_moment(position, u, law), pairs_at(position, u, law.cover_rows)
+
+
+@inline_kernel
+def _change_of(Q, pairs, L, dL, scene):
     """Return what the traction changes in the moments at one speed, as
     :class:`.cover_law.MomentChange`.
 
-    u: float, kappa |V|, dimensionless, at least 0 and finite.
     Q: float, traction, dimensionless.
-    scene: Scene, of which kappa, mu and ``law`` are read, of a cover alone.
-    cover_rows: ``cover_rows`` of its law; None of half-spaces, of which all is 0.
+    pairs, L, dL: fields of :class:`SpeedFunctions`.
+    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read; of half-spaces all is 0.
+    """
+    return _change_of_cover(Q, pairs, L, dL, scene, by_value(scene.law).cover_rows)
+
+
+@inline_kernel
+def _change_of_cover(Q, pairs, L, dL, scene, cover_rows):
+    """Return what :func:`_change_of` does.
+
+    cover_rows: those of the law, None of half-spaces.
     """
     if cover_rows is None:
         return MomentChange(
@@ -228,17 +270,12 @@ def _change_at(u, Q, scene, cover_rows):
             half_space_du=0.0,
             cylinder_du=0.0,
         )
-    law = by_value(scene.law)
-    position = locate_row(u, law)
-    functions = length_and_moment(position, u, law)
-    reaction = shear_reaction(
-        position, u, scene.kappa, scene.mu, functions.L, functions.dL, cover_rows
-    )
+    reaction = shear_reaction(pairs, scene.kappa, scene.mu, L, dL, cover_rows)
     return moment_change(Q, scene.mu, reaction)
 
 
 @inline_kernel
-def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene):
+def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, functions, scene):
     """Return traction and the rolling moments under it with their derivatives, as
     :class:`.table_law.Loads`.
 
@@ -246,23 +283,23 @@ def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene):
     du_dV: float, derivative of u = kappa |V| in V, kappa with the sign of V.
     Q, dQ_dV, dQ_dd: floats, traction and its derivatives in V and in d; of full slip the
     derivatives are 0.
-    free: the four last numbers of :func:`evaluate_moments` at u: moments over V and slopes in V
-    without traction.
-    scene: Scene, of which kappa, mu and ``law`` are read, of a cover alone.
+    functions: :class:`SpeedFunctions` at u.
+    scene: Scene, of which kappa and mu are read, of a cover alone.
     """
-    half_space, cylinder, half_space_slope, cylinder_slope = free
-    change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
+    change = _change_of(Q, functions.pairs, functions.L, functions.dL, scene)
     return Loads(
         Q=Q,
         Q_dV=dQ_dV,
         Q_dd=dQ_dd,
-        half_space=V * half_space + change.half_space,
-        half_space_dV=half_space_slope
+        half_space=V * functions.half_space + change.half_space,
+        half_space_dV=functions.half_space_slope
         + du_dV * change.half_space_du
         + change.half_space_dQ * dQ_dV,
         half_space_dd=change.half_space_dQ * dQ_dd,
-        cylinder=V * cylinder + change.cylinder,
-        cylinder_dV=cylinder_slope + du_dV * change.cylinder_du + change.cylinder_dQ * dQ_dV,
+        cylinder=V * functions.cylinder + change.cylinder,
+        cylinder_dV=functions.cylinder_slope
+        + du_dV * change.cylinder_du
+        + change.cylinder_dQ * dQ_dV,
         cylinder_dd=change.cylinder_dQ * dQ_dd,
     )
 
@@ -280,7 +317,8 @@ def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
     scene: Scene, of which ``law``, moments_differ, kappa and mu are read, of a cover alone.
     Returns (slip, rolling), floats, dimensionless, per unit of tau.
     """
-    change = _change_at(scene.kappa * abs(V), Q, scene, by_value(scene.law).cover_rows)
+    functions, pairs = _lengths_and_pairs(scene.kappa * abs(V), scene)
+    change = _change_of(Q, pairs, functions.L, functions.dL, scene)
     by_shear = V * change.half_space + omega * change.cylinder
     table = by_value(scene.law).table
     by_shear = friction_by_shear(V, omega, Q, scene.kappa, scene.mu, by_shear, table)
@@ -294,36 +332,30 @@ def reaction_at_rest(scene):
 
     scene: Scene, of which ``law`` and, of a cover, kappa and mu are read; all is 0 of half-spaces.
     """
-    law = by_value(scene.law)
-    position = locate_row(0.0, law)
-    functions = length_and_moment(position, 0.0, law)
-    return shear_reaction(
-        position, 0.0, scene.kappa, scene.mu, functions.L, functions.dL, law.cover_rows
-    )
+    functions, pairs = _lengths_and_pairs(0.0, scene)
+    cover_rows = by_value(scene.law).cover_rows
+    return shear_reaction(pairs, scene.kappa, scene.mu, functions.L, functions.dL, cover_rows)
 
 
 @inline_kernel
-def asymmetry(position, u, L, dL, ddL, scene):
+def asymmetry(pairs, L, dL, ddL, scene):
     """Return the asymmetry c of the onsets of full slip at one speed, as
     :class:`.cover_law.OverSpeed`; 0 of half-spaces and of tables.
 
-    position, u: :class:`.law_functions.RowPosition` of u = kappa |V|, and u.
+    pairs: field of :class:`SpeedFunctions`.
     L, dL, ddL: floats, 2 kappa delta_star/mu of the rows and its derivatives over u.
     scene: Scene, of which ``law`` and, of a cover, mu are read.
     """
     law = by_value(scene.law)
-    rows = asymmetry_at(position, u, scene.mu, L, dL, ddL, law.cover_rows)
+    rows = asymmetry_at(pairs, scene.mu, L, dL, ddL, law.cover_rows)
     return asymmetry_of_table(rows, law.table)
 
 
 @inline_kernel
 def _asymmetry_at_speed(V, scene):
     """Return the asymmetry c at a speed V of either sign, a float."""
-    u = scene.kappa * abs(V)
-    law = by_value(scene.law)
-    position = locate_row(u, law)
-    functions = length_and_moment(position, u, law)
-    return asymmetry(position, u, functions.L, functions.dL, functions.ddL, scene).value
+    functions, pairs = _lengths_and_pairs(scene.kappa * abs(V), scene)
+    return asymmetry(pairs, functions.L, functions.dL, functions.ddL, scene).value
 
 
 @inline_kernel
@@ -374,12 +406,12 @@ def low_speed_limits(work):
     floats, dimensionless.  The moments are at least 0, and 0 where alpha = 1; force and torque are
     positive where they drive, and 0 without feedback.
     """
-    _, _, _, half_space, cylinder, _, _ = evaluate_moments(0.0, work.scene)
+    functions = evaluate_moments(0.0, work.scene)
     gains = work.drive.gains
     omega_over_V = 1.0 + rest_limits(work.scene)[1]
     force = gains.force_V + gains.force_omega * omega_over_V
     torque = gains.torque_V + gains.torque_omega * omega_over_V
-    return half_space, cylinder, force, torque
+    return functions.half_space, functions.cylinder, force, torque
 
 
 class FreeDecay(NamedTuple):

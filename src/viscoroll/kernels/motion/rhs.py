@@ -216,9 +216,10 @@ def partial_slip_rates(V, d, load, regime, scene):
     k = 0.5 * scene.mu / scene.kappa
     u = scene.kappa * abs(V)
     du_dV = scene.kappa if V >= 0.0 else -scene.kappa
-    L, dL, ddL, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(
-        u, scene
-    )
+    functions = evaluate_moments(u, scene)
+    L = functions.L
+    dL = functions.dL
+    ddL = functions.ddL
     stick = max(1.0 - sign * d, 0.0)
     w = stick * L
     Q = sign * mu
@@ -245,10 +246,9 @@ def partial_slip_rates(V, d, load, regime, scene):
     dL = width.dL
     ddL = width.ddL
     dVdelta_star = L + u * dL
-    position = locate_row(u, law)
-    cover = free_kinematics(position, u, scene.kappa, k, dVdelta_star, law.cover_rows)
+    cover = free_kinematics(functions.pairs, u, scene.kappa, k, dVdelta_star, law.cover_rows)
     cover = free_creep_of_table(width, u, scene.kappa, k, cover, law.table)
-    c = asymmetry(position, u, L, dL, ddL, scene)
+    c = asymmetry(functions.pairs, L, dL, ddL, scene)
     creep = reduced_kinematics(d, u, L, dL, ddL, c, law.cover_rows)
     d_total = creep.total + cover.aside
     omega = V * (1.0 + k * L * creep.value + cover.creep)
@@ -256,8 +256,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     domega_dd = k * V * creep.width
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
-    free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
-    on_rows = loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, free, scene)
+    on_rows = loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, functions, scene)
     moments = table_state(V, d, sign, scene.kappa, mu, on_rows, law.table)
     Q = moments.Q
     dQ_dV = moments.Q_dV
@@ -364,11 +363,11 @@ def full_slip_rates(V, omega, load, regime, scene):
     """
     u = scene.kappa * abs(V)
     Q = regime.sigma * scene.mu
-    _, _, _, m_half_space, m_cylinder, half_space_slope, cylinder_slope = evaluate_moments(u, scene)
+    functions = evaluate_moments(u, scene)
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
-    free = m_half_space, m_cylinder, half_space_slope, cylinder_slope
-    on_rows = loaded_moments(V, scene.kappa if V >= 0.0 else -scene.kappa, Q, 0.0, 0.0, free, scene)
+    du_dV = scene.kappa if V >= 0.0 else -scene.kappa
+    on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)
     moments = table_state(
         V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table
     )
