@@ -1,4 +1,4 @@
-"""Arrays of materials, one for each state or motion, with modes that fall away; of two bodies too."""
+"""Arrays of materials, one for each state or motion; with modes that fall away, of two bodies."""
 
 import numpy as np
 
