@@ -411,6 +411,7 @@ def test_strain_of_the_contact():
     assert ROLLER.validity(1.0).strain.holds is None
 
 
+@pytest.mark.usefixtures("two_speeds")
 def test_fit_at_the_strain_of_the_contact():
     """Of moduli that fall with a power of the strain the fit has the strain that its own contact
     has.
@@ -442,6 +443,7 @@ def test_fit_at_the_strain_of_the_contact():
     assert small.source == "a test, the set at a strain of 1e-05"
 
 
+@pytest.mark.usefixtures("two_speeds")
 def test_fit_divides_by_a_vertical_shift():
     """Curves of a rubber with an entropic shift give its moduli and its shift factors."""
     omega = np.geomspace(1e-2, 1e4, 40)
