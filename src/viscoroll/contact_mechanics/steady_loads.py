@@ -410,11 +410,11 @@ def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
     loads : the loads, dimensionless; force and torque are read.  Of half-spaces force + torque must
         be 0, of a cover what the traction of the torque leaves on the axis, to rounding.
     """
+    if law.coupled is None and law.cover is None:
+        return loads.force + loads.torque == 0.0
     contacts = Contacts(law, loads.kappa, loads.mu)
     if law.coupled is not None:
         return _rests_on_table(contacts, loads)
-    if law.cover is None:
-        return loads.force + loads.torque == 0.0
     shear = shear_at(contacts, np.zeros(loads.mu.size))
     Q = shear.traction_of_torque(loads.torque)
     rest = Q - shear.moments(Q)[0] + loads.force

@@ -388,7 +388,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
     (star, lam, rise) = free[2:]
     faster = V / root
-    rolling = contacts.free_creep(faster)
+    rolling = delta_0 if law.cover is None else contacts.free_creep(faster)
     less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
     creep = creep_beyond_free(contacts, V, np.copysign(size, Q))
