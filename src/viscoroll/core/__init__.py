@@ -5,3 +5,71 @@ argument or raise an exception of :mod:`.errors`.  :mod:`.scale` has the unit an
 every quantity.  Results leave through :mod:`.results`, :mod:`.labels` and :mod:`.plots`, files
 through :mod:`.files`; :mod:`.blocks` divides arrays among threads.
 """
+
+from .blocks import broadcast_vector, cancel_with, run_blocks, thread_count
+from .checks import (
+    Booleans,
+    Floats,
+    Integers,
+    Numbers,
+    broadcast_shape,
+    check_array,
+    check_bool,
+    check_choice,
+    check_integer,
+    check_number,
+    extent,
+    read_only,
+)
+from .drive_arguments import (
+    Feedback,
+    Schedule,
+    make_dimensionless,
+    require_time_argument,
+    slope_tan_cos,
+)
+from .errors import (
+    FileError,
+    Interrupted,
+    MissingDependencyError,
+    MotionStatus,
+    ParameterError,
+    ViscorollError,
+    check_names,
+    check_one_given,
+    describe_value,
+    described_error,
+    digits_beside,
+    exactly_one_error,
+    import_extra,
+    mark_dimensionless,
+    shape_error,
+    suggestion,
+    unknown_name_error,
+)
+from .files import (
+    as_file_error,
+    fix_texts,
+    load_kept,
+    replace_file,
+    save_kept,
+    seal,
+    seal_matches,
+    write_bytes,
+    write_dataset,
+    write_text,
+)
+from .labels import UNLABELLED_TYPES, Labels, strip_labels
+from .results import Result, SummaryRow, Values, column_name, format_value, unit_of
+from .scale import (
+    MEASURED,
+    SI,
+    SYMBOLS,
+    TIME_POWERS,
+    HasUnits,
+    Scale,
+    Units,
+    attributes,
+    dimension_powers,
+    si_unit,
+)

@@ -14,8 +14,7 @@ from ..contact_mechanics.contact_table import evaluate_law
 from ..contact_mechanics.parameters import Roller, resolve_model
 from ..core.checks import Booleans, Floats, check_array, check_number
 from ..core.errors import ParameterError, described_error, shape_error
-from ..materials.pair import Pair, Solid
-from .heated_bodies import check_ambient
+from .heated_bodies import check_ambient, warm_pair
 from .shift_curve import shift_curve
 
 #: Nodes of each temperature, evenly spaced in ln a_T: some 0.05 s of contacts at 40 us each.
@@ -102,18 +101,14 @@ def pair_temperatures(
     bodies = pair.cylinder, pair.half_space
     curves = [shift_curve(body) for body in bodies]
     for at, curve in zip(around, curves, strict=True):
-        check_ambient(at, curve)
+        check_ambient(at, curve, "ambient")
     load = roller.load  # type: ignore[attr-defined]
     kappa = scene.kappa
 
     def losses(theta: Floats) -> Floats:
         """Return the loss of each body, W/m, at temperatures of both, (2, m)."""
-        solids = []
-        for body, curve, at in zip(bodies, curves, theta, strict=True):
-            log2, root_b = curve.exactly(at)
-            slower = body.prony.slower(np.exp2(log2) / root_b)
-            solids.append(Solid(E=body.E * root_b**2, nu=body.nu, prony=slower, T_ref=body.T_ref))
-        warm = Pair(solids[0], solids[1], pair.plane)
+        factors = [curve.at(at) for curve, at in zip(curves, theta, strict=True)]
+        warm = warm_pair(pair, *factors)
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))
         fields = ("M_cylinder", "M_half_space")
@@ -133,7 +128,8 @@ def pair_temperatures(
 
     axes = []
     for at, G, curve in zip(around, off, curves, strict=True):
-        ends = curve.log2_of(np.array([at, min(at + 0.5 * load * speed / kappa / G, curve.high)]))
+        hottest = min(at + 0.5 * load * speed / kappa / G, curve.high)
+        ends = np.log2(curve.at(np.array([at, hottest]))[0])
         axes.append(curve.temperature_of(np.linspace(float(ends[0]), float(ends[1]), _NODES)))
     grid = np.array(np.meshgrid(*axes, indexing="ij"))
     F = rest(grid.reshape(2, -1)).reshape(grid.shape) > 0.0

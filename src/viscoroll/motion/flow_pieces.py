@@ -15,7 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
+from ..core import Floats
 from ..kernels.motion import flow_layout
 from ..kernels.motion.flow_layout import states
 from ..kernels.numerics.interpolation import (

@@ -15,10 +15,17 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.blocks import run_blocks
-from ..core.checks import Floats, check_bool, check_integer
-from ..core.errors import MotionStatus, ParameterError, described_error
-from ..core.results import column_name, unit_of
+from ..core import (
+    Floats,
+    MotionStatus,
+    ParameterError,
+    check_bool,
+    check_integer,
+    column_name,
+    described_error,
+    run_blocks,
+    unit_of,
+)
 from ..motion.motion_datasets import column_attributes, provenance
 from ..motion.summaries import QUANTITIES
 from ..sampling import points
