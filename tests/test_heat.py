@@ -172,6 +172,9 @@ def test_cover_follows_its_own_law():
     assert close(found.loss - found.loss_slip, rolling.loss.cylinder, 1e-12)
     heat = found.loss - 0.5 * found.loss_slip
     assert close(6.0 * found.temperature, heat, tol.HEAT_BALANCE)
+    limit = cover.heat_limit(70.0, V=2.0, ambient=20.0, conductance=6.0)
+    heavy = cover.replace(load=limit.load).temperature(2.0, ambient=20.0, conductance=6.0)
+    assert close(heavy.temperature, [70.0], 1e-5)
     # on a slope, which is one number, under several ambients
     rolling = cover.temperature(slope=0.004, ambient=[0.0, 10.0], conductance=6.0)
     known = np.isfinite(rolling.V)
@@ -344,7 +347,7 @@ def test_conductance_of_film_and_cover():
         ),
         (
             lambda: vr.presets.RUBBER_ROLLER.temperature(1.0, ambient=20.0, conductance=6.0),
-            "is a Scene",
+            "has no Material",
         ),
         (lambda: with_shift(None).temperature(1.0, ambient=20.0, conductance=6.0), "shift = None"),
         (lambda: with_shift(lambda T: T + 300.0).temperature(1.0, **COLD), "rises at"),

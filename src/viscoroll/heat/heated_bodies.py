@@ -200,14 +200,13 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     and for two of different materials that do.
     """
     slip_share = check_number("slip_share", slip_share, low=0.0, high=1.0)
-    if not roller.scale.si:
-        raise described_error(
-            "roller", f"of {call} is a Scene, which has no temperature", "a Cylinder"
-        )
     pair = roller.body_data and roller.body_data.pair
     if pair is None:
-        allowed = "a Material with a shift=, in place of E, nu, T_epsilon and T_sigma"
-        raise described_error("material", f"of {call} is given as numbers", allowed)
+        allowed = (
+            "a Cylinder of a Material with a shift=, in place of a Scene or of E, nu, T_epsilon "
+            "and T_sigma"
+        )
+        raise described_error("roller", f"of {call} has no Material", allowed)
     bodies = (pair.cylinder, slip_share), (pair.half_space, 1.0 - slip_share)
     found = [Heated(body, 1.0, slip) for body, slip in bodies if body.prony.alpha > 1.0]
     if not found:
