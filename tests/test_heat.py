@@ -354,6 +354,20 @@ def test_conductance_of_film_and_cover():
         (lambda: ROLLER.warming(1.0, [1.0], **COLD, capacity=-1.0), "capacity = -1.0"),
         (lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD), "above ambient"),
         (lambda: vr.conductance(0.1, thickness=0.2), "below R"),
+        (
+            lambda: (
+                with_shift(WLF, thickness=0.03)
+                .replace(load=[1e4, 2e4])
+                .temperature(1.0, ambient=20.0, conductance=6.0)
+            ),
+            "load has shape",
+        ),
+        (
+            lambda: with_shift(WLF, vertical_shift="entropic", thickness=0.03).temperature(
+                1.0, ambient=20.0, conductance=6.0
+            ),
+            "a table of its own",
+        ),
     ],
 )
 def test_refused(call, words):

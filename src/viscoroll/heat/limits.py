@@ -14,7 +14,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from ..contact_mechanics.assumptions import Assumption
-from ..contact_mechanics.parameters import Roller, resolve_model
+from ..contact_mechanics.parameters import Roller, refuse_arrays, resolve_model
 from ..core.checks import (
     Booleans,
     Floats,
@@ -139,6 +139,7 @@ def heat_limit(
     if scene.cover is None:
         rows = _limits(roller, allowed, arrays)
     else:
+        refuse_arrays(roller, scene, ("alpha",))
         limits = np.vectorize(
             lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one, strict=True))),
             otypes=[float, float, bool],
