@@ -79,6 +79,11 @@ class SolverOptions(NamedTuple):
     rested: bool | float = False
 
 
+#: Fastest speed of a free motion on a table of the coupled solution, dimensionless: from 1e-12 on
+#: the slip is lost in the rounding of its splines, and speeds were wrong by 3e-6, at 1e-20 by 34.
+_SLOWEST_OF_TABLE = 1e-11
+
+
 class MotionProblem(NamedTuple):
     """Checked motions; dimensionless but for roller and drive.
 
@@ -194,6 +199,11 @@ def make_problem(
         allowed = "the drive of one motion: for many use ensemble"
         raise described_error("drive", f"has values for {many} motions", allowed)
     driven = unsteady or (acts and drive.acts)
+    if scene.tabulated and not driven:
+        fastest = np.maximum(np.abs(V0), np.abs(omega0))
+        if np.any((fastest > 0.0) & (fastest < _SLOWEST_OF_TABLE)):
+            found = f"is below {_SLOWEST_OF_TABLE:g} l0/T_ref, at which a table rolls"
+            raise described_error("V0", found, "0 or faster, or give coupled=False")
     return MotionProblem(
         roller=roller,
         scene=scene,
