@@ -38,6 +38,7 @@ from .errors import mark_dimensionless as mark_dimensionless
 from .errors import shape_error as shape_error
 from .errors import suggestion as suggestion
 from .errors import unknown_name_error as unknown_name_error
+from .errors import warn_of_model as warn_of_model
 from .files import as_file_error as as_file_error
 from .files import fix_texts as fix_texts
 from .files import load_kept as load_kept

@@ -37,6 +37,7 @@ from ..core import (
     import_extra,
     replace_file,
     shape_error,
+    warn_of_model,
 )
 from ..laws.law_netcdf import parse_law
 from ..laws.law_table import LawTable
@@ -358,6 +359,11 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
         If the file cannot be written, the compiler fails, or a law that is given is incomplete or
         that of every alpha.
 
+    Warns
+    -----
+    ModelWarning
+        Of a cover, unless the Cylinder has ``coupled=False``: the FMU has the law without a table.
+
     Examples
     --------
     >>> import viscoroll as vr
@@ -381,6 +387,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     table = parse_law(dataset_content(law), path)
     l0 = _contact_length_of_cover(table)
     starts = _start_values(MODELS[model].variables, given, table, l0)
+    _warn_of_fast_law(given, table)
     fmpy = import_extra("fmpy", "fmu")
     compiler = shutil.which("cc")
     if compiler is None:
@@ -414,6 +421,25 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     ):
         for name, data in content.items():
             archive.writestr(zipfile.ZipInfo(name), data, zipfile.ZIP_DEFLATED)
+
+
+def _warn_of_fast_law(given: Any, table: LawTable) -> None:
+    """Give a ModelWarning of a cover whose law is a table elsewhere: an FMU has the law without.
+
+    given: argument of :func:`build`; a Cylinder with ``coupled=False`` gives no warning.
+    table: :class:`LawTable`, its law.
+    The error that the warning states is the largest of six decades of speed, of a Cylinder.
+    """
+    if table.cover is None:
+        return
+    error = "validity(V).traction of a Cylinder states its error"
+    if isinstance(given, Cylinder):
+        if not given.body_data.scene.tabulated:
+            return
+        speeds = given.l0 / given.T_ref * np.logspace(-3.0, 3.0, 61)
+        error = given.replace(coupled=False).validity(speeds).traction.sentence
+    text = f"the FMU has the fast law of a cover, not a table of the coupled solution: {error}"
+    warn_of_model(text)
 
 
 def _contact_length_of_cover(table: LawTable) -> float:

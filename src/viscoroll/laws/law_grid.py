@@ -56,8 +56,8 @@ _FILL_VALUES = np.array(
 )
 #: moments, which of a layer depend on the traction and have either sign
 _MOMENTS = "M", "M_half_space", "M_cylinder"
-#: field -> lowest and highest value that a contact has
-_BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(("lam", "delta_star", *_MOMENTS), (0.0, np.inf))
+#: field -> lowest and highest value that a contact has, beside moments
+_BOUNDS = {"beta": (0.0, 1.0)} | dict.fromkeys(("lam", "delta_star"), (0.0, np.inf))
 #: largest file that is read, bytes
 _MOST_BYTES = 1 << 31
 
@@ -274,7 +274,9 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
     Raises ParameterError for a mu or load that is no finite number > 0.
     """
     limit = friction_limit(table.attrs)
-    for name, (low, high) in _BOUNDS.items():
+    arm = float(table.attrs.get("R", 1.0))
+    most = limit / table.attrs.get("mu", 1.0) * arm  # the load acts within R of the axis
+    for name, (low, high) in (_BOUNDS | dict.fromkeys(_MOMENTS, (0.0, most))).items():
         if name in table.variables and not (name in _MOMENTS and "delta" in table[name].dims):
             values = table[name].values
             rounding = _ROUNDING * np.abs(values).max()
@@ -303,9 +305,8 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
         if "M" in table.variables and "delta" in table["M"].dims:
             M = table["M"].transpose(*Q.dims)
             of_cylinder = table.get("M_cylinder", 0.5 * M).transpose(*Q.dims)
-            R = float(table.attrs.get("R", 1.0))
-            lost = (M + table["delta"] * (R * Q + of_cylinder)).transpose(*Q.dims)
-            made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), R * noise / _NOISE)
+            lost = (M + table["delta"] * (arm * Q + of_cylinder)).transpose(*Q.dims)
+            made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), arm * noise / _NOISE)
             _refuse_nodes(
                 M, made, path, ">= -delta (R Q + M_cylinder), as the contact makes no power"
             )

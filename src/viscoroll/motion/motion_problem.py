@@ -191,7 +191,7 @@ def make_problem(
         omega0 = make_dimensionless("omega0", start[1], scale)
         spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
         prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
-        if scene.tabulated:
+        if scene.tabulated and not (acts and drive.acts):
             start_speeds(prepared.V0, prepared.omega0, LEAST_ON_TABLE)
         functions = prepared.functions
         if functions is not None:  # a step ends at every corner
