@@ -86,16 +86,6 @@ def test_each_is_equal_to_itself_alone(results):
             assert result != other
 
 
-def test_axes_are_named_after_what_varies(results):
-    data = results["contact"].to_xarray()
-    assert data["Q"].dims == ("V", "delta")
-    assert data.Q.sel(V=1.0, method="nearest").size == 4
-    assert results["steady"].to_xarray()["V"].dims == ("state", "equilibrium")
-    table = results["motion"].to_pandas()
-    assert table.index.name == "t"
-    assert table["V"].iloc[0] == 1.5
-
-
 def test_a_motion_tells_its_peak(results):
     """First, largest with its time, last: a roller that is spun up and rolls out was fastest
     between the two.

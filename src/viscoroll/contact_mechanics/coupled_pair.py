@@ -33,6 +33,7 @@ from scipy.special import exp1, expi
 
 from ..core.checks import Floats
 from ..core.errors import ParameterError
+from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
 from ..laws.cover_solve import layer_nodes
 from ..materials.bodies import Bodies
@@ -387,7 +388,7 @@ class CoupledPair(NamedTuple):
 
 
 class CoupledStates(NamedTuple):
-    """Fields of states of one row in the order of :data:`.coupled_rows.FIELDS`, and their status,
+    """Fields of states of one row in the order of :data:`.law_rows.FIELDS`, and their status,
     (n,) each, dimensionless.
 
     Q_over_mu : traction over mu P.
@@ -443,8 +444,6 @@ class CoupledRow:
         mu: coefficient of friction, > 0.
         n: number of elements, to which those of an edge layer are added.
         """
-        from ..kernels.law import coupled_states
-
         self.pair = pair
         self.u = u
         self.mu = mu
@@ -497,8 +496,6 @@ class CoupledRow:
         """Return the creep 2 kappa delta at which slip of the other sign opens in the rear half of
         the contact.
         """
-        from ..kernels.law import coupled_states
-
         return 2.0 * float(
             coupled_states.touch_creep(
                 self._row, self.mu, *self._ends, _ROUGH_ELEMENTS, self._length, self._slope
@@ -514,8 +511,6 @@ class CoupledRow:
         apart: whether each is solved from nothing; else from its neighbour, in half the time and to
         some 1e-5.
         """
-        from ..kernels.law import coupled_states
-
         given = np.asarray(creeps, dtype=np.float64)
         found = np.empty((given.size, coupled_states.COLUMNS))
         order = np.argsort(given)
@@ -562,8 +557,6 @@ class CoupledRow:
 
     def profile(self, creep: float) -> CoupledProfile:
         """Return the tractions at a creep 2 kappa delta of any size."""
-        from ..kernels.law import coupled_states
-
         low, high = self.onsets()
         slips = not low < creep < high
         out = np.zeros(coupled_states.COLUMNS)

@@ -40,9 +40,9 @@ from numpy.typing import ArrayLike
 from ..core.checks import Booleans, Floats, Integers, broadcast_shape, check_array
 from ..core.drive_arguments import Feedback, slope_tan_cos
 from ..core.errors import ParameterError, described_error
-from ..laws.coupled_rows import FIELDS
+from ..laws.law_rows import FIELDS
 from ..laws.law_table import LawTable
-from .contact_table import contact_fields_at, free_creep, refuse_overflow
+from .contact_table import Contacts, refuse_overflow
 from .parameters import Parameters
 from .rolling_resistance import find_zeros, speed_nodes
 
@@ -208,30 +208,31 @@ class Shear(NamedTuple):
 
     half_space, cylinder : factors a of base and cylinder, (n,) each, dimensionless.
     half_space_excess, cylinder_excess : excesses e, (n,) each, dimensionless.
-    kappa, mu : slenderness R/l0 and coefficient of friction, (n,) each.
+    contacts : the law, at a kappa and a mu, numbers or (n,).
     """
 
     half_space: Floats
     cylinder: Floats
     half_space_excess: Floats
     cylinder_excess: Floats
-    kappa: Any
-    mu: Any
+    contacts: Contacts
 
     def moments(self, Q: Floats) -> Floats:
         """Return what a traction Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
-        used = np.abs(Q) / self.mu
+        used = np.abs(Q) / self.contacts.mu
         by_base = self.half_space + self.half_space_excess * used
         by_cylinder = self.cylinder + self.cylinder_excess * used
         return np.stack([-Q * by_base, -Q * by_cylinder])
 
     def traction_of_force(self, rest: Floats) -> Floats:
         """Return the Q with Q (1 + a_b + e_b |Q|/mu) = ``rest``, (n,)."""
-        return _solve_quadratic(1.0 + self.half_space, self.half_space_excess / self.mu, rest)
+        return _solve_quadratic(
+            1.0 + self.half_space, self.half_space_excess / self.contacts.mu, rest
+        )
 
     def traction_of_torque(self, rest: Floats) -> Floats:
         """Return the Q with Q (1 - a_c - e_c |Q|/mu) = ``rest``, (n,)."""
-        return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.mu, rest)
+        return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.contacts.mu, rest)
 
     def traction_of_both(
         self, on_axis: Floats, on_spin: Floats, of_force: float, of_torque: float
@@ -254,18 +255,18 @@ class Shear(NamedTuple):
             )
         side = np.sign(factor)
         rest = side * (of_torque * on_axis + of_force * on_spin)
-        return _solve_quadratic(np.abs(factor), side * excess / self.mu, rest)
+        return _solve_quadratic(np.abs(factor), side * excess / self.contacts.mu, rest)
 
-    def slopes_at_rest(self, law: LawTable, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def slopes_at_rest(self, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return how a small speed changes the balance of a cylinder at rest under a traction.
 
-        law : table of the material.
         Q : traction at rest, |Q| < mu, (n,).
         Returns (1 + d(Q (a_b + ...))/dQ, factor of a change of Q on the axis; the same on the
         cylinder; dM_half_space/dV
         and dM_cylinder/dV at fixed Q), (n,) each.
         """
-        used = np.abs(Q) / self.mu
+        law, kappa, mu = self.contacts
+        used = np.abs(Q) / mu
         on_axis = 1.0 + self.half_space + 2.0 * self.half_space_excess * used
         on_spin = 1.0 - self.cylinder - 2.0 * self.cylinder_excess * used
         if law.cover is None:
@@ -274,12 +275,10 @@ class Shear(NamedTuple):
         limit, free = creep_at_rest(law)
         part = np.where(used < 1.0, used, 0.0)
         still = np.zeros(Q.size)
-        creep = 0.5 * limit * self.mu / self.kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
-        delta = creep_beyond_free(law, self.kappa, self.mu, still, creep) + 0.5 * free / self.kappa
+        creep = 0.5 * limit * mu / kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
+        delta = creep_beyond_free(self.contacts, still, creep) + 0.5 * free / kappa
         names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
-        half_space, cylinder, over_V = contact_fields_at(
-            law, self.kappa, self.mu, still, delta, *names
-        )
+        half_space, cylinder, over_V = self.contacts.fields(still, delta, *names)
         return (
             on_axis,
             on_spin,
@@ -311,36 +310,33 @@ def creep_at_rest(law: LawTable) -> tuple[float, float]:
     return float(limit), float(half_space + cylinder)
 
 
-def creep_beyond_free(law: LawTable, kappa: Any, mu: Any, V: Floats, creep: Floats) -> Floats:
+def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
     """Return delta - delta_0 = delta_star (d + c d^2) of d delta_star, (n,), dimensionless.
 
-    law : table of the material; of half-spaces the result is ``creep``.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    contacts : the law, at a kappa and a mu; of half-spaces the result is ``creep``.
     V, creep : speeds, >= 0, and d delta_star, of either sign, (n,).
     """
-    if law.cover is None:
+    if contacts.law.cover is None:
         return creep
     names = "delta_minus", "delta_plus", "delta_star", "delta_0"
-    low, high, star, free = contact_fields_at(law, kappa, mu, V, 0.0, *names)
+    low, high, star, free = contacts.fields(V, 0.0, *names)
     return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
 
 
-def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:
+def shear_at(contacts: Contacts, V: Floats) -> Shear:
     """Return how shear acts back on the moments at speeds V >= 0, (n,), as :class:`Shear`.
 
-    law : table of the material; of half-spaces all is 0.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    contacts : the law, at a kappa and a mu; of half-spaces all is 0.
     """
     fields = np.zeros((4, V.size))
-    if law.cover is not None:
-        fields = contact_fields_at(law, kappa, mu, V, 0.0, *_REACTION)
+    if contacts.law.cover is not None:
+        fields = contacts.fields(V, 0.0, *_REACTION)
     return Shear(
         half_space=fields[0],
         cylinder=fields[1],
         half_space_excess=fields[2],
         cylinder_excess=fields[3],
-        kappa=kappa,
-        mu=mu,
+        contacts=contacts,
     )
 
 
@@ -371,45 +367,39 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     signs = []
     speeds = []
     for n, kappa in enumerate(loads.kappa):
+        contacts = Contacts(law, kappa, loads.mu[n])
         for sign in (1.0, -1.0):
-            one = loads._replace(
-                force=sign * loads.force[n],
-                torque=sign * loads.torque[n],
-                kappa=kappa,
-                mu=loads.mu[n],
-            )
-            zeros = find_zeros(partial(torque_left, law, one), nodes, noise[n])
+            one = loads._replace(force=sign * loads.force[n], torque=sign * loads.torque[n])
+            zeros = find_zeros(partial(torque_left, contacts, one), nodes, noise[n])
             load.append(np.full(zeros.size, n))
             signs.append(np.full(zeros.size, sign))
             speeds.append(np.exp2(zeros) / kappa)
     return np.concatenate(load), np.concatenate(signs), np.concatenate(speeds)
 
 
-def _torque_left_of_cover(law: LawTable, load: Loads, x: Floats) -> Floats:
+def _torque_left_of_cover(contacts: Contacts, load: Loads, x: Floats) -> Floats:
     """Return torque less M_cylinder and Q at speeds exp2(x)/kappa at which the axis is in balance,
     (n,).  M without traction is read at Q = 0.
 
-    load : one load in the frame where V > 0, whose force, torque, kappa and mu are numbers.
+    contacts : the law, at one kappa and one mu.
+    load : one load in the frame where V > 0, whose force and torque are numbers.
     """
-    kappa = load.kappa
-    V = np.exp2(x) / kappa
-    shear = shear_at(law, kappa, load.mu, V)
-    free = free_creep(law, kappa, load.mu, V)
-    half_space, cylinder = contact_fields_at(
-        law, kappa, load.mu, V, free, "M_half_space", "M_cylinder"
-    )
+    V = np.exp2(x) / contacts.kappa
+    shear = shear_at(contacts, V)
+    free = contacts.free_creep(V)
+    half_space, cylinder = contacts.fields(V, free, "M_half_space", "M_cylinder")
     Q = shear.traction_of_force(half_space - load.force - load.gains.force_V * V)
     return load.torque + load.gains.torque_V * V - cylinder - shear.moments(Q)[1] - Q
 
 
-def _torque_left_on_table(law: LawTable, load: Loads, x: Floats) -> Floats:
+def _torque_left_on_table(contacts: Contacts, load: Loads, x: Floats) -> Floats:
     """Return the torque that is left at speeds exp2(x)/kappa; arguments as of
     :func:`_torque_left_of_cover`.
     """
-    V = np.exp2(x) / load.kappa
+    V = np.exp2(x) / contacts.kappa
     force = load.force + load.gains.force_V * V
     torque = load.torque + load.gains.torque_V * V
-    return _torque_left(law, load.kappa, load.mu, V, force, torque)
+    return _torque_left(contacts, V, force, torque)
 
 
 def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
@@ -420,11 +410,12 @@ def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
     loads : the loads, dimensionless; force and torque are read.  Of half-spaces force + torque must
         be 0, of a cover what the traction of the torque leaves on the axis, to rounding.
     """
-    if law.coupled is not None:
-        return _rests_on_table(law, loads)
-    if law.cover is None:
+    if law.coupled is None and law.cover is None:
         return loads.force + loads.torque == 0.0
-    shear = shear_at(law, loads.kappa, loads.mu, np.zeros(loads.mu.size))
+    contacts = Contacts(law, loads.kappa, loads.mu)
+    if law.coupled is not None:
+        return _rests_on_table(contacts, loads)
+    shear = shear_at(contacts, np.zeros(loads.mu.size))
     Q = shear.traction_of_torque(loads.torque)
     rest = Q - shear.moments(Q)[0] + loads.force
     return np.abs(rest) <= _BALANCE_ROUNDING * (np.abs(loads.force) + np.abs(loads.torque))
@@ -444,43 +435,45 @@ _SLOW = 1e-3
 
 
 def balance(
-    law: LawTable, kappa: Any, mu: Any, V: Floats, load: Floats, spin: bool = False
+    contacts: Contacts, V: Floats, load: Floats, spin: bool = False
 ) -> tuple[Floats, Floats]:
     """Return the creepages at which friction is in balance with a load, and what is left of the
     load; (n,) each.
 
-    kappa, mu : of the scene, numbers or (n,).  V : speeds >= 0, (n,).
+    contacts : a table, at a kappa and a mu.  V : speeds >= 0, (n,).
     load : Q - M_half_space, or with ``spin`` Q + M_cylinder, (n,).
     """
     from ..kernels.law.spline_law import balance_loop
 
     kappa, mu = (
         np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=np.float64)
-        for each in (kappa, mu)
+        for each in contacts[1:]
     )
+    table = contacts.law.record.table
     out = np.empty((V.size, 2))
-    balance_loop(law.record.table, kappa, mu, kappa * V, np.ascontiguousarray(load), spin, out)
+    balance_loop(table, kappa, mu, kappa * V, np.ascontiguousarray(load), spin, out)
     return out[:, 0] / (2.0 * kappa), out[:, 1].copy()
 
 
-def fields_at(law: LawTable, kappa: Any, V: Floats, delta: Floats) -> dict[str, Floats]:
+def fields_at(contacts: Contacts, V: Floats, delta: Floats) -> dict[str, Floats]:
     """Return the fields of a table at V >= 0 and creepages, (n,) each, by name (:data:`FIELDS`)."""
     from ..kernels.law.spline_law import look_up
 
-    return dict(
-        zip(FIELDS, look_up(law.record.table, kappa * V, 2.0 * kappa * delta).T, strict=True)
-    )
+    law, kappa, _ = contacts
+    found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
+    return dict(zip(FIELDS, found.T, strict=True))
 
 
-def moments_of_losses(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floats) -> Floats:
+def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     """Return the moments by which the losses in base and cylinder are V and omega times these, (2,
     n).
 
     Where the bodies would take more than the load gives, by the error of the table alone, both take
     less in proportion: nothing is lost in slip there.
-    kappa, mu : of the scene, numbers or (n,).  V, delta : speeds and creepages, (n,).
+    contacts : a table, at a kappa and a mu.  V, delta : speeds and creepages, (n,).
     """
-    found = fields_at(law, kappa, V, delta)
+    _, kappa, mu = contacts
+    found = fields_at(contacts, V, delta)
     half_space = found["M_half_space"] + 0.5 * found["work_half_space"]
     cylinder = found["M_cylinder"] + 0.5 * found["work_cylinder"] / (1.0 + delta)
     factor = 1.0 + delta
@@ -491,24 +484,23 @@ def moments_of_losses(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floa
     return np.clip(share, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa
 
 
-def _torque_left(
-    law: LawTable, kappa: Any, mu: Any, V: Floats, force: Floats, torque: Any
-) -> Floats:
+def _torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Floats:
     """Return the torque less what friction and cylinder take, where the axis is in balance with
     ``force``; (n,).
     """
-    delta, rest = balance(law, kappa, mu, V, -force)
-    found = fields_at(law, kappa, V, delta)
+    _, kappa, mu = contacts
+    delta, rest = balance(contacts, V, -force)
+    found = fields_at(contacts, V, delta)
     return torque - mu * found["Q_over_mu"] - found["M_cylinder"] / kappa - rest
 
 
-def _rests_on_table(law: LawTable, loads: Loads) -> Booleans:
+def _rests_on_table(contacts: Contacts, loads: Loads) -> Booleans:
     """Return under which loads a cylinder on a table stays at V = omega = 0, (n,), by the slip of
     slow rolling.
     """
     still = np.zeros(loads.mu.size)
     left = [
-        _torque_left(law, loads.kappa, loads.mu, still, sign * loads.force, sign * loads.torque)
+        _torque_left(contacts, still, sign * loads.force, sign * loads.torque)
         for sign in (1.0, -1.0)
     ]
     return (left[0] <= _NOISE) & (left[1] <= _NOISE)
@@ -528,8 +520,9 @@ def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, 
     torque = loads.torque[load]
     still = np.zeros(load.size)
     spin = loads.given != "force"
-    delta, rest = balance(law, kappa, mu, still, torque if spin else -force, spin)
-    found = fields_at(law, kappa, still, delta)
+    contacts = Contacts(law, kappa, mu)
+    delta, rest = balance(contacts, still, torque if spin else -force, spin)
+    found = fields_at(contacts, still, delta)
     Q = mu * found["Q_over_mu"]
     half_space = found["M_half_space"] / kappa
     cylinder = found["M_cylinder"] / kappa
@@ -540,11 +533,10 @@ def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, 
     q = Q + cylinder
     push = gains.force_V + gains.force_omega * (1.0 + delta)
     turn = gains.torque_V + gains.torque_omega * (1.0 + delta)
-    change = _torque_left(law, kappa, mu, V, f + push * V, q + turn * V) / V
+    change = _torque_left(contacts, V, f + push * V, q + turn * V) / V
     step = 1e-6 * mu
-    lever = (
-        _torque_left(law, kappa, mu, still, f - step, q) - _torque_left(law, kappa, mu, still, f, q)
-    ) / -step
+    less, same = (_torque_left(contacts, still, each, q) for each in (f - step, f))
+    lever = (less - same) / -step
     rate = -change / (j * (1.0 + delta) + np.maximum(lever, 0.0))
     return (
         np.where(rest == 0.0, delta, np.nan),
