@@ -503,7 +503,9 @@ def suggest_arguments(owner: Any, names: tuple[str, ...] | None = None) -> None:
         if inspect.isfunction(function):
             plain = inspect.unwrap(function)
             code = plain.__code__
-            if code.co_argcount + code.co_kwonlyargcount <= inspect.isclass(owner):
+            if code.co_argcount + code.co_kwonlyargcount <= (
+                function is value and inspect.isclass(owner)
+            ):
                 continue  # a method without arguments has none to suggest
             replaced = _suggesting(plain)
             setattr(owner, name, replaced if function is value else type(value)(replaced))

@@ -38,6 +38,17 @@ if TYPE_CHECKING:
 # --- Common data of one motion and of an ensemble ---
 
 
+class Switch(NamedTuple):
+    """A change of regime.
+
+    t : when, in the unit of the roller.
+    regime : the new regime, a name of :data:`.roll.REGIMES`.
+    """
+
+    t: float
+    regime: str
+
+
 @dataclass(frozen=True, eq=False, repr=False)
 class RollResult(Result):
     """The data that :class:`Motion` and :class:`Ensemble` have in common: the roller, its drive,

@@ -6,7 +6,7 @@ import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -31,7 +31,7 @@ from ..core import (
     digits_beside,
 )
 from .motion_arguments import ROWS, SPEED_RANGE, Drive, output_times, strip_units
-from .motion_datasets import RollResult, describe_load, describe_values
+from .motion_datasets import RollResult, Switch, describe_load, describe_values
 from .motion_problem import NO_NOTES, MotionProblem, SolverOptions, integrate_single, make_problem
 
 if TYPE_CHECKING:
@@ -47,17 +47,6 @@ _DRAWN = 201
 _MORE_STEPS = 1000
 #: Names of the regimes by their codes.
 REGIMES = ("full slip", "partial slip", "rest", "locked", "held")
-
-
-class Switch(NamedTuple):
-    """A change of regime.
-
-    t : when, in the unit of the roller.
-    regime : the new regime, a name of ``REGIMES``.
-    """
-
-    t: float
-    regime: str
 
 
 @dataclass(frozen=True, eq=False, repr=False)
