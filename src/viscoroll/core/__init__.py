@@ -6,7 +6,7 @@ every quantity.  Results leave through :mod:`.results`, :mod:`.labels` and :mod:
 through :mod:`.files`; :mod:`.blocks` divides arrays among threads.
 """
 
-from .blocks import broadcast_vector, cancel_with, run_blocks, thread_count
+from .blocks import block_reader, broadcast_vector, cancel_with, run_blocks, thread_count
 from .checks import (
     Booleans,
     Floats,
@@ -14,10 +14,12 @@ from .checks import (
     Numbers,
     broadcast_shape,
     check_array,
+    check_array_extent,
     check_bool,
     check_choice,
     check_integer,
     check_number,
+    divide_by_unit,
     extent,
     read_only,
 )
@@ -29,10 +31,12 @@ from .drive_arguments import (
     slope_tan_cos,
 )
 from .errors import (
+    ConvergenceError,
     FileError,
     Interrupted,
     MissingDependencyError,
     MotionStatus,
+    OutOfTableError,
     ParameterError,
     ViscorollError,
     check_names,
@@ -46,11 +50,13 @@ from .errors import (
     shape_error,
     suggestion,
     unknown_name_error,
+    warn_of_model,
 )
 from .files import (
     as_file_error,
     fix_texts,
     load_kept,
+    read_sealed,
     replace_file,
     save_kept,
     seal,
@@ -59,9 +65,21 @@ from .files import (
     write_dataset,
     write_text,
 )
-from .labels import UNLABELLED_TYPES, Labels, strip_labels
-from .results import Result, SummaryRow, Values, column_name, format_value, unit_of
+from .labels import UNLABELLED_TYPES, Labels, dataset_axes, strip_labels
+from .quantities import conversion_factor, is_real
+from .results import (
+    Result,
+    SummaryRow,
+    Values,
+    as_html,
+    as_text,
+    column_name,
+    format_value,
+    unit_of,
+)
 from .scale import (
+    DIMENSIONLESS,
+    DIMENSIONS,
     MEASURED,
     SI,
     SYMBOLS,
