@@ -35,10 +35,12 @@ from .errors import (
     FileError,
     Interrupted,
     MissingDependencyError,
+    ModelWarning,
     MotionStatus,
     OutOfTableError,
     ParameterError,
     ViscorollError,
+    caller_level,
     check_names,
     check_one_given,
     describe_value,
@@ -66,7 +68,7 @@ from .files import (
     write_text,
 )
 from .labels import UNLABELLED_TYPES, Labels, dataset_axes, strip_labels
-from .quantities import conversion_factor, is_real
+from .quantities import conversion_factor, is_real, is_unit, to_unit
 from .results import (
     Result,
     SummaryRow,
@@ -91,3 +93,4 @@ from .scale import (
     dimension_powers,
     si_unit,
 )
+from .toml_sections import as_struct, check_keys, read_toml, section_error

@@ -18,9 +18,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import FileError, ModelWarning, caller_level
-from ..core.results import Result, SummaryRow
+from ..core import FileError, Floats, ModelWarning, Result, SummaryRow, caller_level
 from .dma_columns import UNITS, Column, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli, rows_of
 from .table_reader import (

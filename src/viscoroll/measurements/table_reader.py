@@ -19,8 +19,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
+from ..core import FileError, Floats, ModelWarning, ParameterError, caller_level, check_names
 from .dma_columns import BARE, OF_SHEAR, QUANTITIES, UNITS, Column, columns_of, meanings, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE
 from .text_cells import NO_UNIT, Numbers, conversion, readings
