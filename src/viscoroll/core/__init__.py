@@ -19,6 +19,7 @@ from .checks import (
     check_choice,
     check_integer,
     check_number,
+    check_text,
     divide_by_unit,
     extent,
     read_only,
@@ -56,6 +57,7 @@ from .errors import (
 )
 from .files import (
     as_file_error,
+    as_path,
     fix_texts,
     load_kept,
     read_sealed,
@@ -83,6 +85,7 @@ from .scale import (
     DIMENSIONLESS,
     DIMENSIONS,
     MEASURED,
+    PAPER,
     SI,
     SYMBOLS,
     TIME_POWERS,
@@ -93,4 +96,4 @@ from .scale import (
     dimension_powers,
     si_unit,
 )
-from .toml_sections import as_struct, check_keys, read_toml, section_error
+from .toml_sections import as_section_error, as_struct, check_keys, read_toml, section_error

@@ -19,16 +19,17 @@ from ..contact_mechanics.contact_table import complete, computed_fields, evaluat
 from ..contact_mechanics.parameters import Parameters, Roller
 from ..contact_mechanics.steady_loads import Loads, loads_of
 from ..contact_mechanics.steady_states import Field, states_at
-from ..core.checks import (
+from ..core import (
     Floats,
     Integers,
+    ParameterError,
     broadcast_shape,
     check_array,
     check_array_extent,
     check_number,
+    described_error,
+    make_dimensionless,
 )
-from ..core.drive_arguments import make_dimensionless
-from ..core.errors import ParameterError, described_error
 from ..laws.law_table import LawTable
 from ..materials.material import Material
 from ..materials.measured_data import ABSOLUTE_ZERO, check_celsius

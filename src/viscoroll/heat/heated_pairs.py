@@ -12,8 +12,15 @@ import numpy as np
 
 from ..contact_mechanics.contact_table import evaluate_law
 from ..contact_mechanics.parameters import Roller, resolve_model
-from ..core.checks import Booleans, Floats, check_array, check_number
-from ..core.errors import ParameterError, described_error, shape_error
+from ..core import (
+    Booleans,
+    Floats,
+    ParameterError,
+    check_array,
+    check_number,
+    described_error,
+    shape_error,
+)
 from .heated_bodies import check_ambient, warm_pair
 from .shift_curve import shift_curve
 

@@ -15,20 +15,23 @@ import numpy as np
 
 from ..contact_mechanics.assumptions import Assumption
 from ..contact_mechanics.parameters import Roller, resolve_model
-from ..core.checks import (
+from ..core import (
+    SI,
     Booleans,
     Floats,
     Integers,
     Numbers,
+    ParameterError,
+    Values,
     broadcast_shape,
     check_array,
     check_choice,
     check_number,
+    check_one_given,
+    described_error,
+    shape_error,
+    strip_labels,
 )
-from ..core.errors import ParameterError, check_one_given, described_error, shape_error
-from ..core.labels import strip_labels
-from ..core.results import Values
-from ..core.scale import SI
 from .heat_balance import zeros_at_speed
 from .heated_bodies import check_ambient, heat_states
 from .shift_curve import NODES
