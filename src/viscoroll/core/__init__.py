@@ -96,4 +96,3 @@ from .scale import (
     dimension_powers,
     si_unit,
 )
-from .toml_sections import as_section_error, as_struct, check_keys, read_toml, section_error
