@@ -170,6 +170,9 @@ def test_cover_follows_its_own_law():
     assert close(found.loss - found.loss_slip, rolling.loss.cylinder, 1e-12)
     heat = found.loss - 0.5 * found.loss_slip
     assert close(6.0 * found.temperature, heat, tol.HEAT_BALANCE)
+    limit = cover.heat_limit(70.0, V=2.0, ambient=20.0, conductance=6.0)
+    heavy = cover.replace(load=limit.load).temperature(2.0, ambient=20.0, conductance=6.0)
+    assert close(heavy.temperature, [70.0], 1e-5)
     # on a slope, which is one number, under several ambients
     rolling = cover.temperature(slope=0.004, ambient=[0.0, 10.0], conductance=6.0)
     known = np.isfinite(rolling.V)
@@ -330,13 +333,27 @@ def test_conductance_of_film_and_cover():
         ),
         (
             lambda: vr.presets.RUBBER_ROLLER.temperature(1.0, ambient=20.0, conductance=6.0),
-            "is a Scene",
+            "has no Material",
         ),
         (lambda: with_shift(None).temperature(1.0, ambient=20.0, conductance=6.0), "shift = None"),
         (lambda: with_shift(lambda T: T + 300.0).temperature(1.0, **COLD), "rises at"),
         (lambda: ROLLER.warming(1.0, [1.0], **COLD, capacity=-1.0), "capacity = -1.0"),
         (lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD), "above ambient"),
         (lambda: vr.conductance(0.1, thickness=0.2), "below R"),
+        (
+            lambda: (
+                with_shift(WLF, thickness=0.03)
+                .replace(load=[1e4, 2e4])
+                .temperature(1.0, ambient=20.0, conductance=6.0)
+            ),
+            "load has shape",
+        ),
+        (
+            lambda: with_shift(WLF, vertical_shift="entropic", thickness=0.03).temperature(
+                1.0, ambient=20.0, conductance=6.0
+            ),
+            "a table of its own",
+        ),
     ],
 )
 def test_refused(call, words):

@@ -134,10 +134,10 @@ def test_a_torque_that_jumps_is_drawn_with_both_sides():
 @pytest.mark.parametrize(
     ("call", "most"),
     [
-        (partial(SCENE.contact, 0.01, delta=1e-3), 90),
-        (partial(ROLLER.contact, 0.01, delta=1e-3), 120),
-        (partial(SCENE.roll, 1.5, 0.5, [1e-3]), 120),
-        (partial(ROLLER.roll, 0.05, 0.5, [1e-3]), 150),
+        (partial(SCENE.contact, 0.01, delta=1e-3), 60),
+        (partial(ROLLER.contact, 0.01, delta=1e-3), 75),
+        (partial(SCENE.roll, 1.5, 0.5, [1e-3]), 115),
+        (partial(ROLLER.roll, 0.05, 0.5, [1e-3]), 130),
         (partial(SCENE.steady, force=0.01), 220),
         (partial(SCENE.steady, V=0.5, torque=0.0), 220),
         (

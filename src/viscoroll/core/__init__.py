@@ -4,95 +4,30 @@ Arguments enter through :mod:`.checks` and :mod:`.quantities`, which give float6
 argument or raise an exception of :mod:`.errors`.  :mod:`.scale` has the unit and the symbol of
 every quantity.  Results leave through :mod:`.results`, :mod:`.labels` and :mod:`.plots`, files
 through :mod:`.files`; :mod:`.blocks` divides arrays among threads.
+
+Other rooms import names of its modules, but for :mod:`.toml_sections` and :mod:`.plots`, from the
+room, which imports the module of a name at its first use: errors alone import no numpy.
 """
 
-from .blocks import block_reader, broadcast_vector, cancel_with, run_blocks, thread_count
-from .checks import (
-    Booleans,
-    Floats,
-    Integers,
-    Numbers,
-    broadcast_shape,
-    check_array,
-    check_array_extent,
-    check_bool,
-    check_choice,
-    check_integer,
-    check_number,
-    check_text,
-    divide_by_unit,
-    extent,
-    read_only,
-)
-from .drive_arguments import (
-    Feedback,
-    Schedule,
-    make_dimensionless,
-    require_time_argument,
-    slope_tan_cos,
-)
-from .errors import (
-    ConvergenceError,
-    FileError,
-    Interrupted,
-    MissingDependencyError,
-    ModelWarning,
-    MotionStatus,
-    OutOfTableError,
-    ParameterError,
-    ViscorollError,
-    caller_level,
-    check_names,
-    check_one_given,
-    describe_value,
-    described_error,
-    digits_beside,
-    exactly_one_error,
-    import_extra,
-    mark_dimensionless,
-    shape_error,
-    suggestion,
-    unknown_name_error,
-    warn_of_model,
-)
-from .files import (
-    as_file_error,
-    as_path,
-    fix_texts,
-    load_kept,
-    read_sealed,
-    replace_file,
-    save_kept,
-    seal,
-    seal_matches,
-    write_bytes,
-    write_dataset,
-    write_text,
-)
-from .labels import UNLABELLED_TYPES, Labels, dataset_axes, strip_labels
-from .quantities import conversion_factor, is_real, is_unit, to_unit
-from .results import (
-    Result,
-    SummaryRow,
-    Values,
-    as_html,
-    as_text,
-    column_name,
-    format_value,
-    unit_of,
-)
-from .scale import (
-    DIMENSIONLESS,
-    DIMENSIONS,
-    MEASURED,
-    PAPER,
-    SI,
-    SYMBOLS,
-    TIME_POWERS,
-    HasUnits,
-    Scale,
-    Units,
-    attributes,
-    dimension_powers,
-    si_unit,
-)
+from __future__ import annotations
+
+from importlib import import_module
+from typing import Any
+
+from .. import _read_modules
+
+_MODULES = _read_modules(__file__)
+
+
+def __getattr__(name: str) -> Any:
+    """Import a name of the room at its first use: Python calls this for a name that it does not
+    find.
+
+    name: the name that was looked up in the room.
+    Returns the object, and keeps it under its name.
+    Raises AttributeError for a name that ``__init__.pyi`` does not list.
+    """
+    if name not in _MODULES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    value = globals()[name] = getattr(import_module(_MODULES[name], __name__), name)
+    return value

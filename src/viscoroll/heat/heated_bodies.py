@@ -15,22 +15,20 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics.contact_table import complete, computed_fields, evaluate_law
-from ..contact_mechanics.parameters import Parameters, Roller
+from ..contact_mechanics.contact_table import evaluate_law
+from ..contact_mechanics.parameters import Parameters, Roller, refuse_arrays
 from ..contact_mechanics.steady_loads import Loads, loads_of
 from ..contact_mechanics.steady_states import Field, states_at
-from ..core import (
+from ..core.checks import (
     Floats,
     Integers,
-    ParameterError,
     broadcast_shape,
     check_array,
     check_array_extent,
     check_number,
-    described_error,
-    make_dimensionless,
 )
-from ..laws.law_table import LawTable
+from ..core.drive_arguments import make_dimensionless
+from ..core.errors import ParameterError, described_error
 from ..materials.material import Material
 from ..materials.measured_data import ABSOLUTE_ZERO, check_celsius
 from ..materials.pair import Pair, Solid
@@ -110,18 +108,15 @@ class HeatStates:
         factors = self.curve.factors(theta)
         load = self.load[n]
         if self.loads is None:
-            unlike = not isinstance(self.law, LawTable) or self.law.unlike or self.remade
-            computed = computed_fields(MOMENTS, unlike)
-            rows = self._free(n, factors, V, 1.0, computed)
-            contact = complete(MOMENTS, computed, rows, n.shape)
-            loss = load * V * contact["M"]
+            moments = self._free(n, factors, V, 1.0, MOMENTS)
+            loss = load * V * moments[0]
             slip = np.zeros(n.size)
         else:
-            moments, (rolling, slip) = self._driven(n, factors, V)
-            loss = np.where(np.isnan(moments[2]), np.nan, rolling + slip)
-            contact = dict(zip(MOMENTS, (moments[:2].sum(axis=0), *moments[:2]), strict=True))
-        found = {name: each * (load * self.R[n]) for name, each in contact.items()}
-        found |= {"C_rr": contact["M"], "loss": loss, "loss_slip": slip}
+            parts, (rolling, slip) = self._driven(n, factors, V)
+            loss = np.where(np.isnan(parts[2]), np.nan, rolling + slip)
+            moments = np.array([parts[0] + parts[1], parts[0], parts[1]])
+        found = dict(zip(MOMENTS, moments * (load * self.R[n]), strict=True))
+        found |= {"C_rr": moments[0], "loss": loss, "loss_slip": slip}
         a_T = np.where(theta > self.curve.high, np.nan, factors[0])
         return found | {"V": V, "temperature": theta, "a_T": a_T}
 
@@ -201,14 +196,13 @@ def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:
     and for two of different materials that do.
     """
     slip_share = check_number("slip_share", slip_share, low=0.0, high=1.0)
-    if not roller.scale.si:
-        raise described_error(
-            "roller", f"of {call} is a Scene, which has no temperature", "a Cylinder"
-        )
     pair = roller.body_data and roller.body_data.pair
     if pair is None:
-        allowed = "a Material with a shift=, in place of E, nu, T_epsilon and T_sigma"
-        raise described_error("material", f"of {call} is given as numbers", allowed)
+        allowed = (
+            "a Cylinder of a Material with a shift=, in place of a Scene or of E, nu, T_epsilon "
+            "and T_sigma"
+        )
+        raise described_error("roller", f"of {call} has no Material", allowed)
     bodies = (pair.cylinder, slip_share), (pair.half_space, 1.0 - slip_share)
     found = [Heated(body, 1.0, slip) for body, slip in bodies if body.prony.alpha > 1.0]
     if not found:
@@ -243,9 +237,9 @@ def heat_states(
     slip_share: as of :func:`heated_body`.
     driven: force, torque and slope beside V, by name; None: the cylinder rolls freely, which of a
         cover is the torque 0.
-    Raises ParameterError for values out of range, shapes that do not broadcast, an ambient outside
-    the range of the shift, two bodies with a temperature each, a vertical shift of a cover or
-    beside an elastic body under a load.
+    Raises ParameterError for values out of range, shapes that do not broadcast, several laws of
+    covers or under a load, an ambient outside the range of the shift, two bodies with a temperature
+    each, a vertical shift of a cover or beside an elastic body under a load.
     """
     body = heated_body(roller, call, slip_share)
     curve = shift_curve(body.material)
@@ -259,6 +253,8 @@ def heat_states(
         if name in arrays:
             check_ambient(arrays[name], curve, name)
     covered = scene.cover is not None
+    if covered or driven is not None:
+        refuse_arrays(roller, scene, ("alpha",))
     vertical = body.material.vertical_shift is not None
     remade = vertical and roller.body_data.pair.share not in (0.0, 0.5, 1.0)
     if vertical and (covered or (remade and driven is not None)):

@@ -14,24 +14,21 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from ..contact_mechanics.assumptions import Assumption
-from ..contact_mechanics.parameters import Roller, resolve_model
-from ..core import (
-    SI,
+from ..contact_mechanics.parameters import Roller, refuse_arrays, resolve_model
+from ..core.checks import (
     Booleans,
     Floats,
     Integers,
     Numbers,
-    ParameterError,
-    Values,
     broadcast_shape,
     check_array,
     check_choice,
     check_number,
-    check_one_given,
-    described_error,
-    shape_error,
-    strip_labels,
 )
+from ..core.errors import ParameterError, check_one_given, described_error, shape_error
+from ..core.labels import strip_labels
+from ..core.results import Values
+from ..core.scale import SI
 from .heat_balance import zeros_at_speed
 from .heated_bodies import check_ambient, heat_states
 from .shift_curve import NODES
@@ -54,7 +51,6 @@ _TOLERANCE = {"xatol": 1e-13, "xrtol": 1e-15}
 #: Part of the allowed rise by which a limit misses it, from which on it is a runaway: at the end of
 #: a branch the temperature has an error of the square root of that of ln V.
 _SHORT = 1e-5
-_MORE = "temperature", "runaway"
 #: Distance of ln of a load of a cover from a limit at which it is found: each is a law of its own.
 _COVER_TOLERANCE = 1e-6
 
@@ -139,30 +135,32 @@ def heat_limit(
     if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):
         raise ParameterError("allowed", allowed, f"above ambient = {np.max(plain['ambient']):g}")
     arrays = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
+    broadcast_shape(**arrays)
     if scene.cover is None:
-        cylinder: Any = roller
-        if name == "load":
-            cylinder = cylinder.replace(load=value)
-        found = _limits(cylinder, allowed, arrays)
+        rows = _limits(roller, allowed, arrays)
     else:
-        broadcast_shape(**arrays)
-        limit = _fastest_of_cover if name == "load" else _largest_of_cover
-        limits = np.vectorize(lambda *each: limit(roller, allowed, *each), otypes=[float] * 3)
-        found = dict(zip(("V" if name == "load" else "load", *_MORE), limits(*arrays.values())))
-    found["runaway"] = found["runaway"] == 1.0
-    found = {key: each if each.ndim else each.item() for key, each in found.items()}
+        refuse_arrays(roller, scene, ("alpha",))
+        limits = np.vectorize(
+            lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one, strict=True))),
+            otypes=[float, float, bool],
+        )
+        rows = limits(*arrays.values())
+    names = ("V" if name == "load" else "load", "temperature", "runaway")
+    found = {key: each if each.ndim else each.item() for key, each in zip(names, rows, strict=True)}
     return Values(found, arrays, si=True, title="Limits by heat", labels=labels)
 
 
-def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> dict[str, Any]:
-    """Return the limit, "V" or "load", ``temperature`` and ``runaway``, of one law, arrays.
+def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ...]:
+    """Return the limit, V or the load, the temperature and whether it is a runaway, of one law,
+    arrays in the shape of the states.
 
-    given: ambient and conductance, and V where the load is sought.
+    given: ambient, conductance, and load or V; without V the speed is sought.
     """
     from scipy.optimize.elementwise import find_root
 
-    fast = {key: value for key, value in given.items() if key != "load"}
-    states = heat_states(roller, roller.scene(), "heat_limit", fast)
+    if "load" in given:
+        roller = roller.replace(load=given["load"])
+    states = heat_states(roller, roller.scene(), "heat_limit", given)
     check_ambient(np.asarray(allowed), states.curve, "allowed")
 
     def above(ln: Floats, n: Integers) -> Floats:
@@ -181,42 +179,34 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> dict[str, Any
     short = -above(below, every)
     runaway = found.success & (short > _SHORT * (allowed - states.ambient))
     limit = np.where(found.success, np.exp(found.x), np.inf)
-    rows = {
-        "V" if states.V is None else "load": limit if states.V is None else limit * states.load,
-        "temperature": allowed - np.where(runaway, short, 0.0),
-        "runaway": runaway,
-    }
-    return {key: each.reshape(states.shape) for key, each in rows.items()}
-
-
-def _fastest_of_cover(
-    roller: Any, allowed: float, load: float, ambient: float, conductance: float
-) -> tuple[Any, ...]:
-    """Return (V, temperature, runaway) of a cover under one load, of which it has a law."""
-    given = {"ambient": ambient, "conductance": conductance}
-    return tuple(
-        each.item() for each in _limits(roller.replace(load=load), allowed, given).values()
+    rows = (
+        limit if states.V is None else limit * states.load,
+        allowed - np.where(runaway, short, 0.0),
+        runaway,
     )
+    return tuple(each.reshape(states.shape) for each in rows)
 
 
-def _largest_of_cover(
-    roller: Any, allowed: float, V: float, ambient: float, conductance: float
+def _limit_of_cover(
+    roller: Any, allowed: float, load: Any = None, V: Any = None, **given: float
 ) -> tuple[Any, ...]:
-    """Return (load, temperature, runaway) of a cover at one speed, by the laws of some loads.
+    """Return :func:`_limits` of a cover, of which every load has a law of its own.
 
-    Raises ParameterError where the limit is a load for which the cover is too thin for its law.
+    Raises ParameterError where a load on the way to the limit makes the cover too thin for its law.
     """
     from scipy.optimize import root_scalar
 
-    last: dict[float, Any] = {}
+    if load is not None:
+        return _limits(roller, allowed, given | {"load": load})
 
     def faster(ln: float) -> float:
-        last[ln] = _fastest_of_cover(roller, allowed, math.exp(ln), ambient, conductance)
-        return math.log(last[ln][0] / abs(V))
+        limit = _limits(roller, allowed, given | {"load": math.exp(ln)})
+        return math.log(limit[0] / abs(V))
 
     start = math.log(roller.load)
     found = root_scalar(faster, x0=start, x1=start + faster(start), xtol=_COVER_TOLERANCE)
-    return math.exp(found.root), *min(last.items(), key=lambda at: abs(at[0] - found.root))[1][1:]
+    load = math.exp(found.root)
+    return load, *_limits(roller, allowed, given | {"load": load})[1:]
 
 
 def turning_points(roller: Roller, *, ambient: float, conductance: float) -> TurningPoints:
@@ -283,20 +273,16 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
             return states.heat(np.zeros(ln.size, np.int64), theta, np.exp(ln)) - off
 
         found = find_root(rest, _LN_RANGE, args=(theta, off), tolerances=_TOLERANCE)
-        return np.where(found.success, found.x, np.inf)
+        return np.where(found.success, found.x, _LN_RANGE[1])
 
     # from the hottest to ambient, near which V rises with the temperature
     ends = np.array([min(HOTTEST, curve.high), given["ambient"]])
     low, high = np.log2(curve.at(ends)[0]).tolist()
     x = np.linspace(low, high, 2 + math.ceil(NODES * (high - low)))[:-1]
     y = ln_V(x)
-    top, bottom = (
-        1 + np.flatnonzero((s * y[1:-1] > s * y[:-2]) & (s * y[1:-1] >= s * y[2:]))
-        for s in (1.0, -1.0)
-    )
-    k = np.concatenate([top, bottom])
-    k = k[y[k] < math.log(FASTEST)]
-    sign = np.where(np.isin(k, top), -1.0, 1.0)
+    bend = np.diff(np.sign(np.diff(y)))
+    k = 1 + np.flatnonzero(bend * (y[1:-1] < math.log(FASTEST)))
+    sign = np.sign(bend[k - 1])  # -1 at a maximum
     triple = x[k - 1], x[k], x[k + 1]
     found = find_minimum(lambda x, sign: sign * ln_V(x), triple, args=(sign,))
     order = np.argsort(-found.x)
@@ -355,31 +341,26 @@ def conductance(
         "conductivity": conductivity,
     }
     arrays = {
-        name: check_array(name, x, unit=SI, above=0.0)[()]
-        for name, x in given.items()
-        if x is not None
+        name: check_array(name, x, unit=SI, above=0.0) for name, x in given.items() if x is not None
     }
-    broadcast_shape(**{name: np.asarray(array) for name, array in arrays.items()})
-    R = arrays["R"]
-    film = arrays["film"]
+    broadcast_shape(**arrays)
     h: Any = arrays.get("thickness")
     k: Any = arrays.get("conductivity")
     if core == "cooled" and (h is None or k is None):
         raise described_error(
             "core", "is 'cooled'", "'insulated' without a thickness and a conductivity"
         )
-    if h is not None and np.any(h >= R):
+    if h is not None and np.any(h >= arrays["R"]):
         raise ParameterError("thickness", h, f"below R = {R}")
-    width = 2.0 * math.pi * (R if h is None else R - 0.5 * h)
-    found = width * film
-    if h is None and k is not None:
-        found = 1.0 / (1.0 / found + 1.0 / (8.0 * math.pi * k))
-    elif k is not None:
-        biot = film * h / k
-        insulated = found / (1.0 + biot / 3.0)
-        found = (
-            insulated if core == "insulated" else width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
+    width = 2.0 * math.pi * (arrays["R"] if h is None else arrays["R"] - 0.5 * h)
+    if core == "cooled":
+        biot = arrays["film"] * h / k
+        found = width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
+    else:
+        within = (
+            0.0 if k is None else 1.0 / (8.0 * math.pi * k) if h is None else h / (3.0 * k * width)
         )
+        found = 1.0 / (1.0 / (width * arrays["film"]) + within)
     return found if np.ndim(found) else float(found)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -111,14 +112,18 @@ def warming(
         return np.concatenate([(heat - off) / heat_capacity, heat, off])
 
     y = np.concatenate([theta, np.zeros(2 * theta.size)])
-    found = []
-    time = 0.0
-    for stop in np.unique(np.append(corners[(corners > 0.0) & (corners < times[-1])], times[-1])):
-        own = times[(times > time) & (times <= stop)] if time else times[times <= stop]
-        y, outputs = _integrate(solve_ivp, rates, (time, float(stop)), y, own)
-        found.append(outputs)
-        time = float(stop)
-    course, heat, off = np.split(np.concatenate(found, axis=1), 3)
+    parts = [y[:, np.newaxis]] if times[0] == 0.0 else []
+    last = times[-1]
+    for span in pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
+        own = times[(times > span[0]) & (times <= span[1])]
+        stops = np.union1d(own, span[1])
+        found = solve_ivp(rates, span, y, "DOP853", stops, rtol=_TOLERANCE, atol=_TOLERANCE)
+        if not found.success:
+            what = f"cannot be integrated ({found.message})"
+            raise described_error("temperature", what, "one that a balance has")
+        y = found.y[:, -1]
+        parts.append(found.y[:, : own.size])
+    course, heat, off = np.split(np.concatenate(parts, axis=1), 3)
     if (hot := course.max(initial=-np.inf)) > states.curve.high:
         sentence = (
             f"the roller warms to {hot:.5g} degrees Celsius, beyond the shift's "
@@ -155,26 +160,3 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
         return lambda time: check_number("V", V(time), unit=scale), np.empty(0)
     speed = check_number("V", V, unit=scale)
     return lambda time: speed, np.empty(0)
-
-
-def _integrate(
-    solver: Any, rates: Any, span: tuple[float, float], y: Floats, times: Floats
-) -> tuple[Floats, Floats]:
-    """Integrate over one stretch without corners.
-
-    solver: ``scipy.integrate.solve_ivp``.
-    rates: function of time and y; span: begin and end, s; y: values at its begin, (k,); times:
-        outputs within it.
-    Returns (y at the end, (k,); y at the times, (k, outputs)).
-    Raises ParameterError where the integrator finds no step that is small enough.
-    """
-    if span[1] == span[0]:
-        return y, np.repeat(y[:, np.newaxis], times.size, axis=1)
-    found = solver(
-        rates, span, y, "DOP853", np.union1d(times, span[1]), rtol=_TOLERANCE, atol=_TOLERANCE
-    )
-    if not found.success:
-        raise described_error(
-            "temperature", f"cannot be integrated ({found.message})", "one that a balance has"
-        )
-    return found.y[:, -1], found.y[:, : times.size]
