@@ -12,8 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.results import SummaryRow, as_html, as_text
+from ..core import Floats, SummaryRow, as_html, as_text
 from ..laws.law_rows import evaluate_by_modes
 from ..materials.measured_data import HIGHEST_RATE, Measured
 from ..materials.prony import Prony

@@ -17,8 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats, check_number
-from ..core.scale import SI
+from ..core import SI, Floats, check_number
 from ..laws.law_table import law_table
 from ..materials.bodies import Cover
 from ..materials.material import Material

@@ -14,8 +14,7 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
-from ..core.checks import Floats, Numbers, check_array, check_bool
-from ..core.errors import ParameterError
+from ..core import Floats, Numbers, ParameterError, check_array, check_bool
 from ..kernels.records import Loads, LoadsAndSlopes
 from ..laws.law_grid import LawGrid
 from .contact import contact

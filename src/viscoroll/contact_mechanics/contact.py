@@ -24,21 +24,22 @@ from typing import Any, Literal, overload
 
 import numpy as np
 
-from ..core.blocks import block_reader, run_blocks
-from ..core.checks import (
+from ..core import (
+    DIMENSIONS,
     Floats,
     Numbers,
+    Values,
+    block_reader,
     broadcast_shape,
     check_array,
     check_array_extent,
     check_bool,
     check_choice,
+    check_one_given,
     divide_by_unit,
+    run_blocks,
+    strip_labels,
 )
-from ..core.errors import check_one_given
-from ..core.labels import strip_labels
-from ..core.results import Values
-from ..core.scale import DIMENSIONS
 from ..laws.cover_solve import CoverModes, pressure
 from ..laws.law_rows import series_record
 from ..materials.bodies import Cover, total_series

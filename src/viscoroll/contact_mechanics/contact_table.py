@@ -34,9 +34,18 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.blocks import block_reader, run_blocks
-from ..core.checks import Floats, broadcast_shape, check_choice, extent
-from ..core.errors import ConvergenceError, OutOfTableError, ParameterError, check_names
+from ..core import (
+    ConvergenceError,
+    Floats,
+    OutOfTableError,
+    ParameterError,
+    block_reader,
+    broadcast_shape,
+    check_choice,
+    check_names,
+    extent,
+    run_blocks,
+)
 from ..laws.law_rows import evaluate_by_modes
 from ..laws.law_table import LawTable
 from ..laws.laws_per_element import record_of_materials, records_of_alphas, sort_by_octave

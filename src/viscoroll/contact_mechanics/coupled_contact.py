@@ -12,9 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.blocks import run_blocks
-from ..core.checks import Floats, broadcast_shape
-from ..core.errors import ConvergenceError, ParameterError
+from ..core import ConvergenceError, Floats, ParameterError, broadcast_shape, run_blocks
 from .contact_table import DEPTH, FREE_CREEP, complete, refuse_overflow
 from .coupled_pair import CoupledPair, CoupledRow, depth
 from .parameters import Parameters

@@ -31,8 +31,7 @@ import numpy as np
 from scipy.optimize import brentq
 from scipy.special import exp1, expi
 
-from ..core.checks import Floats
-from ..core.errors import ParameterError
+from ..core import Floats, ParameterError
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
 from ..laws.cover_solve import layer_nodes

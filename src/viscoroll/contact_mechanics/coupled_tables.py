@@ -26,10 +26,15 @@ from typing import Any
 
 import numpy as np
 
-from ..core.blocks import run_blocks
-from ..core.checks import Floats, check_integer
-from ..core.errors import ConvergenceError, ParameterError
-from ..core.files import load_kept, save_kept
+from ..core import (
+    ConvergenceError,
+    Floats,
+    ParameterError,
+    check_integer,
+    load_kept,
+    run_blocks,
+    save_kept,
+)
 from ..kernels.numerics.cache_folder import cache_root, is_quiet
 from ..kernels.numerics.jit import sources_digest
 from ..laws.law_rows import FIELDS, CoupledRows, grade

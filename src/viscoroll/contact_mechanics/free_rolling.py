@@ -30,8 +30,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Booleans, Floats, Integers
-from ..core.scale import Scale
+from ..core import Booleans, Floats, Integers, Scale
 from ..laws.law_rows import evaluate_by_modes
 from ..laws.law_table import law_table
 from ..materials.bodies import total_series

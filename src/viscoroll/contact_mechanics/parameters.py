@@ -11,20 +11,24 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 
-from ..core.checks import (
+from ..core import (
+    DIMENSIONLESS,
     Floats,
     Integers,
+    ParameterError,
+    Scale,
     broadcast_shape,
     check_array,
     check_array_extent,
     check_bool,
     check_number,
+    check_one_given,
+    described_error,
+    format_value,
     read_only,
+    shape_error,
+    slope_tan_cos,
 )
-from ..core.drive_arguments import slope_tan_cos
-from ..core.errors import ParameterError, check_one_given, described_error, shape_error
-from ..core.results import format_value
-from ..core.scale import DIMENSIONLESS, Scale
 from ..laws.law_grid import LawGrid
 from ..laws.law_table import LawTable, coupled_table, law_table
 from ..materials.bodies import Bodies, Cover

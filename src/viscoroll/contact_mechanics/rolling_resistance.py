@@ -17,8 +17,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Booleans, Floats, Integers
-from ..core.errors import ParameterError
+from ..core import Booleans, Floats, Integers, ParameterError
 from ..laws.law_table import LawTable
 from .contact_table import pure_rolling_fields
 from .model_warnings import warn_of_contact

@@ -40,10 +40,16 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats, Integers, Numbers
-from ..core.drive_arguments import Feedback, make_dimensionless
-from ..core.errors import ParameterError, described_error
-from ..core.labels import strip_labels
+from ..core import (
+    Feedback,
+    Floats,
+    Integers,
+    Numbers,
+    ParameterError,
+    described_error,
+    make_dimensionless,
+    strip_labels,
+)
 from ..laws.law_table import LawTable
 from .contact_table import Contacts
 from .model_warnings import warn_of_contact

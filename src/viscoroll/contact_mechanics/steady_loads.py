@@ -37,9 +37,17 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import Booleans, Floats, Integers, broadcast_shape, check_array
-from ..core.drive_arguments import Feedback, slope_tan_cos
-from ..core.errors import ParameterError, described_error
+from ..core import (
+    Booleans,
+    Feedback,
+    Floats,
+    Integers,
+    ParameterError,
+    broadcast_shape,
+    check_array,
+    described_error,
+    slope_tan_cos,
+)
 from ..laws.law_rows import FIELDS
 from ..laws.law_table import LawTable
 from .contact_table import Contacts, refuse_overflow

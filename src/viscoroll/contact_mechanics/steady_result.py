@@ -13,10 +13,18 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats, Integers
-from ..core.labels import Labels, dataset_axes
-from ..core.results import SummaryRow, Values, format_value, unit_of
-from ..core.scale import DIMENSIONS, Scale
+from ..core import (
+    DIMENSIONS,
+    Floats,
+    Integers,
+    Labels,
+    Scale,
+    SummaryRow,
+    Values,
+    dataset_axes,
+    format_value,
+    unit_of,
+)
 from .steady_loads import Loads
 from .steady_states import Field, States
 

@@ -23,8 +23,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.blocks import run_blocks
-from ..core.checks import Floats, Integers
+from ..core import Floats, Integers, run_blocks
 from ..laws.law_table import LawTable
 from .contact_table import Contacts
 from .rolling_resistance import branches

@@ -19,8 +19,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.checks import Numbers, broadcast_shape, check_array, divide_by_unit
-from ..core.errors import ParameterError
+from ..core import Numbers, ParameterError, broadcast_shape, check_array, divide_by_unit
 from .assumptions import (
     UNKNOWN,
     UNKNOWN_OF_COVERS,

@@ -1,5 +1,6 @@
 """What other rooms take from this one, a line each, for type checkers, and for ``__init__.py``."""
 
+from .blocks import block_reader as block_reader
 from .blocks import broadcast_vector as broadcast_vector
 from .blocks import cancel_with as cancel_with
 from .blocks import run_blocks as run_blocks
@@ -10,10 +11,13 @@ from .checks import Integers as Integers
 from .checks import Numbers as Numbers
 from .checks import broadcast_shape as broadcast_shape
 from .checks import check_array as check_array
+from .checks import check_array_extent as check_array_extent
 from .checks import check_bool as check_bool
 from .checks import check_choice as check_choice
 from .checks import check_integer as check_integer
 from .checks import check_number as check_number
+from .checks import check_text as check_text
+from .checks import divide_by_unit as divide_by_unit
 from .checks import extent as extent
 from .checks import read_only as read_only
 from .drive_arguments import Feedback as Feedback
@@ -21,10 +25,13 @@ from .drive_arguments import Schedule as Schedule
 from .drive_arguments import make_dimensionless as make_dimensionless
 from .drive_arguments import require_time_argument as require_time_argument
 from .drive_arguments import slope_tan_cos as slope_tan_cos
+from .errors import ConvergenceError as ConvergenceError
 from .errors import FileError as FileError
 from .errors import Interrupted as Interrupted
 from .errors import MissingDependencyError as MissingDependencyError
+from .errors import ModelWarning as ModelWarning
 from .errors import MotionStatus as MotionStatus
+from .errors import OutOfTableError as OutOfTableError
 from .errors import ParameterError as ParameterError
 from .errors import ViscorollError as ViscorollError
 from .errors import check_names as check_names
@@ -40,8 +47,10 @@ from .errors import suggestion as suggestion
 from .errors import unknown_name_error as unknown_name_error
 from .errors import warn_of_model as warn_of_model
 from .files import as_file_error as as_file_error
+from .files import as_path as as_path
 from .files import fix_texts as fix_texts
 from .files import load_kept as load_kept
+from .files import read_sealed as read_sealed
 from .files import replace_file as replace_file
 from .files import save_kept as save_kept
 from .files import seal as seal
@@ -51,14 +60,24 @@ from .files import write_dataset as write_dataset
 from .files import write_text as write_text
 from .labels import UNLABELLED_TYPES as UNLABELLED_TYPES
 from .labels import Labels as Labels
+from .labels import dataset_axes as dataset_axes
 from .labels import strip_labels as strip_labels
+from .quantities import conversion_factor as conversion_factor
+from .quantities import is_real as is_real
+from .quantities import is_unit as is_unit
+from .quantities import to_unit as to_unit
 from .results import Result as Result
 from .results import SummaryRow as SummaryRow
 from .results import Values as Values
+from .results import as_html as as_html
+from .results import as_text as as_text
 from .results import column_name as column_name
 from .results import format_value as format_value
 from .results import unit_of as unit_of
+from .scale import DIMENSIONLESS as DIMENSIONLESS
+from .scale import DIMENSIONS as DIMENSIONS
 from .scale import MEASURED as MEASURED
+from .scale import PAPER as PAPER
 from .scale import SI as SI
 from .scale import SYMBOLS as SYMBOLS
 from .scale import TIME_POWERS as TIME_POWERS

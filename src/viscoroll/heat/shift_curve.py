@@ -16,8 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import ModelWarning, ParameterError, ViscorollError, described_error
+from ..core import Floats, ModelWarning, ParameterError, ViscorollError, described_error
 from ..materials.material import Material
 from ..materials.measured_data import WLF, Arrhenius, relative_shift, vertical_factor
 

@@ -13,9 +13,7 @@ from ..contact_mechanics.model_warnings import warn_of_contact
 from ..contact_mechanics.parameters import Roller, resolve_model
 from ..contact_mechanics.steady import steady
 from ..contact_mechanics.steady_result import Equilibria, pad
-from ..core.checks import Floats, Numbers
-from ..core.errors import ModelWarning, described_error
-from ..core.labels import Labels, strip_labels
+from ..core import Floats, Labels, ModelWarning, Numbers, described_error, strip_labels
 from .heat_balance import Zeros, zeros_at_speed, zeros_of
 from .heated_bodies import MOMENTS, HeatStates, heat_states
 

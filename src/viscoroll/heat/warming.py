@@ -10,11 +10,18 @@ import numpy as np
 
 from ..contact_mechanics.model_warnings import warn_of_contact
 from ..contact_mechanics.parameters import Roller, resolve_model
-from ..core.checks import Floats, Numbers, check_array, check_number
-from ..core.drive_arguments import Schedule
-from ..core.errors import ParameterError, described_error, shape_error
-from ..core.labels import strip_labels
-from ..core.results import Values
+from ..core import (
+    Floats,
+    Numbers,
+    ParameterError,
+    Schedule,
+    Values,
+    check_array,
+    check_number,
+    described_error,
+    shape_error,
+    strip_labels,
+)
 from .heated_bodies import heat_states
 
 #: Relative tolerance of the integrator, and the absolute one in K: the energy then balances to 1e-6

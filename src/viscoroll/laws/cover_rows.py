@@ -39,8 +39,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import ParameterError
+from ..core import Floats, ParameterError
 from ..materials.bodies import Cover
 from .cover_solve import (
     LARGE_ALPHA,

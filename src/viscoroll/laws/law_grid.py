@@ -22,16 +22,18 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.checks import Floats, check_array, check_number
-from ..core.errors import (
+from ..core import (
     FileError,
+    Floats,
     OutOfTableError,
     ParameterError,
+    check_array,
+    check_number,
+    conversion_factor,
     describe_value,
     described_error,
+    read_sealed,
 )
-from ..core.files import read_sealed
-from ..core.quantities import conversion_factor
 from .law_rows import FIELDS, CoupledRows
 from .law_table import LawTable, coupled_table
 

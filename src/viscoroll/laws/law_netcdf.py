@@ -15,9 +15,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.checks import Floats, check_number
-from ..core.errors import FileError, ParameterError, described_error
-from ..core.quantities import is_real
+from ..core import FileError, Floats, ParameterError, check_number, described_error, is_real
 from ..materials.bodies import Bodies, Cover
 from ..materials.checked_netcdf import (
     AXIS,

@@ -32,8 +32,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import ParameterError
+from ..core import Floats, ParameterError
 from ..kernels.numerics.interpolation import (
     chebyshev,
     powers_of_chebyshev,

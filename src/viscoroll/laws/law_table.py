@@ -31,8 +31,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.checks import Floats, check_number
-from ..core.errors import ParameterError
+from ..core import Floats, ParameterError, check_number
 from ..materials.bodies import Bodies, Cover, total_series
 from ..materials.pair import Pair
 from ..materials.prony import Prony, lock_array

@@ -17,8 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.checks import Floats, Integers
-from ..core.errors import ParameterError
+from ..core import Floats, Integers, ParameterError
 from ..materials.bodies import Bodies, Cover
 from ..materials.prony import Prony, lock_array
 from .cover_rows import cover_rows

@@ -21,18 +21,20 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import (
+from ..core import (
     Floats,
     Integers,
+    ParameterError,
     broadcast_shape,
     check_array,
     check_choice,
     check_number,
+    described_error,
+    format_value,
+    is_real,
     read_only,
+    shape_error,
 )
-from ..core.errors import ParameterError, described_error, shape_error
-from ..core.quantities import is_real
-from ..core.results import format_value
 from .prony import Block, OneOrMany, Prony, series_of_alpha, sort_modes
 from .prony_forms import HIGHEST_ALPHA, MOST_MODES
 

@@ -24,9 +24,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 
 from .. import __version__
-from ..core.errors import FileError, ParameterError
-from ..core.files import read_sealed, seal_matches
-from ..core.scale import PAPER
+from ..core import PAPER, FileError, ParameterError, read_sealed, seal_matches
 from .measured_data import Measured, shifts_as_toml, shifts_of_toml
 from .prony import Prony
 

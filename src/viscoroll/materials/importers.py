@@ -14,17 +14,20 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.checks import Floats, check_array, check_bool, check_number
-from ..core.errors import (
+from ..core import (
+    SI,
+    Floats,
     ParameterError,
+    check_array,
+    check_bool,
     check_names,
+    check_number,
     check_one_given,
     described_error,
     exactly_one_error,
     shape_error,
     warn_of_model,
 )
-from ..core.scale import SI
 from .bodies import Bodies
 from .prony import Prony
 

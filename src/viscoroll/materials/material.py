@@ -11,10 +11,16 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import Floats, check_array, check_number, check_text
-from ..core.errors import ParameterError
-from ..core.results import Result, SummaryRow
-from ..core.scale import SI
+from ..core import (
+    SI,
+    Floats,
+    ParameterError,
+    Result,
+    SummaryRow,
+    check_array,
+    check_number,
+    check_text,
+)
 from .importers import FromPrograms, check_poisson
 from .measured_data import Measured, check_celsius, check_fields, relative_shift, vertical_factor
 from .prony import Prony

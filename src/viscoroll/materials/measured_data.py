@@ -20,9 +20,16 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from ..core.checks import check_array, check_number, check_text
-from ..core.errors import ParameterError, described_error, warn_of_model
-from ..core.scale import SI, Units
+from ..core import (
+    SI,
+    ParameterError,
+    Units,
+    check_array,
+    check_number,
+    check_text,
+    described_error,
+    warn_of_model,
+)
 
 # --- Time-temperature shifts ---
 

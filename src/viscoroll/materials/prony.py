@@ -20,8 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ..core.checks import Floats, Integers, broadcast_shape, check_array
-from ..core.errors import ParameterError, shape_error
+from ..core import Floats, Integers, ParameterError, broadcast_shape, check_array, shape_error
 from .prony_forms import (
     HIGHEST_ALPHA,
     LARGEST_TIME_RATIO,

@@ -8,7 +8,6 @@ Storage and loss modulus over frequency from a text file: :func:`read_dma`.
 from __future__ import annotations
 
 import re
-import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import product
@@ -18,9 +17,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import FileError, ModelWarning, caller_level
-from ..core.results import Result, SummaryRow
+from ..core import FileError, Floats, Result, SummaryRow, warn_of_model
 from .dma_columns import UNITS, Column, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli, rows_of
 from .table_reader import (
@@ -438,11 +435,7 @@ def _warn_of_per_cent(table: Table, taken: list[Column]) -> None:
                     f"{table.path}: tan delta of up to {most:g} is no rubber's: give "
                     f"units={{'tan delta': '%'}}"
                 )
-                warnings.warn(
-                    f"{text} if it is in per cent, '1' if not",
-                    ModelWarning,
-                    stacklevel=caller_level(),
-                )
+                warn_of_model(f"{text} if it is in per cent, '1' if not")
 
 
 class _Choice(NamedTuple):

@@ -18,9 +18,15 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import Floats, check_array
-from ..core.errors import ParameterError, shape_error, warn_of_model
-from ..core.results import Result, SummaryRow
+from ..core import (
+    Floats,
+    ParameterError,
+    Result,
+    SummaryRow,
+    check_array,
+    shape_error,
+    warn_of_model,
+)
 
 if TYPE_CHECKING:
     import xarray as xr

@@ -26,10 +26,17 @@ from ..contact_mechanics.assumptions import (
     transit_frequency,
 )
 from ..contact_mechanics.contact import contact
-from ..core.checks import Booleans, Floats, Numbers, check_array
-from ..core.errors import described_error, warn_of_model
+from ..core import (
+    Booleans,
+    Floats,
+    Numbers,
+    Result,
+    SummaryRow,
+    check_array,
+    described_error,
+    warn_of_model,
+)
 from ..core.plots.result_figures import series_fit
-from ..core.results import Result, SummaryRow
 from ..materials.importers import check_poisson
 from ..materials.material import Material
 from ..materials.measured_data import WLF, Measured, VerticalShift

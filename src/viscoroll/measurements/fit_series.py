@@ -16,8 +16,15 @@ from typing import Any, Literal, TypedDict, TypeVar, Unpack, overload
 
 import numpy as np
 
-from ..core.checks import Numbers, check_choice, check_integer, check_number
-from ..core.errors import ConvergenceError, ParameterError, described_error
+from ..core import (
+    ConvergenceError,
+    Numbers,
+    ParameterError,
+    check_choice,
+    check_integer,
+    check_number,
+    described_error,
+)
 from ..materials.measured_data import VerticalShift, check_celsius
 from ..materials.prony import Prony
 from ..materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES

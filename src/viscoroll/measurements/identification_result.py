@@ -9,10 +9,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats, check_integer, check_number
-from ..core.errors import ParameterError, check_names
+from ..core import (
+    Floats,
+    ParameterError,
+    Result,
+    SummaryRow,
+    Values,
+    check_integer,
+    check_names,
+    check_number,
+)
 from ..core.plots.result_figures import identification
-from ..core.results import Result, SummaryRow, Values
 from .identification_report import as_dataset, report
 from .least_squares import Minimum, Problem
 from .measurement_records import Record

@@ -18,10 +18,12 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from ..core.checks import Floats, check_bool, check_integer
-from ..core.errors import (
+from ..core import (
     FileError,
+    Floats,
     ParameterError,
+    check_bool,
+    check_integer,
     check_names,
     described_error,
     suggestion,

@@ -13,8 +13,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import ViscorollError
+from ..core import Floats, ViscorollError
 from ..rollers import Cylinder
 from .measurement_records import Record
 from .unknowns import Shift, Unknown, cylinder_of

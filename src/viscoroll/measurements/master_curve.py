@@ -18,9 +18,16 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import Floats, Integers, check_array
-from ..core.errors import ParameterError, described_error, shape_error, warn_of_model
-from ..core.quantities import to_unit
+from ..core import (
+    Floats,
+    Integers,
+    ParameterError,
+    check_array,
+    described_error,
+    shape_error,
+    to_unit,
+    warn_of_model,
+)
 from ..materials.measured_data import (
     NEAR,
     USUAL_RANGE,

@@ -13,11 +13,22 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..core.checks import Floats, Numbers, broadcast_shape, check_array, check_number
-from ..core.errors import ParameterError, check_names, described_error, shape_error
-from ..core.labels import Labels, strip_labels
-from ..core.quantities import to_unit
-from ..core.scale import DIMENSIONLESS, si_unit
+from ..core import (
+    DIMENSIONLESS,
+    Floats,
+    Labels,
+    Numbers,
+    ParameterError,
+    broadcast_shape,
+    check_array,
+    check_names,
+    check_number,
+    described_error,
+    shape_error,
+    si_unit,
+    strip_labels,
+    to_unit,
+)
 from ..materials.measured_data import ABSOLUTE_ZERO
 from ..rollers import Cylinder
 

@@ -38,8 +38,7 @@ import numpy as np
 
 from ..contact_mechanics.assumptions import transit_speeds
 from ..contact_mechanics.contact import contact
-from ..core.checks import Floats
-from ..core.errors import described_error
+from ..core import Floats, described_error
 from ..materials.measured_data import Measured
 from ..materials.prony import Prony
 from ..materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 import math
 import re
-import warnings
 from collections.abc import Callable, Mapping
 from contextlib import suppress
 from os import PathLike
@@ -19,8 +18,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import FileError, ModelWarning, ParameterError, caller_level, check_names
+from ..core import FileError, Floats, ParameterError, check_names, warn_of_model
 from .dma_columns import BARE, OF_SHEAR, QUANTITIES, UNITS, Column, columns_of, meanings, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE
 from .text_cells import NO_UNIT, Numbers, conversion, readings
@@ -364,7 +362,7 @@ def warn_of_assumed_units(table: Table, taken: list[Column], moduli: Floats) -> 
             moduli.max() < SOFTEST
         )
         advice = f"write units into the file, or give units={doubt}"
-        warnings.warn(f"{text}: {advice}", ModelWarning, stacklevel=caller_level())
+        warn_of_model(f"{text}: {advice}")
 
 
 def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None:
@@ -385,11 +383,7 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     table.require(holds, f"{problem}: {advice}")
     if change.max(initial=0.0) > _SCATTER:
         text = f"rows of one {name} have moduli that differ by {np.expm1(change.max()):.0%}"
-        warnings.warn(
-            f"{table.path}: {text}, and are taken as of one test: {advice}",
-            ModelWarning,
-            stacklevel=caller_level(),
-        )
+        warn_of_model(f"{table.path}: {text}, and are taken as of one test: {advice}")
 
 
 def temperatures_of_lines(table: Table) -> Floats | None:

@@ -23,10 +23,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import FileError, ParameterError
-from ..core.files import as_file_error
-from ..core.quantities import conversion_factor
+from ..core import FileError, Floats, ParameterError, as_file_error, conversion_factor
 
 # --- Cells of a table ---
 

@@ -18,9 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import FileError, ParameterError, suggestion, warn_of_model
-from ..core.quantities import is_unit
+from ..core import FileError, Floats, ParameterError, is_unit, suggestion, warn_of_model
 from .text_cells import (
     NO_UNIT,
     SEPARATORS,

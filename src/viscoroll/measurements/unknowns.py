@@ -15,9 +15,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import check_array, check_number
-from ..core.errors import ParameterError, check_names
-from ..core.scale import si_unit
+from ..core import ParameterError, check_array, check_names, check_number, si_unit
 from ..materials.material import Material
 from ..materials.prony import Prony
 from ..rollers import Cylinder

@@ -23,8 +23,16 @@ from numpy.typing import ArrayLike
 
 from ..contact_mechanics.contact import contact
 from ..contact_mechanics.coupled_tables import coupled_law
-from ..core.checks import Floats, check_array, check_choice, check_integer, check_number
-from ..core.errors import ParameterError, described_error, shape_error
+from ..core import (
+    Floats,
+    ParameterError,
+    check_array,
+    check_choice,
+    check_integer,
+    check_number,
+    described_error,
+    shape_error,
+)
 from ..laws.law_netcdf import bodies_as_toml, law_as_dataset, parse_law
 from ..laws.law_table import LawTable
 from ..materials.checked_netcdf import dataset_content

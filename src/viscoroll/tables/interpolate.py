@@ -14,9 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import Floats, broadcast_shape, check_array
-from ..core.errors import OutOfTableError, ParameterError, check_names
-from ..core.results import Values
+from ..core import (
+    Floats,
+    OutOfTableError,
+    ParameterError,
+    Values,
+    broadcast_shape,
+    check_array,
+    check_names,
+)
 from ..laws.law_grid import fit_spline, friction_limit, pack_spline
 from . import table_files
 

@@ -26,8 +26,7 @@ from .. import __version__
 from ..contact_mechanics.contact_table import Contacts
 from ..contact_mechanics.coupled_pair import CoupledPair
 from ..contact_mechanics.coupled_tables import measure_errors
-from ..core.checks import check_integer
-from ..core.errors import FileError, ParameterError, check_one_given
+from ..core import FileError, ParameterError, check_integer, check_one_given
 from ..laws import law_table
 from ..laws.cover_rows import solve_at_speed
 from ..laws.law_netcdf import law_as_dataset, law_table_of, parse_axis, parse_law

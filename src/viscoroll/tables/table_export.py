@@ -13,10 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import __version__
-from ..core.checks import Floats
-from ..core.errors import ParameterError, described_error
-from ..core.files import as_path, replace_file, write_text
-from ..core.scale import PAPER
+from ..core import PAPER, Floats, ParameterError, as_path, described_error, replace_file, write_text
 from ..laws.law_netcdf import parse_law
 from ..laws.law_table import LawTable
 from ..materials.checked_netcdf import CHECKSUM, dataset_content

@@ -22,9 +22,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import __version__
-from ..core.errors import FileError
-from ..core.files import read_sealed, write_dataset
-from ..core.scale import PAPER, SYMBOLS, attributes
+from ..core import PAPER, SYMBOLS, FileError, attributes, read_sealed, write_dataset
 from ..laws.law_grid import check_nodes, refuse_filled
 from ..materials import checked_netcdf
 from ..materials.checked_netcdf import KINDS as LAW_KINDS
