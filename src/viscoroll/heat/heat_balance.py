@@ -25,7 +25,7 @@ from ..core.checks import Booleans, Floats, Integers
 from ..laws.law_table import LawTable
 from .shift_curve import ShiftCurve
 
-#: nodes in an octave of kappa V a_T, as of the scan over speed of ``steady``: C has at most one
+#: nodes in an octave of kappa V a_T, as in the scan over speed of ``steady``: C has at most one
 #: extremum between two
 NODES = 16
 #: log2 of kappa V a_T beyond which no contact is evaluated
@@ -148,8 +148,10 @@ def _zeros_by_kernel(balance: Balance, law: LawTable) -> Zeros:
 
 
 def _brackets(balance: Balance, states: Integers) -> tuple[Any, ...]:
-    """Find intervals of the rise in which f of states, by their indices, changes its sign.
+    """Find intervals of the temperature rise in which f changes its sign.
 
+    balance: the balance of all states.
+    states: indices of the states that are examined, (k,).
     Returns (indices of the states; lower and upper ends, K; a point within to begin with; whether f
     > 0 at the lower end, the colder one, so that f falls with temperature), (m,) each.
     """

@@ -116,14 +116,15 @@ def heat_states(
 ) -> HeatStates:
     """Check the arguments of a call, and flatten the states of the one body that is heated.
 
-    roller, scene: as of :func:`.parameters.resolve_model`.
+    roller, scene: as in :func:`.parameters.resolve_model`.
     call: name of the function, for errors.
     given: "V" (None: not given), "ambient", "conductance": numbers or arrays without labels, and
         further arrays that take part in the shape.
-    slip_share: as of :func:`heated_bodies`.
+    slip_share: as in :func:`heated_bodies`.
+    Returns the :class:`HeatStates`, flattened to (n,), in SI units.
     Raises ParameterError for values out of range, shapes that do not broadcast, an ambient outside
-    the range of the shift, two bodies with a temperature each, a vertical shift that the law of one
-    temperature does not have.
+    the range of the shift, two bodies that both relax and are of different materials, and a
+    vertical shift that changes the shape of the law with temperature.
     """
     heated = heated_bodies(roller, call, slip_share)
     if len(heated) > 1:

@@ -94,11 +94,11 @@ def heat_limit(
 
     Parameters
     ----------
-    roller : a :class:`Cylinder` as of :func:`temperature`, of which the load is replaced.
+    roller : a :class:`Cylinder` as in :func:`temperature`, of which the load is replaced.
     allowed : temperature of the body that is allowed, degrees Celsius.
     V : speeds, m/s, other than 0, of which the loads are found.
     load : loads, N/m, > 0, of which the speeds are found; exactly one of the two is given.
-    ambient, conductance : as of :func:`temperature`.
+    ambient, conductance : as in :func:`temperature`.
 
     Returns
     -------
@@ -111,7 +111,7 @@ def heat_limit(
     Raises
     ------
     ParameterError
-        As of :func:`temperature`; both or neither of V and load, V = 0, V of a cover, an allowed
+        As in :func:`temperature`; both or neither of V and load, V = 0, V of a cover, an allowed
         temperature that is not above ambient or beyond the range of the shift, a load of a cover
         that is too thin for its law.
 
@@ -192,10 +192,15 @@ def heat_limit(
 def _for_each_load(
     roller: Any, allowed: float, load: Floats, plain: dict[str, Any], labels: Any
 ) -> Values:
-    """Return the result of :func:`heat_limit` for loads of a cover, of which each has a law of its
-    own.
+    """Return the result of :func:`heat_limit` for several loads of a cover, each of which has its
+    own law.
 
-    plain: ambient and conductance, numbers or arrays; labels: of the arguments.
+    roller: the Cylinder with a cover.
+    allowed: highest temperature allowed, degrees Celsius.
+    load: loads, N/m, an array.
+    plain: "ambient" and "conductance" -> number or array that broadcasts with ``load``.
+    labels: axes and coordinates of the arguments; None without.
+    Returns the :class:`Values` V, temperature and runaway, in the broadcast shape.
     """
     names = ("V", "temperature", "runaway")
 
@@ -254,8 +259,8 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
 
     Parameters
     ----------
-    roller : a :class:`Cylinder` as of :func:`temperature`, without arrays; it rolls freely.
-    ambient, conductance : numbers as of :func:`temperature`.
+    roller : a :class:`Cylinder` as in :func:`temperature`, without arrays; it rolls freely.
+    ambient, conductance : numbers as in :func:`temperature`.
 
     Returns
     -------
@@ -267,7 +272,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     Raises
     ------
     ParameterError
-        As of :func:`temperature`; arrays.
+        As in :func:`temperature`; arrays.
 
     Examples
     --------

@@ -27,11 +27,11 @@ from ..materials.measured_data import WLF, Arrhenius, relative_shift, vertical_f
 _SAMPLED_RANGE = -150.0, 1000.0
 #: samples of such a function; a step is then 0.23 K, over which ln a_T is straight to 1e-3
 _SAMPLES = 5001
-#: slope, 1/K, that makes a constant shift invertible; equilibria are refined with the shift itself
+#: slope, 1/K, that makes a constant shift invertible; equilibria are refined with the exact shift
 _TILT = 1e-9
 #: distance beyond the ends of the samples, K, over which they are extrapolated
 _BEYOND = 1e4
-#: stands for 0 and less in a divisor, so that the quotient is a number beyond all others
+#: smallest divisor: the quotient for a divisor <= 0 is then larger than any other
 _LEAST = 1e-300
 
 
@@ -70,10 +70,10 @@ class ShiftCurve:
         return 1.0 if self.sampled_root_b is None else self.sampled_root_b(theta)
 
     def factors(self, theta: Floats) -> tuple[Floats, Floats]:
-        """Return a_T and sqrt(b_T) relative to the reference at temperatures (n,), to the bits of
-        ``Material.at``.
+        """Return a_T and sqrt(b_T) relative to the reference, with the bits of ``Material.at``.
 
-        NaN where the shift is not defined.
+        theta: temperatures, degrees Celsius, (n,).
+        Returns (a_T, sqrt(b_T)), (n,) each, dimensionless; NaN where the shift is not defined.
         """
         found = np.full((2, theta.size), np.nan)
         shift = self.material.shift
@@ -92,8 +92,11 @@ class ShiftCurve:
         return found[0], found[1]
 
     def exactly(self, theta: Floats) -> tuple[Floats, Any]:
-        """Return ``log2_of`` and ``root_b`` by the shift itself at temperatures (n,), which are
-        extrapolated.
+        """Return ``log2_of`` and ``root_b`` without interpolation of samples.
+
+        theta: temperatures, degrees Celsius, (n,).
+        Returns (log2 of the factor of kappa V; sqrt(b_T)), dimensionless, (n,), the second 1.0 for
+        b_T = 1; extrapolated from the samples where the shift is not defined.
         """
         log2 = self.log2_of(theta)
         root_b = self.root_b(theta)
@@ -105,7 +108,9 @@ class ShiftCurve:
 
 
 def shift_curve(material: Material) -> ShiftCurve:
-    """Return the curve of a material's shift, which the material keeps.
+    """Return the :class:`ShiftCurve` of a material, computed at the first call.
+
+    material: the material, which stores the curve.
 
     Raises ParameterError for a material without a shift, for a shift that is not defined at the
     reference or does not fall with temperature.
@@ -119,7 +124,12 @@ def shift_curve(material: Material) -> ShiftCurve:
 
 
 def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
-    """Return the curve of a material with this ``shift`` and ``vertical`` shift."""
+    """Return the :class:`ShiftCurve` of a material; errors as in :func:`shift_curve`.
+
+    material: the material, whose reference temperature is read.
+    shift: a_T: a WLF, an Arrhenius, a function of degrees Celsius, or None, which is refused.
+    vertical: b_T, as ``vertical_shift`` of the material.
+    """
     if shift is None:
         allowed = "given to the Material of a body that relaxes: a WLF, an Arrhenius or a function"
         raise ParameterError("shift", None, allowed)
@@ -172,12 +182,12 @@ def _range_of(shift: Any, default: tuple[float, float]) -> tuple[float, float]:
 
 
 def _sampled(shift: Any, low: float, high: float, reference: float | None) -> tuple[Floats, Floats]:
-    """Return temperatures and a_T relative to the reference there, over the range around it in
-    which it is defined.
+    """Sample a shift in the range around the reference in which it is defined.
 
     shift: function of a temperature in degrees Celsius.
     low, high: temperatures between which it is sampled.
     reference: temperature of the material; None: that at which a_T is nearest to 1.
+    Returns (temperatures, degrees Celsius; a_T relative to the reference), (n,) each.
     Raises ParameterError for a shift that is not defined at the reference.
     """
     theta = np.linspace(low, high, _SAMPLES)

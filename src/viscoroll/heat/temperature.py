@@ -138,11 +138,11 @@ def temperature(
         one material; of such each loses half of M, and both have one temperature.
     V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, without loss in slip;
         with one of force and torque (or a slope, which counts as the force) the loss in slip heats
-        too.  None: the speed follows from the load at each temperature, as of :func:`steady`.
+        too.  None: the speed follows from the load at each temperature, as in :func:`steady`.
     ambient : temperature of the surroundings, degrees Celsius.
     conductance : heat that the body gives off per kelvin, W/(m K), > 0
     (:func:`viscoroll.conductance`).
-    force, torque, slope : loads as of :func:`steady`, numbers or arrays.
+    force, torque, slope : loads as in :func:`steady`, numbers or arrays.
     slip_share : part of the loss in slip that heats the cylinder, in [0, 1]; the rest heats the
     base.
 
@@ -228,8 +228,12 @@ def _at_speed(states: HeatStates, driven: dict[str, Any] | None) -> tuple[dict[s
     loads = loads_of(states.scene, force, torque, driven["slope"], np.ones(states.shape))
 
     def curve(n: Integers, x: Floats) -> Floats:
-        """Return kappa times the parts of M and of |delta Q| that heat the body; a slip that
-        friction does not allow is left out: such an equilibrium is no state, and is dropped.
+        """Return kappa times the parts of M and of |delta Q| that heat the body, divided by P V.
+
+        n: indices of the states, (m,).
+        x: log2(kappa V a_T) of each, (m,).
+        Returns (m,), dimensionless.  The slip is left out where the friction does not suffice; an
+        equilibrium there is dropped later.
         """
         found = states_at(states.law, loads, n, np.sign(V[n]), np.exp2(x) / loads.kappa[n]).rows
         delta = np.nan_to_num(found[Field.DELTA])
@@ -259,7 +263,7 @@ def free_balance(states: HeatStates, V: Any) -> Balance:
     """Return the balance of freely rolling states at speeds V, m/s, any sign, a number or (n,)."""
     speed = np.abs(V)
     power = states.body.part * states.load * speed / states.kappa
-    # at rest x is of no account
+    # at rest no power depends on x
     x_0 = np.log2(states.kappa * np.where(speed == 0.0, 1.0, speed / states.unit))
     hottest = states.ambient + _MOST * power / states.conductance
     law = states.law
@@ -285,9 +289,12 @@ def free_balance(states: HeatStates, V: Any) -> Balance:
 
 
 def rolling_rows(states: HeatStates, n: Integers, V: Floats, theta: Floats) -> dict[str, Floats]:
-    """Return the fields of free rolling of states, by their indices, at speeds and temperatures.
+    """Return the fields of freely rolling states at given speeds and temperatures.
 
-    V: m/s, any sign; theta: degrees Celsius, (m,).
+    states: all states.
+    n: indices of the states that are computed, (m,).
+    V: speeds, m/s, any sign, (m,).
+    theta: temperatures, degrees Celsius, (m,).
     Returns name -> values, (m,), in SI units: V, temperature, C_rr, M and its parts, loss,
     loss_slip (0) and a_T, which is NaN, as are the fields of the contact, outside the range of the
     shift.
@@ -297,7 +304,7 @@ def rolling_rows(states: HeatStates, n: Integers, V: Floats, theta: Floats) -> d
     known = np.isfinite(a_T)
     unit = states.R[n] / (
         states.roller.T_ref * np.where(known, a_T, 1.0)
-    )  # as of the Cylinder of this temperature
+    )  # as for the Cylinder of this temperature
     kappa = states.kappa[n] * np.where(known, root_b, 1.0)
     computed = computed_fields(_MOMENTS, law.unlike if isinstance(law, LawTable) else True)
     arrays = [states.materials[n], kappa, states.mu[n], V / unit, 0.0]
@@ -369,8 +376,11 @@ def _pack(
 ) -> Temperatures:
     """Return the result of the equilibria of states, padded to arrays (states..., equilibria).
 
-    zeros, rows: the equilibria and their fields, unsorted; those with a NaN in a_T or the loss are
-    named and dropped.
+    states: the states.
+    zeros, rows: the equilibria, in any order, and their fields, (m,) each.  Equilibria with a NaN
+    in a_T or the loss are dropped, and named in the reason of a state that has no other.
+    labels: axes and coordinates of the arguments; None without.
+    Returns the :class:`Temperatures`, each row ascending in temperature, padded with NaN.
     """
     inside = within_data(states, rows["V"] * rows["a_T"])
     known = np.isfinite(rows["a_T"] + rows["loss"])
@@ -394,8 +404,10 @@ def _pack(
 
 
 def within_data(states: HeatStates, speed: Floats) -> Any:
-    """Return whether the material was measured at speeds, m/s, reduced to the reference; True
-    without data.
+    """Return whether the speeds lie in the range of the data of the material.
+
+    speed: V a_T, speeds reduced to the reference temperature, m/s, (n,).
+    Returns booleans, (n,); True at V = 0 and for a material without data.
     """
     low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
     size = np.abs(speed)
@@ -405,8 +417,13 @@ def within_data(states: HeatStates, speed: Floats) -> Any:
 def _reasons(
     states: HeatStates, zeros: Zeros, known: Any, inside: Any, rows: dict[str, Floats]
 ) -> Any:
-    """Return for each state "" or why no equilibrium lies within the ranges of shift and data,
-    (states,), objects.
+    """Return the reasons why states have no equilibrium within the ranges of shift and data.
+
+    states: the states.
+    zeros, rows: the equilibria found and their fields, (m,) each.
+    known: whether a_T and the loss of each equilibrium are numbers, (m,).
+    inside: whether its speed lies within the data, (m,).
+    Returns texts, (states,), objects; "" for a state that has an equilibrium.
     """
     found = np.full(states.load.size, "", object)
     good = np.bincount(zeros.state[known & inside], minlength=found.size)

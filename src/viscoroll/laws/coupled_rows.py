@@ -101,8 +101,9 @@ class CoupledRows:
         return found
 
     def _friction(self) -> Floats:
-        """Return 2 kappa times the friction in slip at the nodes, (n + 2, m): what traction does
-        but for the work of shear on strain.
+        """Return 2 kappa times the slip loss at the nodes, divided by P V, (n + 2, m), >= 0.
+
+        It is mu (Q/mu) times the reduced creepage, less the work of shear on the strains.
         """
         middle, low, high = (edge[:, np.newaxis] for edge in self.edges[:, :3].T)
         creep = middle + np.where(self.t < 0.0, low - middle, high - middle) * grade(self.t)
@@ -110,8 +111,10 @@ class CoupledRows:
         return np.maximum(self.mu * self.fields[..., 0] * creep - work, 0.0)
 
     def _slopes_in_t(self, fields: Floats) -> Floats:
-        """Return slopes of fields, (n + 2, m, fields), over t; 0 at t = 0 and +-1 where the nodes
-        are graded.
+        """Return derivatives of fields with respect to t at the nodes, in the shape of ``fields``.
+
+        fields: values at the nodes, (n + 2, m, fields).
+        The derivatives are 0 at t = 0 and +-1 if the nodes are graded.
         """
         from scipy.interpolate import CubicSpline
 

@@ -249,7 +249,7 @@ def series_record(material: Any) -> tuple[Any, Floats]:
 
     material: a :class:`.prony.Prony` of one material, a :class:`.bodies.Bodies` of one pair, or
         alphas >= 1: a number, or one for each element that the kernel is called for, (n,).
-    Returns (record of the series, :class:`.material_series.Series`, as of
+    Returns (record of the series, :class:`.material_series.Series`, as in
     :func:`modes_record`; alphas).  For a series or bodies the alphas are an empty array; those of
     bodies have weights, also if they are alike.  For alphas they are a copy, (n,), (1,) of a
     number, and the record has one mode, which the kernel overwrites with each alpha in turn.

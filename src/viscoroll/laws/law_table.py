@@ -324,10 +324,10 @@ def law_table(
 
 
 def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
-    """Return the law of coupled rows as a :class:`LawTable`.
+    """Return the law of a table of the coupled solution as a :class:`LawTable`.
 
-    material: alpha, a series, bodies or a cover, of one scene.
-    rows: :class:`.coupled_rows.CoupledRows` of it.
+    material: material of the scene: alpha, a series, bodies or a cover.
+    rows: :class:`.coupled_rows.CoupledRows`, the table for this material.
     """
     total = total_series(material)
     base = law_table(total if total.E.size else 1.0)

@@ -137,7 +137,7 @@ class FromPrograms:
             a constant bulk modulus.  If that table has other times, give all times of both as
             ``tau``, and 0 in ``alpha`` or ``k`` where a table has no term.  For nu = 0.5 it is
             checked, but has no effect.
-        more : as of :meth:`abaqus`.
+        more : as in :meth:`abaqus`.
 
         Returns
         -------
@@ -187,7 +187,7 @@ class FromPrograms:
         tau : their relaxation times tau_m, s, finite, > 0, (n,).
         K : bulk moduli of the branches, Pa, >= 0, at the same times, (n,); zeros where only
             deviatoric strains are viscoelastic.  For nu = 0.5 they are checked, but have no effect.
-        more : as of :meth:`abaqus`.
+        more : as in :meth:`abaqus`.
 
         Returns
         -------
@@ -251,7 +251,7 @@ class FromPrograms:
             long-time one, in place of ``nu`` and ``bulk``.  None: the bulk modulus is constant if
             ``bulk`` is given, else relaxes in proportion to G.  For nu = 0.5 it is checked, but has
             no effect.
-        more : as of :meth:`abaqus`.
+        more : as in :meth:`abaqus`.
 
         Returns
         -------
@@ -399,7 +399,7 @@ def _warn_of_negative(late: float, early: float | None) -> None:
     """Warn where bulk terms make Poisson's ratio negative, at long times or at t = 0: their unit
     may be another.
 
-    late, early: Poisson's ratio of long times and of t = 0; None: as of long times.
+    late, early: Poisson's ratio of long times and of t = 0; None: that of long times.
     """
     lowest = late if early is None else min(late, early)
     if lowest < 0.0:

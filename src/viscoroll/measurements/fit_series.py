@@ -479,7 +479,7 @@ def _points(record: DynamicModuli, at: Any) -> DynamicModuli:
 
 
 def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
-    """Return the moduli at a strain, by two sets or by the nearest; arguments as of
+    """Return the moduli at a strain, by two sets or by the nearest; arguments as in
     :func:`fit_at_strain`.
     """
     strains = np.array([each.mean_strain for each in sets])

@@ -311,7 +311,7 @@ def _estimated(values: Floats) -> Floats:
     together, they are mean(B (AB_n - A))/v and mean((AB_n - A)^2)/(2 v), the estimators (b) and (f)
     of Table 2 of Saltelli et al. (2010).
 
-    values: outcomes, (2 + inputs, base points), as of :func:`_indices`, finite.  Where those of A
+    values: outcomes, (2 + inputs, base points), as in :func:`_indices`, finite.  Where those of A
         and B are all equal the indices are NaN or infinite.
     """
     A, B, *others = values - values[:2].mean()
