@@ -532,7 +532,8 @@ def _figure_of_netcdf(path: str) -> Any:
         raise
     except (AttributeError, KeyError, ValueError) as error:
         raise vr.FileError(
-            path, f"lacks a part of the result that its axes announce ({error})"
+            path,
+            f"is an incomplete result: a variable that belongs to its axes is missing ({error})",
         ) from error
 
 

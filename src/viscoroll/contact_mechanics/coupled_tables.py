@@ -114,7 +114,9 @@ def tabulate(
     if count is not None:
         check_integer("nodes", count, 4, 1000)
     if check_integer("nodes", across, 9, 1001) % 2 == 0:
-        raise ParameterError("nodes", across, "odd over creep: the nodes are symmetric")
+        raise ParameterError(
+            "nodes", across, "an odd number of nodes of creepage, as they are symmetric"
+        )
     u = speed_nodes(pair, count)
     t = np.linspace(-1.0, 1.0, across)
     speeds = np.concatenate([[0.0], u, [math.inf]])

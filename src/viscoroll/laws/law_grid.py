@@ -299,7 +299,7 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
             Q,
             against,
             path,
-            "of the sign of delta: a wheel that spins faster than it rolls is driven",
+            "of the same sign as delta: a wheel with omega R > V has a driving Q > 0",
         )
         if "M" in table.variables and "delta" in table["M"].dims:
             M = table["M"].transpose(*Q.dims)
@@ -308,7 +308,7 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
             lost = (M + table["delta"] * (R * Q + of_cylinder)).transpose(*Q.dims)
             made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), R * noise / _NOISE)
             _refuse_nodes(
-                M, made, path, ">= -delta (R Q + M_cylinder), as the contact makes no power"
+                M, made, path, ">= -delta (R Q + M_cylinder), as the contact generates no power"
             )
         falls = np.diff(Q.values, prepend=-np.inf) < -noise
         _refuse_nodes(

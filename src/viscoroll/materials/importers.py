@@ -404,10 +404,10 @@ def _warn_of_negative(late: float, early: float | None) -> None:
     lowest = late if early is None else min(late, early)
     if lowest < 0.0:
         text = (
-            f"bulk and shear moduli make nu = {lowest:.3g}: give both in one unit, and as "
-            "moduli or as fractions"
+            f"bulk and shear moduli give Poisson's ratio {lowest:.3g} < 0: give both in one unit, "
+            "and as moduli or as fractions like the program from which they are"
         )
-        warn_of_model(f"{text}, as the program has them")
+        warn_of_model(text)
 
 
 def check_pairs(

@@ -452,7 +452,8 @@ def fit_at_strain(
         if abs(math.log(strain / last)) <= _CHANGE:
             return fit
     raise ConvergenceError(
-        f"fit_at_strain: the strain of the contact does not settle; the last are {last}, {strain}"
+        "fit_at_strain: the iteration for the strain of the contact does not converge; the last "
+        f"two values are {last} and {strain}"
     )
 
 
