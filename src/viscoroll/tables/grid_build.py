@@ -81,7 +81,7 @@ def spread(
     if not high > low:
         raise ParameterError("high", high, f"> low = {low:g}")
     if high - low == np.inf:
-        raise ParameterError("high", high, f"below 1.8e308 + low, with low = {low:g}")
+        raise ParameterError("high", high, f"less than 1.8e308 + low, with low = {low:g}")
     return (np.geomspace if spacing == "log" else np.linspace)(
         low, high, check_integer("count", count, 2, MAX_NODES)
     )
