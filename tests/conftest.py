@@ -49,6 +49,12 @@ def nothing_said_yet(monkeypatch):
 
 
 @pytest.fixture
+def here(tmp_path, monkeypatch):
+    """Files of a test are its own."""
+    monkeypatch.chdir(tmp_path)
+
+
+@pytest.fixture
 def two_speeds(monkeypatch):
     """The accuracy of M by a fit is found at two speeds, not at two a decade of its data."""
     monkeypatch.setattr(spectrum, "_SPEEDS", 0)

@@ -1,6 +1,4 @@
-"""Arrays of materials, one for each state or motion: of both forms, with modes that fall away, and
-of two bodies.
-"""
+"""Arrays of materials, one for each state or motion; with modes that fall away, of two bodies."""
 
 import numpy as np
 
@@ -29,17 +27,15 @@ def states(count, seed):
     return alpha, kappa, mu, 10.0 ** rng.uniform(-7.0, 7.0, count) / kappa, s
 
 
-def rubbers(draw, modes, creep=False, count=COUNT):
+def rubbers(draw, modes, count=COUNT):
     """Random ones; some with a mode less, of strength 0 or of equal times, and one elastic."""
     times = 10.0 ** draw.uniform(-4.0, 1.0, (count, modes))
     strengths = 10.0 ** draw.uniform(-1.0, 1.0, (count, modes))
-    if creep:
-        strengths *= 0.9 / strengths.sum(axis=1, keepdims=True)
     if modes > 2:
         strengths[1, 2] = 0.0
         times[4, 1] = times[4, 0]
         strengths[5] = 0.0
-    return (vr.Prony.creep if creep else vr.Prony)(strengths, times)
+    return vr.Prony(strengths, times)
 
 
 def series(seed, modes, decades, count):
@@ -57,10 +53,9 @@ def of_alphas():
 
 ONE = vr.Prony([2.0, 1.0], [1.0, 1e-2])
 ELASTIC = vr.Prony.elastic()
-#: of both forms, of one body for all, of rigid and elastic bodies, of like series with a share each
+#: of one body for all, of rigid and elastic bodies, of like series with a share each
 PAIRS = {
     "each": lambda draw, first, share: (first, rubbers(draw, 3), share),
-    "creep": lambda draw, first, share: (rubbers(draw, 2, True), rubbers(draw, 3), 0.3),
     "one base": lambda draw, first, share: (first, ONE, 0.6),
     "a share each": lambda draw, first, share: (ONE, vr.Prony([0.5], [0.1]), share),
     "elastic base": lambda draw, first, share: (first, ELASTIC, share),
@@ -88,7 +83,6 @@ def pairs(kind):
 MATERIALS = {
     "one mode": of_alphas,
     "3 modes": lambda: rubbers(np.random.default_rng(3), 3),
-    "3 modes, creep": lambda: rubbers(np.random.default_rng(3), 3, True),
     "6 modes over 14 decades": lambda: series(2, 6, 14.0, 6),
     "16 modes": lambda: series(3, 16, 10.0, 4),
 } | {kind: lambda kind=kind: pairs(kind) for kind in PAIRS}

@@ -38,13 +38,10 @@ from viscoroll.runs import estimate
 from viscoroll.runs.run_blocks import block_inputs
 from viscoroll.runs.uncertain_inputs import read_column
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
-
-
-@pytest.fixture(autouse=True)
-def here(tmp_path, monkeypatch):
-    """Files of a test are its own."""
-    monkeypatch.chdir(tmp_path)
+pytestmark = [
+    pytest.mark.usefixtures("here"),
+    pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),
+]
 
 
 def of_roller(content):

@@ -141,23 +141,38 @@ def test_heat_of_slip_and_given_loads():
         assert np.abs(at_speed - theta).min() < 1e-7
 
 
-def test_vertical_shift_scales_the_moduli():
+@pytest.mark.parametrize("base", [ROLLER.base, vr.Material.elastic(5e7, 0.3)])
+def test_vertical_shift_scales_the_moduli(base):
     """The equilibrium has the loss of the material whose moduli and times are those at its
-    temperature.
+    temperature, also beside an elastic body and under a torque.
     """
-    roller = with_shift(WLF, vertical_shift="entropic")
+    roller = with_shift(WLF, vertical_shift="entropic").replace(base=base)
     found = roller.temperature(3.0, ambient=0.0, conductance=6.0)
     hot = roller.replace(material=roller.material.at(float(found.temperature[0])))
     assert close(hot.material.E / 3e6, (found.temperature[0] + 273.15) / 293.15, 1e-15)
-    assert close(found.C_rr[0], hot.contact(3.0, delta=0.0).C_rr, 1e-13)
+    assert close(found.C_rr[0], hot.contact(3.0, delta=0.0).C_rr, 1e-12)
     assert close(6.0 * found.temperature, found.loss, tol.HEAT_BALANCE)
+    if base is ROLLER.base:
+        found = roller.temperature(3.0, ambient=0.0, conductance=6.0, torque=500.0, slip_share=1.0)
+        hot = roller.replace(material=roller.material.at(float(found.temperature[0])))
+        loss = hot.steady(V=3.0, torque=500.0).loss
+        assert close(found.loss_slip, loss.slip, 1e-10)
+        assert close(6.0 * found.temperature, loss.slip + loss.cylinder, tol.HEAT_BALANCE)
 
 
 def test_cover_follows_its_own_law():
+    """Free rolling of a cover is steady rolling without torque, whose loss is in balance."""
     cover = ROLLER.replace(material=dataclasses.replace(RUBBER, thickness=0.03))
     found = cover.temperature(2.0, ambient=0.0, conductance=6.0)
     at = cover.replace(material=cover.material.at(float(found.temperature[0])))
-    assert close(found.C_rr[0], at.contact(2.0, delta=0.0).C_rr, 1e-12)
+    rolling = at.steady(V=2.0, torque=0.0)
+    assert close(found.M, rolling.M, 1e-12)
+    assert close(found.loss - found.loss_slip, rolling.loss.cylinder, 1e-12)
+    heat = found.loss - 0.5 * found.loss_slip
+    assert close(6.0 * found.temperature, heat, tol.HEAT_BALANCE)
+    limit = cover.heat_limit(70.0, V=2.0, ambient=20.0, conductance=6.0)
+    heavy = cover.replace(load=limit.load).temperature(2.0, ambient=20.0, conductance=6.0)
+    assert close(heavy.temperature, [70.0], 1e-5)
     # on a slope, which is one number, under several ambients
     rolling = cover.temperature(slope=0.004, ambient=[0.0, 10.0], conductance=6.0)
     known = np.isfinite(rolling.V)
@@ -318,13 +333,27 @@ def test_conductance_of_film_and_cover():
         ),
         (
             lambda: vr.presets.RUBBER_ROLLER.temperature(1.0, ambient=20.0, conductance=6.0),
-            "is a Scene",
+            "has no Material",
         ),
         (lambda: with_shift(None).temperature(1.0, ambient=20.0, conductance=6.0), "shift = None"),
         (lambda: with_shift(lambda T: T + 300.0).temperature(1.0, **COLD), "rises at"),
         (lambda: ROLLER.warming(1.0, [1.0], **COLD, capacity=-1.0), "capacity = -1.0"),
         (lambda: ROLLER.heat_limit(-40.0, V=1.0, **COLD), "above ambient"),
         (lambda: vr.conductance(0.1, thickness=0.2), "below R"),
+        (
+            lambda: (
+                with_shift(WLF, thickness=0.03)
+                .replace(load=[1e4, 2e4])
+                .temperature(1.0, ambient=20.0, conductance=6.0)
+            ),
+            "load has shape",
+        ),
+        (
+            lambda: with_shift(WLF, vertical_shift="entropic", thickness=0.03).temperature(
+                1.0, ambient=20.0, conductance=6.0
+            ),
+            "a table of its own",
+        ),
     ],
 )
 def test_refused(call, words):
@@ -399,6 +428,7 @@ def test_strain_of_the_contact():
     assert ROLLER.validity(1.0).strain.holds is None
 
 
+@pytest.mark.usefixtures("two_speeds")
 def test_fit_at_the_strain_of_the_contact():
     """Of moduli that fall with a power of the strain the fit has the strain that its own contact
     has.
@@ -430,6 +460,7 @@ def test_fit_at_the_strain_of_the_contact():
     assert small.source == "a test, the set at a strain of 1e-05"
 
 
+@pytest.mark.usefixtures("two_speeds")
 def test_fit_divides_by_a_vertical_shift():
     """Curves of a rubber with an entropic shift give its moduli and its shift factors."""
     omega = np.geomspace(1e-2, 1e4, 40)

@@ -91,7 +91,7 @@ def long_or_short(examples):
     return decorate
 
 
-@long_or_short(150)
+@long_or_short(80)
 @given(scenes | arrays, one_or_three(speeds), one_or_three(creeps), st.booleans(), st.booleans())
 def test_contact(scene, V, creep, is_omega, slopes):
     state = vr.contact(scene, V, **{"omega" if is_omega else "delta": creep}, slopes=slopes)
@@ -108,7 +108,7 @@ def check_state(scene, state):
     assert np.all(np.asarray(state.lam) <= 1.0)
 
 
-@long_or_short(200)
+@long_or_short(80)
 @given(scenes, one_or_three(speeds), one_or_three(speeds), creeps, st.booleans())
 def test_stress_and_validity(scene, x, V, creep, is_omega):
     found = vr.stress(scene, x, V, **{"omega" if is_omega else "delta": creep})
@@ -118,7 +118,7 @@ def test_stress_and_validity(scene, x, V, creep, is_omega):
     assert str(scene.validity(V))
 
 
-@long_or_short(100)
+@long_or_short(60)
 @given(
     scenes,
     speeds,
@@ -177,7 +177,7 @@ def own_error(error):
 
 
 @pytest.mark.filterwarnings("ignore")  # of numpy on odd objects
-@long_or_short(100)
+@long_or_short(60)
 @given(st.lists(argument, min_size=6, max_size=6), st.lists(number, min_size=2, max_size=2))
 def test_anything(a, bounds):
     few = min(a[0], 99) if isinstance(a[0], int) else a[0]

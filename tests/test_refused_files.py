@@ -30,11 +30,7 @@ from viscoroll.materials.material_toml import read_materials
 from viscoroll.roller_toml import read_law_source, read_roller
 from viscoroll.runs import read_run
 
-
-@pytest.fixture(autouse=True)
-def here(tmp_path, monkeypatch):
-    """Files of a test are its own."""
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("here")
 
 
 def of_dma(content):

@@ -33,11 +33,7 @@ from viscoroll.contact_mechanics.validity import Steadiness
 from viscoroll.core.scale import Scale
 from viscoroll.materials.material_toml import read_materials
 
-
-@pytest.fixture(autouse=True)
-def here(tmp_path, monkeypatch):
-    """Files of a test are its own."""
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("here")
 
 
 SAID = [

@@ -6,6 +6,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 import tolerances as tol
+from calls import SOFT, STEEL, pair
 from closeness import close
 
 import viscoroll as vr
@@ -28,27 +29,18 @@ def test_numbers_are_those_of_the_contact():
 
 # --- pairs ---
 
-RUBBER = vr.Material(2.3e5, 0.49, vr.Prony([2.0, 6.0], [1.0, 1e-4]), density=1100.0)
-STEEL = vr.Material.elastic(2e11, 0.3, density=7850.0)
-
-
-def pair(material, base, plane="strain"):
-    return vr.Cylinder(
-        R=0.1, m=35.5, mu=0.2, material=material, base=base, plane=plane, coupled=False
-    )
-
 
 def test_how_thick_the_layer_is():
     """Half the contact over the thickness of the layer, up to which it sticks in front and slips
     behind.
     """
-    thick, thin = (replace(RUBBER, thickness=thickness) for thickness in (0.02, 0.004))
+    thick, thin = (replace(SOFT, thickness=thickness) for thickness in (0.02, 0.004))
     for material, base, holds in (
         (thick, STEEL, True),
         (STEEL, thick, True),
         (vr.Material.rigid(), thin, False),
     ):
-        cylinder = pair(material, base)
+        cylinder = pair(material, base, coupled=False)
         found = cylinder.validity([0.0, 1e-3]).thick
         length = cylinder.contact([0.0, 1e-3], delta=0.0, fields="length").length
         assert close(found.value, 0.5 * length / (0.02 if holds else 0.004), tol.CONTACT)

@@ -501,14 +501,9 @@ CALLABLE_ROUNDING = 5e-10
 LATE_CREEP = 1e-14
 #: Steps of motions under callables, up to 330; those from rest once took 100,000.
 CALLABLE_STEPS = 500
-#: A jump a number's distance away.
-CALLABLE_JUMP = 1e-14
 #: Bytes that a corner takes while schedules are made ready: ten columns of a piece, and some thirty
 #: numbers on the way.
 BYTES_A_CORNER = 500
-#: Bytes beside the arrays of 100 motions of 3,000 corners each (4.8 MB): a copy that nobody can
-#: write to, and the pieces of some motions at a time.
-BYTES_OF_SCHEDULES = 20e6
 #: A pulse of END/8000 by a callable and by a schedule: its ends are found to the rounding of END, a
 #: share of 1e-12 of its width.  What it changes, as a share of V, is far more.
 CALLABLE_PULSE = 1e-10

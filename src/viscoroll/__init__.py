@@ -19,21 +19,23 @@ if sys.version_info < (3, 11):  # noqa: UP036 (a copy that pip did not install)
 __version__ = "0.4.0"
 
 
-def _read_modules() -> dict[str, str]:
-    """Return a dict from each public name to the module that defines it, as ".scene"; "." for a
-    public module.
+def _read_modules(file: str) -> dict[str, str]:
+    """Return a dict from each name of a package to the module that defines it, as ".scene"; "." for
+    a module.
+
+    file: path of the ``__init__.py`` of the package.
 
     They are read from ``__init__.pyi``, which type checkers and editors read too, so that they are
     listed once.
     """
-    with open(splitext(__file__)[0] + ".pyi", encoding="utf-8") as stub:
+    with open(splitext(file)[0] + ".pyi", encoding="utf-8") as stub:
         return {
             name: module
             for _, module, _, name, *_ in (line.split() for line in stub if line.startswith("from"))
         }
 
 
-_MODULES = _read_modules()
+_MODULES = _read_modules(__file__)
 __all__ = ["__version__", *_MODULES]  # noqa: PLE0604
 
 

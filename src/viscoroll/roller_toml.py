@@ -14,7 +14,7 @@ from typing import Any, Literal
 
 import msgspec
 
-from .core.errors import FileError, ParameterError, check_one_given, unknown_name_error
+from .core import FileError, ParameterError, check_one_given, unknown_name_error
 from .core.toml_sections import as_section_error, as_struct, check_keys, read_toml, section_error
 from .materials.checked_netcdf import SUFFIX
 from .materials.material_toml import (

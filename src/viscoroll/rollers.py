@@ -20,11 +20,24 @@ from numpy.typing import ArrayLike
 from .contact_mechanics.assumptions import DUNDURS_LIMIT
 from .contact_mechanics.body_data import BodyData
 from .contact_mechanics.parameters import Parameters, Roller
-from .core.checks import broadcast_shape, check_array, check_bool, check_choice, read_only
-from .core.drive_arguments import slope_tan_cos
-from .core.errors import ParameterError, described_error, exactly_one_error, shape_error
-from .core.results import Result, SummaryRow, format_value
-from .core.scale import MEASURED, SI, Scale
+from .core import (
+    MEASURED,
+    SI,
+    ParameterError,
+    Result,
+    Scale,
+    SummaryRow,
+    broadcast_shape,
+    check_array,
+    check_bool,
+    check_choice,
+    described_error,
+    exactly_one_error,
+    format_value,
+    read_only,
+    shape_error,
+    slope_tan_cos,
+)
 from .laws.law_table import LawTable
 from .materials.bodies import Bodies, Cover
 from .materials.material import Material, refuse_short_retardation

@@ -23,8 +23,15 @@ from typing import Any, Literal, TypeAlias, get_args
 import numpy as np
 from numpy.typing import NDArray
 
-from .core.checks import Floats, check_array, check_integer, check_number
-from .core.errors import ParameterError, check_one_given, unknown_name_error
+from .core import (
+    Floats,
+    ParameterError,
+    check_array,
+    check_integer,
+    check_number,
+    check_one_given,
+    unknown_name_error,
+)
 
 __all__ = ["Sample", "sample"]
 

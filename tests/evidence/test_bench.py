@@ -6,13 +6,10 @@ import json
 
 import pytest
 import tolerances as tol
-from places import PIPELINE
 from processes import made
 
 from pipeline.evidence.bench.figures import draw
 from pipeline.evidence.results import Results
-
-CONFIG = PIPELINE / "evidence/sizes.toml"
 
 
 @pytest.fixture(scope="module")

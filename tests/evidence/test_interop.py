@@ -144,9 +144,12 @@ NIP = vr.Cover(
 LINING = vr.Cover(1.0, nu=0.5, thickness=1.0)
 
 
+law_of = cache(vr.tables.law)  # that of a cover takes seconds
+
+
 def folder_of(material, place):
     """The readers, the headers of C, and a law in every format."""
-    law = vr.tables.law(material)
+    law = law_of(material)
     for path in (*LOADING.glob("read_law.*"), *HEADERS.glob("*.h")):
         shutil.copy(path, place)
     for name in ("law.nc", "law.json", "rubber.h"):
@@ -208,25 +211,33 @@ nan,0.3,0.1,0.01
 SPELLED = {"node": ("NaN", "Infinity"), "R": ("NaN", "Inf")}
 
 
+def told_by(name, folder, states):
+    """What the program of a language prints of states, a row each."""
+    program, command, needed = PROGRAMS[name]
+    need(needed)
+    (folder / "program").write_text(program)
+    (folder / "states.csv").write_text(states)
+    rows = csv.reader(io.StringIO(output(command, folder)))
+    return np.array([row for row in rows if row], dtype=float)
+
+
+def as_text(*columns):
+    """Columns as a file of states."""
+    file = io.StringIO()
+    np.savetxt(file, np.column_stack(columns), fmt="%.17g", delimiter=",")
+    return file.getvalue()
+
+
 @pytest.mark.parametrize("name", PROGRAMS)
 @pytest.mark.parametrize("material", [NIP, LINING], ids=["nip", "lining"])
 def test_programs_have_the_contact_of_covers(name, material, tmp_path):
     """Where shear acts back, at rest too, also at V = -0."""
-    program, command, needed = PROGRAMS[name]
-    need(needed)
     kappa, mu, V, slip = states(material).T
     scene = vr.Scene(kappa=kappa, mu=mu, material=material, coupled=False)
     slip = slip + V * vr.contact(scene, V, delta=0.0).delta_0
     V[1:5] = -0.0
     slip[3:5] = 0.0
-    folder = folder_of(material, tmp_path)
-    (folder / "program").write_text(program)
-    np.savetxt(
-        folder / "states.csv", np.column_stack([kappa, mu, V, slip]), fmt="%.17g", delimiter=","
-    )
-    found = np.array(
-        [row for row in csv.reader(io.StringIO(output(command, folder))) if row], dtype=float
-    )
+    found = told_by(name, folder_of(material, tmp_path), as_text(kappa, mu, V, slip))
     exact = vr.contact(scene, V, omega=V + slip, fields=FIELDS[:-1])
     scales = {"beta": 1.0, "Q": mu, "epsilon": 1.0} | dict.fromkeys(FIELDS[5:8], mu / kappa)
     for n, field in enumerate(FIELDS[:-1]):
@@ -238,16 +249,10 @@ def test_programs_have_the_contact_of_covers(name, material, tmp_path):
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_programs_have_the_contact_of_the_package(folder, name):
     """And NaN for what is no state.  Also the sign of a NaN is none: Q was +mu for a NaN speed."""
-    program, command, needed = PROGRAMS[name]
-    need(needed)
-    (folder / "program").write_text(program)
     given = np.loadtxt(folder / "moving.csv", delimiter=",")
     nan, infinity = SPELLED.get(name, ("nan", "inf"))
     no_states = NO_STATES.replace("nan", nan).replace("inf", infinity)
-    (folder / "states.csv").write_text((folder / "moving.csv").read_text() + no_states)
-    found = np.array(
-        [row for row in csv.reader(io.StringIO(output(command, folder))) if row], dtype=float
-    )
+    found = told_by(name, folder, (folder / "moving.csv").read_text() + no_states)
     assert len(found) == len(given) + NO_STATES.count("\n")
     assert np.isnan(found[len(given) :]).all()
     found = found[: len(given)]

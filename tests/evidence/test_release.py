@@ -1,7 +1,5 @@
 """`make release-check`: sound packages pass, and each planted fault is told."""
 
-import tomllib
-
 import pytest
 
 from pipeline.evidence import release
@@ -53,19 +51,3 @@ def test_planted_faults_are_told(packages):
     ):
         assert each in told
     assert "has no licence" in problems("licences", wrong)
-
-
-def test_the_owner_is_told_what_is_left(tmp_path, monkeypatch):
-    """An entry goes when its file has the text; a setting outside of the tree stays."""
-    text = (release.ROOT / "OWNER.toml").read_text()
-    (tmp_path / "OWNER.toml").write_text(text)
-    for name in {entry["file"] for entry in tomllib.loads(text)["open"] if "has" in entry}:
-        (tmp_path / name).parent.mkdir(exist_ok=True)
-        (tmp_path / name).write_text((release.ROOT / name).read_text())
-    monkeypatch.setattr(release, "ROOT", tmp_path)
-    before = list(release.left_to_the_owner())
-    assert any("DOI" in entry for entry in before)
-    (tmp_path / "CITATION.cff").write_text("doi: 10.5281/zenodo.1\n")
-    assert [entry for entry in before if entry not in release.left_to_the_owner()] == [
-        entry for entry in before if "DOI" in entry
-    ]

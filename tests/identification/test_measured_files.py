@@ -68,14 +68,3 @@ def here(tmp_path, monkeypatch):
 def test_columns_that_are_left_aside_are_told(here):
     with pytest.warns(vr.ModelWarning, match=r"drum.csv: unused columns: 'T \[°C\]'"):
         data("V [m/s],M [N m/m],T [°C]\n0.1,0.2,20\n0.2,0.3,20\n")
-
-
-def test_columns_without_units_are_told_and_the_advice_leads_to_the_right_speed(here):
-    """A drum in km/h: without units a word for each column; with the heading as advised none, and
-    speeds in m/s.
-    """
-    assert data("V [km/h],M [N m m-1]\n0.36,0.2\n0.72,0.3\n").V.tolist() == [0.1, 0.2]
-    with pytest.warns(
-        vr.ModelWarning, match=r"column 'V' has no unit, and is taken in m s-1.*'V \[m s-1\]'"
-    ):
-        data("V,M [N m m-1]\n0.1,0.2\n0.2,0.3\n")

@@ -47,11 +47,6 @@ def test_forms_belong_together(drawn):
     assert close(back.E, p.E, tol.SERIES_BACK)
 
 
-def test_a_series_is_read_only():
-    with pytest.raises(ValueError, match="read-only"):
-        WIDE.E[0] = 1.0
-
-
 def scene(material, **changes):
     return vr.Scene(
         material=material, **({"kappa": 10.0, "mu": 0.3, "gamma": 1e4, "j": 0.5} | changes)

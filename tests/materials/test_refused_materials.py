@@ -36,11 +36,7 @@ from viscoroll.runs.run_blocks import roll_inputs
 from viscoroll.runs.sensitivity import sobol_indices
 from viscoroll.runs.uncertain_inputs import read_column
 
-
-@pytest.fixture(autouse=True)
-def here(tmp_path, monkeypatch):
-    """Files of a test are its own."""
-    monkeypatch.chdir(tmp_path)
+pytestmark = pytest.mark.usefixtures("here")
 
 
 @cache

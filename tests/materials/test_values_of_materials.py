@@ -16,13 +16,10 @@ from viscoroll.laws.law_netcdf import law_table_of
 from viscoroll.laws.law_table import law_table
 from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
 
-pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
-
-
-@pytest.fixture(autouse=True)
-def here(tmp_path, monkeypatch):
-    """Files of a test are its own."""
-    monkeypatch.chdir(tmp_path)
+pytestmark = [
+    pytest.mark.usefixtures("here"),
+    pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning"),
+]
 
 
 #: terms of G that all programs are given, Pa

@@ -62,13 +62,3 @@ def test_each_file(title, tmp_path):
     assert len(shown.splitlines()) == 3
     for word in case.get("says", []):
         assert word in shown, shown
-
-
-@pytest.mark.parametrize("unit", ["bpm", "xyz"])
-def test_an_unknown_unit_behind_an_underscore_is_refused_where_the_column_is_named(tmp_path, unit):
-    path = tmp_path / "a.csv"
-    path.write_text(f"freq_{unit},E' [Pa],E'' [Pa]\n6,1e6,1e5\n60,2e6,2e5\n")
-    with pytest.raises(vr.FileError, match=rf"unit '{unit}' is not a unit of frequency"):
-        vr.read_dma(path, columns={"frequency": f"freq_{unit}"})
-    found = vr.read_dma(path, columns={"frequency": f"freq_{unit}"}, units={"frequency": "1/min"})
-    close(found.omega, 2.0 * np.pi * np.array([0.1, 1.0]), rel=tol.UNIT_CONVERTED)

@@ -150,7 +150,7 @@ def files(draw):
 
 @pytest.mark.filterwarnings("error")
 @settings(
-    max_examples=150, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
+    max_examples=70, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture]
 )
 @given(files())
 def test_any_file_is_read_right(tmp_path, file):

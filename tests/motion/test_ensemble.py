@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-import tqdm
 from closeness import close
 from drives import RUBBER
 
@@ -107,22 +106,6 @@ def test_ensemble_is_roll_bit_for_bit(name):
         assert result.status[i] == motion.status
         assert result.switches[i] == len(motion.switches)
         assert result.steps[i] == motion.steps
-
-
-def test_progress_bar_only_when_it_takes_long(capsys, monkeypatch):
-    V0, omega0 = starts(300)
-    vr.ensemble(SCENE, V0, omega0, T)  # compiles
-    vr.ensemble(SCENE, V0, omega0, T, progress=True)
-    assert capsys.readouterr().err == ""
-    bar = tqdm.tqdm
-
-    def at_once(*given, delay, **named):
-        assert delay == 1.0
-        return bar(*given, **named)
-
-    monkeypatch.setattr(tqdm, "tqdm", at_once)
-    vr.ensemble(SCENE, V0, omega0, T, progress=True)
-    assert "motions" in capsys.readouterr().err
 
 
 # --- what a result holds ---

@@ -116,10 +116,6 @@ def test_a_narrow_pulse_is_seen_where_it_is_resolved(many):
     assert np.abs(exact - free).min() > tol.CALLABLE_PULSE_ACTS * np.abs(exact).max()
 
 
-def course(m):
-    return np.stack([m.V, m.omega])
-
-
 @pytest.mark.parametrize("name", ["tanh", "Gauss pulse", "exp(-1/t)", "half waves"])
 def test_speeds_prescribed_by_callables(name):
     """omega is what was prescribed, at every tolerance, and the motion that at a tight one."""
@@ -132,17 +128,3 @@ def test_speeds_prescribed_by_callables(name):
         assert m.steps < tol.CALLABLE_STEPS
         assert close(m.omega, exact, rtol, scale=np.abs(exact).max())
         assert close(m.V, best.V, rtol, scale=np.abs(exact).max())
-
-
-@pytest.mark.parametrize("rtol", [1e-2, 1e-4, 1e-8, 1e-11])
-def test_a_callable_that_jumps_is_a_schedule_that_jumps(rtol):
-    t = np.linspace(0.0, END, 41)
-    stairs = vr.Schedule([1.0, 1.0, 4.0, 4.0], [0.0, 0.1, 0.1, -0.05])
-    m = vr.roll(
-        ROLLER, 0.0, 0.0, t, rtol=rtol, torque=lambda t: 0.1 * (1.0 <= t < 4.0) - 0.05 * (t >= 4.0)
-    )
-    other = vr.roll(ROLLER, 0.0, 0.0, t, rtol=rtol, torque=stairs)
-    assert np.array_equal(m.torque[t != 0.0], other.torque[t != 0.0])
-    assert close(course(m), course(other), tol.CALLABLE_JUMP, scale=np.abs(other.V).max())
-    with pytest.raises(vr.ParameterError, match="jump"):
-        vr.roll(ROLLER, None, 0.0, t, rtol=rtol, V=lambda t: 0.1 * (t > 3.0))

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import tolerances as tol
 from drives import ROLLER
-from memory import taken_beside
 from refusals import refused
 
 import viscoroll as vr
@@ -36,26 +35,6 @@ def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
     tracemalloc.stop()
     assert pieces.shape[1] == 2 * count - 2
     assert peak <= tol.BYTES_A_CORNER * 2 * count
-
-
-def test_schedules_of_many_motions_take_little_memory_beside_themselves():
-    """100 motions of 3,000 corners each: pieces of all at once would take 24 MB."""
-    times = np.sort(np.random.default_rng(1).uniform(0.0, 1.0, (100, 3000)), axis=1)
-    values = np.full(times.shape, 0.01)
-
-    def call():
-        return vr.ensemble(
-            ROLLER,
-            np.ones(100),
-            0.5,
-            0.9,
-            torque=vr.Schedule(times, values),
-            rtol=1e-2,
-            fields=("V",),
-        )
-
-    call()
-    assert taken_beside(call) <= tol.BYTES_OF_SCHEDULES
 
 
 @pytest.mark.parametrize("name", ["torque", "V"])

@@ -276,14 +276,6 @@ def test_a_start_in_pure_rolling(read, R):
     )
 
 
-def test_results_state_the_units_of_a_dimensionless_run(read, tmp_path):
-    run = read(PAPER + "[start]\nV0 = 1.5\nomega0 = 0.5\n[run]\nn = 3\nt = 1e-3")
-    run_ensemble(run, tmp_path / "runs", threads=1)
-    text = str(open_run(tmp_path / "runs"))
-    assert text.startswith("Results of a run of 3 motions, dimensionless: speeds in R/T_ref")
-    assert "1 time to 0.001" in text
-
-
 @pytest.mark.parametrize(
     ("name", "inputs"),
     [

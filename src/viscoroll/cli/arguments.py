@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import viscoroll as vr
 
-from ..core.files import write_dataset, write_text
+from ..core import write_dataset, write_text
 
 if TYPE_CHECKING:
     import pandas as pd

@@ -17,7 +17,7 @@ from typing import Any
 
 import viscoroll as vr
 
-from ..core.files import write_dataset, write_text
+from ..core import write_dataset, write_text
 from .arguments import FIGURES, FILE, SCENE, command, numbers, option, output, roller_of_argument
 
 # --- Materials and measurements ---

@@ -20,7 +20,7 @@ from functools import partial
 from typing import Any, NoReturn, TextIO
 
 from .. import __version__
-from ..core.errors import Interrupted, ViscorollError
+from ..core import Interrupted, ViscorollError
 from .arguments import COMMANDS
 
 # each of these modules adds its commands to the table, in this order

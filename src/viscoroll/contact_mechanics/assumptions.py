@@ -210,9 +210,9 @@ UNKNOWN = Validity(
             "stress (a thin disc)",
             "the strain of the contact is not compared with that of the data: a scene does not "
             "state the materials",
-            "the bodies have one temperature: roller.temperature finds that of long rolling; give "
-            "motion.validity a capacity= "
-            "to compare the heat of a motion",
+            "the bodies have one temperature: roller.temperature finds that of long rolling, and "
+            "up to a Biot number of 0.75 it stands for a body (vr.uniform_temperature); give "
+            "motion.validity a capacity= to compare the heat of a motion",
         )
     )
 )

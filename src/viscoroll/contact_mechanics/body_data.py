@@ -20,6 +20,7 @@ import numpy as np
 from ..core.checks import Floats, check_number
 from ..core.scale import SI
 from ..laws.law_table import law_table
+from ..materials.bodies import Cover
 from ..materials.material import Material
 from ..materials.measured_data import Measured
 from ..materials.pair import Pair
@@ -199,6 +200,8 @@ _SHORT_OVER_THICKNESS = 0.2
 #: Smallest share of a body in the compliance, dimensionless, at which its data and its thickness
 #: matter.
 _LEAST_SHARE = 0.01
+#: kappa lam at which the peak of an ellipse of pressure is E/(1 - nu^2), as in Hertz' theory.
+_ABSURD = 0.25
 #: (Lowest, highest) speed, m/s, of data that hold at no speed.
 NO_SPEEDS = math.inf, 0.0
 #: log2 of kappa V at which the contact length of a cover is evaluated: interpolation between them
@@ -335,6 +338,17 @@ class BodyData:
         )
 
     @cached_property
+    def soft_for_load(self) -> bool:
+        """Whether the peak pressure on a single cover at rest, as that of an ellipse, exceeds the
+        modulus E/(1 - nu^2) of long times: kappa lam below 1/4.
+
+        On half-spaces the contact is then longer than the radius, which :attr:`small_at_rest` says.
+        """
+        if not isinstance(self.scene.material, Cover) or self.scene.material.shape:
+            return False
+        return float(np.min(self.scene.kappa * self.relative_length(0.0))) < _ABSURD
+
+    @cached_property
     def covered_speeds(self) -> tuple[float, float] | None:
         """Return (lowest, highest) |V|, m/s, between which contacts do not warn; None where no
         speed gives a warning.
@@ -348,7 +362,9 @@ class BodyData:
             band
             for band in (
                 self.measured_speeds,
-                None if self.small_at_rest and self.in_metres else NO_SPEEDS,
+                NO_SPEEDS
+                if self.soft_for_load or not (self.small_at_rest and self.in_metres)
+                else None,
                 below_waves,
             )
             if band is not None

@@ -30,7 +30,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 from functools import lru_cache
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -216,6 +216,8 @@ def complete(
         found |= {name: found[of] for name, of in _MULTIPLES.items() if name in names}
     if "full_slip" in names:
         found["full_slip"] = found["full_slip"] != 0.0
+    if not shape and computed == names:
+        return found
     return {name: found[name].reshape(shape) if shape else found[name] for name in names}
 
 
@@ -468,33 +470,37 @@ def _laws_of_block(
     return records_of_alphas(alpha, _ALPHAS_TOGETHER), sort_by_octave(alpha, parts[0], parts[2])
 
 
-def contact_fields_at(
-    law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Any, *names: str
-) -> Floats:
-    """Return fields of the contact at V > 0 and a creepage, one row for each of ``names``.
+class Contacts(NamedTuple):
+    """The contacts of one law at a slenderness and a coefficient of friction.
 
     law : table of the material.
     kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
-    V : speeds, dimensionless, > 0, which is not checked, (n,).
-    delta : creepage, dimensionless, any sign, a number or (n,).
-    names : fields that kernels compute, as ``Q`` or ``dQ_dV``; ``full_slip`` is 0 or 1, ``dQ_dV``
-        is at fixed delta.
-    Returns the fields, (names, n), dimensionless.
     """
-    return evaluate_law(law, [1.0, kappa, mu, V, delta], V.shape, False, names)
 
+    law: LawTable
+    kappa: Any
+    mu: Any
 
-def free_creep(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Any:
-    """Return delta_0 at V > 0, the creepage of free rolling, at which Q = 0.
+    def fields(self, V: Floats, delta: Any, *names: str) -> Floats:
+        """Return fields of the contact at V > 0 and a creepage, one row for each of ``names``.
 
-    law : table of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,); mu is only passed on,
-        delta_0 does not depend on it.
-    V : speeds, dimensionless, > 0, which is not checked, (n,).
-    Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float 0.0
-    of half-spaces.
-    """
-    return 0.0 if law.cover is None else contact_fields_at(law, kappa, mu, V, 0.0, "delta_0")[0]
+        V : speeds, dimensionless, > 0, which is not checked, (n,).
+        delta : creepage, dimensionless, any sign, a number or (n,).
+        names : fields that kernels compute, as ``Q`` or ``dQ_dV``; ``full_slip`` is 0 or 1,
+            ``dQ_dV`` is at fixed delta.
+        Returns the fields, (names, n), dimensionless.
+        """
+        state = [1.0, self.kappa, self.mu, V, delta]
+        return evaluate_law(self.law, state, V.shape, False, names)
+
+    def free_creep(self, V: Floats) -> Any:
+        """Return delta_0 at V > 0, (n,), the creepage of free rolling, at which Q = 0; it does not
+        depend on mu.
+
+        Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float
+        0.0 of half-spaces.
+        """
+        return 0.0 if self.law.cover is None else self.fields(V, 0.0, "delta_0")[0]
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
@@ -509,11 +515,12 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
     Returns a new array (names, n), dimensionless, rows in the order of ``names``; N of a cover is
     NaN.
     """
-    free = free_creep(law, 1.0, 1.0, u)
-    found = contact_fields_at(law, 1.0, 1.0, u, free, *names)
+    contacts = Contacts(law, 1.0, 1.0)
+    free = contacts.free_creep(u)
+    found = contacts.fields(u, free, *names)
     if law.cover is not None and "dM_dV" in names:  # along free rolling, whose creepage changes
         slopes = "dM_ddelta", "dQ_dV", "dQ_ddelta"
-        of_M, of_V, of_Q = contact_fields_at(law, 1.0, 1.0, u, free, *slopes)
+        of_M, of_V, of_Q = contacts.fields(u, free, *slopes)
         found[names.index("dM_dV")] -= of_M * of_V / of_Q
     return found
 

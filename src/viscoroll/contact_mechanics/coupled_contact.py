@@ -117,14 +117,11 @@ def evaluate_coupled(
     computed = tuple(dict.fromkeys(names))
     out = np.empty((len(computed), states.V.size))
 
-    def work(start: int, stop: int) -> None:
-        """Compute the states of the rows ``start`` to ``stop`` - 1 and write them into these
-        columns of ``out``.
-        """
-        for which in groups[start:stop]:
-            fields = _fields_of_row(pair, states, which, computed)
-            for n, name in enumerate(computed):
-                out[n, which] = fields[name]
+    def work(row: int, _: int) -> None:
+        """Compute the states of a row and write them into their columns of ``out``."""
+        fields = _fields_of_row(pair, states, groups[row], computed)
+        for n, name in enumerate(computed):
+            out[n, groups[row]] = fields[name]
 
     run_blocks(work, len(groups), 1)
     return complete(names, computed, out, states.shape)

@@ -33,6 +33,7 @@ from scipy.special import exp1, expi
 
 from ..core.checks import Floats
 from ..core.errors import ParameterError
+from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
 from ..laws.cover_solve import layer_nodes
 from ..materials.bodies import Bodies
@@ -399,7 +400,7 @@ class CoupledPair(NamedTuple):
 
 
 class CoupledStates(NamedTuple):
-    """Fields of states of one row in the order of :data:`.coupled_rows.FIELDS`, and their status,
+    """Fields of states of one row in the order of :data:`.law_rows.FIELDS`, and their status,
     (n,) each, dimensionless.
 
     Q_over_mu : traction divided by mu P.
@@ -455,8 +456,6 @@ class CoupledRow:
         mu: coefficient of friction, > 0.
         n: number of elements, to which those of an edge layer are added.
         """
-        from ..kernels.law import coupled_states
-
         self.pair = pair
         self.u = u
         self.mu = mu
@@ -509,8 +508,6 @@ class CoupledRow:
         """Return the reduced creepage 2 kappa delta, between the onsets, at which a zone of slip of
         the other sign appears in the rear half of the contact.
         """
-        from ..kernels.law import coupled_states
-
         return 2.0 * float(
             coupled_states.touch_creep(
                 self._row, self.mu, *self._ends, _ROUGH_ELEMENTS, self._length, self._slope
@@ -528,8 +525,6 @@ class CoupledRow:
             neighbour, which halves the time and changes results by about 1e-5.
         Returns the :class:`CoupledStates`; ``status`` is not 0 where no solution was found.
         """
-        from ..kernels.law import coupled_states
-
         given = np.asarray(creeps, dtype=np.float64)
         found = np.empty((given.size, coupled_states.COLUMNS))
         order = np.argsort(given)
@@ -581,8 +576,6 @@ class CoupledRow:
         Returns the :class:`CoupledProfile`, of which ``status`` is not 0 where no solution was
         found.
         """
-        from ..kernels.law import coupled_states
-
         low, high = self.onsets()
         slips = not low < creep < high
         out = np.zeros(coupled_states.COLUMNS)

@@ -32,7 +32,7 @@ from ..core.errors import ConvergenceError, ParameterError
 from ..core.files import load_kept, save_kept
 from ..kernels.numerics.cache_folder import cache_root, is_quiet
 from ..kernels.numerics.jit import sources_digest
-from ..laws.coupled_rows import FIELDS, CoupledRows, grade
+from ..laws.law_rows import FIELDS, CoupledRows, grade
 from ..laws.law_table import LawTable, coupled_table
 from ..materials.prony import lock_array
 from .assumptions import DUNDURS_LIMIT
@@ -127,16 +127,12 @@ def tabulate(
 
     rows: list[Any] = [None] * len(work)
 
-    def begin(start: int, stop: int) -> None:
-        """Make the rows ``start`` to ``stop`` - 1 with kernels, and write their edges."""
-        for n in range(start, stop):
-            rows[n] = CoupledRow(pair, float(speeds[n]), mu)
-            edges[n, :3] = rows[n].touch(), *rows[n].onsets()
+    def begin(n: int, _: int) -> None:
+        rows[n] = CoupledRow(pair, float(speeds[n]), mu)
+        edges[n, :3] = rows[n].touch(), *rows[n].onsets()
 
-    def solve(start: int, stop: int) -> None:
-        """Solve the rows ``start`` to ``stop`` - 1 and write their edges and fields."""
-        for n in range(start, stop):
-            edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
+    def solve(n: int, _: int) -> None:
+        edges[n], fields[n] = _solve_row(rows[n], float(edges[n, 0]), t)
 
     run_blocks(begin, len(work), 1, progress="coupled table: kernels" if progress else None)
     edges[: len(work), 0] = _without_outliers(edges[: len(work), :3])
@@ -279,25 +275,23 @@ def measure_errors(
 
     random = np.random.default_rng(seed)
     speeds = np.exp(random.uniform(np.log(rows.u[0]), np.log(rows.u[-1]), -(-count // 8)))
-    worst = np.zeros(len(FIELDS))
-
-    def compare(start: int, stop: int) -> None:
-        """Solve the points at the speeds ``start`` to ``stop`` - 1, and raise ``worst`` to their
-        errors.
-        """
-        for u, draw in zip(speeds[start:stop], draws[start:stop], strict=True):
-            row = CoupledRow(pair, float(u), rows.mu, elements)
-            low, high = row.onsets()
-            middle = np.interp(math.log(u), np.log(rows.u), rows.edges[1:-1, 0])
-            near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
-            creeps = np.concatenate([near, low + (high - low) * draw[3:]])
-            exact = _fields(row.states(creeps), creeps, float(u), rows.mu)
-            found = look_up(rows.vector, np.full(creeps.size, u), creeps)
-            np.maximum(worst, np.abs(found - exact).max(axis=0), out=worst)
-
     draws = random.random((speeds.size, 8))
+    worst = np.zeros((speeds.size, len(FIELDS)))
+
+    def compare(n: int, _: int) -> None:
+        u = float(speeds[n])
+        draw = draws[n]
+        row = CoupledRow(pair, u, rows.mu, elements)
+        low, high = row.onsets()
+        middle = np.interp(math.log(u), np.log(rows.u), rows.edges[1:-1, 0])
+        near = middle + 0.05 * (high - low) * (draw[:3] - 0.5)
+        creeps = np.concatenate([near, low + (high - low) * draw[3:]])
+        exact = _fields(row.states(creeps), creeps, u, rows.mu)
+        found = look_up(rows.vector, np.full(creeps.size, u), creeps)
+        worst[n] = np.abs(found - exact).max(axis=0)
+
     run_blocks(compare, speeds.size, 1)
-    return dict(zip(FIELDS, worst.tolist(), strict=True))
+    return dict(zip(FIELDS, worst.max(axis=0).tolist(), strict=True))
 
 
 # --- Tables of the coupled solution that are made at first use ---

@@ -68,6 +68,11 @@ _MILLIMETRES = (
     "R is 5 m and more, or a layer thicker than 0.5 m, beside which the contact of this load is "
     "short: lengths are in m, divide those in mm by 1000"
 )
+#: Fault of a motion or contact on a cover whose peak pressure exceeds the modulus.
+_SOFT = (
+    "the peak pressure on the layer exceeds its modulus E/(1 - nu^2): strains are not small "
+    "(are moduli in Pa, the load in N/m and lengths in m?)"
+)
 #: Largest number of motions of an ensemble that are examined, evenly spaced: some milliseconds.
 _EXAMINED = 256
 #: Data of materials for which this process has warned already.
@@ -130,13 +135,18 @@ def warn_of_contact(
         too_fast = waves is not None and (ends[1] > waves or -ends[0] > waves)
         _warn_of_faults(
             [NOT_SMALL] * (not data.small_at_rest)
-            + [_MILLIMETRES] * (not data.in_metres)
+            + _absurd_sizes(data)
             + [_FASTER_THAN_WAVES] * too_fast,
             "contact",
             "validity(V)",
         )
     if data.measured_speeds is not None and is_outside(ends, data.measured_speeds):
         _warn_of_band(data, V)
+
+
+def _absurd_sizes(data: BodyData) -> list[str]:
+    """Return the faults of lengths as if in mm, and of a layer too soft for the load."""
+    return [_MILLIMETRES] * (not data.in_metres) + [_SOFT] * data.soft_for_load
 
 
 def _warn_of_band(data: BodyData, V: Any) -> None:
@@ -249,8 +259,8 @@ def warn_of_start(
         )
     else:
         faults = _worst_start_faults(scene, V0, omega0, driven)
-    if roller.body_data is not None and not roller.body_data.in_metres:
-        faults.append(_MILLIMETRES)
+    if roller.body_data is not None:
+        faults += _absurd_sizes(roller.body_data)
     _warn_of_faults(faults, "motion", "validity() of scene or result")
 
 

@@ -45,7 +45,7 @@ from ..core.drive_arguments import Feedback, make_dimensionless
 from ..core.errors import ParameterError, described_error
 from ..core.labels import strip_labels
 from ..laws.law_table import LawTable
-from .contact_table import contact_fields_at, free_creep
+from .contact_table import Contacts
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
 from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
@@ -100,37 +100,24 @@ class _FreeRolling(NamedTuple):
 class _ScanProblem(NamedTuple):
     """One load in the frame of the motion, in which V > 0; all is dimensionless.
 
-    law : table of the material.
+    contacts : the law, at one kappa and one mu.
     load_rows : (2, 3): the row of the force and the row of the torque, each (value at rest, gain on
     V, gain on omega); the values at rest are those of the load, with the other sign for a motion
     with V < 0.
-    kappa, mu : slenderness R/l0 and coefficient of friction.
     """
 
-    law: LawTable
+    contacts: Contacts
     load_rows: Floats
-    kappa: float
-    mu: float
 
     def free_rolling(self, x: Floats) -> _FreeRolling:
         """Return the contact at given speeds as :class:`_FreeRolling`.
 
         x: log2(kappa V), (n,).
         """
-        V = np.exp2(x) / self.kappa
-        delta_0 = free_creep(self.law, self.kappa, self.mu, V)
-        M, half_space, cylinder, low, high = contact_fields_at(
-            self.law,
-            self.kappa,
-            self.mu,
-            V,
-            delta_0,
-            "M",
-            "M_half_space",
-            "M_cylinder",
-            "delta_minus",
-            "delta_plus",
-        )
+        V = np.exp2(x) / self.contacts.kappa
+        delta_0 = self.contacts.free_creep(V)
+        names = "M", "M_half_space", "M_cylinder", "delta_minus", "delta_plus"
+        M, half_space, cylinder, low, high = self.contacts.fields(V, delta_0, *names)
         return _FreeRolling(
             V=V,
             M=M,
@@ -154,9 +141,9 @@ class _ScanProblem(NamedTuple):
         """
         force, torque = self.loads_at(free.V, free.V)
         of_force, of_torque = self.load_rows[:, 2]
-        if self.law.cover is None:
+        if self.contacts.law.cover is None:
             return (free.M - (force + torque)) / (of_force + of_torque)
-        shear = shear_at(self.law, self.kappa, self.mu, free.V)
+        shear = shear_at(self.contacts, free.V)
         on_axis = free.M_half_space - force
         on_spin = torque - free.M_cylinder
         Q = shear.traction_of_both(on_axis, on_spin, of_force, of_torque)
@@ -169,10 +156,8 @@ class _ScanProblem(NamedTuple):
         """Return R = Q - M_half_space + force, 0 in equilibrium, at x = log2(kappa V) and slip =
         omega - V, (n,).
         """
-        V = np.exp2(x) / self.kappa
-        Q, M_half_space = contact_fields_at(
-            self.law, self.kappa, self.mu, V, slip / V, "Q", "M_half_space"
-        )
+        V = np.exp2(x) / self.contacts.kappa
+        Q, M_half_space = self.contacts.fields(V, slip / V, "Q", "M_half_space")
         return Q - M_half_space + self.loads_at(V, V + slip)[0]
 
     def rows(self, V: Floats, slip: Floats) -> tuple[Floats, Floats]:
@@ -183,7 +168,7 @@ class _ScanProblem(NamedTuple):
         residuals, (2, n): M less force and torque, and Q - M_half_space + force), dimensionless; a
         state is one of equilibrium if both residuals are 0.
         """
-        rows = state_rows(self.law, self.kappa, self.mu, V, slip / V)
+        rows = state_rows(self.contacts, V, slip / V)
         force, torque = self.loads_at(V, V + slip)
         M_half_space = rows[Field.M_HALF_SPACE]
         sums = M_half_space + rows[Field.M_CYLINDER] - force - torque
@@ -208,31 +193,30 @@ def scan_states(law: LawTable, loads: Loads) -> States:
     parts = [States.none()]
     for n in range(loads.mu.size):
         at_rest = np.array([[loads.force[n]], [loads.torque[n]]])
+        contacts = Contacts(law, loads.kappa[n], loads.mu[n])
         for sign in (1.0, -1.0):
-            problem = _ScanProblem(
-                law, np.hstack([sign * at_rest, gained]), loads.kappa[n], loads.mu[n]
-            )
+            problem = _ScanProblem(contacts, np.hstack([sign * at_rest, gained]))
             by_speed = law.cover is not None or problem.load_rows[:, 2].sum()
             x, slip = _scan_speed(problem) if by_speed else _scan_slip(problem)
-            rows = _polish(problem, np.exp2(x) / problem.kappa, slip)
+            rows = _polish(problem, np.exp2(x) / contacts.kappa, slip)
             count = rows.shape[1]
             free = None
             if law.cover is not None:
-                rolling = problem.free_rolling(np.log2(problem.kappa * rows[Field.V]))
+                rolling = problem.free_rolling(np.log2(contacts.kappa * rows[Field.V]))
                 free = np.stack([rolling.M_half_space, rolling.M_cylinder])
             parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows, free))
-        parts += _spinning_at_rest(law, loads, n)
+        parts += _spinning_at_rest(contacts, loads, n)
     return States.joined(*parts)
 
 
-def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
+def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     """Return the equilibrium with V = 0 and omega other than 0 under the n-th load, if there is
     one.
 
     At V = 0 and omega other than 0 the whole contact slips: Q is all of the friction, and must
     balance the force to the bit.  As M = 0 there, omega follows from force + torque = 0.
 
-    law: table of the material.
+    contacts: the law, at the kappa and the mu of the load.
     loads: the loads with their gains, dimensionless.
     n: index of the load.
     Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is infinite
@@ -243,14 +227,14 @@ def _spinning_at_rest(law: LawTable, loads: Loads, n: int) -> list[States]:
     gains = loads.gains
     total = loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
-    if law.cover is not None or not (gain and total):
+    if contacts.law.cover is not None or not (gain and total):
         return []
     omega = -total / gain
     side = math.copysign(1.0, omega)
-    if side * loads.mu[n] + loads.force[n] + gains.force_omega * omega != 0.0:
+    if side * contacts.mu + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
-    slowest = np.exp2(speed_nodes(law)[:1]) / loads.kappa[n]
-    rows = state_rows(law, loads.kappa[n], loads.mu[n], slowest, 1.0 / slowest)
+    slowest = np.exp2(speed_nodes(contacts.law)[:1]) / contacts.kappa
+    rows = state_rows(contacts, slowest, 1.0 / slowest)
     spinning = States.of(loads, np.array([n]), np.array([side]), rows)
     spinning.rows[[Field.V, Field.DELTA, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.OMEGA], 0] = (
         0.0,
@@ -277,7 +261,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
         free = problem.free_rolling(x)
         return problem.slip(free) - free.slips[which]
 
-    nodes = speed_nodes(problem.law)
+    nodes = speed_nodes(problem.contacts.law)
     nodes = np.unique(
         np.concatenate([nodes, *(find_zeros(partial(beyond, which=n), nodes) for n in range(3))])
     )
@@ -293,7 +277,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
     nodes = np.unique(np.concatenate([nodes, fine.ravel()]))
     free = problem.free_rolling(nodes)
     speeds = [np.ones_like(free.V), free.V, free.V + problem.slip(free)]
-    terms = problem.mu + free.M_half_space + np.abs(problem.load_rows[0]) @ np.abs(speeds)
+    terms = problem.contacts.mu + free.M_half_space + np.abs(problem.load_rows[0]) @ np.abs(speeds)
     found = find_zeros(
         lambda x: problem.residual(x, problem.slip(problem.free_rolling(x))),
         nodes,
@@ -314,7 +298,8 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
     Raises ParameterError for a gain on V out of range.
     """
     at_rest, of_V, _ = problem.load_rows.sum(axis=0)
-    _, sign, u = find_crossings(problem.law, of_V, np.array([problem.kappa * at_rest]))
+    law, kappa, mu = problem.contacts
+    _, sign, u = find_crossings(law, of_V, np.array([kappa * at_rest]))
     positions = [np.empty(0)]
     slips = [np.empty(0)]
     for x in np.log2(u[sign > 0.0]):
@@ -326,7 +311,7 @@ def _scan_slip(problem: _ScanProblem) -> tuple[Floats, Floats]:
             return problem.residual(np.full(part.size, x), limit * part)
 
         sides = np.array([1.0, -1.0])
-        full = (rest - sides * problem.mu) / problem.load_rows[0, 2]
+        full = (rest - sides * mu) / problem.load_rows[0, 2]
         partial_slip = limit * find_zeros(residual, np.linspace(-1.0, 1.0, _SLIP_NODES))
         slips += [partial_slip, full[sides * full > limit]]
         positions += [np.full(each.size, x) for each in slips[-2:]]
@@ -373,7 +358,7 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
         residuals = np.where(better, new_residuals, residuals)
     V = rows[Field.V]
     delta = rows[Field.DELTA]
-    size = problem.mu + np.abs(rows[Field.M_HALF_SPACE]) + np.abs(rows[Field.M_CYLINDER])
+    size = problem.contacts.mu + np.abs(rows[Field.M_HALF_SPACE]) + np.abs(rows[Field.M_CYLINDER])
     left = np.abs(residuals).max(axis=0) <= _RESIDUAL * size
     order = np.flatnonzero(left)
     order = order[np.lexsort((delta[order], V[order]))]

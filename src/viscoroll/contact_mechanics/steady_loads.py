@@ -40,9 +40,9 @@ from numpy.typing import ArrayLike
 from ..core.checks import Booleans, Floats, Integers, broadcast_shape, check_array
 from ..core.drive_arguments import Feedback, slope_tan_cos
 from ..core.errors import ParameterError, described_error
-from ..laws.coupled_rows import FIELDS
+from ..laws.law_rows import FIELDS
 from ..laws.law_table import LawTable
-from .contact_table import contact_fields_at, free_creep, refuse_overflow
+from .contact_table import Contacts, refuse_overflow
 from .parameters import Parameters
 from .rolling_resistance import find_zeros, speed_nodes
 
@@ -208,30 +208,31 @@ class Shear(NamedTuple):
 
     half_space, cylinder : factors a (module) of base and cylinder, (n,) each, dimensionless.
     half_space_excess, cylinder_excess : excesses e (module), (n,) each, dimensionless.
-    kappa, mu : slenderness R/l0 and coefficient of friction, (n,) each.
+    contacts : the law, at a kappa and a mu, numbers or (n,).
     """
 
     half_space: Floats
     cylinder: Floats
     half_space_excess: Floats
     cylinder_excess: Floats
-    kappa: Any
-    mu: Any
+    contacts: Contacts
 
     def moments(self, Q: Floats) -> Floats:
         """Return what a traction Q, (n,), adds to M_half_space and M_cylinder, (2, n)."""
-        used = np.abs(Q) / self.mu
+        used = np.abs(Q) / self.contacts.mu
         by_base = self.half_space + self.half_space_excess * used
         by_cylinder = self.cylinder + self.cylinder_excess * used
         return np.stack([-Q * by_base, -Q * by_cylinder])
 
     def traction_of_force(self, rest: Floats) -> Floats:
         """Return the Q with Q (1 + a_b + e_b |Q|/mu) = ``rest``, (n,)."""
-        return _solve_quadratic(1.0 + self.half_space, self.half_space_excess / self.mu, rest)
+        return _solve_quadratic(
+            1.0 + self.half_space, self.half_space_excess / self.contacts.mu, rest
+        )
 
     def traction_of_torque(self, rest: Floats) -> Floats:
         """Return the Q with Q (1 - a_c - e_c |Q|/mu) = ``rest``, (n,)."""
-        return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.mu, rest)
+        return _solve_quadratic(1.0 - self.cylinder, -self.cylinder_excess / self.contacts.mu, rest)
 
     def traction_of_both(
         self, on_axis: Floats, on_spin: Floats, of_force: float, of_torque: float
@@ -254,18 +255,18 @@ class Shear(NamedTuple):
             )
         side = np.sign(factor)
         rest = side * (of_torque * on_axis + of_force * on_spin)
-        return _solve_quadratic(np.abs(factor), side * excess / self.mu, rest)
+        return _solve_quadratic(np.abs(factor), side * excess / self.contacts.mu, rest)
 
-    def slopes_at_rest(self, law: LawTable, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    def slopes_at_rest(self, Q: Floats) -> tuple[Floats, Floats, Floats, Floats]:
         """Return how a small speed changes the balance of a cylinder at rest under a traction.
 
-        law : table of the material.
         Q : traction at rest, |Q| < mu, (n,).
         Returns (1 + d(Q (a_b + ...))/dQ, factor of a change of Q on the axis; the same on the
         cylinder; dM_half_space/dV
         and dM_cylinder/dV at fixed Q), (n,) each.
         """
-        used = np.abs(Q) / self.mu
+        law, kappa, mu = self.contacts
+        used = np.abs(Q) / mu
         on_axis = 1.0 + self.half_space + 2.0 * self.half_space_excess * used
         on_spin = 1.0 - self.cylinder - 2.0 * self.cylinder_excess * used
         if law.cover is None:
@@ -274,12 +275,10 @@ class Shear(NamedTuple):
         limit, free = creep_at_rest(law)
         part = np.where(used < 1.0, used, 0.0)
         still = np.zeros(Q.size)
-        creep = 0.5 * limit * self.mu / self.kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
-        delta = creep_beyond_free(law, self.kappa, self.mu, still, creep) + 0.5 * free / self.kappa
+        creep = 0.5 * limit * mu / kappa * np.sign(Q) * (1.0 - np.sqrt(1.0 - part))
+        delta = creep_beyond_free(self.contacts, still, creep) + 0.5 * free / kappa
         names = "dM_half_space_dV", "dM_cylinder_dV", "dQ_dV"
-        half_space, cylinder, over_V = contact_fields_at(
-            law, self.kappa, self.mu, still, delta, *names
-        )
+        half_space, cylinder, over_V = self.contacts.fields(still, delta, *names)
         return (
             on_axis,
             on_spin,
@@ -311,36 +310,33 @@ def creep_at_rest(law: LawTable) -> tuple[float, float]:
     return float(limit), float(half_space + cylinder)
 
 
-def creep_beyond_free(law: LawTable, kappa: Any, mu: Any, V: Floats, creep: Floats) -> Floats:
+def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
     """Return delta - delta_0 = delta_star (d + c d^2) of d delta_star, (n,), dimensionless.
 
-    law : table of the material; of half-spaces the result is ``creep``.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    contacts : the law, at a kappa and a mu; of half-spaces the result is ``creep``.
     V, creep : speeds, >= 0, and d delta_star, of either sign, (n,).
     """
-    if law.cover is None:
+    if contacts.law.cover is None:
         return creep
     names = "delta_minus", "delta_plus", "delta_star", "delta_0"
-    low, high, star, free = contact_fields_at(law, kappa, mu, V, 0.0, *names)
+    low, high, star, free = contacts.fields(V, 0.0, *names)
     return creep + (0.5 * (low + high) - free) * (creep / star) ** 2
 
 
-def shear_at(law: LawTable, kappa: Any, mu: Any, V: Floats) -> Shear:
+def shear_at(contacts: Contacts, V: Floats) -> Shear:
     """Return how shear acts back on the moments at speeds V >= 0, (n,), as :class:`Shear`.
 
-    law : table of the material; of half-spaces all is 0.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    contacts : the law, at a kappa and a mu; of half-spaces all is 0.
     """
     fields = np.zeros((4, V.size))
-    if law.cover is not None:
-        fields = contact_fields_at(law, kappa, mu, V, 0.0, *_REACTION)
+    if contacts.law.cover is not None:
+        fields = contacts.fields(V, 0.0, *_REACTION)
     return Shear(
         half_space=fields[0],
         cylinder=fields[1],
         half_space_excess=fields[2],
         cylinder_excess=fields[3],
-        kappa=kappa,
-        mu=mu,
+        contacts=contacts,
     )
 
 
@@ -371,52 +367,45 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     signs = []
     speeds = []
     for n, kappa in enumerate(loads.kappa):
+        contacts = Contacts(law, kappa, loads.mu[n])
         for sign in (1.0, -1.0):
-            one = loads._replace(
-                force=sign * loads.force[n],
-                torque=sign * loads.torque[n],
-                kappa=kappa,
-                mu=loads.mu[n],
-            )
-            zeros = find_zeros(partial(torque_left, law, one), nodes, noise[n])
+            one = loads._replace(force=sign * loads.force[n], torque=sign * loads.torque[n])
+            zeros = find_zeros(partial(torque_left, contacts, one), nodes, noise[n])
             load.append(np.full(zeros.size, n))
             signs.append(np.full(zeros.size, sign))
             speeds.append(np.exp2(zeros) / kappa)
     return np.concatenate(load), np.concatenate(signs), np.concatenate(speeds)
 
 
-def _torque_left_of_cover(law: LawTable, load: Loads, x: Floats) -> Floats:
+def _torque_left_of_cover(contacts: Contacts, load: Loads, x: Floats) -> Floats:
     """Return torque - M_cylinder - Q of a cover, with the Q that balances the force on the axis.
 
-    law : table of the cover.
-    load : one load in the frame where V > 0, whose force, torque, kappa and mu are numbers.
+    contacts : the law of the cover, at one kappa and one mu.
+    load : one load in the frame where V > 0, whose force and torque are numbers.
     x : log2(kappa V) of each speed, (n,).
     Returns the torque that is not balanced, divided by P R, (n,); 0 where the cylinder rolls
     steadily.  The moments without traction are those of the creepage of free rolling, where Q = 0.
     """
-    kappa = load.kappa
-    V = np.exp2(x) / kappa
-    shear = shear_at(law, kappa, load.mu, V)
-    free = free_creep(law, kappa, load.mu, V)
-    half_space, cylinder = contact_fields_at(
-        law, kappa, load.mu, V, free, "M_half_space", "M_cylinder"
-    )
+    V = np.exp2(x) / contacts.kappa
+    shear = shear_at(contacts, V)
+    free = contacts.free_creep(V)
+    half_space, cylinder = contacts.fields(V, free, "M_half_space", "M_cylinder")
     Q = shear.traction_of_force(half_space - load.force - load.gains.force_V * V)
     return load.torque + load.gains.torque_V * V - cylinder - shear.moments(Q)[1] - Q
 
 
-def _torque_left_on_table(law: LawTable, load: Loads, x: Floats) -> Floats:
+def _torque_left_on_table(contacts: Contacts, load: Loads, x: Floats) -> Floats:
     """Return torque - M_cylinder - Q on a table, with the Q that balances the force on the axis.
 
-    law : table with ``coupled`` rows.
-    load : one load in the frame where V > 0, whose force, torque, kappa and mu are numbers.
+    contacts : the table, at one kappa and one mu.
+    load : one load in the frame where V > 0, whose force and torque are numbers.
     x : log2(kappa V) of each speed, (n,).
     Returns the torque that is not balanced, divided by P R, (n,), as in :func:`_torque_left`.
     """
-    V = np.exp2(x) / load.kappa
+    V = np.exp2(x) / contacts.kappa
     force = load.force + load.gains.force_V * V
     torque = load.torque + load.gains.torque_V * V
-    return _torque_left(law, load.kappa, load.mu, V, force, torque)
+    return _torque_left(contacts, V, force, torque)
 
 
 def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
@@ -430,11 +419,12 @@ def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
     loads : the loads, dimensionless, of which force and torque are read.
     Returns booleans, (n,).
     """
-    if law.coupled is not None:
-        return _rests_on_table(law, loads)
-    if law.cover is None:
+    if law.coupled is None and law.cover is None:
         return loads.force + loads.torque == 0.0
-    shear = shear_at(law, loads.kappa, loads.mu, np.zeros(loads.mu.size))
+    contacts = Contacts(law, loads.kappa, loads.mu)
+    if law.coupled is not None:
+        return _rests_on_table(contacts, loads)
+    shear = shear_at(contacts, np.zeros(loads.mu.size))
     Q = shear.traction_of_torque(loads.torque)
     rest = Q - shear.moments(Q)[0] + loads.force
     return np.abs(rest) <= _BALANCE_ROUNDING * (np.abs(loads.force) + np.abs(loads.torque))
@@ -454,12 +444,11 @@ _SLOW = 1e-3
 
 
 def balance(
-    law: LawTable, kappa: Any, mu: Any, V: Floats, load: Floats, spin: bool = False
+    contacts: Contacts, V: Floats, load: Floats, spin: bool = False
 ) -> tuple[Floats, Floats]:
     """Return the creepages at which a table of the coupled solution carries given loads.
 
-    law : table with ``coupled`` rows.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
     V : speeds >= 0, dimensionless, (n,).
     load : required value of Q - M_half_space, with ``spin`` of Q + M_cylinder, dimensionless, (n,).
     spin : whether the cylinder is balanced, instead of the axis.
@@ -470,40 +459,40 @@ def balance(
 
     kappa, mu = (
         np.ascontiguousarray(np.broadcast_to(each, V.shape), dtype=np.float64)
-        for each in (kappa, mu)
+        for each in contacts[1:]
     )
+    table = contacts.law.record.table
     out = np.empty((V.size, 2))
-    balance_loop(law.record.table, kappa, mu, kappa * V, np.ascontiguousarray(load), spin, out)
+    balance_loop(table, kappa, mu, kappa * V, np.ascontiguousarray(load), spin, out)
     return out[:, 0] / (2.0 * kappa), out[:, 1].copy()
 
 
-def fields_at(law: LawTable, kappa: Any, V: Floats, delta: Floats) -> dict[str, Floats]:
+def fields_at(contacts: Contacts, V: Floats, delta: Floats) -> dict[str, Floats]:
     """Return the fields of a table of the coupled solution at given states.
 
-    law : table with ``coupled`` rows.
-    kappa : slenderness R/l0, a number or (n,).
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
     V, delta : speeds >= 0 and creepages, dimensionless, (n,) each.
     Returns name (:data:`FIELDS`) -> values, (n,), dimensionless; moments are multiplied by kappa.
     """
     from ..kernels.law.spline_law import look_up
 
-    return dict(
-        zip(FIELDS, look_up(law.record.table, kappa * V, 2.0 * kappa * delta).T, strict=True)
-    )
+    law, kappa, _ = contacts
+    found = look_up(law.record.table, kappa * V, 2.0 * kappa * delta)
+    return dict(zip(FIELDS, found.T, strict=True))
 
 
-def moments_of_losses(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floats) -> Floats:
+def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     """Return the loss of each body divided by its speed: loss_half_space/V, loss_cylinder/omega.
 
     The error of the table may make the losses of the bodies larger than the power that the loads
     supply.  Both are then reduced in proportion, and the slip loss is 0.
 
-    law : table with ``coupled`` rows.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
     V, delta : speeds >= 0 and creepages, dimensionless, (n,) each.
     Returns moments divided by P R, of base and cylinder, (2, n).
     """
-    fields = fields_at(law, kappa, V, delta)
+    _, kappa, mu = contacts
+    fields = fields_at(contacts, V, delta)
     omega_over_V = 1.0 + delta
     half_space = fields["M_half_space"] + 0.5 * fields["work_half_space"]
     cylinder = fields["M_cylinder"] + 0.5 * fields["work_cylinder"] / omega_over_V
@@ -515,37 +504,35 @@ def moments_of_losses(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floa
     return np.clip(reduction, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa
 
 
-def _torque_left(
-    law: LawTable, kappa: Any, mu: Any, V: Floats, force: Floats, torque: Any
-) -> Floats:
+def _torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Floats:
     """Return torque - M_cylinder - Q at the creepages that balance ``force`` on the axis.
 
-    law : table with ``coupled`` rows.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
     V : speeds >= 0, dimensionless, (n,).
     force, torque : loads divided by P and by P R, (n,) each.
     Returns the torque that is not balanced, divided by P R, (n,).  The part of the force that the
     friction cannot balance is subtracted too.
     """
-    delta, unbalanced_force = balance(law, kappa, mu, V, -force)
-    fields = fields_at(law, kappa, V, delta)
+    _, kappa, mu = contacts
+    delta, unbalanced_force = balance(contacts, V, -force)
+    fields = fields_at(contacts, V, delta)
     left = torque - mu * fields["Q_over_mu"] - fields["M_cylinder"] / kappa
     return left - unbalanced_force
 
 
-def _rests_on_table(law: LawTable, loads: Loads) -> Booleans:
+def _rests_on_table(contacts: Contacts, loads: Loads) -> Booleans:
     """Return for each load whether the cylinder stays at V = omega = 0.
 
     It stays where the torque, in the limit V -> 0 of steady rolling to either side, does not exceed
     friction and rolling moment.
 
-    law : table with ``coupled`` rows.
-    loads : the loads, dimensionless, of which force, torque, kappa and mu are read.
+    contacts : the table, at the kappa and mu of the loads, (n,).
+    loads : the loads, dimensionless, of which force and torque are read.
     Returns booleans, (n,).
     """
     still = np.zeros(loads.mu.size)
     left = [
-        _torque_left(law, loads.kappa, loads.mu, still, sign * loads.force, sign * loads.torque)
+        _torque_left(contacts, still, sign * loads.force, sign * loads.torque)
         for sign in (1.0, -1.0)
     ]
     return (left[0] <= _NOISE) & (left[1] <= _NOISE)
@@ -567,8 +554,9 @@ def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, 
     at_rest = np.zeros(load.size)
     torque_given = loads.given != "force"
     required = torque if torque_given else -force
-    delta, unbalanced = balance(law, kappa, mu, at_rest, required, torque_given)
-    fields = fields_at(law, kappa, at_rest, delta)
+    contacts = Contacts(law, kappa, mu)
+    delta, unbalanced = balance(contacts, at_rest, required, torque_given)
+    fields = fields_at(contacts, at_rest, delta)
     Q = mu * fields["Q_over_mu"]
     half_space = fields["M_half_space"] / kappa
     cylinder = fields["M_cylinder"] / kappa
@@ -579,11 +567,11 @@ def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, 
     dforce_dV = gains.force_V + gains.force_omega * (1.0 + delta)
     dtorque_dV = gains.torque_V + gains.torque_omega * (1.0 + delta)
     V = _SLOW * law.coupled.u[0] / kappa  # type: ignore[union-attr]
-    left_at_V = _torque_left(law, kappa, mu, V, force + dforce_dV * V, torque + dtorque_dV * V)
+    left_at_V = _torque_left(contacts, V, force + dforce_dV * V, torque + dtorque_dV * V)
     # derivative of the torque left with respect to the force, a difference quotient
     step = 1e-6 * mu
-    left_of_less_force = _torque_left(law, kappa, mu, at_rest, force - step, torque)
-    left_at_rest = _torque_left(law, kappa, mu, at_rest, force, torque)
+    left_of_less_force = _torque_left(contacts, at_rest, force - step, torque)
+    left_at_rest = _torque_left(contacts, at_rest, force, torque)
     dleft_dforce = (left_of_less_force - left_at_rest) / -step
     inertia = j * (1.0 + delta) + np.maximum(dleft_dforce, 0.0)
     return (

@@ -26,7 +26,7 @@ import numpy as np
 from ..core.blocks import run_blocks
 from ..core.checks import Floats, Integers
 from ..laws.law_table import LawTable
-from .contact_table import contact_fields_at, free_creep
+from .contact_table import Contacts
 from .rolling_resistance import branches
 from .steady_loads import (
     Gains,
@@ -178,7 +178,8 @@ class States(NamedTuple):
         limit, free_limit = creep_at_rest(law)
         kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
         still = np.zeros(load.size)
-        shear = shear_at(law, kappa, mu, still)
+        contacts = Contacts(law, kappa, mu)
+        shear = shear_at(contacts, still)
         Q = shear.traction_of_torque(loads.torque[load])
         if loads.given == "force":
             Q = shear.traction_of_force(-loads.force[load])
@@ -187,8 +188,7 @@ class States(NamedTuple):
         rows[Field.BETA] = beta = np.sqrt(np.where(part < 1.0, 1.0 - part, np.nan))
         star = 0.5 * limit * mu / kappa * part / (1.0 + beta)
         forth, back = (
-            creep_beyond_free(law, kappa, mu, still, sign * star)
-            for sign in (np.sign(Q), -np.sign(Q))
+            creep_beyond_free(contacts, still, sign * star) for sign in (np.sign(Q), -np.sign(Q))
         )
         free = 0.5 * free_limit / kappa
         rows[Field.OMEGA] = 0.0 * beta
@@ -196,7 +196,7 @@ class States(NamedTuple):
         rows[Field.Q] = Q
         rows[Field.M_HALF_SPACE], rows[Field.M_CYLINDER] = shear.moments(Q)
         rows[Field.FAST] = rows[Field.SLOW] = -np.inf
-        on_axis, on_spin, half_space, cylinder = shear.slopes_at_rest(law, Q)
+        on_axis, on_spin, half_space, cylinder = shear.slopes_at_rest(Q)
         gains = loads.gains
         for creep in (free + forth, free + back):  # of motion to either side
             push = half_space - gains.force_V - gains.force_omega * (1.0 + creep)
@@ -295,12 +295,11 @@ def _eigenvalues(slopes: Floats, gains: Gains, j: Floats) -> Floats:
         )
 
 
-def state_rows(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floats) -> Floats:
+def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     """Return the law at V > 0 and a creepage, as the rows from which :meth:`States.of` makes
     states.
 
-    law : table of the material.
-    kappa, mu : slenderness R/l0 and coefficient of friction, numbers or (n,).
+    contacts : the law, at a kappa and a mu.
     V, delta : speeds, > 0, which is not checked, and creepages, (n,), dimensionless.
     Returns rows of :class:`Field` with slopes, (12, n); row 6 is dQ/dV at fixed omega.  In full
     slip Q is mu or -mu, and beta and the slopes of Q are 0.
@@ -308,7 +307,7 @@ def state_rows(law: LawTable, kappa: Any, mu: Any, V: Floats, delta: Floats) -> 
     rows = np.empty((_COUNT, V.size))
     rows[Field.V] = V
     rows[Field.DELTA] = delta
-    rows[2:] = contact_fields_at(law, kappa, mu, V, delta, *_ROWS)
+    rows[2:] = contacts.fields(V, delta, *_ROWS)
     for over_V, over_omega in _SLOPES:
         rows[over_V] -= rows[over_omega] * (1.0 + delta)
     return rows
@@ -362,18 +361,18 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     mu = loads.mu[load]
     force = sign * loads.force[load] + gains.force_V * V
     torque = sign * loads.torque[load] + gains.torque_V * V
+    contacts = Contacts(law, kappa, mu)
     if law.coupled is not None:
         spin = loads.given == "torque"
-        delta, rest = balance(law, kappa, mu, V, torque if spin else -force, spin)
-        rows = state_rows(law, kappa, mu, V, delta)
-        losses = moments_of_losses(law, kappa, mu, V, delta)
+        delta, rest = balance(contacts, V, torque if spin else -force, spin)
+        rows = state_rows(contacts, V, delta)
+        losses = moments_of_losses(contacts, V, delta)
         rows[Field.DELTA, rest != 0.0] = np.nan
         rows[Field.Q] += rest
         return States.of(loads, load, sign, rows, losses)
-    delta_0 = free_creep(law, kappa, mu, V)
-    free = contact_fields_at(
-        law, kappa, mu, V, delta_0, "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
-    )
+    delta_0 = contacts.free_creep(V)
+    names = "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
+    free = contacts.fields(V, delta_0, *names)
     if law.cover is None:
         M = free[0] + free[1]
         share = np.divide(free[0], M, out=0.5 + 0.0 * M, where=M > 0.0)
@@ -384,7 +383,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
             Q = torque - (1.0 - share) * M if loads.given == "torque" else share * M - force
         moments: Any = (share * M, (1.0 - share) * M)
     else:
-        shear = shear_at(law, kappa, mu, V)
+        shear = shear_at(contacts, V)
         if loads.given == "torque":
             Q = shear.traction_of_torque(torque - free[1])
         else:
@@ -395,11 +394,11 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     root = np.sqrt(np.where(exists, 1.0 - part, 1.0))
     (star, lam, rise) = free[2:]
     faster = V / root
-    rolling = free_creep(law, kappa, mu, faster)
-    less_star, less_lam = contact_fields_at(law, kappa, mu, faster, rolling, "delta_star", "lam")
+    rolling = delta_0 if law.cover is None else contacts.free_creep(faster)
+    less_star, less_lam = contacts.fields(faster, rolling, "delta_star", "lam")
     size = np.where(part > _SMALL_TRACTION, star - root * less_star, mu * part / rise)
-    creep = creep_beyond_free(law, kappa, mu, V, np.copysign(size, Q))
-    rows = state_rows(law, kappa, mu, V, creep + delta_0)
+    creep = creep_beyond_free(contacts, V, np.copysign(size, Q))
+    rows = state_rows(contacts, V, creep + delta_0)
     # one Newton step for delta alone, which is a difference where |Q|/mu is small: the other rows
     # do not change by it
     rows[Field.DELTA] -= np.divide(

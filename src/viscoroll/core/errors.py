@@ -187,16 +187,14 @@ def exactly_one_error(first: str, second: str, both: bool) -> ParameterError:
 def check_one_given(**values: Any) -> str:
     """Check that exactly one of two parameters is given, and return its name.
 
-    values: exactly two parameters by name, None where one is not given; other numbers of them are
-    not checked.
+    values: exactly two parameters by name, None where one is not given.
     Returns the name of the one that is given.
     Raises ParameterError if none or both are given.
     """
-    given = [name for name, value in values.items() if value is not None]
-    if len(given) != 1:
-        first, second = values
-        raise exactly_one_error(first, second, both=bool(given))
-    return given[0]
+    (first, one), (second, other) = values.items()
+    if (one is None) is (other is None):
+        raise exactly_one_error(first, second, both=one is not None)
+    return second if one is None else first
 
 
 def unknown_name_error(name: str, value: Any, known: Iterable[str], kind: str) -> ParameterError:
@@ -504,7 +502,11 @@ def suggest_arguments(owner: Any, names: tuple[str, ...] | None = None) -> None:
             if base.__module__.startswith("viscoroll"):
                 suggest_arguments(base)
         if inspect.isfunction(function):
-            replaced = _suggesting(inspect.unwrap(function))
+            plain = inspect.unwrap(function)
+            code = plain.__code__
+            if code.co_argcount + code.co_kwonlyargcount <= inspect.isclass(owner):
+                continue  # a method without arguments has none to suggest
+            replaced = _suggesting(plain)
             setattr(owner, name, replaced if function is value else type(value)(replaced))
             if inspect.ismodule(owner):
                 setattr(sys.modules[function.__module__], name, replaced)

@@ -5,8 +5,7 @@ from __future__ import annotations
 from os import PathLike
 from pathlib import Path
 
-from ..core.errors import FileError, ParameterError
-from ..core.files import as_file_error, write_bytes
+from ..core import FileError, ParameterError, as_file_error, write_bytes
 
 __all__ = ["copy_files", "path"]
 

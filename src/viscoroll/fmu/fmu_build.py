@@ -27,16 +27,17 @@ import msgspec
 import numpy as np
 
 from .. import __version__, tables
-from ..core.checks import check_choice, check_integer
-from ..core.errors import (
+from ..core import (
     FileError,
     MissingDependencyError,
+    check_choice,
+    check_integer,
     described_error,
+    dimension_powers,
     import_extra,
+    replace_file,
     shape_error,
 )
-from ..core.files import replace_file
-from ..core.scale import dimension_powers
 from ..laws.law_netcdf import parse_law
 from ..laws.law_table import LawTable
 from ..materials.checked_netcdf import dataset_content

@@ -13,9 +13,8 @@ import numpy as np
 from ..contact_mechanics.contact_table import evaluate_law
 from ..contact_mechanics.parameters import Roller, resolve_model
 from ..core.checks import Booleans, Floats, check_array, check_number
-from ..core.errors import ParameterError, described_error, shape_error
-from ..materials.pair import Pair, Solid
-from .heated_bodies import check_ambient
+from ..core.errors import described_error, shape_error
+from .heated_bodies import check_ambient, warm_pair
 from .shift_curve import shift_curve
 
 #: Nodes of each temperature, evenly spaced in ln a_T: some 0.05 s of contacts at 40 us each.
@@ -91,18 +90,16 @@ def pair_temperatures(
             "roller", "has arrays, a layer or no Material", "a Cylinder of two half-spaces"
         )
     speed = abs(check_number("V", V, unit=scale))
-    around, off = (
-        check_array(name, x) for name, x in (("ambient", ambient), ("conductance", conductance))
-    )
+    around = check_array("ambient", ambient)
+    off = check_array("conductance", conductance, above=0.0)
     for name, array in (("ambient", around), ("conductance", off)):
         if array.shape != (2,):
             raise shape_error(name, array.shape, "(2,), of cylinder and base")
-    if not speed or not (off > 0.0).all():
-        raise ParameterError("V, conductance", f"{V}, {conductance}", "other than 0, and > 0")
-    bodies = pair.cylinder, pair.half_space
-    curves = [shift_curve(body) for body in bodies]
+    if not speed:
+        raise described_error("V", "is 0, where nothing heats,", "other than 0")
+    curves = [shift_curve(body) for body in (pair.cylinder, pair.half_space)]
     for at, curve in zip(around, curves, strict=True):
-        check_ambient(at, curve)
+        check_ambient(at, curve, "ambient")
     load = roller.load  # type: ignore[attr-defined]
     kappa = scene.kappa
 
@@ -111,12 +108,7 @@ def pair_temperatures(
 
         theta: temperatures of cylinder and base, degrees Celsius, (2, m).
         """
-        solids = []
-        for body, curve, at in zip(bodies, curves, theta, strict=True):
-            log2, root_b = curve.exactly(at)
-            slower = body.prony.slower(np.exp2(log2) / root_b)
-            solids.append(Solid(E=body.E * root_b**2, nu=body.nu, prony=slower, T_ref=body.T_ref))
-        warm = Pair(solids[0], solids[1], pair.plane)
+        warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta, strict=True)))
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))
         fields = ("M_cylinder", "M_half_space")
@@ -136,12 +128,13 @@ def pair_temperatures(
 
     axes = []
     for at, G, curve in zip(around, off, curves, strict=True):
-        ends = curve.log2_of(np.array([at, min(at + 0.5 * load * speed / kappa / G, curve.high)]))
+        hottest = min(at + 0.5 * load * speed / kappa / G, curve.high)
+        ends = np.log2(curve.at(np.array([at, hottest]))[0])
         axes.append(curve.temperature_of(np.linspace(float(ends[0]), float(ends[1]), _NODES)))
     grid = np.array(np.meshgrid(*axes, indexing="ij"))
     F = rest(grid.reshape(2, -1)).reshape(grid.shape) > 0.0
-    corners = np.array([F[:, :-1, :-1], F[:, 1:, :-1], F[:, :-1, 1:], F[:, 1:, 1:]]).sum(axis=0)
-    cells = ((corners > 0) & (corners < 4)).all(axis=0)
+    corners = np.lib.stride_tricks.sliding_window_view(F, (2, 2), axis=(1, 2))
+    cells = (corners.any(axis=(3, 4)) & ~corners.all(axis=(3, 4))).all(axis=0)
     found: list[Any] = []
     for start in 0.5 * (grid[:, :-1, :-1] + grid[:, 1:, 1:])[:, cells].T:
         at = root(lambda theta: rest(theta[:, np.newaxis])[:, 0], start, jac=slopes, tol=1e-14).x

@@ -1,16 +1,10 @@
 """Limits that heat sets: :func:`heat_limit`, :func:`turning_points`, and the conductance of a body.
 
-At a temperature theta the balance w = conductance (theta - ambient) determines the speed of a given
-load, or the load of a given speed.  With u = kappa V a_T T_ref/R and C(u) = kappa M, w = part P V
-C/kappa, and kappa is proportional to P^(-1/2), so that with the u_0 of the load P_0
-
-    C(u) u = conductance (theta - ambient) a_T kappa^2/(part P) T_ref/R            at a given load
-    C(u)/u^3 = conductance (theta - ambient) kappa_0/(part P_0 V u_0^3)            at a given speed, P = P_0 (u_0/u)^2
-
-Both left sides are monotone, as d ln C/d ln u lies between -1 and 1 for every material.  A roller
-that starts cold reaches theta at the largest of these loads or speeds over the temperatures up to
-theta.
-"""  # noqa: E501
+A roller that starts cold takes the coldest equilibrium of its speed and load, whose temperature
+rises with both and jumps where the cold branch ends: the limit is where it passes the allowed one.
+At a given temperature the speed of a balance is unique, since V M(V) does not fall for any
+material; turning points are the extrema of that speed over the temperature.
+"""
 
 from __future__ import annotations
 
@@ -20,9 +14,7 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from ..contact_mechanics.assumptions import Assumption
-from ..contact_mechanics.contact_table import pure_rolling_fields
-from ..contact_mechanics.parameters import Roller, resolve_model
-from ..contact_mechanics.rolling_resistance import find_zeros
+from ..contact_mechanics.parameters import Roller, refuse_arrays, resolve_model
 from ..core.checks import (
     Booleans,
     Floats,
@@ -37,8 +29,9 @@ from ..core.errors import ParameterError, check_one_given, described_error, shap
 from ..core.labels import strip_labels
 from ..core.results import Values
 from ..core.scale import SI
-from .heat_balance import FARTHEST, NODES, kept_curve, refine
-from .heated_bodies import HeatStates, check_ambient, heat_states
+from .heat_balance import zeros_at_speed
+from .heated_bodies import check_ambient, heat_states
+from .shift_curve import NODES
 from .temperature import HOTTEST
 
 #: Film coefficient of a turning roller in still to moving air, W/(m2 K): near the geometric mean of
@@ -47,20 +40,19 @@ DEFAULT_FILM = 20.0
 #: Largest Biot number, film times thickness over conductivity, at which the hottest point of a slab
 #: with an insulated side is at most 10 % of the rise above its mean: (1 + B/2)/(1 + B/3) = 1.1.
 BIOT_LIMIT = 0.75
-#: Temperatures between ambient and the allowed one at which the limit is computed before it is
-#: refined, and the least part of the rise at which it is.
-_TEMPERATURES = 64
-_LEAST_PART = 1e-9
-#: Half the step of the difference quotient of ln V, in log2 a_T: its zero is displaced by the
-#: square of it.
-_HALF_STEP = 1e-3
 #: Speed up to which turning points are returned, m/s: beyond it no roller runs, and the loss of a
 #: cold rubber no longer depends on the speed to rounding.
 FASTEST = 1e4
-#: ln V from which on the speed of a balance is of no account: a number, of which differences exist
-_MOST_LN_V = 100.0
-#: Step that tells a maximum of ln V from a minimum.
-_BEND = 1e-2
+#: ln of V, m/s, and of the load over that given, between which limits are sought: beyond them no
+#: roller runs.
+_LN_RANGE = -70.0, 70.0
+#: Distance of ln V and of ln of a load from a limit at which it is found.
+_TOLERANCE = {"xatol": 1e-13, "xrtol": 1e-15}
+#: Part of the allowed rise by which a limit misses it, from which on it is a runaway: at the end of
+#: a branch the temperature has an error of the square root of that of ln V.
+_SHORT = 1e-5
+#: Distance of ln of a load of a cover from a limit at which it is found: each is a law of its own.
+_COVER_TOLERANCE = 1e-6
 
 
 class TurningPoints(NamedTuple):
@@ -111,7 +103,7 @@ def heat_limit(
     Raises
     ------
     ParameterError
-        As in :func:`temperature`; both or neither of V and load, V = 0, V of a cover, an allowed
+        As in :func:`temperature`; both or neither of V and load, V = 0, an allowed
         temperature that is not above ambient or beyond the range of the shift, a load of a cover
         that is too thin for its law.
 
@@ -132,9 +124,7 @@ def heat_limit(
     -----
     The limits are those of :func:`temperature` to 1e-8, relative (``tests/test_heat.py``).
     """
-    from scipy.optimize.elementwise import find_minimum
-
-    _, _, scale = resolve_model(roller, "heat_limit")
+    _, scene, scale = resolve_model(roller, "heat_limit")
     name = check_one_given(V=V, load=load)
     given = {name: V if load is None else load, "ambient": ambient, "conductance": conductance}
     plain, labels = strip_labels(given, scale)
@@ -144,113 +134,79 @@ def heat_limit(
         raise described_error("V", "is 0, where no load heats,", "other than 0")
     if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):
         raise ParameterError("allowed", allowed, f"above ambient = {np.max(plain['ambient']):g}")
-    cylinder: Any = roller
-    if name == "load":
-        cylinder = cylinder.replace(load=value)
-    scene = cylinder.scene()
-    if scene.cover is not None:
-        if name == "V":
-            raise described_error(
-                "V", "is given", "left out for a cover, whose law depends on the load: give load="
-            )
-        if scene.cover.shape:  # one law after another
-            return _for_each_load(roller, allowed, value, plain, labels)
-    given = {"V": value if name == "V" else None} | {
-        key: plain[key] for key in ("ambient", "conductance")
-    }
-    states = heat_states(cylinder, scene, "heat_limit", given)
-    check_ambient(np.asarray(allowed), states.curve, "allowed")
-    sought = "load" if name == "V" else "V"
-    whole = allowed - states.ambient
-    s = np.append(
-        _LEAST_PART, np.arange(1.0, _TEMPERATURES + 2.0) / _TEMPERATURES
-    )  # parts of the whole rise
-    every = np.arange(whole.size)
-    ln = _ln_limit(states, sought, np.repeat(every, s.size), np.outer(whole, s).ravel()).reshape(
-        whole.size, s.size
-    )
-    best = 1 + np.argmax(ln[:, 1:-1], axis=1)
-    found = find_minimum(
-        lambda part, n: -_ln_limit(states, sought, n, whole[n] * part),
-        (s[best - 1], s[best], s[best + 1]),
-        args=(every,),
-    )
-    runaway = found.success & (found.x < 1.0) & (-found.f_x > ln[:, -2])
-    rows: dict[str, Any] = {
-        sought: np.exp(np.where(runaway, -found.f_x, ln[:, -2])),
-        "runaway": runaway,
-    }
-    rows["temperature"] = states.ambient + np.where(runaway, found.x, 1.0) * whole
-    found = {
-        key: each.reshape(states.shape) if states.shape else each[0].item()
-        for key, each in rows.items()
-    }
-    about = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
-    return Values(found, about, si=True, title="Limits by heat", labels=labels)
-
-
-def _for_each_load(
-    roller: Any, allowed: float, load: Floats, plain: dict[str, Any], labels: Any
-) -> Values:
-    """Return the result of :func:`heat_limit` for several loads of a cover, each of which has its
-    own law.
-
-    roller: the Cylinder with a cover.
-    allowed: highest temperature allowed, degrees Celsius.
-    load: loads, N/m, an array.
-    plain: "ambient" and "conductance" -> number or array that broadcasts with ``load``.
-    labels: axes and coordinates of the arguments; None without.
-    Returns the :class:`Values` V, temperature and runaway, in the broadcast shape.
-    """
-    names = ("V", "temperature", "runaway")
-
-    def limits(P: Any, at: Any, G: Any) -> tuple[Any, ...]:
-        found = heat_limit(roller, allowed, load=P, ambient=at, conductance=G)
-        return tuple(found[name] for name in names)
-
-    given = {"load": load} | {name: np.asarray(plain[name]) for name in ("ambient", "conductance")}
-    broadcast_shape(**given)
-    found = np.vectorize(limits, otypes=[float, float, bool])(*given.values())
-    found = dict(zip(names, found, strict=True))
-    return Values(found, given, si=True, title="Limits by heat", labels=labels)
-
-
-def _ln_limit(states: HeatStates, name: str, n: Integers, rise: Floats) -> Floats:
-    """Return ln of the load or speed at which heat balances at temperatures above ambient.
-
-    states: the states; name: the quantity that is sought, "load" or "V".
-    n, rise: indices of states, and temperatures less ambient, K, > 0, (m,) each.
-    Returns (m,); +inf where no speed loses as much.
-    """
-    log2, root_b = states.curve.exactly(states.ambient[n] + rise)
-    kappa = states.kappa[n]
-    ln_off = np.log(states.conductance[n] * rise / (states.body.part * states.load[n]))
-    if name == "V":
-        # log2 of u/(kappa V)
-        power = 1.0
-        unit = log2 - np.log2(states.unit[n])
-        target = ln_off - np.log(root_b) + 2.0 * np.log(kappa * root_b) + math.log(2.0) * unit
+    arrays = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
+    broadcast_shape(**arrays)
+    if scene.cover is None:
+        rows = _limits(roller, allowed, arrays)
     else:
-        V = np.abs(states.V[n])  # type: ignore[index]
-        power = -3.0
-        x_0 = np.log2(kappa * V / states.unit[n]) + log2
-        target = ln_off + np.log(kappa * root_b / V) - 3.0 * math.log(2.0) * x_0
-    x = np.arange(2 * FARTHEST * NODES + 1) / NODES - FARTHEST
-    curve = np.log(kept_curve(states.law)) + power * math.log(2.0) * x  # monotone
-    k = (np.searchsorted(curve, target) if power > 0.0 else np.searchsorted(-curve, -target)).clip(
-        1, x.size - 1
-    ) - 1
+        refuse_arrays(roller, scene, ("alpha",))
+        limits = np.vectorize(
+            lambda *one: _limit_of_cover(roller, allowed, **dict(zip(arrays, one, strict=True))),
+            otypes=[float, float, bool],
+        )
+        rows = limits(*arrays.values())
+    names = ("V" if name == "load" else "load", "temperature", "runaway")
+    found = {key: each if each.ndim else each.item() for key, each in zip(names, rows, strict=True)}
+    return Values(found, arrays, si=True, title="Limits by heat", labels=labels)
 
-    def rest(own: Integers, x: Floats) -> Floats:
-        C = pure_rolling_fields(states.law, np.exp2(x), "M")[0]
-        return np.log(C) + power * math.log(2.0) * x - target[own]
 
-    with np.errstate(divide="ignore", invalid="ignore"):  # in a limit the curve is flat to rounding
-        secant = x[k] + (target - curve[k]) / (curve[k + 1] - curve[k]) / NODES
-    u = refine(rest, np.arange(n.size), x[k], x[k + 1], secant, np.full(n.size, power > 0.0))
-    if name == "V":
-        return np.where(target > curve[-1], np.inf, math.log(2.0) * (u - unit) - np.log(kappa))
-    return np.log(states.load[n]) + 2.0 * math.log(2.0) * (x_0 - u)
+def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ...]:
+    """Return the limit, V or the load, the temperature and whether it is a runaway, of one law,
+    arrays in the shape of the states.
+
+    given: ambient, conductance, and load or V; without V the speed is sought.
+    """
+    from scipy.optimize.elementwise import find_root
+
+    if "load" in given:
+        roller = roller.replace(load=given["load"])
+    states = heat_states(roller, roller.scene(), "heat_limit", given)
+    check_ambient(np.asarray(allowed), states.curve, "allowed")
+
+    def above(ln: Floats, n: Integers) -> Floats:
+        """Return the coldest equilibrium less the allowed temperature, K."""
+        if states.V is None:
+            zeros = zeros_at_speed(states, n, np.exp(ln))
+        else:
+            zeros = zeros_at_speed(states, n, states.V[n], np.exp(ln))
+        coldest = np.full(n.size, np.inf)
+        np.minimum.at(coldest, zeros.state, zeros.theta)
+        return coldest - allowed
+
+    every = np.arange(states.load.size)
+    found = find_root(above, _LN_RANGE, args=(every,), tolerances=_TOLERANCE)
+    below = np.where(found.success, found.bracket[0], 0.0)
+    short = -above(below, every)
+    runaway = found.success & (short > _SHORT * (allowed - states.ambient))
+    limit = np.where(found.success, np.exp(found.x), np.inf)
+    rows = (
+        limit if states.V is None else limit * states.load,
+        allowed - np.where(runaway, short, 0.0),
+        runaway,
+    )
+    return tuple(each.reshape(states.shape) for each in rows)
+
+
+def _limit_of_cover(
+    roller: Any, allowed: float, load: Any = None, V: Any = None, **given: float
+) -> tuple[Any, ...]:
+    """Return :func:`_limits` of a cover, of which every load has a law of its own.
+
+    Raises ParameterError where a load on the way to the limit makes the cover too thin for its law.
+    """
+    from scipy.optimize import root_scalar
+
+    if load is not None:
+        return _limits(roller, allowed, given | {"load": load})
+
+    def faster(ln: float) -> float:
+        limit = _limits(roller, allowed, given | {"load": math.exp(ln)})
+        return math.log(limit[0] / abs(V))
+
+    start = math.log(roller.load)
+    found = root_scalar(faster, x0=start, x1=start + faster(start), xtol=_COVER_TOLERANCE)
+    load = math.exp(found.root)
+    return load, *_limits(roller, allowed, given | {"load": load})[1:]
 
 
 def turning_points(roller: Roller, *, ambient: float, conductance: float) -> TurningPoints:
@@ -295,6 +251,8 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     -----
     The speeds have a relative error below 1e-8 (``tests/test_heat.py``).
     """
+    from scipy.optimize.elementwise import find_minimum, find_root
+
     _, scene, _ = resolve_model(roller, "turning_points")
     given = {
         "ambient": check_number("ambient", ambient, unit="degC"),
@@ -304,23 +262,32 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     if states.shape:
         raise shape_error("roller", states.shape, "one without arrays")
 
-    def ln_V(y: Floats) -> Floats:
-        theta = states.curve.temperature_of(y)
-        found = _ln_limit(states, "V", np.zeros(y.size, np.int64), theta - given["ambient"])
-        return np.minimum(found, _MOST_LN_V)
+    curve = states.curve
 
-    hottest = np.float64(min(HOTTEST, states.curve.high))
-    ends = states.curve.log2_of(np.array([hottest, given["ambient"]]))
-    # from the hottest to ambient; nearer to it than two steps V only rises with the temperature
-    low = float(ends[0]) + 2.0 * _HALF_STEP
-    high = float(ends[1]) - 2.0 * _HALF_STEP
-    y = np.linspace(low, high, 2 + math.ceil(NODES * (high - low)))
-    flat = find_zeros(lambda at: ln_V(at + _HALF_STEP) - ln_V(at - _HALF_STEP), y)[::-1]
-    V = ln_V(flat)
-    flat = flat[V < math.log(FASTEST)]
-    V = V[V < math.log(FASTEST)]
-    bends = ln_V(flat + _BEND) + ln_V(flat - _BEND) - 2.0 * V
-    return TurningPoints(np.exp(V), states.curve.temperature_of(flat), bends < 0.0)
+    def ln_V(x: Floats) -> Floats:
+        """Return ln of the speed, m/s, of which log2 a_T is that of an equilibrium."""
+        theta = curve.temperature_of(x)
+        off = given["conductance"] * (theta - given["ambient"])
+
+        def rest(ln: Floats, theta: Floats, off: Floats) -> Floats:
+            return states.heat(np.zeros(ln.size, np.int64), theta, np.exp(ln)) - off
+
+        found = find_root(rest, _LN_RANGE, args=(theta, off), tolerances=_TOLERANCE)
+        return np.where(found.success, found.x, _LN_RANGE[1])
+
+    # from the hottest to ambient, near which V rises with the temperature
+    ends = np.array([min(HOTTEST, curve.high), given["ambient"]])
+    low, high = np.log2(curve.at(ends)[0]).tolist()
+    x = np.linspace(low, high, 2 + math.ceil(NODES * (high - low)))[:-1]
+    y = ln_V(x)
+    bend = np.diff(np.sign(np.diff(y)))
+    k = 1 + np.flatnonzero(bend * (y[1:-1] < math.log(FASTEST)))
+    sign = np.sign(bend[k - 1])  # -1 at a maximum
+    triple = x[k - 1], x[k], x[k + 1]
+    found = find_minimum(lambda x, sign: sign * ln_V(x), triple, args=(sign,))
+    order = np.argsort(-found.x)
+    V = np.exp(sign * found.f_x)
+    return TurningPoints(V[order], curve.temperature_of(found.x)[order], sign[order] < 0.0)
 
 
 def conductance(
@@ -374,31 +341,26 @@ def conductance(
         "conductivity": conductivity,
     }
     arrays = {
-        name: check_array(name, x, unit=SI, above=0.0)[()]
-        for name, x in given.items()
-        if x is not None
+        name: check_array(name, x, unit=SI, above=0.0) for name, x in given.items() if x is not None
     }
-    broadcast_shape(**{name: np.asarray(array) for name, array in arrays.items()})
-    R = arrays["R"]
-    film = arrays["film"]
+    broadcast_shape(**arrays)
     h: Any = arrays.get("thickness")
     k: Any = arrays.get("conductivity")
     if core == "cooled" and (h is None or k is None):
         raise described_error(
             "core", "is 'cooled'", "'insulated' without a thickness and a conductivity"
         )
-    if h is not None and np.any(h >= R):
+    if h is not None and np.any(h >= arrays["R"]):
         raise ParameterError("thickness", h, f"below R = {R}")
-    width = 2.0 * math.pi * (R if h is None else R - 0.5 * h)
-    found = width * film
-    if h is None and k is not None:
-        found = 1.0 / (1.0 / found + 1.0 / (8.0 * math.pi * k))
-    elif k is not None:
-        biot = film * h / k
-        insulated = found / (1.0 + biot / 3.0)
-        found = (
-            insulated if core == "insulated" else width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
+    width = 2.0 * math.pi * (arrays["R"] if h is None else arrays["R"] - 0.5 * h)
+    if core == "cooled":
+        biot = arrays["film"] * h / k
+        found = width * 12.0 * k / h * (1.0 + biot) / (4.0 + biot)
+    else:
+        within = (
+            0.0 if k is None else 1.0 / (8.0 * math.pi * k) if h is None else h / (3.0 * k * width)
         )
+        found = 1.0 / (1.0 / (width * arrays["film"]) + within)
     return found if np.ndim(found) else float(found)
 
 

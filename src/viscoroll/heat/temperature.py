@@ -5,30 +5,19 @@ stability.
 from __future__ import annotations
 
 import warnings
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..contact_mechanics.contact_table import (
-    complete,
-    computed_fields,
-    evaluate_law,
-    pure_rolling_fields,
-)
 from ..contact_mechanics.model_warnings import warn_of_contact
 from ..contact_mechanics.parameters import Roller, resolve_model
 from ..contact_mechanics.steady import steady
-from ..contact_mechanics.steady_loads import loads_of
 from ..contact_mechanics.steady_result import Equilibria, pad
-from ..contact_mechanics.steady_states import Field, states_at
-from ..core.checks import Floats, Integers, Numbers
-from ..core.drive_arguments import make_dimensionless
+from ..core.checks import Floats, Numbers
 from ..core.errors import ModelWarning, described_error
 from ..core.labels import Labels, strip_labels
-from ..laws.law_table import LawTable
-from .heat_balance import Balance, Zeros, zeros_of
-from .heated_bodies import HeatStates, heat_states
+from .heat_balance import Zeros, zeros_at_speed, zeros_of
+from .heated_bodies import MOMENTS, HeatStates, heat_states
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -36,10 +25,8 @@ if TYPE_CHECKING:
 #: Temperature up to which equilibria under a given load are looked for, degrees Celsius: rubbers
 #: char below it.  At a given speed the loss bounds the temperature.
 HOTTEST = 500.0
-#: No kappa M exceeds this: the pressure acts at most half the contact length at rest ahead of the
-#: axis.
-_MOST = 0.5
-_MOMENTS = "M", "M_half_space", "M_cylinder"
+#: Fields that are divided by a_T under a given load -> those of ``steady`` at the reference.
+_PER_TIME = {"V": "V", "loss": "loss", "loss_slip": "slip"}
 
 
 class Temperatures(Equilibria):
@@ -136,9 +123,10 @@ def temperature(
     ----------
     roller : a :class:`Cylinder` whose material has a ``shift``.  One body relaxes, or both are of
         one material; of such each loses half of M, and both have one temperature.
-    V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, without loss in slip;
-        with one of force and torque (or a slope, which counts as the force) the loss in slip heats
-        too.  None: the speed follows from the load at each temperature, as in :func:`steady`.
+    V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, of half-spaces without
+        loss in slip; with one of force and torque (or a slope, which counts as the force) the loss
+        in slip heats too.  None: the speed follows from the load at each temperature, as in
+        :func:`steady`.
     ambient : temperature of the surroundings, degrees Celsius.
     conductance : heat that the body gives off per kelvin, W/(m K), > 0
     (:func:`viscoroll.conductance`).
@@ -158,8 +146,8 @@ def temperature(
     ParameterError
         A conductance <= 0, an ambient outside the range of the shift, a roller without material,
         shift or relaxation, a shift that does not fall with temperature, two bodies of different
-        materials that relax, a vertical shift of a cover, beside an elastic body, or under a given
-        load, neither V nor a load; and as :func:`steady`.
+        materials that relax, a vertical shift of a cover, under a load beside an elastic body,
+        or where V follows from the load, neither V nor a load; and as :func:`steady`.
 
     Warns
     -----
@@ -193,131 +181,22 @@ def temperature(
     plain, labels = strip_labels(
         {"V": V, "ambient": ambient, "conductance": conductance} | driven, scale
     )
-    driven = {name: plain.pop(name) for name in driven}
-    found = {name: value for name, value in driven.items() if value is not None}
-    if plain["V"] is None and not found:
+    driven = {name: plain[name] for name in driven}
+    loaded = any(value is not None for value in driven.values())
+    if V is None and not loaded:
         raise described_error(
             "V", "is not given", "given, or a force, torque or slope from which it follows"
         )
-    states = heat_states(roller, scene, "temperature", plain | found, slip_share)
+    beside = driven if loaded and V is not None else None
+    states = heat_states(roller, scene, "temperature", plain, slip_share, beside)
     if states.V is None:
         rows, zeros = _under_load(level, states, driven)
     else:
-        rows, zeros = _at_speed(states, driven if found else None)
-    result = _pack(states, zeros, rows, labels)
+        every = np.arange(states.load.size)
+        zeros = zeros_at_speed(states, every, states.V, hottest=HOTTEST if loaded else None)
+        rows = states.fields(zeros.state, zeros.theta, states.V[zeros.state])
     warn_of_contact(roller, rows["V"] * rows["a_T"])
-    return result
-
-
-def _at_speed(states: HeatStates, driven: dict[str, Any] | None) -> tuple[dict[str, Floats], Zeros]:
-    """Return the fields of the equilibria at given speeds, and where they are.
-
-    states: the states, with V.
-    driven: force, torque and slope as :func:`temperature` has them; None: the cylinder rolls
-    freely.
-    Returns (name -> values, (m,), in SI units, with a_T, which is NaN beyond the range of the
-    shift; the zeros).
-    """
-    V: Any = states.V
-    balance = free_balance(states, V)
-    if driven is None:
-        zeros = zeros_of(balance)
-        return rolling_rows(states, zeros.state, V[zeros.state], zeros.theta), zeros
-    scale = states.roller.scale
-    force, torque = (make_dimensionless(name, driven[name], scale) for name in ("force", "torque"))
-    loads = loads_of(states.scene, force, torque, driven["slope"], np.ones(states.shape))
-
-    def curve(n: Integers, x: Floats) -> Floats:
-        """Return kappa times the parts of M and of |delta Q| that heat the body, divided by P V.
-
-        n: indices of the states, (m,).
-        x: log2(kappa V a_T) of each, (m,).
-        Returns (m,), dimensionless.  The slip is left out where the friction does not suffice; an
-        equilibrium there is dropped later.
-        """
-        found = states_at(states.law, loads, n, np.sign(V[n]), np.exp2(x) / loads.kappa[n]).rows
-        delta = np.nan_to_num(found[Field.DELTA])
-        rolling = np.abs(found[Field.M_HALF_SPACE] + (1.0 + delta) * found[Field.M_CYLINDER])
-        return loads.kappa[n] * (
-            states.body.part * rolling + states.body.slip * np.abs(delta * found[Field.Q])
-        )
-
-    power = balance.power / states.body.part
-    hottest = np.full(V.size, HOTTEST)
-    zeros = zeros_of(replace(balance, curve=curve, law=None, power=power, hottest=hottest))
-    n = zeros.state
-    rows = rolling_rows(states, n, V[n], zeros.theta)
-    # a cylinder at rest has no slip; a speed of 1 stands for it
-    speed = np.abs(V[n]) * np.nan_to_num(rows["a_T"], nan=1.0) / states.unit[n]
-    found = states_at(states.law, loads, n, np.sign(V[n]), np.where(V[n] == 0.0, 1.0, speed)).rows
-    power = np.where(V[n] == 0.0, 0.0, found[Field.DELTA]) * V[n] * states.load[n]
-    slip = np.abs(found[Field.Q] * power)
-    # the cylinder turns at omega = V (1 + delta)/R
-    return rows | {
-        "loss": rows["loss"] + found[Field.M_CYLINDER] * power + slip,
-        "loss_slip": slip,
-    }, zeros
-
-
-def free_balance(states: HeatStates, V: Any) -> Balance:
-    """Return the balance of freely rolling states at speeds V, m/s, any sign, a number or (n,)."""
-    speed = np.abs(V)
-    power = states.body.part * states.load * speed / states.kappa
-    # at rest no power depends on x
-    x_0 = np.log2(states.kappa * np.where(speed == 0.0, 1.0, speed / states.unit))
-    hottest = states.ambient + _MOST * power / states.conductance
-    law = states.law
-
-    def curve(n: Integers, x: Floats) -> Floats:
-        if isinstance(law, LawTable):
-            return pure_rolling_fields(law, np.exp2(x), "M")[0]
-        return evaluate_law(
-            law, [states.materials[n], 1.0, 1.0, np.exp2(x), 0.0], x.shape, False, ("M",)
-        )[0]
-
-    kept = law if isinstance(law, LawTable) else None
-    return Balance(
-        curve=curve,
-        law=kept,
-        shift=states.curve,
-        x_0=x_0,
-        power=power,
-        conductance=states.conductance,
-        ambient=states.ambient,
-        hottest=hottest,
-    )
-
-
-def rolling_rows(states: HeatStates, n: Integers, V: Floats, theta: Floats) -> dict[str, Floats]:
-    """Return the fields of freely rolling states at given speeds and temperatures.
-
-    states: all states.
-    n: indices of the states that are computed, (m,).
-    V: speeds, m/s, any sign, (m,).
-    theta: temperatures, degrees Celsius, (m,).
-    Returns name -> values, (m,), in SI units: V, temperature, C_rr, M and its parts, loss,
-    loss_slip (0) and a_T, which is NaN, as are the fields of the contact, outside the range of the
-    shift.
-    """
-    a_T, root_b = states.curve.factors(theta)
-    law = states.law
-    known = np.isfinite(a_T)
-    unit = states.R[n] / (
-        states.roller.T_ref * np.where(known, a_T, 1.0)
-    )  # as for the Cylinder of this temperature
-    kappa = states.kappa[n] * np.where(known, root_b, 1.0)
-    computed = computed_fields(_MOMENTS, law.unlike if isinstance(law, LawTable) else True)
-    arrays = [states.materials[n], kappa, states.mu[n], V / unit, 0.0]
-    contact = complete(
-        _MOMENTS, computed, evaluate_law(law, arrays, n.shape, False, computed), n.shape
-    )
-    M = np.where(known, contact["M"], np.nan)
-    rows = {
-        name: np.where(known, each, np.nan) * (states.load[n] * states.R[n])
-        for name, each in contact.items()
-    }
-    more = {"V": V, "temperature": theta, "C_rr": M, "a_T": a_T, "loss": states.load[n] * V * M}
-    return rows | more | {"loss_slip": np.zeros(n.size)}
+    return _pack(states, zeros, rows, labels)
 
 
 def _under_load(
@@ -330,45 +209,39 @@ def _under_load(
     states: the states, without V.
     driven: force, torque and slope as :func:`temperature` has them.
     Each branch of M(V) = force + torque/R at the reference is a balance of its own, in which the
-    speed is V_0/a_T.
-    Returns the fields and the zeros as :func:`_at_speed`; stable are those of a stable speed alone.
+    speed is V_0/a_T and the loss w_0/a_T.
+    Returns the fields, as :meth:`.HeatStates.fields`, and the zeros; stable are those of a stable
+    speed alone.
     """
     if states.body.material.vertical_shift is not None:
-        raise described_error(
-            "vertical_shift", "is given", "left out where the speed follows from the load: give V"
-        )
+        allowed = "left out where the speed follows from the load, whose branches b_T moves: give V"
+        raise described_error("vertical_shift", "is given", allowed)
     force = 0.0 if driven["force"] is None else driven["force"]
     driven = driven | {"force": np.broadcast_to(force, states.shape)}
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", ModelWarning)  # of speeds at the reference
         found = steady(level, **driven)
-    fields = {name: found[name] for name in ("V", "stable", *_MOMENTS)} | vars(found.loss)
+    fields = {name: found[name] for name in ("V", "stable", *MOMENTS)} | vars(found.loss)
     n, branch = np.nonzero(np.nan_to_num(found.V).reshape(states.load.size, -1))
     at = {name: np.reshape(x, (states.load.size, -1))[n, branch] for name, x in fields.items()}
     rolling = at["half_space"] + at["cylinder"]
+    at["loss"] = rolling + at["slip"]
     power = states.body.part * rolling + states.body.slip * at["slip"]
     zeros = zeros_of(
-        Balance(
-            curve=lambda _, x: np.exp2(-x),
-            law=None,
-            shift=states.curve,
-            x_0=0.0 * power,
-            power=power,
-            conductance=states.conductance[n],
-            ambient=states.ambient[n],
-            hottest=np.full(n.size, HOTTEST),
-        )
+        lambda k, theta: power[k] / states.curve.at(theta)[0],
+        states.curve,
+        states.ambient[n],
+        states.conductance[n],
+        np.full(n.size, HOTTEST),
     )
+    k = zeros.state
     a_T = states.curve.factors(zeros.theta)[0]
-    at |= {
-        "loss": rolling + at["slip"],
-        "loss_slip": at["slip"],
-        "C_rr": at["M"] / (states.load * states.R)[n],
-    }
-    rows = {name: at[name][zeros.state] for name in ("C_rr", *_MOMENTS)}
-    rows |= {name: at[name][zeros.state] / a_T for name in ("V", "loss", "loss_slip")}
-    rows |= {"temperature": zeros.theta, "a_T": a_T}
-    return rows, Zeros(n[zeros.state], zeros.theta, zeros.stable & at["stable"][zeros.state])
+    rows = {name: at[name][k] for name in MOMENTS}
+    rows |= {name: at[of][k] / a_T for name, of in _PER_TIME.items()}
+    rows["temperature"] = zeros.theta
+    rows["a_T"] = np.where(zeros.theta > states.curve.high, np.nan, a_T)
+    rows["C_rr"] = rows["M"] / (states.load * states.R)[n[k]]
+    return rows, Zeros(n[k], zeros.theta, zeros.stable & at["stable"][k])
 
 
 def _pack(
@@ -376,14 +249,13 @@ def _pack(
 ) -> Temperatures:
     """Return the result of the equilibria of states, padded to arrays (states..., equilibria).
 
-    states: the states.
-    zeros, rows: the equilibria, in any order, and their fields, (m,) each.  Equilibria with a NaN
-    in a_T or the loss are dropped, and named in the reason of a state that has no other.
-    labels: axes and coordinates of the arguments; None without.
-    Returns the :class:`Temperatures`, each row ascending in temperature, padded with NaN.
+    zeros, rows: the equilibria and their fields, unsorted; those with a NaN in the loss are named
+    and dropped.
     """
-    inside = within_data(states, rows["V"] * rows["a_T"])
-    known = np.isfinite(rows["a_T"] + rows["loss"])
+    low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
+    speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
+    inside = (speed == 0.0) | (speed >= low) & (speed <= high)
+    known = np.isfinite(rows["loss"] + rows["a_T"])
     reason = _reasons(states, zeros, known, inside, rows)
     order = np.lexsort((zeros.theta, zeros.state))
     order = order[known[order]]
@@ -395,23 +267,11 @@ def _pack(
     found |= {"stable": stable == 1.0, "measured": measured == 1.0}
     found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
     if labels is not None:
-        axes = {"count": ()}
         found = {
-            name: labels.apply(name, each, *axes.get(name, ("equilibrium",)))
+            name: labels.apply(name, each, *(() if name == "count" else ("equilibrium",)))
             for name, each in found.items()
         }
     return Temperatures(found, reason.reshape(states.shape) if states.shape else reason[0], labels)
-
-
-def within_data(states: HeatStates, speed: Floats) -> Any:
-    """Return whether the speeds lie in the range of the data of the material.
-
-    speed: V a_T, speeds reduced to the reference temperature, m/s, (n,).
-    Returns booleans, (n,); True at V = 0 and for a material without data.
-    """
-    low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
-    size = np.abs(speed)
-    return (size == 0.0) | (size >= low) & (size <= high)
 
 
 def _reasons(

@@ -3,22 +3,23 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
+from ..contact_mechanics.model_warnings import warn_of_contact
 from ..contact_mechanics.parameters import Roller, resolve_model
 from ..core.checks import Floats, Numbers, check_array, check_number
 from ..core.drive_arguments import Schedule
 from ..core.errors import ParameterError, described_error, shape_error
 from ..core.labels import strip_labels
 from ..core.results import Values
-from .heated_bodies import HeatStates, check_ambient, heat_states
-from .temperature import free_balance, rolling_rows
+from .heated_bodies import heat_states
 
-#: Tolerance of the integrator beside which its own default is loose: the energy then balances to
-#: 1e-6 of itself.
-RTOL = 1e-9
+#: Relative tolerance of the integrator, and the absolute one in K: the energy then balances to 1e-6
+#: of itself.
+_TOLERANCE = 1e-9
 
 
 def warming(
@@ -30,7 +31,6 @@ def warming(
     conductance: Numbers,
     capacity: Numbers,
     start: Numbers | None = None,
-    rtol: float = RTOL,
 ) -> Values:
     """Integrate the temperature of a freely rolling cylinder over time, with the law at the
     temperature of each time.
@@ -45,8 +45,6 @@ def warming(
     capacity : heat that the body stores per kelvin, J/(m K), > 0: the sum of density, specific heat
         and cross section of all parts that warm together.
     start : temperature at t = 0, degrees Celsius; default: ``ambient``.
-    rtol : relative tolerance of the integrator, in [1e-12, 1e-3]; the absolute one is as many
-        kelvin.
 
     Returns
     -------
@@ -85,65 +83,59 @@ def warming(
     from scipy.integrate import solve_ivp
 
     roller, scene, scale = resolve_model(roller, "warming")
+    start = ambient if start is None else start
     given = {"ambient": ambient, "conductance": conductance, "capacity": capacity, "start": start}
-    plain, labels = strip_labels(
-        {name: value for name, value in given.items() if value is not None}, scale
-    )
+    plain, labels = strip_labels(given, scale)
     states = heat_states(roller, scene, "warming", plain)
-    capacity, start = (
-        _spread(states, check_array(name, plain.get(name, plain["ambient"]), above=low))
-        for name, low in (("capacity", 0.0), ("start", -np.inf))
+    heat_capacity, theta = (
+        np.broadcast_to(plain[name], states.shape or (1,)).ravel() for name in ("capacity", "start")
     )
-    check_ambient(start, states.curve, "start")
     times = check_array("t", t, unit=scale, low=0.0)
     if times.ndim != 1 or not times.size:
         raise shape_error("t", times.shape, "a vector (t,) of at least one time")
     if (np.diff(times) <= 0.0).any():
         raise described_error("t", "does not ascend", "in ascending order")
-    rtol = check_number("rtol", rtol, low=1e-12, high=1e-3)
     speed, corners = _speed_of(V, scale)
-    every = np.arange(start.size)
+    every = np.arange(theta.size)
 
     def rates(time: float, y: Floats) -> Floats:
         """Return dtheta/dt of each state, then the heat per time and the heat given off, W/m."""
-        theta = y[: start.size]
-        off = states.conductance * (theta - states.ambient)
-        heat = free_balance(states, speed(time)).heat(every, theta)
-        return np.concatenate([(heat - off) / capacity, heat, off])
+        off = states.conductance * (y[: theta.size] - states.ambient)
+        heat = states.heat(every, y[: theta.size], speed(time))
+        return np.concatenate([(heat - off) / heat_capacity, heat, off])
 
-    y = np.concatenate([start, np.zeros(2 * start.size)])
-    found = []
-    time = 0.0
-    for stop in np.unique(np.append(corners[(corners > 0.0) & (corners < times[-1])], times[-1])):
-        own = times[(times > time) & (times <= stop)] if time else times[times <= stop]
-        y, outputs = _integrate(solve_ivp, rates, (time, float(stop)), y, own, rtol)
-        found.append(outputs)
-        time = float(stop)
-    theta, heat, off = np.split(np.concatenate(found, axis=1), 3)
-    if (hot := theta.max(initial=-np.inf)) > states.curve.high:
+    y = np.concatenate([theta, np.zeros(2 * theta.size)])
+    parts = [y[:, np.newaxis]] if times[0] == 0.0 else []
+    last = times[-1]
+    for span in pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
+        own = times[(times > span[0]) & (times <= span[1])]
+        stops = np.union1d(own, span[1])
+        found = solve_ivp(rates, span, y, "DOP853", stops, rtol=_TOLERANCE, atol=_TOLERANCE)
+        if not found.success:
+            what = f"cannot be integrated ({found.message})"
+            raise described_error("temperature", what, "one that a balance has")
+        y = found.y[:, -1]
+        parts.append(found.y[:, : own.size])
+    course, heat, off = np.split(np.concatenate(parts, axis=1), 3)
+    if (hot := course.max(initial=-np.inf)) > states.curve.high:
         sentence = (
             f"the roller warms to {hot:.5g} degrees Celsius, beyond the shift's "
             f"{states.curve.high:g}"
         )
         raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
-    n = np.repeat(np.arange(start.size), times.size)
-    V_t = np.tile([float(speed(time)) for time in times.tolist()], start.size)
-    rows = rolling_rows(states, n, V_t, theta.ravel())
+    V_t = np.tile([speed(time) for time in times.tolist()], theta.size)
+    rows = states.fields(np.repeat(every, times.size), course.ravel(), V_t)
+    warn_of_contact(roller, V_t * rows["a_T"])
     values = {name: rows[name] for name in ("temperature", "V", "C_rr", "M", "loss")}
-    values |= {"heat": heat.ravel(), "given_off": off.ravel()}
-    shape = *states.shape, times.size
+    values |= {"heat": heat, "given_off": off}
     about: dict[str, Any] = {"t": times} | {
         name: np.asarray(plain[name])[..., np.newaxis]
         for name in ("ambient", "conductance")
         if np.ndim(plain[name])
     }
+    shape = *states.shape, times.size
     found_values = {name: each.reshape(shape) for name, each in values.items()}
     return Values(found_values, about, si=True, title="Warming of a roller", labels=labels)
-
-
-def _spread(states: HeatStates, array: Floats) -> Floats:
-    """Return an array in the shape of the states, flattened, (n,)."""
-    return np.broadcast_to(array, states.shape or (1,)).ravel()
 
 
 def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
@@ -157,32 +149,9 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
     if isinstance(V, Schedule):
         if V.values.ndim > 1 or V.times.ndim > 1:
             raise shape_error("V", V.values.shape, "a Schedule of one motion")
-        return lambda time: float(
-            np.interp(time, V.times, V.values)
-        ), V.times  # at a jump the value after it
+        # at a jump the value after it
+        return lambda time: float(np.interp(time, V.times, V.values)), V.times
     if callable(V):
         return lambda time: check_number("V", V(time), unit=scale), np.empty(0)
     speed = check_number("V", V, unit=scale)
     return lambda time: speed, np.empty(0)
-
-
-def _integrate(
-    solver: Any, rates: Any, span: tuple[float, float], y: Floats, times: Floats, rtol: float
-) -> tuple[Floats, Floats]:
-    """Integrate over one stretch without corners.
-
-    solver: ``scipy.integrate.solve_ivp``.
-    rates: function of time and y; span: begin and end, s; y: values at its begin, (k,); times:
-        outputs within it.
-    rtol: relative tolerance.
-    Returns (y at the end, (k,); y at the times, (k, outputs)).
-    Raises ParameterError where the integrator finds no step that is small enough.
-    """
-    if span[1] == span[0]:
-        return y, np.repeat(y[:, np.newaxis], times.size, axis=1)
-    found = solver(rates, span, y, "DOP853", np.union1d(times, span[1]), rtol=rtol, atol=rtol)
-    if not found.success:
-        raise described_error(
-            "temperature", f"cannot be integrated ({found.message})", "one that a balance has"
-        )
-    return found.y[:, -1], found.y[:, : times.size]

@@ -92,21 +92,18 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
     state: :class:`CoverState` of that length.
     Returns :class:`Shear`.
     """
-    work = state.work
     local = local_pressure(modes, z, state) if any(body.local for body in modes.bodies) else None
     s, excess = _sources(modes, z, state, local)
-    S, c = layer_operator(
-        work.A, work.memory, (modes.L + modes.shear) * work.own / work.compliance.sum(axis=0)
-    )
-    Phi = 2.0 * work.exponentials.ratio[1:]
-    right = Phi @ (work.Xi @ excess) + s[1:]
-    stick = np.linalg.solve(np.eye(state.q.size) + S[1:] + Phi @ (work.Xi @ c), right)
+    S, c = layer_operator(state.A, state.memory, (modes.L + modes.shear) * state.own / state.both)
+    Phi = 2.0 * state.exponentials.ratio[1:]
+    right = Phi @ (state.Xi @ excess) + s[1:]
+    stick = np.linalg.solve(np.eye(state.q.size) + S[1:] + Phi @ (state.Xi @ c), right)
     creep = _shift(modes, state, c @ stick - excess) + S[0] @ stick - s[0]
     # q_1 of the traction over q_1 of the pressure is Q
     free = creep - 0.5 * state.creep_limit * stick[0] / state.q[0]
     # slopes by Q p are those that the pressure of -C p takes back
-    change = np.linalg.solve(work.matrix, -right.sum(axis=1))
-    S, c = layer_operator(work.A, work.memory, modes.L * work.own / work.compliance.sum(axis=0))
+    change = np.linalg.solve(state.matrix, -right.sum(axis=1))
+    S, c = layer_operator(state.A, state.memory, modes.L * state.own / state.both)
     shift = _shift(modes, state, c @ change + excess.sum(axis=1)) + S[0] @ change + s[0].sum()
     load = float(change[0] / state.q[0])
     return Shear(
@@ -127,7 +124,7 @@ def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:
     excess: excess memory of each creep mode, (modes,), or (modes, k) of k solutions.
     Returns a float, or (k,).
     """
-    _, root, edge, x, sigma = state.work.exponentials
+    _, root, edge, x, sigma = state.exponentials
     source = (sigma * excess.T).T
     within = modes.series.Q @ (root * (x[:, 1:] @ source).T).T
     return modes.series.t @ (source - (edge * within.T).T)
@@ -145,14 +142,11 @@ def _sources(
     local: the pressure at points, for the coupling of short waves; None: there is none.
     Returns (terms from n = 0, (N + 1, 2); excess memory, (modes, 2)).
     """
-    work = state.work
-    A = work.A
-    F = modes.mine * (
-        modes.C * work.own / work.compliance.sum(axis=0) * (work.odd + 1j * work.even)
-    )
+    A = state.A
+    F = modes.mine * (modes.C * state.own / state.both * (state.odd + 1j * state.even))
     s = 2.0 * np.where(np.arange(len(A))[:, None] % 2, -(A @ F.imag.T), A @ F.real.T)
     s[0] *= 0.5
-    excess = (work.memory @ F.T).real
+    excess = (state.memory @ F.T).real
     if local is not None:
         terms = local.terms[: _LOCAL_ORDERS + 1]
         D = decays(modes.series.b * z, _LOCAL_ORDERS)
@@ -170,8 +164,7 @@ def _mirrored(modes: CoverModes, state: CoverState, local: LocalPressure | None)
     state: :class:`CoverState`.
     local: what the coupling of short waves has in it; None: nothing.
     """
-    work = state.work
-    strain = modes.C * (work.own * (work.odd + 1j * work.even) ** 2).real / work.v
+    strain = modes.C * (state.own * (state.odd + 1j * state.even) ** 2).real / state.v
     found = -2.0 / state.q[0] * (modes.mine @ strain)
     return found if local is None else found - local.mirrored
 
@@ -186,17 +179,16 @@ def _moments(modes: CoverModes, z: float, state: CoverState) -> Floats:
     z: half contact length divided by V T_ref, > 0.
     state: :class:`CoverState`.
     """
-    work = state.work
-    total = modes.L * work.own / work.compliance.sum(axis=0)
+    total = modes.L * state.own / state.both
     multipliers = (
-        modes.mine * (modes.L * work.own) + (modes.shares[:, None] - work.compliance) * total
+        modes.mine * (modes.L * state.own) + (modes.shares[:, None] - state.compliance) * total
     )
-    smooth = 2.0 / state.q[0] * (multipliers.imag @ ((work.odd**2 + work.even**2) / work.v))
+    smooth = 2.0 / state.q[0] * (multipliers.imag @ ((state.odd**2 + state.even**2) / state.v))
     if not modes.J.size:
         return 0.0 * smooth
     _, _, e, t, _, Q = modes.series
     within = Q @ (state.X * _edge_weights(modes, z, state) / e)
-    return modes.weights @ (work.shares + t * within) + smooth
+    return modes.weights @ (state.shares + t * within) + smooth
 
 
 def _edge_weights(modes: CoverModes, z: float, state: CoverState) -> Floats:
@@ -208,7 +200,7 @@ def _edge_weights(modes: CoverModes, z: float, state: CoverState) -> Floats:
     state: :class:`CoverState`.
     Returns (modes,), dimensionless.  Sums over all orders are in closed form, with i2 = I_2/I_0.
     """
-    ratio = state.work.exponentials.ratio
+    ratio = state.exponentials.ratio
     alpha = np.minimum(modes.series.a * z, LARGE_ALPHA)
     i2 = ratio[2]
     # i2_i - i2_l, from 1 - i2 = 2 I_1/(alpha I_0) where that is small

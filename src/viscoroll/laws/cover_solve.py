@@ -114,7 +114,19 @@ class CoverState(NamedTuple):
     slips.
     q : terms of the pressure q_1 ... q_N, (N,).
     X : amplitudes of the relaxation modes, (modes,); from them follow terms of any higher order.
-    work : :class:`SolveWork`, what further results of this state are computed from.
+
+    What not every result needs:
+    v : wave numbers times half the contact length at the nodes of the rule, (n,).
+    A : signed Bessel functions there, (N + 1, n).
+    compliance : complex compliance of each body there, (2, n); both : that of both, own : that of
+    the body to which a node belongs, (n,).
+    odd, even : terms of the transform of the pressure, divided by pi z, times v, (n,).
+    memory : excess memory of exp(i v x), (modes, n).
+    exponentials : :class:`Exponentials`.
+    matrix : of the system for q, (N, N).
+    Xi : amplitudes of the relaxation modes by the excess memory of each creep mode, with the other
+        sign, (modes, modes).
+    shares : part of the shift g that each creep mode makes at the front edge, times t_j, (modes,).
     """
 
     load: float
@@ -123,30 +135,10 @@ class CoverState(NamedTuple):
     creep_limit: float
     q: Floats
     X: Floats
-    work: SolveWork
-
-
-class SolveWork(NamedTuple):
-    """What :func:`solve` has computed at one half length, for results that not every solve needs;
-    dimensionless.
-
-    v : wave numbers times half the contact length at the nodes of the rule, (n,).
-    A : signed Bessel functions there, (N + 1, n).
-    compliance : complex compliance of each body there, (2, n); own : that of the body to which a
-    node belongs, (n,).
-    odd, even : terms of the transform of the pressure, divided by pi z, times v, (n,).
-    decays : memory D_n of each creep mode, (N + 1, modes); memory : excess memory of exp(i v x),
-    (modes, n).
-    exponentials : :class:`Exponentials`.
-    matrix : of the system for q, (N, N).
-    Xi : amplitudes of the relaxation modes by the excess memory of each creep mode, with the other
-        sign, (modes, modes).
-    shares : part of the shift g that each creep mode makes at the front edge, times t_j, (modes,).
-    """
-
     v: Floats
     A: Floats
     compliance: Any
+    both: Any
     own: Any
     odd: Floats
     even: Floats
@@ -475,10 +467,17 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     odd = mq[::2] @ A[1::2]
     even = mq[1::2] @ A[2::2]
     limit = z + shift + np.sum((modes.shear * own * (even - 1j * odd) * np.exp(1j * v)).real)
-    work = SolveWork(
+    return CoverState(
+        load=z * q[0],
+        shift=shift,
+        moment=shift + z * q[1] / (2.0 * q[0]),
+        creep_limit=limit,
+        q=q,
+        X=X0 - Xi @ (c @ q),
         v=v,
         A=A,
         compliance=compliance,
+        both=J,
         own=own,
         odd=odd,
         even=even,
@@ -487,16 +486,6 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
         matrix=matrix,
         Xi=Xi,
         shares=shares,
-    )
-    moment = shift + z * q[1] / (2.0 * q[0])
-    return CoverState(
-        load=z * q[0],
-        shift=shift,
-        moment=moment,
-        creep_limit=limit,
-        q=q,
-        X=X0 - Xi @ (c @ q),
-        work=work,
     )
 
 

@@ -32,7 +32,7 @@ from ..core.errors import (
 )
 from ..core.files import read_sealed
 from ..core.quantities import conversion_factor
-from .coupled_rows import FIELDS, CoupledRows
+from .law_rows import FIELDS, CoupledRows
 from .law_table import LawTable, coupled_table
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class LawGrid:
 
     Attributes
     ----------
-    rows : :class:`.coupled_rows.CoupledRows` of V and delta, for kappa = 1: Q divided by its
+    rows : :class:`.law_rows.CoupledRows` of V and delta, for kappa = 1: Q divided by its
         limit (Q itself if the limit is not known) and M, in the units of the grid.
     most : largest abs(Q); 1 where it is not known.
     V : slowest and fastest speed, > 0; dimensionless, or m/s.

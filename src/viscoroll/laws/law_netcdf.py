@@ -41,8 +41,8 @@ from ..materials.material_toml import (
 from ..materials.pair import Pair
 from ..materials.prony import Prony, lock_array
 from ..materials.prony_forms import HIGHEST_ALPHA
-from .coupled_rows import FIELDS, CoupledRows
 from .law_grid import load_grid
+from .law_rows import FIELDS, CoupledRows
 from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table
 from .row_layout import COVER_FUNCTIONS, CoverRows, steady_columns, steady_table
 
@@ -52,8 +52,6 @@ if TYPE_CHECKING:
 #: attributes of a cover that its file states besides the series; the last one where the other body
 #: is a layer
 _COVER_ATTRIBUTES = ("nu", "thickness", "on", "part", "other_nu", "other_thickness")
-#: attributes of a table that the file of a cover states
-_COVER_NUMBERS = ("e0", "alpha", "T_ref")
 
 
 def law_table_of(material: Any, base: Any = None) -> LawTable:
@@ -102,15 +100,8 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
     )
     if law.coupled is not None:
         rows = law.coupled
-        numbers = SimpleNamespace(
-            coefficients=rows.fields,
-            u=rows.u,
-            t=rows.t,
-            edges=rows.edges,
-            mu=rows.mu,
-            alpha=law.alpha,
-            T_ref=law.T_ref,
-        )
+        numbers = SimpleNamespace(**vars(rows), alpha=law.alpha, T_ref=law.T_ref)
+        numbers.coefficients = rows.fields
         title = f"{_title(law)}, mu = {rows.mu:g}"
         return make_dataset(numbers, COUPLED, title, rows.errors | dict(errors), material=text)
     if law.cover is None:
@@ -121,7 +112,9 @@ def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.D
     numbers = SimpleNamespace(
         coefficients=np.concatenate([steady_columns(law.steady_coefficients), creep], axis=-1),
         limits=law.cover.limits,
-        **{name: getattr(law, name) for name in _COVER_NUMBERS},
+        e0=law.e0,
+        alpha=law.alpha,
+        T_ref=law.T_ref,
     )
     return make_dataset(numbers, COVER, _title(law), errors, material=text)
 

@@ -37,9 +37,8 @@ from ..materials.bodies import Bodies, Cover, total_series
 from ..materials.pair import Pair
 from ..materials.prony import Prony, lock_array
 from ..materials.prony_forms import HIGHEST_ALPHA
-from .coupled_rows import CoupledRows
 from .cover_rows import cover_rows
-from .law_rows import Rows, evaluate_by_modes, refuse_distant_times, row_range
+from .law_rows import CoupledRows, Rows, evaluate_by_modes, refuse_distant_times, row_range
 from .row_layout import (
     FUNCTIONS,
     CoverRows,
@@ -224,7 +223,7 @@ class LawTable:
     cover : rows that a cover of finite thickness has in addition, :class:`.row_layout.CoverRows`;
         None for half-spaces.
     coupled : the solution in which shear acts on pressure, at one mu,
-        :class:`.coupled_rows.CoupledRows`, which is then the law; None without.  All but
+        :class:`.law_rows.CoupledRows`, which is then the law; None without.  All but
         ``material``, ``unlike``, ``pair`` and ``T_ref`` are those of half-spaces then.
     """
 
@@ -324,10 +323,10 @@ def law_table(
 
 
 def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
-    """Return the law of a table of the coupled solution as a :class:`LawTable`.
+    """Return the law of coupled rows as a :class:`LawTable`.
 
-    material: material of the scene: alpha, a series, bodies or a cover.
-    rows: :class:`.coupled_rows.CoupledRows`, the table for this material.
+    material: alpha, a series, bodies or a cover, of one scene.
+    rows: :class:`.law_rows.CoupledRows` of it.
     """
     total = total_series(material)
     base = law_table(total if total.E.size else 1.0)

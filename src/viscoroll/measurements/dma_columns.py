@@ -163,8 +163,12 @@ _RANGES = {
 _CYCLES = re.compile(r"(?i)hz|rpm|cpm|rad|rev|cyc|osc|giri|tours|[ucr]/|upm|u\s*min|deg|°")
 #: a heading that begins with G and at most three further letters or digits
 _OF_G = re.compile(r"\W*[Gg][^\W_]{0,3}(?![^\W_])")
-#: a power of ten in a heading
-_POWER_OF_TEN = re.compile(r"(?<!\d)10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])|\b1[eE][+-]?\d")
+#: a power of ten in a heading, or a logarithm of a base that is not read
+_POWER_OF_TEN = re.compile(
+    r"(?<!\d)10\s*(?:\^|\*\*|[⁰¹²³⁴-⁹⁻])|(?:\b1|[*x×·]\s*)[eE][+-]?\d|(?i:\blog_?(?!(?:10|2)(?!\d))\d)"
+)
+#: units of what instruments measure beside moduli, which end a heading without brackets
+_RAW = re.compile(r"[kmcdMµ]?N(?:\W?[cm]?m|/[cm]?m)?|kgf?|lbf?|[mµ]m|m?V")
 #: units of angles
 _ANGLE = re.compile(r"(?i)rad|deg|°|º|grad")
 
@@ -291,10 +295,11 @@ def _named(name: str, heading: str, row: str, overruling: Mapping[str, str]) -> 
         each.unit for each in known if each.name == name
     }  # as bpm of "freq_bpm", not "prime" of "G_prime"
     behind = spelled if spelled.isdisjoint(NO_UNIT) else set()
-    stated = [
-        each for each in ways if (each.sure or each.unit in behind) and each.unit not in NO_UNIT
-    ]
-    return [each for each in ways if not stated or each.unit not in NO_UNIT]
+    with_unit = [each for each in ways if each.unit not in NO_UNIT]
+    stated = any(
+        each.sure or each.unit in behind or _RAW.fullmatch(each.unit) for each in with_unit
+    )
+    return with_unit if stated else ways
 
 
 def _index(table: Table, heading: str) -> int:

@@ -224,7 +224,9 @@ def read_relaxation(
     relaxation = numbers[pair[0]] / numbers.get("strain", 1.0)
     refuse_repeats(table, "time", numbers["time"], relaxation)
     temperature = numbers.get("temperature")
-    if temperature is not None and np.ptp(temperature) > SAME_TEMPERATURE:
+    if temperature is None:
+        refuse_unread_temperatures(table, others)
+    elif np.ptp(temperature) > SAME_TEMPERATURE:
         raise FileError(
             table.path,
             f"has temperatures from {temperature.min():g} to {temperature.max():g} °C: keep one",

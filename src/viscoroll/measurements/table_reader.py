@@ -9,6 +9,7 @@ numbers.
 
 from __future__ import annotations
 
+import math
 import re
 import warnings
 from collections.abc import Callable, Mapping
@@ -118,8 +119,14 @@ _NAMED = re.compile(
     r"(?:(?i:temp[^\W\d_]*\.?)|温度|\bT(?=\s*[:=;,\t]))\s*(?:[\[(]\s*(?:[°º]|deg)?\s*C\s*[\])])?[\s:：=;,|\"]*"
     r"()([+-]?\d+(?:[.,]\d+)?)()[\s;,|\"]*$"
 )
-#: a heading of a temperature that is not understood, as "Ts" or "Chamber temp."
-_LIKE_TEMPERATURE = re.compile(r".*(?i:temp(?!o\b|s\b|l))|.*温度|T[^\W_]{0,2}(?![^\W_])")
+#: a heading of a temperature that is not understood, as "Ts", "theta_C" or "Chamber temp."
+_LIKE_TEMPERATURE = re.compile(
+    r".*(?i:temp(?!o\b|s\b|l)|theta|celsius|kelvin|grad\b)|.*温度|[Tϑθ][^\W_]{0,2}(?![^\W_])"
+)
+#: change of ln(modulus) of rows of one frequency that is more than that of repeated tests
+_SCATTER = 0.1
+#: base of logarithms -> their name
+_LOGARITHMS = {math.e: "ln", 2.0: "log2", 10.0: "log10"}
 #: degrees; numbers without a unit above it may be kelvins
 _KELVIN = 200.0
 
@@ -155,9 +162,7 @@ class Understood(NamedTuple):
         taken : the columns that are read.
         """
         notes = [
-            f"{column.heading!r} is {'log10' if column.log == 10.0 else 'ln'}"
-            for column in taken
-            if column.log
+            f"{column.heading!r} is {_LOGARITHMS[column.log]}" for column in taken if column.log
         ]
         listed = ", ".join(
             f"{heading!r}" + f" ({why})" * bool(why) for heading, why in self.others.items()
@@ -372,13 +377,19 @@ def refuse_repeats(table: Table, name: str, at: Floats, modulus: Floats) -> None
     """
     order = np.argsort(at, kind="stable")
     same = np.diff(at[order]) <= ONE_FREQUENCY * at[order][1:]
+    change = np.where(same, np.abs(np.diff(np.log(modulus[order]))), 0.0)
     holds = np.ones(at.size, bool)
-    holds[order[1:]] = ~same | (np.abs(np.diff(np.log(modulus[order]))) <= np.log(_REPEATED))
+    holds[order[1:]] = change <= np.log(_REPEATED)
     problem = f"an earlier row has the same {name} and another modulus"
-    table.require(
-        holds,
-        f"{problem}: rows at several temperatures need a column of temperature; keep one strain",
-    )
+    advice = "rows at several temperatures need a column of temperature; keep one strain"
+    table.require(holds, f"{problem}: {advice}")
+    if change.max(initial=0.0) > _SCATTER:
+        text = f"rows of one {name} have moduli that differ by {np.expm1(change.max()):.0%}"
+        warnings.warn(
+            f"{table.path}: {text}, and are taken as of one test: {advice}",
+            ModelWarning,
+            stacklevel=caller_level(),
+        )
 
 
 def temperatures_of_lines(table: Table) -> Floats | None:

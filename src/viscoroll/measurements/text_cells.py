@@ -287,10 +287,12 @@ NO_UNIT = ("", "1", "-", "--", "–", "—", "/", "none")
 _BRACKETS = re.compile(r"[\[({<]\s*([^\[\](){}<>]*?)\s*[\])}>]|\(\s*([^()]*\([^()]*\)[^()]*?)\s*\)")
 #: separators of a name and a unit without brackets, the slash of DIN 1313 first
 _BETWEEN = re.compile(r"\s*/\s*|\s+in\s+|[\s_,]+")
-#: a heading of logarithms to base 10 or, of ln, e
-_LOGARITHM = re.compile(r"(?P<kind>(?i:log|lg|ln))(?![a-z]{2})[\s_-]*(?:10(?!\d))?[\s_]*(?P<of>.+)")
+#: a heading of logarithms to base 10, 2 or, of ln and loge, e
+_LOGARITHM = re.compile(
+    r"(?P<kind>(?i:loge(?=[\s(])|log|lg|ln))(?![a-z]{2})[\s_-]*(?P<base>10|2)?(?!\d)[\s_]*(?P<of>.+)"
+)
 #: the same in brackets behind the name, as in "E' (log)"
-_LOG_BEHIND = re.compile(r"(?i)^(.+?)[\s,_]*[\[(]\s*(log|lg|ln)(?:10)?\s*[\])]")
+_LOG_BEHIND = re.compile(r"(?i)^(.+?)[\s,_]*[\[(]\s*((?:loge|log|lg|ln)(?:10|2)?)\s*[\])]")
 #: a text in parentheses, and what follows
 _PARENTHESES = re.compile(r"\(((?:[^()]|\([^()]*\))*)\)(.*)", re.DOTALL)
 #: digits of a power after a symbol: the only ones that a unit has, but for its leading 1
@@ -346,7 +348,8 @@ def readings(heading: str, row: str = "") -> list[Reading]:
     heading = _LOG_BEHIND.sub(r"\2 \1", heading.translate(_WIDE))
     if found := _LOGARITHM.fullmatch(heading.strip()):
         heading = found["of"]
-        log = math.e if found["kind"].lower() == "ln" else 10.0
+        natural = found["kind"].lower() in ("ln", "loge")
+        log = math.e if natural else float(found["base"] or 10.0)
         if inner := _PARENTHESES.fullmatch(heading):
             heading = f"{inner[1]} {inner[2]}".rstrip()
     ways = [(heading, "", False)]

@@ -27,8 +27,7 @@ from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
 from numpy.typing import NDArray
 
-from ..core.checks import Floats, check_array
-from ..core.errors import ParameterError, mark_dimensionless, shape_error
+from ..core import Floats, ParameterError, check_array, mark_dimensionless, shape_error
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: Terms of a polynomial.

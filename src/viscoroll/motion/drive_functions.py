@@ -13,9 +13,17 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats, broadcast_shape, check_array
-from ..core.drive_arguments import Feedback, slope_tan_cos
-from ..core.errors import ParameterError, described_error, exactly_one_error, mark_dimensionless
+from ..core import (
+    Feedback,
+    Floats,
+    ParameterError,
+    broadcast_shape,
+    check_array,
+    described_error,
+    exactly_one_error,
+    mark_dimensionless,
+    slope_tan_cos,
+)
 from ..kernels.records import (
     COL_COEFFICIENTS,
     N_DRIVE_FUNCTIONS,

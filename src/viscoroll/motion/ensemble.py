@@ -19,22 +19,29 @@ from ..contact_mechanics.contact_table import FASTEST, refuse_beyond
 from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
 from ..contact_mechanics.parameters import Roller, scale_of
 from ..contact_mechanics.validity import validity
-from ..core.blocks import broadcast_vector, thread_count
-from ..core.checks import (
+from ..core import (
     Booleans,
+    Feedback,
     Floats,
     Integers,
+    Labels,
+    MotionStatus,
     Numbers,
+    ParameterError,
+    Schedule,
+    SummaryRow,
     broadcast_shape,
+    broadcast_vector,
     check_array,
     check_bool,
     check_choice,
+    check_names,
     check_number,
+    describe_value,
+    make_dimensionless,
+    shape_error,
+    thread_count,
 )
-from ..core.drive_arguments import Feedback, Schedule, make_dimensionless
-from ..core.errors import MotionStatus, ParameterError, check_names, describe_value, shape_error
-from ..core.labels import Labels
-from ..core.results import SummaryRow
 from .many_motions import Batch, Solution, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
 from .motion_datasets import RollResult

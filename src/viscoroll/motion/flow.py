@@ -25,9 +25,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_mechanics.parameters import Parameters
-from ..core.blocks import broadcast_vector, run_blocks
-from ..core.checks import Floats, Integers
-from ..core.files import load_kept, save_kept
+from ..core import Floats, Integers, broadcast_vector, load_kept, run_blocks, save_kept
 from ..kernels.numerics.cache_folder import cache_root
 from ..kernels.records import Motions
 from ..materials.prony import Prony

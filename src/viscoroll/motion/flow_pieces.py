@@ -14,8 +14,9 @@ from __future__ import annotations
 from typing import Any, NamedTuple
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
-from ..core.checks import Floats
+from ..core import Floats
 from ..kernels.motion import flow_layout
 from ..kernels.motion.flow_layout import states
 from ..kernels.numerics.interpolation import (
@@ -131,10 +132,7 @@ class Rows:
         """
         row = np.searchsorted(self.edges[1:-1], x, side="right")
         t = (x - self.edges[row]) / self.half[row] - 1.0
-        total = np.zeros(x.shape)
-        for k in range(powers.shape[1] - 1, -1, -1):
-            total = total * t + powers[row, k]
-        return total
+        return np.asarray(polyval(t, np.moveaxis(powers[row], -1, 0), tensor=False))
 
     def inverse(self, powers: Floats, target: Floats) -> Floats:
         """Return the arguments at which an increasing piecewise polynomial takes given values, by

@@ -37,7 +37,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from ..core.checks import Floats
+from ..core import Floats
 from ..kernels.motion import flow_layout
 from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, FlowTables
 from ..kernels.numerics.interpolation import gauss

@@ -14,10 +14,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..contact_mechanics.parameters import Parameters
-from ..core.blocks import broadcast_vector, run_blocks
-from ..core.checks import Booleans, Floats, Integers, extent
-from ..core.errors import MotionStatus, ParameterError, mark_dimensionless
-from ..core.scale import TIME_POWERS
+from ..core import (
+    TIME_POWERS,
+    Booleans,
+    Floats,
+    Integers,
+    MotionStatus,
+    ParameterError,
+    broadcast_vector,
+    extent,
+    mark_dimensionless,
+    run_blocks,
+)
 from ..kernels.records import Motions
 from ..laws.law_table import law_table
 from ..laws.laws_per_element import record_of_alphas, record_of_materials

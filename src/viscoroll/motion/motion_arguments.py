@@ -15,11 +15,26 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..core.checks import Floats, broadcast_shape, check_array, check_integer, check_number, extent
-from ..core.drive_arguments import Feedback, Schedule, make_dimensionless
-from ..core.errors import ParameterError, digits_beside, mark_dimensionless, shape_error
-from ..core.labels import Labels, strip_labels
-from ..core.scale import HasUnits, Scale, Units
+from ..core import (
+    Feedback,
+    Floats,
+    HasUnits,
+    Labels,
+    ParameterError,
+    Scale,
+    Schedule,
+    Units,
+    broadcast_shape,
+    check_array,
+    check_integer,
+    check_number,
+    digits_beside,
+    extent,
+    make_dimensionless,
+    mark_dimensionless,
+    shape_error,
+    strip_labels,
+)
 
 # --- Checks of arguments that one motion and an ensemble share ---
 

@@ -16,11 +16,18 @@ from ..contact_mechanics.assumptions import Validity
 from ..contact_mechanics.free_rolling import FreeRolling
 from ..contact_mechanics.parameters import PARAMETERS, Parameters, Roller
 from ..contact_mechanics.validity import Steadiness
-from ..core.checks import Floats
-from ..core.drive_arguments import Feedback, Schedule
-from ..core.errors import MotionStatus
-from ..core.results import Result, SummaryRow, format_value, unit_of
-from ..core.scale import Scale, attributes
+from ..core import (
+    Feedback,
+    Floats,
+    MotionStatus,
+    Result,
+    Scale,
+    Schedule,
+    SummaryRow,
+    attributes,
+    format_value,
+    unit_of,
+)
 from ..materials.bodies import Bodies, Cover
 from ..materials.prony import Prony
 from .motion_arguments import ROWS, STATES, Drive

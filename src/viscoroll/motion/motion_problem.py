@@ -18,11 +18,21 @@ from ..contact_mechanics.contact_table import refuse_beyond
 from ..contact_mechanics.free_rolling import FreeRolling
 from ..contact_mechanics.parameters import Parameters, Roller, refuse_cover, resolve_model
 from ..contact_mechanics.validity import LARGEST_LOSS
-from ..core.blocks import broadcast_vector, run_blocks
-from ..core.checks import Floats, Integers, check_array, check_bool, check_number
-from ..core.drive_arguments import make_dimensionless
-from ..core.errors import MotionStatus, ParameterError, described_error
-from ..core.scale import HasUnits, Scale
+from ..core import (
+    Floats,
+    HasUnits,
+    Integers,
+    MotionStatus,
+    ParameterError,
+    Scale,
+    broadcast_vector,
+    check_array,
+    check_bool,
+    check_number,
+    described_error,
+    make_dimensionless,
+    run_blocks,
+)
 from ..laws.law_table import law_table
 from .drive_functions import (
     DriveFunctions,

@@ -15,9 +15,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import Floats, check_array
-from ..core.drive_arguments import Feedback, Schedule, require_time_argument
-from ..core.errors import described_error, mark_dimensionless, shape_error
+from ..core import (
+    Feedback,
+    Floats,
+    Schedule,
+    check_array,
+    described_error,
+    mark_dimensionless,
+    require_time_argument,
+    shape_error,
+)
 from ..kernels.records import COL_COEFFICIENTS, COL_SCALE, COL_START
 from .drive_fit import fit_callable
 
@@ -120,13 +127,17 @@ def _follow_corners(times: Floats, values: Floats) -> Piecewise:
     times, values: corners, (1 or m, k) each, times ascending, in T_ref; values dimensionless.
     """
     values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
-    first = values[:, :-1]
-    second = values[:, 1:]
-    terms = np.stack([0.5 * (first + second), 0.5 * (second - first)], axis=-1)
+    terms = np.empty((len(values), times.shape[1] + 1, 2))
+    np.add(values[:, 1:], values[:, :-1], out=terms[..., 0])
+    np.subtract(values[:, 1:], values[:, :-1], out=terms[..., 1])
+    terms *= 0.5
     terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
     starts = np.pad(times, [(0, 0), (1, 0)])
     kept = (_ends(starts) > starts).any(axis=0)
-    return Piecewise(starts[:, kept], terms[:, kept], corners=times.shape[1])
+    if not kept.all():
+        starts = starts[:, kept]
+        terms = terms[:, kept]
+    return Piecewise(starts, terms, corners=times.shape[1])
 
 
 def _ends(starts: Floats) -> Floats:

@@ -16,11 +16,20 @@ from ..contact_mechanics.contact import contact
 from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
 from ..contact_mechanics.parameters import Roller, scale_of
 from ..contact_mechanics.validity import validity
-from ..core.checks import Floats, Numbers, check_number
-from ..core.drive_arguments import Feedback, Schedule
-from ..core.errors import MotionStatus, ParameterError, described_error, digits_beside
-from ..core.labels import UNLABELLED_TYPES
-from ..core.results import SummaryRow, Values
+from ..core import (
+    UNLABELLED_TYPES,
+    Feedback,
+    Floats,
+    MotionStatus,
+    Numbers,
+    ParameterError,
+    Schedule,
+    SummaryRow,
+    Values,
+    check_number,
+    described_error,
+    digits_beside,
+)
 from .motion_arguments import ROWS, SPEED_RANGE, Drive, output_times, strip_units
 from .motion_datasets import RollResult, describe_load, describe_values
 from .motion_problem import NO_NOTES, MotionProblem, SolverOptions, integrate_single, make_problem

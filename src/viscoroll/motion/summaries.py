@@ -26,8 +26,7 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import Floats, Integers
-from ..core.errors import MotionStatus, ParameterError
+from ..core import Floats, Integers, MotionStatus, ParameterError
 from .motion_datasets import column_attributes, provenance
 
 if TYPE_CHECKING:

@@ -17,9 +17,7 @@ import numpy as np
 from ..contact_mechanics.assumptions import transit_frequency
 from ..contact_mechanics.contact import contact
 from ..contact_mechanics.model_warnings import warn_of_contact, warn_of_unmeasured_starts
-from ..core.checks import Floats
-from ..core.errors import shape_error
-from ..core.scale import SYMBOLS
+from ..core import SYMBOLS, Floats, shape_error
 from ..motion.ensemble import Ensemble, ensemble
 from ..motion.motion_datasets import column_attributes
 from ..roller_toml import CylinderSection

@@ -34,9 +34,16 @@ from typing import Any, Literal
 import msgspec
 import numpy as np
 
-from ..core.blocks import cancel_with, thread_count
-from ..core.checks import check_bool
-from ..core.errors import FileError, Interrupted, ParameterError, ViscorollError, import_extra
+from ..core import (
+    FileError,
+    Interrupted,
+    ParameterError,
+    ViscorollError,
+    cancel_with,
+    check_bool,
+    import_extra,
+    thread_count,
+)
 from .run_blocks import block_inputs, warn_of_materials
 from .run_records import Record, encoded
 from .run_rollers import roller_of

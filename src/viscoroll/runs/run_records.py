@@ -29,8 +29,7 @@ import msgspec
 import numpy as np
 
 from .. import __version__
-from ..core.errors import FileError, import_extra
-from ..core.files import as_file_error, seal, seal_matches, write_bytes
+from ..core import FileError, as_file_error, import_extra, seal, seal_matches, write_bytes
 from ..motion.motion_datasets import provenance
 from ..motion.summaries import Summary
 from .runfile import Run

@@ -19,9 +19,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ..core.errors import FileError, MotionStatus, import_extra
-from ..core.files import fix_texts, replace_file
-from ..core.results import Result, SummaryRow, column_name, unit_of
+from ..core import (
+    FileError,
+    MotionStatus,
+    Result,
+    SummaryRow,
+    column_name,
+    fix_texts,
+    import_extra,
+    replace_file,
+    unit_of,
+)
 from .run_records import RECORDS, Record, read_record, refuse_unreadable
 from .run_store import MOTIONS, problems
 

@@ -11,10 +11,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from ..core.checks import Floats, check_array
-from ..core.drive_arguments import Schedule
-from ..core.errors import ParameterError, described_error
-from ..core.scale import Scale
+from ..core import Floats, ParameterError, Scale, Schedule, check_array, described_error
 from ..materials.material import Material
 from ..materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
 from ..materials.measured_data import Measured

@@ -20,8 +20,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.errors import FileError
-from ..core.files import as_file_error, write_bytes
+from ..core import FileError, as_file_error, write_bytes
 from ..motion.ensemble import Ensemble
 from ..motion.summaries import Summary, merge_summaries, summarise, summary_dataset
 from . import run_records

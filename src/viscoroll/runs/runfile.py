@@ -29,8 +29,7 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from ..core.checks import Floats
-from ..core.errors import FileError, ParameterError, check_names
+from ..core import FileError, Floats, ParameterError, check_names
 from ..core.toml_sections import as_section_error, read_toml, section_error
 from ..materials.material_toml import material_as_toml, parse_materials
 from ..motion.ensemble import FIELDS

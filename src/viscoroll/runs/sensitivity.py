@@ -15,10 +15,17 @@ import msgspec
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.blocks import run_blocks
-from ..core.checks import Floats, check_bool, check_integer
-from ..core.errors import MotionStatus, ParameterError, described_error
-from ..core.results import column_name, unit_of
+from ..core import (
+    Floats,
+    MotionStatus,
+    ParameterError,
+    check_bool,
+    check_integer,
+    column_name,
+    described_error,
+    run_blocks,
+    unit_of,
+)
 from ..motion.motion_datasets import column_attributes, provenance
 from ..motion.summaries import QUANTITIES
 from ..sampling import points
@@ -309,7 +316,8 @@ def _estimated(values: Floats) -> Floats:
     :func:`_indices` calls it for all base points and for each resample.
     With A, B and the mixed outcomes AB_n less the mean of A and B, and the variance v of A and B
     together, they are mean(B (AB_n - A))/v and mean((AB_n - A)^2)/(2 v), the estimators (b) and (f)
-    of Table 2 of Saltelli et al. (2010).
+    of Table 2 of Saltelli et al. (2010).  scipy.stats.sobol_indices gives the same bits, but up to
+    scipy 1.17 it fails for a single input.
 
     values: outcomes, (2 + inputs, base points), as in :func:`_indices`, finite.  Where those of A
         and B are all equal the indices are NaN or infinite.

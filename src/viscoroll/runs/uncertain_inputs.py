@@ -21,9 +21,7 @@ from typing import Any
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..core.errors import FileError, import_extra, suggestion
-from ..core.scale import si_unit
+from ..core import FileError, Floats, import_extra, si_unit, suggestion
 from ..core.toml_sections import check_keys, section_error
 from ..materials.material_toml import SECTIONS
 from ..roller_toml import SCHEMA

@@ -23,10 +23,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import __version__
-from ..contact_mechanics.contact_table import evaluate_law
+from ..contact_mechanics.contact_table import Contacts
 from ..contact_mechanics.coupled_pair import CoupledPair
 from ..contact_mechanics.coupled_tables import measure_errors
-from ..core.checks import Floats, check_integer
+from ..core.checks import check_integer
 from ..core.errors import FileError, ParameterError, check_one_given
 from ..laws import law_table
 from ..laws.cover_rows import solve_at_speed
@@ -208,10 +208,10 @@ def measured_errors(
         return {name: worst[name] for name in AXIS_FUNCTIONS}
     if table.cover is not None:
         return _measured_errors_of_cover(table, count or _COVER_SPEEDS, random)
-    rows = table.coefficients.shape[0]
     e0 = table.e0
+    rows = Rows(e0, len(table.coefficients))
     # kappa |V| = 1/(2 sqrt(H)) and v = 1/F lie within [1/(2 zeta sqrt(alpha)), 1/zeta].
-    octaves = rows + np.log2(table.alpha) / 2.0 + 3.0
+    octaves = rows.count + np.log2(table.alpha) / 2.0 + 3.0
     zeta = np.exp2(2.0 - e0 - octaves * random.random(count or int(_POINTS_PER_OCTAVE * octaves)))
     (shift, growth, half_space, cylinder), _, N = evaluate_by_modes(table.material, zeta)
     root = np.sqrt(1.0 + 2.0 * growth)
@@ -226,10 +226,9 @@ def measured_errors(
     errors = {}
     for n, name in enumerate(FUNCTIONS):
         x = 0.5 / (zeta * root) if n < _SPEED_FUNCTIONS else 1.0 / (zeta * F)
-        inside = (x < np.ldexp(1.0, e0 + rows - 1)) & (scales[n] > 0.0)
-        error = (
-            np.abs(_evaluate_polynomial(table, n, x[inside]) - exact[n][inside]) / scales[n][inside]
-        )
+        inside = (x < np.ldexp(1.0, e0 + rows.count - 1)) & (scales[n] > 0.0)
+        (found,), _ = rows.read(table.coefficients[None, ..., n], x[inside])
+        error = np.abs(found - exact[n][inside]) / scales[n][inside]
         errors[name] = float(np.max(error, initial=0.0))
     return errors
 
@@ -271,7 +270,7 @@ def _measured_errors_of_cover(
     errors = dict(zip(COVER_FUNCTIONS[1:], (found - by_shear) / L, strict=True))
     # at the creepage of free rolling there is no traction
     free = 0.5 * (found[0] + found[1])
-    values = evaluate_law(table, [1.0, 1.0, 1.0, u, free], u.shape, False, _COVER_FIELDS)
+    values = Contacts(table, 1.0, 1.0).fields(u, free, *_COVER_FIELDS)
     errors |= {"lam": values[0] / lam - 1.0, "limit": 2.0 * values[1] / L - 1.0}
     errors["epsilon"] = np.divide(
         values[2] - epsilon, epsilon, out=np.zeros(count), where=epsilon > 0.0
@@ -282,24 +281,6 @@ def _measured_errors_of_cover(
         )
     largest = {name: float(np.abs(error).max(initial=0.0)) for name, error in errors.items()}
     return largest | {"share": largest["lam"] + largest["limit"], "press": 2.0 * largest["limit"]}
-
-
-def _evaluate_polynomial(table: LawTable, function: int, x: Floats) -> Floats:
-    """Evaluate one function of a law by its rows of polynomials.
-
-    table: :class:`LawTable`, the law.
-    function: index in :data:`FUNCTIONS`: 0 lam, 1 epsilon, 2 m_half_space, 3 m_cylinder, 4 N, 5
-        share, 6 press.
-    x: kappa |V| for functions 0 to 4, v = 1/F(eta) for the others, (n,), dimensionless, > 0 and
-        below the end of the last row, 2^(e0 + rows - 1); the fast limit beyond it is not evaluated.
-    Returns values, (n,), dimensionless.
-    """
-    m, e = np.frexp(x)
-    row = np.maximum(e - table.e0, 0)
-    t = np.where(row == 0, np.ldexp(x, -table.e0), 4.0 * m - 3.0)
-    return np.asarray(
-        np.polynomial.polynomial.polyval(t, table.coefficients[row, :, function].T, tensor=False)
-    )
 
 
 # --- Checks of tables ---

@@ -4,7 +4,6 @@ fail.
 
 import grp
 import hashlib
-import importlib
 import os
 import pickle
 import pwd
@@ -16,7 +15,6 @@ import zlib
 from pathlib import Path
 from types import SimpleNamespace
 
-import numba
 import pytest
 from filelock import FileLock
 from ordinary_user import NOBODY, as_ordinary_user, let_in
@@ -99,20 +97,6 @@ def test_a_process_waits_for_what_another_one_compiles(kernels, monkeypatch):
     assert kernel(cubed.py_func)(2.0) == 8.0
     other.join()
     assert not [*kernels.rglob("*.lock")]
-
-
-def test_an_ordinary_function_between_kernels_works(kernels):
-    """It is compiled by itself, with all below it: LLVM would end the process for a symbol that it
-    misses.
-    """
-    between = numba.njit(lambda x: square(x) + 1.0)
-
-    @kernel
-    def top(x):
-        return between(x) + square(x)
-
-    assert between(2.0) == 5.0
-    assert top(2.0) == 9.0
 
 
 @pytest.mark.parametrize(
@@ -347,22 +331,6 @@ def test_any_change_of_a_source_renames_the_cache_folder(tmp_path, monkeypatch, 
     with (copy / name).open("ab") as file:
         file.write(b" ")
     assert digest() != before
-
-
-def test_bits_cannot_follow_the_history_of_the_cache():
-    """No kernel is granted numerical freedom: what LLVM makes of that depends on what is compiled
-    together.
-    """
-    kernels = [
-        each
-        for path in cache_module.KERNELS.glob("*/[!_]*.py")
-        for each in vars(
-            importlib.import_module(f"viscoroll.kernels.{path.parent.name}.{path.stem}")
-        ).values()
-        if hasattr(each, "targetoptions")
-    ]
-    assert len(kernels) > 100
-    assert not any(kernel.targetoptions.get("fastmath") for kernel in kernels)
 
 
 def test_cache_folder_follows_the_environment(monkeypatch):
