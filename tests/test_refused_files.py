@@ -112,7 +112,7 @@ REFUSED = [
                 lambda: vr.tables.export(grid(), None),
                 lambda: vr.Material.from_netcdf(None),
             ],
-            "given.nc: lacks a part of the result that its axes announce": [
+            "given.nc: is an incomplete result: a variable that belongs to its axes is missing": [
                 lambda: _figure_of_netcdf(netcdf(xr.Dataset({"V": ("motion", [1.0, 2.0])}))),
                 lambda: _figure_of_netcdf(netcdf(xr.Dataset({"V": ("input", [1.0, 2.0])}))),
                 lambda: _figure_of_netcdf(

@@ -217,37 +217,33 @@ def read_sections(path: str | PathLike[str]) -> dict[str, Any]:
 
 
 def read_law_source(path: str | PathLike[str]) -> Any:
-    """Read the bodies of a file, as an argument of :func:`viscoroll.tables.law_dataset`.
+    """Read the bodies of a file, for which a law can be tabulated by
+    :func:`viscoroll.tables.law_dataset`.
 
     Parameters
     ----------
-    path : TOML file with [material] and perhaps [base], or with a preset, [scene] or [cylinder]; or
-        the netCDF file of a material; or the name of a preset.
+    path : path of a file, or the name of a preset.  The file is TOML with [material] and optionally
+        [base], or with [cylinder], [scene] or a preset; or it is the netCDF file of a material.
 
     Returns
     -------
     Cylinder, Pair, Prony, Bodies or float
-        The Cylinder of a file with a section [cylinder], else a Pair of [material] and [base]; of a
-        scene its series or bodies, or its alpha, a float.
+        For [cylinder] the Cylinder; for [scene] its material, or its alpha, a float, if it has no
+        material; for [material] the Pair of it and [base].
 
     Raises
     ------
     FileError
-        As :func:`read_materials` and :func:`read_roller`, of which the latter reads a file with a
-        preset, [scene] or [cylinder]; any other file without [material]; a [base] that does not fit
-        the material.
+        As :func:`read_roller` for a preset, [scene] or [cylinder], as :func:`read_materials` for
+        other files; a file with none of these sections; a [base] that does not fit the material.
     """
     if read_sections(path).keys() & set(SCENES):
         roller = PRESETS.get(str(path)) or read_roller(path)
-        return (
-            roller
-            if isinstance(roller, Cylinder)
-            else roller.alpha
-            if roller.material is None
-            else roller.material
-        )
-    found = read_materials(path)
-    if "material" not in found:
+        if isinstance(roller, Cylinder):
+            return roller
+        return roller.alpha if roller.material is None else roller.material
+    materials = read_materials(path)
+    if "material" not in materials:
         raise FileError(path, "section [material] is missing")
     with as_section_error(path, "base"):
-        return Pair(found["material"], found.get("base"))
+        return Pair(materials["material"], materials.get("base"))

@@ -63,7 +63,7 @@ def command(
 def option(*names: str, **settings: Any) -> Option:
     """Return an argument of a command, in the form of :func:`command`.
 
-    names: positional name, or names of the option with dashes, as of
+    names: positional name, or names of the option with dashes, as in
     ``ArgumentParser.add_argument``.
     settings: keywords of ``ArgumentParser.add_argument``, as type and help.
     Returns an :class:`Option`, a function that takes a parser of argparse, or a group of one, and
@@ -203,8 +203,8 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
     that a load does not have (V is NaN) are left out; of a single row the column "state" is left
     out.  The dataset, for a .nc file, stays as it is.
 
-    arguments: parsed command line with output and format, as of :func:`deliver`.
-    result: a result of the library that has both methods, as of ``contact``, ``roll`` or
+    arguments: parsed command line with output and format, as in :func:`deliver`.
+    result: a result of the library that has both methods, as in ``contact``, ``roll`` or
     ``steady``.
     heading: first lines of the text, which csv and json do not have; "": the title of the data.
     Raises FileError if the file cannot be written.

@@ -116,7 +116,7 @@ def stress(arguments: Namespace) -> None:
         format of standard output, "text", "csv" or "json".
     Exactly one of delta and omega must be given.
     Returns None; each position has x, V, delta or omega, the pressure p and the shear stress tau
-    (of a cover p alone), in SI units of a cylinder, as of :func:`viscoroll.stress`; a .nc file has
+    (of a cover p alone), in SI units of a cylinder, as in :func:`viscoroll.stress`; a .nc file has
     them as the dataset of the result's ``to_xarray``.  A contact that the model does not describe
     gives a ModelWarning.
     Raises ParameterError for both or none of delta and omega, and for values that are not allowed;
@@ -257,7 +257,7 @@ def heat(arguments: Namespace) -> None:
 
     arguments: parsed command line with scene, path of a TOML file with [cylinder] and a [material]
         that has a shift; V, ambient, conductance, force, torque, slope, numbers or (n,), or None;
-        output and format as of ``steady``.
+        output and format as in ``steady``.
     Returns None.  The table has a row for each equilibrium, with the fields of
     :func:`viscoroll.temperature`.
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
@@ -532,7 +532,8 @@ def _figure_of_netcdf(path: str) -> Any:
         raise
     except (AttributeError, KeyError, ValueError) as error:
         raise vr.FileError(
-            path, f"lacks a part of the result that its axes announce ({error})"
+            path,
+            f"is an incomplete result: a variable that belongs to its axes is missing ({error})",
         ) from error
 
 

@@ -171,7 +171,7 @@ class Validity(NamedTuple):
         return tuple(name for name, assumption in self._asdict().items() if assumption.word == "no")
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:
-        """Title and rows of the printed report."""
+        """Return (title, rows) of the printed report."""
         items = self._asdict().items()
         rows = [
             SummaryRow(name, f"{assumption.word:<4} {assumption.sentence}")

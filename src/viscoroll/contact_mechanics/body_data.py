@@ -47,7 +47,7 @@ SHEAR = math.sqrt(0.5 * (5.0 * math.sqrt(5.0) - 11.0))
 #: rubbers soften by up to a factor of 5 between 0.1 and 10 %, so that a factor 3 of strain changes
 #: the moduli by up to 1.5.
 STRAIN_RATIO = 3.0
-#: Half contact lengths over the thickness at which the field of a layer is computed, and
+#: Half contact lengths, divided by the thickness, at which the field of a layer is computed, and
 #: interpolated between.
 _THETA = np.geomspace(1e-2, 8.0, 60)
 #: Nodes of wavenumber and depth of that field: the error is below 1e-3.
@@ -87,8 +87,13 @@ def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
 
 
 def _strains(data: Any, V: Any, length: Any, load: Any) -> dict[str, Any]:
-    """Return name of a deformable body -> amplitude of its shear strain, in the shape of V;
-    arguments as there.
+    """Return the amplitude of the engineering shear strain at the axis in each deformable body.
+
+    data: the bodies, a :class:`BodyData`.
+    V, length: speed, m/s, and contact length, m, arrays of one shape.
+    load: N/m, broadcasts with them.
+    Returns name of the body ("the material" where both are alike) -> strain, dimensionless, in the
+    broadcast shape.
     """
     pair = data.pair
     slenderness = 0.25 * length / data.R
@@ -160,7 +165,11 @@ def _layer_shear(nu: float) -> Floats:
 
 
 def _layer_terms(s: Floats, nu: float) -> tuple[Floats, Floats]:
-    """Return B and D of :func:`_layer_shear` for A = 1 at s = k h, (n,) each."""
+    """Return the coefficients B and D of :func:`_layer_shear` for A = 1, (n,) each, dimensionless.
+
+    s: wave number times thickness, k h, > 0, (n,).
+    nu: Poisson's ratio.
+    """
     cosh = np.cosh(s)
     sinh = np.sinh(s)
     # (1 - nu) f'' + nu k^2 f = 0 and (1 - nu) f''' = (2 - nu) k^2 f' at z = h, rows over B and D
@@ -343,8 +352,9 @@ class BodyData:
         """Return (lowest, highest) |V|, m/s, between which contacts do not warn; None where no
         speed gives a warning.
 
-        :data:`NO_SPEEDS` (or a lowest speed above the highest) where every speed gives one, as of a
-        contact at rest that is longer than the radius, and of a radius as if in mm.
+        :data:`NO_SPEEDS` (or a lowest speed above the highest) where every speed gives one, for
+        example where the contact at rest is longer than the radius, or the radius seems to be in
+        mm.
         """
         below_waves = None if self.wave_speed is None else (0.0, self.wave_speed)
         bands = [
@@ -476,8 +486,9 @@ def is_outside(extent: tuple[float, float], band: tuple[float, float]) -> bool:
 
 
 def extent_of(values: Any) -> tuple[float, float]:
-    """Return (smallest, largest) of numbers of any shape, without NaN, as floats; (0.0, 0.0) if
-    nothing is left.
+    """Return (smallest, largest) of ``values``, numbers of any shape, as floats.
+
+    NaN is ignored; (0.0, 0.0) if there is no other number.
     """
     low = float(np.fmin.reduce(values, axis=None, initial=np.nan))
     return (

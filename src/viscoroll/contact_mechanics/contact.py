@@ -370,10 +370,14 @@ def stress(
 def _stress_of_law(
     scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
 ) -> Floats:
-    """Return pressure and shear stress by the law without a table, which has no stresses, over E'.
+    """Return pressure and shear stress by the fast law, without a table of the coupled solution.
 
-    Arguments as of :func:`.coupled_contact.coupled_stress`.
-    Returns p and tau as rows of an array, each of the broadcast shape; of a cover p alone.
+    scene: dimensionless parameters of one material; kappa and mu may be arrays.
+    x: distance ahead of the axis, divided by l0; broadcasts with the states.
+    V: speeds, dimensionless, any sign.
+    creep: omega if ``creep_is_omega``, else the creepage delta.
+    Returns p and tau divided by E', rows of an array, each of the broadcast shape; of a cover p
+    alone.
     """
     from ..kernels.law.modes import Points
 

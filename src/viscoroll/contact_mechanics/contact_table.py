@@ -174,7 +174,7 @@ def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
     """Return the fields that the kernels compute, a row each, from which :func:`complete` makes all
     fields of a call.
 
-    names: fields of the call, as of :func:`field_names`.
+    names: fields of the call, as in :func:`field_names`.
     unlike: whether the bodies are of two materials; if not, each part of M is half of M, and is not
     computed.
     Returns names without repetition, in the order of their first need: a field that is a multiple
@@ -189,7 +189,7 @@ def computed_fields(names: tuple[str, ...], unlike: bool) -> tuple[str, ...]:
 def kernel_rows(names: tuple[str, ...]) -> Any:
     """Return the index of the output row of each field as the record that kernels take.
 
-    names: fields that kernels compute, as of :func:`computed_fields`, each once; field k has row k
+    names: fields that kernels compute, as in :func:`computed_fields`, each once; field k has row k
     of the output.
     Returns :class:`.law_record.Fields`: an int for each field, -1 for those that
     are not in ``names``.  N is not among them, since a kernel of its own computes it; its row is
@@ -205,8 +205,8 @@ def complete(
 ) -> dict[str, Any]:
     """Return the fields of a call by name, from the rows that the kernels computed.
 
-    names: fields of the call, as of :func:`field_names`.
-    computed: name of the field in each row, as of :func:`computed_fields`.
+    names: fields of the call, as in :func:`field_names`.
+    computed: name of the field in each row, as in :func:`computed_fields`.
     rows: values, (rows, states), dimensionless; ``full_slip`` is 0 or 1.
     shape: shape of the call, whose product is the number of states; () for one state.
     Returns a dict from each of ``names``, in their order, to an array of ``shape``, for shape () a
@@ -268,7 +268,7 @@ def evaluate_contact(
     creep : angular velocities times T_ref if ``creep_is_omega``, else creepages (omega - V)/V; any
     shape.
     creep_is_omega : whether ``creep`` is omega.
-    names : fields, as of :func:`field_names`.
+    names : fields, as in :func:`field_names`.
     method : "table", from the rows of the law, or "direct", by root solves of the printed
     equations.
 
@@ -341,7 +341,7 @@ def evaluate_law(
         delta or omega.
     shape : shape of the states; () for one state.
     creep_is_omega : whether the last of ``arrays`` is omega, else delta.
-    names : fields that kernels compute, as of :func:`computed_fields`, each once; N
+    names : fields that kernels compute, as in :func:`computed_fields`, each once; N
         not with an array of materials or ``direct``.
     direct : whether to solve the printed equations; ``material`` is None then.
 

@@ -40,7 +40,9 @@ def coupled_row(pair: CoupledPair, u: float, mu: float) -> CoupledRow:
 def refuse_unsolved(status: Any, creeps: Any, u: float, mu: float) -> None:
     """Raise ConvergenceError for the first state whose status is not 0; else do nothing.
 
-    status: of the kernels, (n,).  creeps: 2 kappa delta of each, (n,).  u, mu: of the row.
+    status: status of the kernels for each state, (n,).
+    creeps: reduced creepages 2 kappa delta, (n,).
+    u, mu: kappa |V| and coefficient of friction of the states, for the message.
     """
     for code, creep in zip(np.asarray(status, int), creeps, strict=True):
         if code:
@@ -54,8 +56,11 @@ class _States:
     """
 
     def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:
-        """Broadcast and check the states; creep: omega if ``creep_is_omega``, else delta.
+        """Broadcast and check the states.
 
+        scene: dimensionless parameters, of which kappa and mu, numbers or arrays, are read.
+        V: speeds, dimensionless, any sign.
+        creep: omega if ``creep_is_omega``, else the creepage delta.
         Raises ParameterError for kappa |V| that is too large, and shapes that do not broadcast.
         """
         arrays = {
@@ -96,7 +101,7 @@ def evaluate_coupled(
     """Return dimensionless fields of the contact by name, with pressure and shear solved together.
 
     scene: dimensionless parameters of one material; kappa and mu may be arrays.
-    V, creep, creep_is_omega, names: as of :func:`.contact_table.evaluate_contact`.
+    V, creep, creep_is_omega, names: as in :func:`.contact_table.evaluate_contact`.
     Returns a dict as that function does.
     Raises ParameterError for several materials, kappa |V| above 1e300, and the depth of a
     half-space; ConvergenceError where a state has no solution.
@@ -123,10 +128,14 @@ def evaluate_coupled(
 def _fields_of_row(
     pair: CoupledPair, states: _States, which: Any, names: tuple[str, ...]
 ) -> dict[str, Any]:
-    """Return all fields of the states of one row by name; depth and delta_0 where they are among
-    ``names``.
+    """Return the fields of states that have kappa |V| and mu in common.
 
-    which: indices of the states.
+    pair: the bodies.
+    states: all states of the call.
+    which: indices of the states of this row, (n,), n >= 1.
+    names: requested fields; depth and delta_0, which take longer, are computed only if requested.
+    Returns name -> values, (n,) or one number for all, dimensionless.
+    Raises ConvergenceError where a state has no solution.
     """
     first = which[0]
     row = coupled_row(pair, float(states.u[first]), float(states.mu[first]))
@@ -171,10 +180,12 @@ def _fields_of_row(
 def coupled_stress(
     scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
 ) -> Floats:
-    """Return pressure and shear stress on the cylinder along +x over E' at places x over l0.
+    """Return pressure and shear stress on the cylinder along +x.
 
-    scene, V, creep, creep_is_omega: as of :func:`evaluate_coupled`.  x: broadcasts with the states.
-    Returns p and tau as rows of an array, each of the broadcast shape, 0 outside the contact.
+    scene, V, creep, creep_is_omega: as in :func:`evaluate_coupled`.
+    x: distance ahead of the axis, divided by l0; broadcasts with the states.
+    Returns p and tau divided by E', rows of an array, each of the broadcast shape; 0 outside the
+    contact.
     Raises as :func:`evaluate_coupled`.
     """
     pair = CoupledPair.of_scene(scene)

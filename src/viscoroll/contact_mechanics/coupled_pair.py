@@ -12,8 +12,8 @@ Steady rolling with pressure and shear solved together: :class:`CoupledPair` and
 one speed.
 
 Everything is dimensionless.  Lengths are divided by l0, the contact length at rest of half-spaces,
-kappa = R/l0, u = kappa |V|, forces over the load P and moments over P R.  Creeps are 2 kappa delta,
-of the sign of omega R - V.
+kappa = R/l0, u = kappa |V|, forces are divided by the load P and moments by P R.  A reduced
+creepage ("creep" in names) is 2 kappa delta, of the sign of omega R - V.
 
 Powers per unit of V, with M_b the part of M by the slope of body b and W_b = int q u'_b dx by its
 strain along x:
@@ -49,8 +49,8 @@ _NEAR_TERMS = 22
 #: k |x| below which the transforms of second antiderivatives are taken from two terms of their
 #: series
 _SMALL_PHASE = 0.02
-#: scales, over l0, at which the growth of the compliance is looked at; a part of the load of the
-#: root of a scale lies within it at most
+#: distances from the front edge, divided by l0, at which the growth of the compliance is evaluated;
+#: at most the square root of a distance is the part of the load that lies within it
 _SCALES = np.geomspace(1e-7, 1.0, 200)
 #: growth d ln J/d ln x of the compliance over distance x from the front edge from which on pressure
 #: gathers there; the pressure of half-spaces grows like the distance to the power of 1/2 less it
@@ -125,7 +125,7 @@ def _half_space(
 def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     """Return what kernels of a bonded layer have in common at all speeds.
 
-    nu, thickness: of the layer, the latter over l0.
+    nu, thickness: Poisson's ratio of the layer, and its thickness divided by l0.
     Returns (wave numbers times l0, (m,); even and odd parts of (e^iy - 1 - iy)/y^2 at y = |x| k,
     for all |x| of :func:`_fit`, (2, BINS, DEGREE + 1, m); weights of the three kernels, (3, m)).
     Each bin is a matrix of its own, so that BLAS takes no threads beside those of the rows.
@@ -146,9 +146,10 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
 def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float, float]]) -> Floats:
     """Return what a bonded layer adds to the kernels of a half-space.
 
-    nu, thickness: of the layer.  instant, modes: as of :func:`_half_space`.
-    Returns (2 signs of x, 3 kernels, n) at all |x| of :func:`_fit`; what is linear in x is left
-    out.
+    nu, thickness: Poisson's ratio of the layer, and its thickness divided by l0.
+    instant: instantaneous compliance, divided by the long-time one.
+    modes: (strength, length u T divided by l0) of each creep mode.
+    Returns (2 signs of x, 3 kernels, n) at all |x| of :func:`_fit`, without terms linear in x.
     """
     k, phases, excess = _phases(nu, thickness)
     compliance = np.full(k.size, complex(instant))
@@ -207,7 +208,8 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
 def growth(bodies: Any, times: Floats) -> Floats:
     """Return d ln J/d ln t of the summed compliance of bodies at times, (n,).
 
-    bodies: :class:`CoupledBody` of each.  times: of a load, in units of T_ref, > 0, (n,).
+    bodies: a :class:`CoupledBody` for each body that deforms.
+    times: durations of a load, in units of T_ref, > 0, (n,).
     """
     compliance = np.zeros_like(times)
     rate = np.zeros_like(times)
@@ -221,12 +223,16 @@ def growth(bodies: Any, times: Floats) -> Floats:
 
 
 def edge_layer(bodies: Any, u: float) -> float:
-    """Return the length of the layer at the front edge in which the material is stiff, over l0;
-    infinite without one.
+    """Return the length of the zone behind the front edge in which the material is still stiff.
 
-    bodies: :class:`CoupledBody` of each.  u: kappa |V|.
-    It is the least distance at which the compliance, of the time of the passage, grows faster than
-    like its root.
+    A point of a surface reaches the distance x l0 behind the edge at the time x/u.  The zone ends
+    at the smallest x in [1e-7, 1] at which the compliance J at that time has a logarithmic slope
+    d ln J/d ln t above 0.4 (:data:`_GROWTH`), so that the pressure is concentrated there.
+
+    bodies: a :class:`CoupledBody` for each body that deforms.
+    u: kappa |V|, dimensionless, >= 0 or infinite.
+    Returns that x, a float, divided by l0; infinity if no x in this range has such a slope, and for
+    u = 0 or infinite, where the bodies are elastic.
     """
     if u == 0.0 or math.isinf(u):
         return math.inf
@@ -235,11 +241,12 @@ def edge_layer(bodies: Any, u: float) -> float:
 
 
 def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
-    """Return the Fourier transform int f(x) exp(-i k x) dx of a function that is linear between
+    """Return the Fourier transform int f(x) exp(-i k x) dx of a function f that is linear between
     nodes.
 
-    nodes, values: (n,).  k: wave numbers, (m,).  Returns complex numbers (m,), by Gauss's rule in
-    each element.
+    nodes, values: ascending x divided by l0, and f there, (n,) each.
+    k: wave numbers times l0, (m,).
+    Returns complex numbers, (m,), in the unit of f, by Gauss's rule in each element.
     """
     points, weights = np.polynomial.legendre.leggauss(_GAUSS)
     lengths = np.diff(nodes)
@@ -251,10 +258,11 @@ def transforms(nodes: Floats, values: Floats, k: Floats) -> Any:
 
 
 def layer_transforms(nu: float, u: Floats) -> Floats:
-    """Return L, T and C of a bonded layer over those of a half-space, C as it is, at wave numbers
-    times the thickness.
+    """Return the transforms L, T and C (module) of a bonded layer.
 
-    nu: Poisson's ratio.  u: > 0, (n,).  Returns (3, n).
+    nu: Poisson's ratio.
+    u: wave numbers times the thickness, > 0, (n,).
+    Returns L and T divided by those of a half-space, and C, dimensionless, (3, n).
     """
     kap = 3.0 - 4.0 * nu
     decay = np.exp(-2.0 * u)
@@ -266,14 +274,15 @@ def layer_transforms(nu: float, u: Floats) -> Floats:
 
 
 def depth(bodies: Any, u: float, profile: Any) -> float:
-    """Return the approach of two bodies of which each is a layer on rigid ground or rigid, over
-    l0^2/R.
+    """Return the approach of two bodies, each rigid or a layer on a rigid body.
 
-    The mean of the displacement of both surfaces with the pressure as weight, by Parseval's
-    theorem, and that of the cylinder's profile x^2/2.
+    It is the mean, weighted by the pressure, of the displacement of both surfaces (by Parseval's
+    theorem) plus that of the cylinder's profile x^2/2.
 
-    bodies: :class:`CoupledBody` of each that deforms, all of finite thickness.
-    u: kappa |V|.  profile: :class:`CoupledProfile`.
+    bodies: a :class:`CoupledBody` for each body that deforms, of finite thickness.
+    u: kappa |V|, dimensionless, >= 0 or infinite.
+    profile: :class:`CoupledProfile`, tractions of the state.
+    Returns the approach divided by l0^2/R, a float.
     """
     half = 0.5 * (profile.nodes[-1] - profile.nodes[0])
     s = np.arange(*_WAVES)
@@ -303,13 +312,13 @@ def depth(bodies: Any, u: float, profile: Any) -> float:
 
 #: Elements of a state.
 ELEMENTS = 72
-#: Elements of states of which only the zones are asked.
+#: Elements of states of which only the zones of stick and slip are needed.
 _ROUGH_ELEMENTS = 40
-#: Error of the creep of free rolling, times 2 kappa.
+#: Absolute error of the reduced creepage of free rolling.
 _FREE_CREEP_ERROR = 1e-9
-#: Length of an edge layer, over l0, from which on elements are added, as many as gather in it.
+#: Length of an edge layer, divided by l0, below which the mesh has additional elements there.
 _UNLAYERED = 1e-3
-#: Coupling over the largest kernel that counts as rounding.
+#: Coupling that counts as rounding, divided by the largest kernel.
 _ROUNDING = 1e-14
 
 
@@ -320,8 +329,8 @@ class CoupledBody(NamedTuple):
     share : its part of the summed long-time compliance of both as half-spaces, in (0, 1].
     nu : Poisson's ratio in plane strain.
     thickness : of a layer, divided by l0; infinite of a half-space.
-    J, T : strengths of its creep modes over its long-time compliance, and their times in units of
-    T_ref.
+    J, T : strengths of its creep modes, divided by its long-time compliance, and their retardation
+    times in units of T_ref.
     """
 
     side: str
@@ -338,7 +347,7 @@ class CoupledBody(NamedTuple):
 
     @property
     def instant(self) -> float:
-        """Instantaneous compliance over the long-time one, >= 0."""
+        """Instantaneous compliance divided by the long-time one, >= 0."""
         return max(1.0 - math.fsum(self.J), 0.0)
 
     @property
@@ -354,9 +363,12 @@ class CoupledPair(NamedTuple):
 
     @classmethod
     def of_scene(cls, scene: Any) -> CoupledPair:
-        """Return the pair of dimensionless parameters, :class:`.parameters.Parameters`, of one
-        material.
+        """Return the pair of bodies of a roller.
 
+        scene: dimensionless parameters, a :class:`.parameters.Parameters`; its alpha or material is
+        read.
+        Returns the :class:`CoupledPair`; without a material both are half-spaces of alpha, without
+        coupling.
         Raises ParameterError for several materials.
         """
         material = scene.material
@@ -390,10 +402,10 @@ class CoupledStates(NamedTuple):
     """Fields of states of one row in the order of :data:`.law_rows.FIELDS`, and their status,
     (n,) each, dimensionless.
 
-    Q_over_mu : traction over mu P.
+    Q_over_mu : traction divided by mu P.
     kM_base, kM_cylinder : kappa times the parts of M by the slope of each body.
-    lam, epsilon : contact length over l0, shift over half of it.
-    beta : length of the stick zone over the contact length.
+    lam, epsilon : contact length divided by l0, shift divided by half the contact length.
+    beta : length of the stick zone divided by the contact length.
     work_base, work_cylinder : 2 kappa int q u'_b dx/P: strain of each body (module).
     status : 0 where solved (:mod:`.coupled_states`).
     """
@@ -417,9 +429,9 @@ class CoupledStates(NamedTuple):
 class CoupledProfile(NamedTuple):
     """Tractions of one state, linear between the nodes of the elements.
 
-    nodes : places over l0 from the middle of the contact, ascending, (n,), of a motion along +x.
-    shift : place of the middle ahead of the axis, over l0.
-    p, q : pressure and shear stress on the cylinder along +x, over E'/(4 pi kappa), (n,).
+    nodes : x from the middle of the contact, divided by l0, ascending, (n,), of a motion along +x.
+    shift : distance of the middle ahead of the axis, divided by l0.
+    p, q : pressure and shear stress on the cylinder along +x, divided by E'/(4 pi kappa), (n,).
     status : 0 where solved.
     """
 
@@ -431,8 +443,8 @@ class CoupledProfile(NamedTuple):
 
 
 class CoupledRow:
-    """States of a pair at one speed u = kappa |V|, over creep; its kernels are computed here, and
-    hold no GIL.
+    """States of a pair at one speed u = kappa |V|, as functions of the reduced creepage 2 kappa
+    delta.  Its compiled kernels release the GIL.
     """
 
     def __init__(self, pair: CoupledPair, u: float, mu: float, n: int = ELEMENTS) -> None:
@@ -486,14 +498,14 @@ class CoupledRow:
         return self._full[:, 8]
 
     def onsets(self) -> tuple[float, float]:
-        """Return the creeps 2 kappa delta at which full slip begins, (of the negative, of the
-        positive sign).
+        """Return the reduced creepages 2 kappa delta at which full slip begins, (the negative, the
+        positive one).
         """
         return 2.0 * self._ends[0], 2.0 * self._ends[1]
 
     def touch(self) -> float:
-        """Return the creep 2 kappa delta at which slip of the other sign opens in the rear half of
-        the contact.
+        """Return the reduced creepage 2 kappa delta, between the onsets, at which a zone of slip of
+        the other sign appears in the rear half of the contact.
         """
         return 2.0 * float(
             coupled_states.touch_creep(
@@ -502,13 +514,15 @@ class CoupledRow:
         )
 
     def states(self, creeps: Any, at: Any = None, apart: bool = False) -> CoupledStates:
-        """Return the states at creeps 2 kappa delta, in any order, (n,), also beyond the onsets of
-        full slip.
+        """Return the states at given creepages.
 
-        at: places in a coordinate over which states are smooth, ascending with creep, (n,); None:
-            the creeps themselves.
-        apart: whether each is solved from nothing; else from its neighbour, in half the time and to
-        some 1e-5.
+        creeps: reduced creepages 2 kappa delta, (n,), in any order, also beyond the onsets of full
+            slip.
+        at: values of a coordinate in which the states are smooth, ascending with the creepage,
+            (n,), by which first guesses are extrapolated; None: the creepages themselves.
+        apart: whether each state is solved independently of the others; else each starts from its
+            neighbour, which halves the time and changes results by about 1e-5.
+        Returns the :class:`CoupledStates`; ``status`` is not 0 where no solution was found.
         """
         given = np.asarray(creeps, dtype=np.float64)
         found = np.empty((given.size, coupled_states.COLUMNS))
@@ -545,7 +559,7 @@ class CoupledRow:
         )
 
     def free_creep(self) -> float:
-        """Return the creep 2 kappa delta of free rolling, at which there is no traction."""
+        """Return the reduced creepage 2 kappa delta of free rolling, at which Q = 0."""
         return float(
             brentq(
                 lambda creep: self.states([creep]).Q_over_mu[0],
@@ -555,7 +569,12 @@ class CoupledRow:
         )
 
     def profile(self, creep: float) -> CoupledProfile:
-        """Return the tractions at a creep 2 kappa delta of any size."""
+        """Return the tractions at one state.
+
+        creep: reduced creepage 2 kappa delta, any number.
+        Returns the :class:`CoupledProfile`, of which ``status`` is not 0 where no solution was
+        found.
+        """
         low, high = self.onsets()
         slips = not low < creep < high
         out = np.zeros(coupled_states.COLUMNS)

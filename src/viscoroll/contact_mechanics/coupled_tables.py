@@ -11,8 +11,8 @@ creep at which slip of the other sign opens to the other onset, in equal steps o
 Tables of the coupled solution that are made at first use, and their files beside the compiled
 kernels.
 
-A table depends on the bodies over l0 and on mu alone: kappa, gamma, j, load and radius change it by
-the thickness over l0 only.
+A table depends on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load and
+radius change it only through that ratio.
 """
 
 from __future__ import annotations
@@ -45,12 +45,12 @@ from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, grow
 
 # --- Tables of the coupled solution ---
 
-#: Nodes over creep: splines over speed, not these, determine the error of motions (1e-7 at 33).
+#: Nodes of creepage: splines in the speed, not these, determine the error of motions (1e-7 at 33).
 NODES = 27
-#: Nodes in a decade of speed: of bodies whose compliance changes little, and what is added where it
-#: grows like time.
+#: Nodes in a decade of speed: those of bodies whose compliance changes little, and those added
+#: where it is proportional to time.
 _PER_DECADE = (5.0, 8.1)
-#: Places in a decade at which the growth of the compliance is looked at.
+#: Times in a decade at which the growth of the compliance is evaluated.
 _LOOKS = 8
 #: First node of speed times the longest retardation time, and last node times the shortest
 #: relaxation time.
@@ -60,9 +60,9 @@ _ELASTIC = np.array([0.5, 1.0, 2.0])
 #: Points beside the nodes at which the error of a table is measured, and their seed.
 _CHECKED = 64
 _SEED = 20260103
-#: Rows among which the place of the middle creep between the onsets must be, and its largest
-#: distance from their median: it changes by a hundredth in half a decade; up to six rows in
-#: sequence were seen a fifth away.
+#: The relative position of the middle creepage between the onsets is compared with its median over
+#: this number of rows, and may differ by this much: it changes by 0.01 in half a decade, while
+#: outliers, up to six rows in sequence, differed by 0.2.
 _NEIGHBOURS = 21
 _FAR = 0.03
 
@@ -73,7 +73,7 @@ def coupled_law(
     """Compute the table of the coupled solution of one scene, as a law.
 
     scene: dimensionless parameters of one material, alpha, kappa and mu, numbers.
-    nodes: numbers of nodes over speed and over creep, the second odd; None: 5 to 13 a decade of
+    nodes: numbers of nodes of speed and of creepage, the second odd; None: 5 to 13 a decade of
         speed between the rates of the bodies, the more the faster their compliance grows, and 33.
     progress: whether a progress bar is drawn on standard error, after one second.
     Returns the :class:`LawTable`, whose ``coupled`` rows state their errors.
@@ -84,8 +84,11 @@ def coupled_law(
 
 
 def speed_nodes(pair: CoupledPair, count: int | None = None) -> Floats:
-    """Return the nodes of u = kappa |V| of a table of a pair, (n,); ``count``: their number, None:
-    the default.
+    """Return the nodes of u = kappa |V| of a table.
+
+    pair: the bodies.
+    count: number of nodes, >= 2; None: more the faster the compliance of the bodies grows.
+    Returns ascending u, dimensionless, (n,); for elastic bodies three, whatever ``count`` is.
     """
     times = np.array([time for body in pair.bodies for time in body.T])
     if not times.size:
@@ -108,7 +111,7 @@ def tabulate(
 
     pair: the bodies.
     mu: coefficient of friction.
-    nodes, progress: as of :func:`coupled_law`.
+    nodes, progress: as in :func:`coupled_law`.
     Returns :class:`CoupledRows` with ``errors``.
     Raises ConvergenceError for a state that is not solved, and ParameterError for ``nodes``.
     """
@@ -116,13 +119,15 @@ def tabulate(
     if count is not None:
         check_integer("nodes", count, 4, 1000)
     if check_integer("nodes", across, 9, 1001) % 2 == 0:
-        raise ParameterError("nodes", across, "odd over creep: the nodes are symmetric")
+        raise ParameterError(
+            "nodes", across, "an odd number of nodes of creepage, as they are symmetric"
+        )
     u = speed_nodes(pair, count)
     t = np.linspace(-1.0, 1.0, across)
     speeds = np.concatenate([[0.0], u, [math.inf]])
     edges = np.empty((speeds.size, 4))
     fields = np.empty((speeds.size, across, len(FIELDS)))
-    # the rows of elastic bodies are one
+    # all rows of elastic bodies are equal: only the first is solved
     work = range(1) if u is _ELASTIC else range(speeds.size)
 
     rows: list[Any] = [None] * len(work)
@@ -147,11 +152,13 @@ def tabulate(
 
 
 def _without_outliers(edges: Floats) -> Floats:
-    """Return the middle creeps of rows with those replaced that are far from their neighbours.
+    """Return the middle creepages of all rows, with outliers replaced by interpolation.
 
-    They are found by bisection of the zones of slip, which at single speeds takes another place;
-    any creep between the onsets serves, but splines over speed need neighbours.
-    edges: middle creep and both onsets, (rows, 3).
+    The middle creepage divides a row into two splines.  It is found by bisection of the zones of
+    slip, which at single speeds yields another root.  Any creepage between the onsets is allowed,
+    but splines in the speed require that it changes smoothly from row to row.
+    edges: reduced creepages 2 kappa delta of the middle and of both onsets, (rows, 3).
+    Returns the reduced middle creepages, (rows,).
     """
     from scipy.ndimage import median_filter
 
@@ -166,9 +173,10 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
     """Solve one row of a table.
 
     row: the row, with kernels and onsets.
-    middle: creep between the sides.
-    t: nodes, (m,).
-    Returns (its edges, its fields (m, 8)).
+    middle: reduced creepage 2 kappa delta at which both splines of the row meet.
+    t: nodes, -1 at the negative onset of full slip, 0 in the middle, 1 at the positive one, (m,).
+    Returns ([reduced creepages of the middle, of both onsets and of free rolling], fields (m, 8) in
+    the order of :data:`FIELDS`).
     Raises ConvergenceError for a state that is not solved.
     """
     u = row.u
@@ -190,13 +198,16 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
 def _hold_friction(
     t: Floats, fields: Floats, place: float, friction: float, sides: set[str]
 ) -> None:
-    """Shift M of an elastic row by its error at free rolling, where all of M is the friction of
-    what still slips.
+    """Correct M of an elastic row so that in free rolling it equals the slip loss.
 
-    Without it a cylinder would be driven, or held, at rest by the error of the spline.
-    t: nodes, (m,).  fields: of the row, (m, 8), changed.
-    place: t of free rolling.  friction: kappa times its moment there, >= 0.
-    sides: bodies that deform, "base" and "cylinder", which share the shift.
+    Elastic bodies lose energy in slip alone.  Without the correction the error of the spline would
+    drive a cylinder at rest, or keep it at rest.
+    t: nodes, in [-1, 1], (m,).
+    fields: fields of the row, (m, 8), of which M and the work of both bodies are changed.
+    place: t of free rolling.
+    friction: kappa times the moment of the slip loss there, >= 0.
+    sides: bodies that deform, of "base" and "cylinder", between which the shift is divided equally.
+    Returns None.
     """
     columns = [1 + ("base", "cylinder").index(side) for side in sorted(sides)]
     found = float(_spline(t, fields[:, columns].sum(axis=1), place)(place))
@@ -207,10 +218,13 @@ def _hold_friction(
 
 
 def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Floats:
-    """Return fields of states in the order of :data:`FIELDS`, (n, 8).
+    """Return the fields of states as one array.
 
-    Raises ConvergenceError for the first state that is not solved, with its ``creeps``, ``u`` and
-    ``mu``.
+    states: the states, n of them.
+    creeps: reduced creepages 2 kappa delta, (n,), for the message.
+    u, mu: kappa |V| and coefficient of friction of all states, for the message.
+    Returns (n, 8), columns in the order of :data:`FIELDS`, dimensionless.
+    Raises ConvergenceError for the first state that is not solved.
     """
     if not states.converged.all():
         n = int(np.argmin(states.converged))
@@ -222,8 +236,10 @@ def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Float
 
 
 def _spline(t: Floats, values: Floats, place: float) -> Any:
-    """Return the clamped spline of one row on the side of a place in [-1, 1]; t, values: nodes,
-    (m,).
+    """Return the clamped cubic spline of one row, on one side of its middle.
+
+    t, values: all nodes of the row, in [-1, 1], and the values there, (m,) each.
+    place: number whose sign selects the side: t <= 0 if it is negative, else t >= 0.
     """
     from scipy.interpolate import CubicSpline
 
@@ -233,7 +249,10 @@ def _spline(t: Floats, values: Floats, place: float) -> Any:
 
 
 def _free_place(t: Floats, Q: Floats) -> float:
-    """Return the t of free rolling, at which Q = 0 by the spline of one row; t, Q: nodes, (m,)."""
+    """Return the t of free rolling, at which the spline of one row has Q = 0.
+
+    t, Q: all nodes of the row, in [-1, 1], and Q/mu there, (m,) each.
+    """
     from scipy.optimize import brentq
 
     sign = -1.0 if Q[t.size // 2] > 0.0 else 1.0
@@ -247,15 +266,15 @@ def measure_errors(
     seed: int = _SEED,
     elements: int = ELEMENTS,
 ) -> dict[str, float]:
-    """Compare a table with states at random points that are no nodes: a third near the middle
-    creep, others anywhere.
+    """Compare a table with solutions at random points: 3 of 8 near the middle creepage, the others
+    anywhere between the onsets of full slip.
 
     rows: the table; ``errors`` are not read.
     pair: its bodies.
-    count: number of points, in rows of eight at one speed.
-    seed: of the random points.
-    elements: of the states that it is compared with.
-    Returns field -> largest absolute error, with 2 kappa times that of the work.
+    count: number of points, eight at each speed, rounded up.
+    seed: seed of the random points.
+    elements: number of boundary elements of the solutions.
+    Returns field -> largest absolute error, dimensionless; works are multiplied by 2 kappa.
     """
     from ..kernels.law.spline_law import look_up
 
@@ -308,9 +327,11 @@ def is_coupled(pair: CoupledPair) -> bool:
 
 
 def stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
-    """Return the table of a pair at one mu, from this process, from its file, or made now and kept
-    in both.
+    """Return the table of a pair at one mu: that of this process, else that of the cache folder,
+    else a new one, which both then keep.
 
+    pair: the bodies.
+    mu: coefficient of friction, > 0.
     A process that a user started shows a progress bar after one second, unless $VISCOROLL_QUIET is
     1.
     Raises ConvergenceError for a state that is not solved.
@@ -321,6 +342,11 @@ def stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
 
 @lru_cache(maxsize=32)
 def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
+    """Return the table of a pair at one mu, from its file, else solved and stored.
+
+    The file is named by a hash of the sources, the bodies and mu; a damaged one is replaced with a
+    warning.  Arguments and errors as in :func:`stored_rows`.
+    """
     key = hashlib.sha256(f"{_digest()} {pair!r} {mu!r}".encode()).hexdigest()[:20]
     path = cache_root() / "coupled" / f"{key}.npz"
     damaged = "coupled table is damaged ({}) and is made again"

@@ -326,7 +326,9 @@ class FreeRolling:
         Raises ParameterError for a cover, whose N is not known.
         """
         scene = scene.uncoupled  # a free roller has hardly any traction
-        refuse_cover(scene, "free rolling is not examined, since N is not available")
+        refuse_cover(
+            scene, "free rolling is not examined, since N of M = M(V) + N dV/dt is not available"
+        )
         materials: Any
         unit: Any
         if scene.material_array is None:

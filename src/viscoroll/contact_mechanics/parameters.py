@@ -555,8 +555,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            "the law of these bodies is a table of the coupled solution; give coupled=False: "
-            f"by a table {why}",
+            "shear and pressure of these bodies are coupled, and their law is a table; with such "
+            f"a table {why}: give coupled=False for the law without coupling",
         )
 
 

@@ -71,7 +71,7 @@ class Branches:
     rises or falls throughout.
 
     The branches lie between the first node, the extrema and the last node.  G is a gain on the
-    speed, as of a feedback.
+    speed, as for a feedback.
     u : nodes of kappa V, ascending, (n,).
     resistance : kappa (M - G V) at the nodes, (n,).
     extremum : whether a node is a local extremum of the curve, (n,).
@@ -197,7 +197,7 @@ def branches(law: LawTable, gain: float) -> Branches:
     V.
     Returns the :class:`Branches` for u > 0, which are kept for the next call (the last 16).  The
     nodes are those of :func:`speed_nodes`, of which those within 1e-6, relative, of an extremum
-    give way to it.  Without an extremum, as of elastic bodies, there is one branch over all nodes.
+    give way to it.  Without an extremum, as for elastic bodies, there is one branch over all nodes.
 
     Raises
     ------

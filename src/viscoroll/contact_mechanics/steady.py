@@ -226,7 +226,7 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     loads: the loads with their gains, dimensionless.
     n: index of the load.
     Returns a list of one :class:`States` with one state, whose V is 0, whose creepage is infinite
-    with the sign of omega, as of :func:`.contact.contact` at V = 0, and whose eigenvalues are
+    with the sign of omega, as in :func:`.contact.contact` at V = 0, and whose eigenvalues are
     those of the slowest speed of the nodes; or an empty list: also where the gains on omega add to
     0, where force + torque are 0 at rest, and of a cover, on which a moment remains.
     """
@@ -514,7 +514,7 @@ def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
     law : table of the material.
     loads : the loads, dimensionless.  Chosen are those with V = 0 where V was given, else those
         with force + torque = 0 at rest, whether or not the friction suffices.
-    neutral : whether every speed is steady without a load, as of elastic bodies; without a given V
+    neutral : whether every speed is steady without a load, as for elastic bodies; without a given V
         rest is then chosen only where |torque| exceeds mu, so that the friction does not suffice,
         which the result has to say.
     """

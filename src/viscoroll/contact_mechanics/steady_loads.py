@@ -21,9 +21,9 @@ Steady states on a table of the coupled solution: the balance of axis and cylind
 at rest.
 
 At V > 0 the axis is in balance where Q - M_half_space = -f, the cylinder where Q + M_cylinder = q,
-with force f and torque q.  The left sides rise with the creep, so that one of the two gives the
-creep at each speed, and the other one the speeds.  Where friction does not suffice the rest of a
-balance is kept, and the state does not exist.
+with force f and torque q.  The left sides rise with the creepage, so that one of the two gives the
+creepage at each speed, and the other one the speeds.  Where friction does not suffice, the part of
+the load that is not balanced is returned, and the state does not exist.
 
 All is dimensionless; a law is a :class:`LawTable` with ``coupled`` rows.
 """
@@ -204,8 +204,8 @@ def _given_load(slope: ArrayLike | None, **loads: ArrayLike | Feedback | None) -
 
 # --- How shear acts back on the rolling moments of a cover, for steady states ---
 
-#: rounding of a balance of force and torque at rest, relative to the larger: some units of rounding
-#: of both products
+#: rounding of a balance of force and torque at rest, relative to the sum of both: some units in the
+#: last place
 _BALANCE_ROUNDING = 4e-15
 #: fields of the kernels that :class:`Shear` holds
 _REACTION = "reaction_half_space", "reaction_cylinder", "excess_half_space", "excess_cylinder"
@@ -214,8 +214,8 @@ _REACTION = "reaction_half_space", "reaction_cylinder", "excess_half_space", "ex
 class Shear(NamedTuple):
     """How shear acts back on the moments at some speeds; all 0 of half-spaces.
 
-    half_space, cylinder : factors a of base and cylinder, (n,) each, dimensionless.
-    half_space_excess, cylinder_excess : excesses e, (n,) each, dimensionless.
+    half_space, cylinder : factors a (module) of base and cylinder, (n,) each, dimensionless.
+    half_space_excess, cylinder_excess : excesses e (module), (n,) each, dimensionless.
     contacts : the law, at a kappa and a mu, numbers or (n,).
     """
 
@@ -386,11 +386,13 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
 
 
 def _torque_left_of_cover(contacts: Contacts, load: Loads, x: Floats) -> Floats:
-    """Return torque less M_cylinder and Q at speeds exp2(x)/kappa at which the axis is in balance,
-    (n,).  M without traction is read at Q = 0.
+    """Return torque - M_cylinder - Q of a cover, with the Q that balances the force on the axis.
 
-    contacts : the law, at one kappa and one mu.
+    contacts : the law of the cover, at one kappa and one mu.
     load : one load in the frame where V > 0, whose force and torque are numbers.
+    x : log2(kappa V) of each speed, (n,).
+    Returns the torque that is not balanced, divided by P R, (n,); 0 where the cylinder rolls
+    steadily.  The moments without traction are those of the creepage of free rolling, where Q = 0.
     """
     V = np.exp2(x) / contacts.kappa
     shear = shear_at(contacts, V)
@@ -401,8 +403,12 @@ def _torque_left_of_cover(contacts: Contacts, load: Loads, x: Floats) -> Floats:
 
 
 def _torque_left_on_table(contacts: Contacts, load: Loads, x: Floats) -> Floats:
-    """Return the torque that is left at speeds exp2(x)/kappa; arguments as of
-    :func:`_torque_left_of_cover`.
+    """Return torque - M_cylinder - Q on a table, with the Q that balances the force on the axis.
+
+    contacts : the table, at one kappa and one mu.
+    load : one load in the frame where V > 0, whose force and torque are numbers.
+    x : log2(kappa V) of each speed, (n,).
+    Returns the torque that is not balanced, divided by P R, (n,), as in :func:`_torque_left`.
     """
     V = np.exp2(x) / contacts.kappa
     force = load.force + load.gains.force_V * V
@@ -411,12 +417,15 @@ def _torque_left_on_table(contacts: Contacts, load: Loads, x: Floats) -> Floats:
 
 
 def is_balanced_at_rest(law: LawTable, loads: Loads) -> Booleans:
-    """Return under which loads V = omega = 0 is a state of equilibrium, (n,); the friction is
-    considered on a table of the coupled solution only.
+    """Return for each load whether V = omega = 0 is a state of equilibrium.
+
+    Half-spaces rest where force + torque = 0.  A cover rests where the traction that balances the
+    torque also balances the force on the axis, to rounding.  Whether friction suffices for that
+    traction is considered on a table of the coupled solution only.
 
     law : table of the material.
-    loads : the loads, dimensionless; force and torque are read.  Of half-spaces force + torque must
-        be 0, of a cover what the traction of the torque leaves on the axis, to rounding.
+    loads : the loads, dimensionless, of which force and torque are read.
+    Returns booleans, (n,).
     """
     if law.coupled is None and law.cover is None:
         return loads.force + loads.torque == 0.0
@@ -438,18 +447,21 @@ _FAR_OCTAVES = 40
 _DENSITY = 6
 #: rounding of the balance
 _NOISE = 1e-14
-#: speed over the first node at which slopes at rest are taken: there the law is linear in u
+#: speed at which slopes at rest are taken, divided by the first node: there the law is linear in u
 _SLOW = 1e-3
 
 
 def balance(
     contacts: Contacts, V: Floats, load: Floats, spin: bool = False
 ) -> tuple[Floats, Floats]:
-    """Return the creepages at which friction is in balance with a load, and what is left of the
-    load; (n,) each.
+    """Return the creepages at which a table of the coupled solution carries given loads.
 
-    contacts : a table, at a kappa and a mu.  V : speeds >= 0, (n,).
-    load : Q - M_half_space, or with ``spin`` Q + M_cylinder, (n,).
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
+    V : speeds >= 0, dimensionless, (n,).
+    load : required value of Q - M_half_space, with ``spin`` of Q + M_cylinder, dimensionless, (n,).
+    spin : whether the cylinder is balanced, instead of the axis.
+    Returns (creepages delta, dimensionless; the part of each load that the friction cannot balance,
+    0 where it suffices), (n,) each.
     """
     from ..kernels.law.spline_law import balance_loop
 
@@ -464,7 +476,12 @@ def balance(
 
 
 def fields_at(contacts: Contacts, V: Floats, delta: Floats) -> dict[str, Floats]:
-    """Return the fields of a table at V >= 0 and creepages, (n,) each, by name (:data:`FIELDS`)."""
+    """Return the fields of a table of the coupled solution at given states.
+
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
+    V, delta : speeds >= 0 and creepages, dimensionless, (n,) each.
+    Returns name (:data:`FIELDS`) -> values, (n,), dimensionless; moments are multiplied by kappa.
+    """
     from ..kernels.law.spline_law import look_up
 
     law, kappa, _ = contacts
@@ -473,38 +490,53 @@ def fields_at(contacts: Contacts, V: Floats, delta: Floats) -> dict[str, Floats]
 
 
 def moments_of_losses(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
-    """Return the moments by which the losses in base and cylinder are V and omega times these, (2,
-    n).
+    """Return the loss of each body divided by its speed: loss_half_space/V, loss_cylinder/omega.
 
-    Where the bodies would take more than the load gives, by the error of the table alone, both take
-    less in proportion: nothing is lost in slip there.
-    contacts : a table, at a kappa and a mu.  V, delta : speeds and creepages, (n,).
+    The error of the table may make the losses of the bodies larger than the power that the loads
+    supply.  Both are then reduced in proportion, and the slip loss is 0.
+
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
+    V, delta : speeds >= 0 and creepages, dimensionless, (n,) each.
+    Returns moments divided by P R, of base and cylinder, (2, n).
     """
     _, kappa, mu = contacts
-    found = fields_at(contacts, V, delta)
-    half_space = found["M_half_space"] + 0.5 * found["work_half_space"]
-    cylinder = found["M_cylinder"] + 0.5 * found["work_cylinder"] / (1.0 + delta)
-    factor = 1.0 + delta
-    taken = half_space + factor * cylinder
-    given = found["M_half_space"] + factor * found["M_cylinder"]
-    given += kappa * mu * delta * found["Q_over_mu"]
-    share = np.divide(given, taken, out=np.ones_like(taken), where=taken > 0.0)
-    return np.clip(share, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa
+    fields = fields_at(contacts, V, delta)
+    omega_over_V = 1.0 + delta
+    half_space = fields["M_half_space"] + 0.5 * fields["work_half_space"]
+    cylinder = fields["M_cylinder"] + 0.5 * fields["work_cylinder"] / omega_over_V
+    # powers divided by V, times kappa
+    lost = half_space + omega_over_V * cylinder
+    supplied = fields["M_half_space"] + omega_over_V * fields["M_cylinder"]
+    supplied += kappa * mu * delta * fields["Q_over_mu"]
+    reduction = np.divide(supplied, lost, out=np.ones_like(lost), where=lost > 0.0)
+    return np.clip(reduction, 0.0, 1.0) * np.stack([half_space, cylinder]) / kappa
 
 
 def _torque_left(contacts: Contacts, V: Floats, force: Floats, torque: Any) -> Floats:
-    """Return the torque less what friction and cylinder take, where the axis is in balance with
-    ``force``; (n,).
+    """Return torque - M_cylinder - Q at the creepages that balance ``force`` on the axis.
+
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers or (n,).
+    V : speeds >= 0, dimensionless, (n,).
+    force, torque : loads divided by P and by P R, (n,) each.
+    Returns the torque that is not balanced, divided by P R, (n,).  The part of the force that the
+    friction cannot balance is subtracted too.
     """
     _, kappa, mu = contacts
-    delta, rest = balance(contacts, V, -force)
-    found = fields_at(contacts, V, delta)
-    return torque - mu * found["Q_over_mu"] - found["M_cylinder"] / kappa - rest
+    delta, unbalanced_force = balance(contacts, V, -force)
+    fields = fields_at(contacts, V, delta)
+    left = torque - mu * fields["Q_over_mu"] - fields["M_cylinder"] / kappa
+    return left - unbalanced_force
 
 
 def _rests_on_table(contacts: Contacts, loads: Loads) -> Booleans:
-    """Return under which loads a cylinder on a table stays at V = omega = 0, (n,), by the slip of
-    slow rolling.
+    """Return for each load whether the cylinder stays at V = omega = 0.
+
+    It stays where the torque, in the limit V -> 0 of steady rolling to either side, does not exceed
+    friction and rolling moment.
+
+    contacts : the table, at the kappa and mu of the loads, (n,).
+    loads : the loads, dimensionless, of which force and torque are read.
+    Returns booleans, (n,).
     """
     still = np.zeros(loads.mu.size)
     left = [
@@ -515,39 +547,43 @@ def _rests_on_table(contacts: Contacts, loads: Loads) -> Booleans:
 
 
 def rest_on_table(law: LawTable, loads: Loads, load: Integers) -> tuple[Floats, Floats, Floats]:
-    """Return creepage, fields and decay rate of states at rest, as limits of slow rolling with V >
-    0.
+    """Return creepage, fields and decay rate of states at rest, as limits V -> 0 of V > 0.
 
-    law, loads : as of :func:`find_speeds`; ``load``: index of the load of each state,
-    (n,).
-    Returns (creepage, (n,), NaN where the friction does not suffice; Q, M_half_space, M_cylinder,
-    beta, (4, n); rate by which V decays, (n,), without the slip that remains).
+    law : table with ``coupled`` rows.
+    loads : the loads, dimensionless; feedback gains are allowed.
+    load : index in ``loads`` of the load of each state, int, (n,).
+    Returns three dimensionless arrays: the creepage, (n,), NaN where the friction does not suffice;
+    Q, M_half_space, M_cylinder and beta, (4, n); the rate at which a small V decays, per unit of
+    gamma t, (n,), when the creepage of rest is kept.
     """
     kappa, mu, j = (values[load] for values in (loads.kappa, loads.mu, loads.j))
     force = loads.force[load]
     torque = loads.torque[load]
-    still = np.zeros(load.size)
-    spin = loads.given != "force"
+    at_rest = np.zeros(load.size)
+    torque_given = loads.given != "force"
+    required = torque if torque_given else -force
     contacts = Contacts(law, kappa, mu)
-    delta, rest = balance(contacts, still, torque if spin else -force, spin)
-    found = fields_at(contacts, still, delta)
-    Q = mu * found["Q_over_mu"]
-    half_space = found["M_half_space"] / kappa
-    cylinder = found["M_cylinder"] / kappa
-    V = _SLOW * law.coupled.u[0] / kappa  # type: ignore[union-attr]
+    delta, unbalanced = balance(contacts, at_rest, required, torque_given)
+    fields = fields_at(contacts, at_rest, delta)
+    Q = mu * fields["Q_over_mu"]
+    half_space = fields["M_half_space"] / kappa
+    cylinder = fields["M_cylinder"] / kappa
     gains = loads.gains
-    # the loads in balance at this creepage
-    f = half_space - Q
-    q = Q + cylinder
-    push = gains.force_V + gains.force_omega * (1.0 + delta)
-    turn = gains.torque_V + gains.torque_omega * (1.0 + delta)
-    change = _torque_left(contacts, V, f + push * V, q + turn * V) / V
+    # the loads in balance at this creepage, and their derivatives with respect to V
+    force = half_space - Q
+    torque = Q + cylinder
+    dforce_dV = gains.force_V + gains.force_omega * (1.0 + delta)
+    dtorque_dV = gains.torque_V + gains.torque_omega * (1.0 + delta)
+    V = _SLOW * law.coupled.u[0] / kappa  # type: ignore[union-attr]
+    left_at_V = _torque_left(contacts, V, force + dforce_dV * V, torque + dtorque_dV * V)
+    # derivative of the torque left with respect to the force, a difference quotient
     step = 1e-6 * mu
-    less, same = (_torque_left(contacts, still, each, q) for each in (f - step, f))
-    lever = (less - same) / -step
-    rate = -change / (j * (1.0 + delta) + np.maximum(lever, 0.0))
+    left_of_less_force = _torque_left(contacts, at_rest, force - step, torque)
+    left_at_rest = _torque_left(contacts, at_rest, force, torque)
+    dleft_dforce = (left_of_less_force - left_at_rest) / -step
+    inertia = j * (1.0 + delta) + np.maximum(dleft_dforce, 0.0)
     return (
-        np.where(rest == 0.0, delta, np.nan),
-        np.stack([Q, half_space, cylinder, found["beta"]]),
-        rate,
+        np.where(unbalanced == 0.0, delta, np.nan),
+        np.stack([Q, half_space, cylinder, fields["beta"]]),
+        -(left_at_V / V) / inertia,
     )

@@ -281,8 +281,14 @@ class Steady(Equilibria):
         scale: Scale,
         labels: Labels | None,
     ) -> None:
-        """Keep the fields, and M_half_space and M_cylinder without traction, ``free``, (2,
-        loads..., equilibria).
+        """Store the equilibria.
+
+        values: field -> array (loads..., equilibria), NaN where a load has fewer equilibria.
+        free: M_half_space and M_cylinder without traction, (2, loads..., equilibria), divided by
+        P R.
+        reasons: why a load has none.
+        scale: units of the roller.
+        labels: axes and coordinates of the arguments, None without.
         """
         super().__init__(values, title="Steady rolling", si=scale.si)
         self._free = free

@@ -132,7 +132,7 @@ class States(NamedTuple):
         answers : rows of :class:`Field` with the slopes of the law from row 6 on, (12, n), in a
             frame where V > 0; not changed.
         free : M_half_space and M_cylinder without traction, (2, n), in that frame; None: those of
-            ``answers``, as of half-spaces.
+            ``answers``, as for half-spaces.
         Returns the :class:`States`, (n,); omega is NaN where delta is.
         """
         rows = answers.copy()
@@ -208,7 +208,13 @@ class States(NamedTuple):
 
     @classmethod
     def _at_rest_on_table(cls, loads: Loads, load: Integers, law: LawTable) -> States:
-        """Return the states of rest on a table; arguments as of :meth:`at_rest`."""
+        """Return the states of rest on a table of the coupled solution.
+
+        loads: the loads, dimensionless.
+        load: index in ``loads`` of the load of each state, int, (n,).
+        law: table with ``coupled`` rows.
+        Returns the :class:`States`, (n,); omega is NaN where the friction does not suffice.
+        """
         rows = np.zeros((_COUNT, load.size))
         rows[Field.DELTA], found, rate = rest_on_table(law, loads, load)
         rows[[Field.Q, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.BETA]] = found
@@ -251,7 +257,7 @@ def _eigenvalues(slopes: Floats, gains: Gains, j: Floats) -> Floats:
     one, imaginary part of the slower (>= 0; the faster has its negative).  Of a complex pair both
     real parts are equal, of real eigenvalues the imaginary part is 0.  The determinant is b
     (M'(V) - gain)/j without a gain on omega, where b = dQ/domega; it is computed without the
-    cancellation of the large slopes of Q.  Where M depends on Q too, as of a cover, M' is that at
+    cancellation of the large slopes of Q.  Where M depends on Q too, as for a cover, M' is that at
     fixed Q, and Q acts on the axis and on the cylinder with the factors ``on_axis`` and
     ``on_spin``.  The equation is that of min(j, 1) times an eigenvalue, in units of a power of 2,
     so that no square overflows; an eigenvalue beyond the doubles is infinite.

@@ -64,7 +64,7 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     ----------
     name : name of the argument, for errors.
     value : a number, an array or a list, perhaps with a unit.
-    **bounds : as of :func:`check_array_extent`, in ``unit``: ``unit`` of the argument, to which a
+    **bounds : as in :func:`check_array_extent`, in ``unit``: ``unit`` of the argument, to which a
         value with a unit is converted (default "1"); ``low`` and ``high``, smallest and largest
         allowed value; ``above``, number that all values must exceed.  Without the last three all
         finite values are allowed.
@@ -136,7 +136,7 @@ def check_array_extent(
 
 
 def _range_words(low: float, above: float, high: float) -> str:
-    """Return a range in words, "" for all finite numbers; arguments as of
+    """Return a range in words, "" for all finite numbers; arguments as in
     :func:`check_array_extent`.
     """
     if high < math.inf:

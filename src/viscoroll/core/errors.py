@@ -470,6 +470,7 @@ def _suggesting(function: Any) -> Any:
 
     @wraps(function)
     def call(*arguments: Any, **named: Any) -> Any:
+        """Call the function; add a suggestion to its TypeError of an unknown argument name."""
         try:
             return function(*arguments, **named)
         except TypeError as error:

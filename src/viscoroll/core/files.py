@@ -137,12 +137,13 @@ def seal_matches(content: bytes) -> bool | None:
 
 
 def load_kept(path: Path, damaged: str, read: Callable[[Any], Any]) -> Any:
-    """Return what was kept in a sealed file of arrays in the folder of a cache.
+    """Return the content of a sealed file of arrays in the folder of a cache.
 
-    The time of last change of the file is set to now if it can be: what was used last is kept.
+    The time of last change of the file is set to now if possible: the files that were used longest
+    ago are deleted first.
     path: path of the file.
     damaged: sentence of the warning, with {} for the fault.
-    read: function of the arrays by name, whose result is returned; what it raises is a fault.
+    read: function that makes the result of the arrays by name; an exception in it counts as damage.
     Returns None if there is no file that can be read, also if others may write to it or to a folder
     above it, or if one belongs to another user; None with a RuntimeWarning if it is damaged.
     """
@@ -162,8 +163,10 @@ def load_kept(path: Path, damaged: str, read: Callable[[Any], Any]) -> Any:
 
 
 def _sealed_arrays(content: bytes) -> Any:
-    """Return the arrays by name in the bytes of a sealed file, a context; ValueError without its
-    seal.
+    """Return the arrays of a sealed file by name, as a context manager.
+
+    content: all bytes of the file.
+    Raises ValueError if the seal is missing, or is not that of the bytes.
     """
     import numpy as np
 
@@ -173,9 +176,12 @@ def _sealed_arrays(content: bytes) -> Any:
 
 
 def save_kept(path: Path, most: int, arrays: Mapping[str, Any]) -> None:
-    """Write arrays by name to a sealed file in the folder of a cache, and delete those of the
-    folder that were used longest ago, beyond the number ``most``; if it cannot be written, nothing
-    is kept.
+    """Write arrays to a sealed file in the folder of a cache, and limit the number of files there.
+
+    path: path of the file, which ends with ".npz".
+    most: number of files that stay in the folder, >= 1; those used longest ago are deleted.
+    arrays: name -> array.
+    If the folder cannot be written, nothing is stored; nothing is raised.
     """
     import numpy as np
 

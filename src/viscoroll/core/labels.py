@@ -133,7 +133,7 @@ def dataset_axes(
     labels: labels of the arguments; None: they had none.
     shape: shape of the results; other axes may be in front of those of the labels.
     names: names of the variables of the dataset.
-    Returns (names of the axes, by :func:`state_axes` where they have no labels; coordinates as of
+    Returns (names of the axes, by :func:`state_axes` where they have no labels; coordinates as in
     :meth:`Labels.axes_beside`, {} if the labels have another shape).
     """
     axes = state_axes(len(shape))

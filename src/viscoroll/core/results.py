@@ -123,7 +123,7 @@ class Result:
         return figure
 
     def _figure(self) -> Figure:
-        """Return the figure of the dataset, as of :func:`.plots.draw`."""
+        """Return the figure of the dataset, as in :func:`.plots.draw`."""
         from .plots import draw
 
         return draw(self.to_xarray())
@@ -409,7 +409,7 @@ class Values(Result):
         return xr.Dataset(data, coords, attrs={"title": self._title} | self._about)
 
     def _attributes(self, name: str) -> dict[str, Any]:
-        """Return the attributes of the result or argument ``name``, as of
+        """Return the attributes of the result or argument ``name``, as in
         :func:`.scale.attributes`; a unit that the call gave for it takes the place of its own.
         """
         found: dict[str, Any] = dict(attributes(name, self._si))

@@ -233,7 +233,7 @@ def find_line(text: str, name: str, key: str) -> int | None:
     key: key in the section, "" for the section itself.
     Returns the number, from 1, of the first line that sets the key or is the header of that
     subsection; if there is none, that of the header of the section; if there is none and the name
-    has a point, as of an inline table ``prony = { ... }`` in [material], what is found for "prony"
+    has a point, as for an inline table ``prony = { ... }`` in [material], what is found for "prony"
     as a key of "material"; else None.
     """
     full = f"{name}.{key}" if name else key

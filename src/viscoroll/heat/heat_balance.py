@@ -48,7 +48,7 @@ def zeros_at_speed(
 ) -> Zeros:
     """Find all equilibria of states at speeds.
 
-    n: indices of the states; V: m/s, any sign; more: as of :meth:`.HeatStates.heat`, (m,) each.
+    n: indices of the states; V: m/s, any sign; more: as in :meth:`.HeatStates.heat`, (m,) each.
     hottest: temperature up to which they are sought; None: as high as the loss of free rolling
     allows.
     Returns the zeros, whose ``state`` counts the elements of n.

@@ -99,7 +99,7 @@ class HeatStates:
         return self.body.part * rolling + self.body.slip * slip
 
     def fields(self, n: Integers, theta: Floats, V: Floats) -> dict[str, Floats]:
-        """Return the fields of a result by name, in SI units, (m,) each; arguments as of
+        """Return the fields of a result by name, in SI units, (m,) each; arguments as in
         :meth:`heat`.
 
         ``a_T`` is NaN outside of the range of the shift, and ``loss`` where the friction does not
@@ -230,11 +230,11 @@ def heat_states(
 ) -> HeatStates:
     """Check the arguments of a call, and flatten the states of the one body that is heated.
 
-    roller, scene: as of :func:`.parameters.resolve_model`.
+    roller, scene: as in :func:`.parameters.resolve_model`.
     call: name of the function, for errors.
     given: "ambient", "conductance", and others that take part in the shape, as "V": numbers or
         arrays without labels; None: not given.
-    slip_share: as of :func:`heated_body`.
+    slip_share: as in :func:`heated_body`.
     driven: force, torque and slope beside V, by name; None: the cylinder rolls freely, which of a
         cover is the torque 0.
     Raises ParameterError for values out of range, shapes that do not broadcast, several laws of

@@ -52,7 +52,7 @@ def pair_temperatures(
     roller : a :class:`Cylinder` without arrays and thicknesses, of which both materials have a
     ``shift``.
     V : speed, m/s, other than 0.
-    ambient, conductance : of the cylinder and of the base, degrees Celsius and W/(m K), as of
+    ambient, conductance : of the cylinder and of the base, degrees Celsius and W/(m K), as in
     :func:`temperature`.
 
     Returns
@@ -63,7 +63,7 @@ def pair_temperatures(
     Raises
     ------
     ParameterError
-        As of :func:`temperature`; a layer, a body that does not relax, arrays.
+        As in :func:`temperature`; a layer, a body that does not relax, arrays.
 
     Examples
     --------
@@ -104,7 +104,10 @@ def pair_temperatures(
     kappa = scene.kappa
 
     def losses(theta: Floats) -> Floats:
-        """Return the loss of each body, W/m, at temperatures of both, (2, m)."""
+        """Return the loss of each body, W/m, (2, m).
+
+        theta: temperatures of cylinder and base, degrees Celsius, (2, m).
+        """
         warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta, strict=True)))
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
         index = np.arange(float(theta.shape[1]))

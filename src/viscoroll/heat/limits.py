@@ -86,11 +86,11 @@ def heat_limit(
 
     Parameters
     ----------
-    roller : a :class:`Cylinder` as of :func:`temperature`, of which the load is replaced.
+    roller : a :class:`Cylinder` as in :func:`temperature`, of which the load is replaced.
     allowed : temperature of the body that is allowed, degrees Celsius.
     V : speeds, m/s, other than 0, of which the loads are found.
     load : loads, N/m, > 0, of which the speeds are found; exactly one of the two is given.
-    ambient, conductance : as of :func:`temperature`.
+    ambient, conductance : as in :func:`temperature`.
 
     Returns
     -------
@@ -103,7 +103,7 @@ def heat_limit(
     Raises
     ------
     ParameterError
-        As of :func:`temperature`; both or neither of V and load, V = 0, an allowed
+        As in :func:`temperature`; both or neither of V and load, V = 0, an allowed
         temperature that is not above ambient or beyond the range of the shift, a load of a cover
         that is too thin for its law.
 
@@ -215,8 +215,8 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
 
     Parameters
     ----------
-    roller : a :class:`Cylinder` as of :func:`temperature`, without arrays; it rolls freely.
-    ambient, conductance : numbers as of :func:`temperature`.
+    roller : a :class:`Cylinder` as in :func:`temperature`, without arrays; it rolls freely.
+    ambient, conductance : numbers as in :func:`temperature`.
 
     Returns
     -------
@@ -228,7 +228,7 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     Raises
     ------
     ParameterError
-        As of :func:`temperature`; arrays.
+        As in :func:`temperature`; arrays.
 
     Examples
     --------

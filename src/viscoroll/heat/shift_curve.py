@@ -32,7 +32,7 @@ _SAMPLED_RANGE = -150.0, 1000.0
 _SAMPLES = 5001
 #: rise of log2 a_T between samples that is rounding
 _ROUNDING = 1e-12
-#: stands for 0 and less in a divisor, so that the quotient is a number beyond all others
+#: smallest divisor: the quotient for a divisor <= 0 is then larger than any other
 _LEAST = 1e-300
 
 
@@ -145,8 +145,7 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
 
 
 def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
-    """Return temperatures and a_T relative to the reference there, over the range around it in
-    which it is defined.
+    """Sample a shift in the range around the reference in which it is defined.
 
     shift: function of a temperature in degrees Celsius, whose attribute ``range``, if it has one,
         is (lowest, highest) temperature.

@@ -123,12 +123,12 @@ def temperature(
         one material; of such each loses half of M, and both have one temperature.
     V : speed, m/s, any sign.  Alone it is that of a freely rolling cylinder, of half-spaces without
         loss in slip; with one of force and torque (or a slope, which counts as the force) the loss
-        in slip heats too.  None: the speed follows from the load at each temperature, as of
+        in slip heats too.  None: the speed follows from the load at each temperature, as in
         :func:`steady`.
     ambient : temperature of the surroundings, degrees Celsius.
     conductance : heat that the body gives off per kelvin, W/(m K), > 0
     (:func:`viscoroll.conductance`).
-    force, torque, slope : loads as of :func:`steady`, numbers or arrays.
+    force, torque, slope : loads as in :func:`steady`, numbers or arrays.
     slip_share : part of the loss in slip that heats the cylinder, in [0, 1]; the rest heats the
     base.
 
@@ -275,8 +275,13 @@ def _pack(
 def _reasons(
     states: HeatStates, zeros: Zeros, known: Any, inside: Any, rows: dict[str, Floats]
 ) -> Any:
-    """Return for each state "" or why no equilibrium lies within the ranges of shift and data,
-    (states,), objects.
+    """Return the reasons why states have no equilibrium within the ranges of shift and data.
+
+    states: the states.
+    zeros, rows: the equilibria found and their fields, (m,) each.
+    known: whether a_T and the loss of each equilibrium are numbers, (m,).
+    inside: whether its speed lies within the data, (m,).
+    Returns texts, (states,), objects; "" for a state that has an equilibrium.
     """
     found = np.full(states.load.size, "", object)
     good = np.bincount(zeros.state[known & inside], minlength=found.size)

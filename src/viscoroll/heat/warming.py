@@ -44,13 +44,13 @@ def warming(
 
     Parameters
     ----------
-    roller : a :class:`Cylinder` as of :func:`temperature`.
+    roller : a :class:`Cylinder` as in :func:`temperature`.
     V : speed, m/s, any sign: a number, a :class:`Schedule`, or a function of t.
     t : times of the output, s, (t,), ascending, >= 0.
-    ambient, conductance : as of :func:`temperature`; these, ``capacity`` and ``start`` broadcast to
+    ambient, conductance : as in :func:`temperature`; these, ``capacity`` and ``start`` broadcast to
         the shape of states.
     capacity : heat that the body stores per kelvin, J/(m K), > 0: the sum of density, specific heat
-        and cross section of what warms together.
+        and cross section of all parts that warm together.
     start : temperature at t = 0, degrees Celsius; default: ``ambient``.
 
     Returns
@@ -64,7 +64,7 @@ def warming(
     Raises
     ------
     ParameterError
-        As of :func:`temperature`; a capacity <= 0, times that do not ascend, an array V, a function
+        As in :func:`temperature`; a capacity <= 0, times that do not ascend, an array V, a function
         V that returns no finite number, a temperature that leaves the range of the shift.
 
     Examples
@@ -149,7 +149,9 @@ def _speed_of(V: Any, scale: Any) -> tuple[Callable[[float], float], Floats]:
     """Return the speed as a function of time, m/s, and the times of its corners, at which the
     integrator stops.
 
-    V: a number, a Schedule or a function.
+    V: speed: a number, a :class:`Schedule` of one motion, or a function of t.
+    scale: units of the roller, for quantities with a unit.
+    Raises ParameterError for a Schedule of several motions, and values that are no finite number.
     """
     if isinstance(V, Schedule):
         if V.values.ndim > 1 or V.times.ndim > 1:

@@ -526,7 +526,7 @@ def _fit_fast_rows(
         at 1/u = 0 is taken.  Those of epsilon and M/V are 0.
     x: nodes of these rows in u, ascending, >= ``begin``, (rows, nodes).
     begin: u where these rows begin, the end of the last octave.
-    log_terms: number of terms in ln u, as of :func:`_fit_end`.
+    log_terms: number of terms in ln u, as in :func:`_fit_end`.
     Returns (values and slopes over ln u at x, of the quantities, (2, 11, rows, nodes);
         :attr:`.row_layout.CoverRows.limits`, (19,), of which the last eleven, factors of 1/u, are
         those at the last node of x).

@@ -390,9 +390,9 @@ def _excess_memory(v: Floats, A: Floats, beta: Floats, D: Floats) -> Any:
     decays beyond it.
 
     v: wave numbers times half contact length, dimensionless, (n,).
-    A: signed Bessel functions there, as of :func:`bessel`, (N + 1, n).
+    A: signed Bessel functions there, as in :func:`bessel`, (N + 1, n).
     beta: b_j z of the creep modes of both bodies together, dimensionless, (modes,).
-    D: memory of the terms of the series, as of :func:`decays`, (N + 1, modes).
+    D: memory of the terms of the series, as in :func:`decays`, (N + 1, modes).
     Returns complex numbers (modes, n).
     """
     memory = np.exp(1j * v) * (beta[:, None] / (beta[:, None] - 1j * v)) - A[0]
@@ -404,7 +404,7 @@ def layer_operator(A: Floats, memory: Any, weights: Any) -> tuple[Floats, Floats
     """Return the contributions of layers to the slope and to the memory, beyond those of a
     half-space.
 
-    A: signed Bessel functions at the nodes of the rule, as of :func:`bessel`, (N + 1, n).
+    A: signed Bessel functions at the nodes of the rule, as in :func:`bessel`, (N + 1, n).
     memory: excess memory there (:func:`_excess_memory`), (modes, n).
     weights: the layers' multiplier over u, as (L - 1)/u, times the weights of the rule and times
         the complex compliance of the layer divided by that of both bodies, (n,).

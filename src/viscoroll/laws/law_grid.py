@@ -71,8 +71,8 @@ class LawGrid:
 
     Attributes
     ----------
-    rows : :class:`.law_rows.CoupledRows` over V and delta, of kappa = 1: Q over its limit, or
-        itself without one, and M, in the units of the grid.
+    rows : :class:`.law_rows.CoupledRows` of V and delta, for kappa = 1: Q divided by its
+        limit (Q itself if the limit is not known) and M, in the units of the grid.
     most : largest abs(Q); 1 where it is not known.
     V : slowest and fastest speed, > 0; dimensionless, or m/s.
     delta : lowest and highest creep ratio (omega R - V)/V.
@@ -262,14 +262,15 @@ def refuse_filled(variable: xr.DataArray, path: Any) -> None:
 def check_nodes(table: xr.Dataset, path: Any) -> None:
     """Raise FileError for a node of a grid whose field no contact has, with its value and place.
 
-    Allowed are |Q| <= mu P, Eq. (15), a Q that does not fall where delta grows and that has the
-    sign of delta (of delta
-    - delta_0 where the grid has delta_0) at both ends of its axis, 0 <= beta <= 1, and values >= 0
-      of lam and
-    delta_star, and of M and its parts where they are over V.  Where M is over V and delta, as of a
-    layer, on whose M shear acts back, the power of force and torque is >= 0: M + delta (R Q +
-    M_cylinder) >= 0.  All are checked to the digits of a file, 1e-5 of the largest value.  Missing
-    values are not sought: :func:`refuse_filled`.
+    All conditions are checked to the digits of a file, 1e-5 of the largest value:
+
+    - |Q| <= mu P, Eq. (15); Q does not fall where delta grows; at both ends of the axis of delta it
+      has the sign of delta (of delta - delta_0 if the grid has delta_0);
+    - 0 <= beta <= 1; lam >= 0; delta_star >= 0;
+    - M and its parts are >= 0 if they depend on V alone.  If M depends on delta too (a layer), the
+      power of force and torque is >= 0: M + delta (R Q + M_cylinder) >= 0.
+
+    Missing values are refused by :func:`refuse_filled`.
 
     table: dataset of a grid, in SI units or dimensionless, whose values are finite.
     path: path of its file, for messages.
@@ -302,7 +303,7 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
             Q,
             against,
             path,
-            "of the sign of delta: a wheel that spins faster than it rolls is driven",
+            "of the same sign as delta: a wheel with omega R > V has a driving Q > 0",
         )
         if "M" in table.variables and "delta" in table["M"].dims:
             M = table["M"].transpose(*Q.dims)
@@ -310,7 +311,7 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
             lost = (M + table["delta"] * (arm * Q + of_cylinder)).transpose(*Q.dims)
             made = lost.values < -_ROUNDING * max(np.abs(M.values).max(), arm * noise / _NOISE)
             _refuse_nodes(
-                M, made, path, ">= -delta (R Q + M_cylinder), as the contact makes no power"
+                M, made, path, ">= -delta (R Q + M_cylinder), as the contact generates no power"
             )
         falls = np.diff(Q.values, prepend=-np.inf) < -noise
         _refuse_nodes(
@@ -520,7 +521,7 @@ def pack_spline(
     -------
     vector
         Six numbers: the bounds, and the indices in the vector where the axes V, delta and alpha and
-        the coefficients begin; the three axes as of :func:`_axis`, with no interval and one basis
+        the coefficients begin; the three axes as in :func:`_axis`, with no interval and one basis
         spline, the constant 1, for an axis that the field does not depend on; the coefficients,
         last axis fastest, with 3 - degree zeros after the last ones of each axis.
     """

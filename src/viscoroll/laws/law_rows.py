@@ -252,7 +252,7 @@ def series_record(material: Any) -> tuple[Any, Floats]:
 
     material: a :class:`.prony.Prony` of one material, a :class:`.bodies.Bodies` of one pair, or
         alphas >= 1: a number, or one for each element that the kernel is called for, (n,).
-    Returns (record of the series, :class:`.material_series.Series`, as of
+    Returns (record of the series, :class:`.material_series.Series`, as in
     :func:`modes_record`; alphas).  For a series or bodies the alphas are an empty array; those of
     bodies have weights, also if they are alike.  For alphas they are a copy, (n,), (1,) of a
     number, and the record has one mode, which the kernel overwrites with each alpha in turn.
@@ -399,8 +399,9 @@ class CoupledRows:
         return found
 
     def _friction(self) -> Floats:
-        """Return 2 kappa times the friction in slip at the nodes, (n + 2, m): what traction does
-        but for the work of shear on strain.
+        """Return 2 kappa times the slip loss at the nodes, divided by P V, (n + 2, m), >= 0.
+
+        It is mu (Q/mu) times the reduced creepage, less the work of shear on the strains.
         """
         middle, low, high = (edge[:, np.newaxis] for edge in self.edges[:, :3].T)
         creep = middle + np.where(self.t < 0.0, low - middle, high - middle) * grade(self.t)
@@ -408,8 +409,10 @@ class CoupledRows:
         return np.maximum(self.mu * self.fields[..., 0] * creep - work, 0.0)
 
     def _slopes_in_t(self, fields: Floats) -> Floats:
-        """Return slopes of fields, (n + 2, m, fields), over t; 0 at t = 0 and +-1 where the nodes
-        are graded.
+        """Return derivatives of fields with respect to t at the nodes, in the shape of ``fields``.
+
+        fields: values at the nodes, (n + 2, m, fields).
+        The derivatives are 0 at t = 0 and +-1 if the nodes are graded.
         """
         from scipy.interpolate import CubicSpline
 

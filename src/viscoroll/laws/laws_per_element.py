@@ -56,7 +56,7 @@ def record_of_alphas(alpha: Floats) -> Any:
 
 
 def records_of_alphas(alpha: Floats, count: int) -> tuple[Any, ...]:
-    """Return several records as of :func:`record_of_alphas`, so that as many elements are evaluated
+    """Return several records as in :func:`record_of_alphas`, so that as many elements are evaluated
     together.
 
     alpha: one value for each element, (n,), n >= 1, or one for all, (1,), dimensionless, in [1,
@@ -252,7 +252,7 @@ def count_laws(covers: Cover) -> int:
 
 def _octave_of(thickness: Floats) -> Floats:
     """Return the exponent n, a float, of the octave [2^n, 2^(n + 1)) that contains each
-    ``thickness`` > 0 over l0.
+    ``thickness`` > 0, divided by l0.
     """
     return np.floor(np.log2(thickness))
 

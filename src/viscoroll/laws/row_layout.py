@@ -539,7 +539,7 @@ def pack_materials(block: Block) -> Floats:
     Returns (materials, 13 + (5 + modes) modes), of each: alpha, 1/sqrt(alpha); W and C of the fast
     limit of both bodies, of the half-space, of the cylinder; sums J_j T_j of half-space and
     cylinder; e0, number of rows, number of modes (0, 1 and 0 for elastic ones); then the vectors a,
-    b, e, t and weights and the matrix Q of the modes, as of :func:`.law_rows.modes_record`.  Times
+    b, e, t and weights and the matrix Q of the modes, as in :func:`.law_rows.modes_record`.  Times
     are in units of T_ref.
     """
     modes = block.modes

@@ -128,8 +128,9 @@ class Bodies(OneOrMany):
 
     @cached_property
     def alpha(self) -> Any:
-        """Instantaneous divided by long-time stiffness, >= 1, of the pair a float, of n pairs a
-        read-only (n,).
+        """Instantaneous stiffness divided by long-time stiffness, of both bodies together.
+
+        A float >= 1 for a pair, a read-only vector (n,) for n pairs; dimensionless.
         """
         first = self.cylinder.alpha
         second = self.base.alpha
@@ -425,14 +426,15 @@ class Cover(Bodies):
 
     @staticmethod
     def _check_other_thickness(value: ArrayLike, thickness: Any, part: float) -> Any:
-        """Return the thickness of the other layer over l0, an array of the shape of ``thickness``,
-        which is () or (n,).
+        """Check the thickness of the other layer.
 
-        value: as given.
+        value: thickness divided by l0, as the caller gave it.
+        thickness: thickness of the first layer divided by l0, an array, () or (n,).
         part: part of the first layer in the compliance, in (0, 1].
         Raises ParameterError for a value out of (0, 1e15], another shape, a rigid body (``part`` is
-        1), and proportions of the two thicknesses that differ by more than 1e-9: laws are
-        interpolated over one thickness.
+        1), and ratios of the two thicknesses that differ by more than 1e-9: laws are interpolated
+        as functions of one thickness.
+        Returns ``value`` as an array of the shape of ``thickness``.
         """
         other = check_array("other_thickness", value, above=0.0, high=_THICKEST)
         if part == 1.0:
@@ -444,7 +446,9 @@ class Cover(Bodies):
         ratio = other / thickness
         if np.ptp(ratio) > _SAME_RATIO * np.max(ratio):
             raise described_error(
-                "other_thickness", "varies otherwise than thickness", "in one proportion to it"
+                "other_thickness",
+                "is not proportional to thickness",
+                "in the same ratio to it for all pairs",
             )
         return other
 
@@ -505,20 +509,21 @@ class Cover(Bodies):
 
         Parameters
         ----------
-        share : the cylinder's part of the compliance of both bodies, in [0, 1], that of the layer
-            above 0.
+        share : compliance of the cylinder divided by the sum of both compliances, each as a
+            half-space, in [0, 1]; such that the compliance of the layer is not 0.
 
         Returns
         -------
         Cover
-            Where the other body becomes rigid it has no thickness.
+            Elastic bodies of the same thicknesses and Poisson's ratios.  If the share of the other
+            body is 0, it is rigid, and its thickness is None.
 
         Examples
         --------
         >>> vr.Cover(11.0, nu=0.5, thickness=2.0, on="base").elastic(0.0).alpha
         1.0
         """
-        part = share if self.on == "cylinder" else 1.0 - share
+        part = share if self.on == "cylinder" else 1.0 - share  # of the layer
         thickness = self.other_thickness if part < 1.0 else None
         return Cover(
             1.0,

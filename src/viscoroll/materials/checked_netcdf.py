@@ -131,7 +131,7 @@ def make_dataset(
     kind: kind of the file, a key of :data:`KINDS`, which lists the variables.
     title: bodies whose law it is, in words.
     errors: name of a function, as "lam" -> its largest relative error, dimensionless; for each
-        function of the kind, else KeyError, as of another kind.
+        function of the kind, else KeyError, as for another kind.
     attributes: further global attributes of the dataset by name.
     Returns the dataset, with one variable of coefficients for each function, whose error is its
     attribute ``largest_relative_error``; the other variables of the kind, integers as int32; and as

@@ -140,7 +140,7 @@ class FromPrograms:
             a constant bulk modulus.  If that table has other times, give all times of both as
             ``tau``, and 0 in ``alpha`` or ``k`` where a table has no term.  For nu = 0.5 it is
             checked, but has no effect.
-        more : as of :meth:`abaqus`.
+        more : as in :meth:`abaqus`.
 
         Returns
         -------
@@ -190,7 +190,7 @@ class FromPrograms:
         tau : their relaxation times tau_m, s, finite, > 0, (n,).
         K : bulk moduli of the branches, Pa, >= 0, at the same times, (n,); zeros where only
             deviatoric strains are viscoelastic.  For nu = 0.5 they are checked, but have no effect.
-        more : as of :meth:`abaqus`.
+        more : as in :meth:`abaqus`.
 
         Returns
         -------
@@ -254,7 +254,7 @@ class FromPrograms:
             long-time one, in place of ``nu`` and ``bulk``.  None: the bulk modulus is constant if
             ``bulk`` is given, else relaxes in proportion to G.  For nu = 0.5 it is checked, but has
             no effect.
-        more : as of :meth:`abaqus`.
+        more : as in :meth:`abaqus`.
 
         Returns
         -------
@@ -402,15 +402,15 @@ def _warn_of_negative(late: float, early: float | None) -> None:
     """Warn where bulk terms make Poisson's ratio negative, at long times or at t = 0: their unit
     may be another.
 
-    late, early: Poisson's ratio of long times and of t = 0; None: as of long times.
+    late, early: Poisson's ratio of long times and of t = 0; None: that of long times.
     """
     lowest = late if early is None else min(late, early)
     if lowest < 0.0:
         text = (
-            f"bulk and shear moduli make nu = {lowest:.3g}: give both in one unit, and as "
-            "moduli or as fractions"
+            f"bulk and shear moduli give Poisson's ratio {lowest:.3g} < 0: give both in one unit, "
+            "and as moduli or as fractions like the program from which they are"
         )
-        warn_of_model(f"{text}, as the program has them")
+        warn_of_model(text)
 
 
 def check_pairs(

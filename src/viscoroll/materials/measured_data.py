@@ -443,7 +443,7 @@ def vertical_factor(shift: VerticalShift, temperature: float, reference: float |
     Parameters
     ----------
     shift : a function of a temperature in degrees Celsius that returns b_T, a number,
-        dimensionless, > 0; "entropic": b_T is the absolute temperature, as of an ideal network;
+        dimensionless, > 0; "entropic": b_T is the absolute temperature, as for an ideal network;
         None: moduli do not depend on the temperature.
     temperature, reference : degrees Celsius; a reference of None is allowed only without a vertical
     shift.
@@ -474,7 +474,7 @@ def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
     """Return the shifts of a material that files hold as key -> value in TOML: wlf or arrhenius,
     vertical_shift.
 
-    shift, vertical_shift: as of :class:`.material.Material`; a function is left out.
+    shift, vertical_shift: as in :class:`.material.Material`; a function is left out.
     """
     found = {} if vertical_shift != "entropic" else {"vertical_shift": '"entropic"'}
     if isinstance(shift, WLF | Arrhenius):

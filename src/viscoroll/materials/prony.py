@@ -219,7 +219,7 @@ class Prony(OneOrMany):
 
     @classmethod
     def _make(cls, by_creep: bool, strengths: NDArray, times: NDArray, alpha: Any) -> Prony:
-        """Return a new :class:`Prony` of checked values; arguments as of :meth:`_set`."""
+        """Return a new :class:`Prony` of checked values; arguments as in :meth:`_set`."""
         series = cls.__new__(cls)
         series._set(by_creep, strengths, times, alpha)
         return series
@@ -391,10 +391,11 @@ class Prony(OneOrMany):
 
     @property
     def slow_time(self) -> float:
-        """(sum E_i tau_i^2 + sum J_j T_j^2)/T_mean in units of T_ref, a float or (n,): slow rolling
-        is kappa V below its inverse, with V in units of R/T_ref.
+        """Mean time of slow rolling, (sum E_i tau_i^2 + sum J_j T_j^2)/T_mean, in units of T_ref, a
+        float or (n,).
 
-        1.0 of an elastic material, also of one among others.
+        Rolling is slow, M nearly proportional to V, where kappa V is far below its inverse, with V
+        in units of R/T_ref.  It is 1.0 for elastic materials.
         """
         elastic = self.T_mean == 0.0
         return (_exact_sums(self.E * self.tau**2) + _exact_sums(self.J * self.T**2) + elastic) / (
@@ -402,7 +403,7 @@ class Prony(OneOrMany):
         )
 
     def slower(self, factor: ArrayLike) -> Prony:
-        """Return the material with all times multiplied by a factor, as of a colder rubber.
+        """Return the material with all times multiplied by a factor, as for a colder rubber.
 
         Parameters
         ----------
@@ -443,7 +444,7 @@ class Prony(OneOrMany):
         Returns
         -------
         series : the :class:`Prony` with times divided by the unit, so that its slow time is within
-            a factor of 2^(1/2) of 1; with a unit of 1, as of an elastic series, the series itself.
+            a factor of 2^(1/2) of 1; with a unit of 1, as for an elastic series, the series itself.
         unit : the unit in T_ref, a float, a power of two, so that no time is rounded.
 
         Raises

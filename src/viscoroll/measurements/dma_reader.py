@@ -110,8 +110,9 @@ class RelaxationModulus(Result):
         return xr.Dataset(data, attrs=about | warmth)
 
     def _figure(self) -> Figure:
-        """Return the matplotlib figure of the relaxation modulus, Pa, over time, s; both axes are
-        logarithmic.
+        """Return the matplotlib figure of the relaxation modulus, Pa, against time, s.
+
+        Both axes are logarithmic.
         """
         from ..core.plots import new_figure
 
@@ -148,7 +149,7 @@ def read_relaxation(
 
     Parameters
     ----------
-    path : a text file, in an encoding as of :func:`viscoroll.read_dma`.
+    path : a text file, in an encoding as in :func:`viscoroll.read_dma`.
     columns : meaning -> heading, of columns whose names are not understood; meanings are time,
         relaxation modulus, stress, strain and temperature.  Two columns without headings are taken
         as time and relaxation modulus.
@@ -170,7 +171,7 @@ def read_relaxation(
     Raises
     ------
     FileError
-        As of :func:`viscoroll.read_dma`: what is no table, columns that are missing or contradict
+        As in :func:`viscoroll.read_dma`: what is no table, columns that are missing or contradict
         each other, units; a time, modulus, stress or strain that is not > 0 and finite; several
         tests: tables, temperatures, or moduli at one time that differ by more than a factor of
         1.25.
@@ -324,8 +325,7 @@ def read_dma(
     -----
     ModelWarning
         Where neither the file nor ``units`` says what a column is in; a tan delta above 3 without a
-        unit, as of none of
-        rubber: it may be in per cent.
+        unit, which no rubber has: it may be in per cent.
 
     Examples
     --------
@@ -421,8 +421,8 @@ def _strain(table: Table, alike: list[Column], others: dict[str, str]) -> Floats
 
 
 def _warn_of_per_cent(table: Table, taken: list[Column]) -> None:
-    """Warn, by one ModelWarning, of tan delta without a unit that is above 3, as of no rubber: it
-    may be in per cent.
+    """Warn, by one ModelWarning, of tan delta without a unit that is above 3, which no rubber has:
+    it may be in per cent.
 
     table : :class:`Table`, the table of the file.
     taken : list of :class:`Column`, the columns that are read.

@@ -378,8 +378,8 @@ class DynamicModuli(Result):
         -------
         xarray.Dataset
             Variables omega (rad s-1), storage and loss (Pa) and, where they are not None,
-            temperature (degC) and strain (dimensionless), each over the dimension ``point``;
-            attributes title, mode, source and notes, one text, parted by "; ".
+            temperature (degC) and strain (dimensionless), each with the dimension ``point``;
+            attributes title, mode, source and notes, the last as one text, separated by "; ".
 
         Examples
         --------
@@ -407,7 +407,7 @@ class DynamicModuli(Result):
         return xr.Dataset(data, attrs=about)
 
     def _figure(self) -> Figure:
-        """Return the matplotlib figure of storage and loss modulus, Pa, over angular frequency,
+        """Return the matplotlib figure of storage and loss modulus, Pa, against angular frequency,
         rad/s.
 
         Both axes are logarithmic; the points of all temperatures are drawn alike.

@@ -563,7 +563,7 @@ class Fit(SeriesFit):
     Attributes
     ----------
     E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
-        as of ``SeriesFit``, the base class; in shear E, storage and loss are G, G' and G''.
+        as in ``SeriesFit``, the base class; in shear E, storage and loss are G, G' and G''.
     misfit : root mean square of the relative errors, dimensionless, ``.storage`` and ``.loss``.
     kramers_kronig : ratio of the measured loss modulus to that of the slope of the storage modulus:
         ``.omega``, rad/s, ``.ratio`` at these, dimensionless, and ``.median``, near 1 for sound
@@ -572,7 +572,7 @@ class Fit(SeriesFit):
     omega, storage, loss : the data, sorted and shifted, (n,) each; rad/s and the unit given.
     strain : amplitude of the strain of the test, dimensionless, of a record the geometric mean;
     None: not known.
-    vertical_shift : b_T by which the moduli were divided, as of :class:`viscoroll.Material`; None:
+    vertical_shift : b_T by which the moduli were divided, as in :class:`viscoroll.Material`; None:
     they were not.
 
     Examples
@@ -673,7 +673,7 @@ class RelaxationFit(SeriesFit):
     Attributes
     ----------
     E, T_ref, prony, mode, target, reached, outside, band, points, grid, temperature, source :
-        as of ``SeriesFit``, the base class.
+        as in ``SeriesFit``, the base class.
     misfit : root mean square of the relative errors, dimensionless.
     t : times of the data, ascending, s, (n,).
     relaxation : relaxation modulus of the data, in the unit given, (n,).

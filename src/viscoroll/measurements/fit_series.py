@@ -459,7 +459,8 @@ def fit_at_strain(
         if abs(math.log(strain / last)) <= _CHANGE:
             return fit
     raise ConvergenceError(
-        f"fit_at_strain: the strain of the contact does not settle; the last are {last}, {strain}"
+        "fit_at_strain: the iteration for the strain of the contact does not converge; the last "
+        f"two values are {last} and {strain}"
     )
 
 
@@ -486,7 +487,7 @@ def _points(record: DynamicModuli, at: Any) -> DynamicModuli:
 
 
 def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
-    """Return the moduli at a strain, by two sets or by the nearest; arguments as of
+    """Return the moduli at a strain, by two sets or by the nearest; arguments as in
     :func:`fit_at_strain`.
     """
     strains = np.array([each.mean_strain for each in sets])

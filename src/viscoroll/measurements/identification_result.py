@@ -146,7 +146,7 @@ class Identification(Result):
         """The best fit to each record with its bands at the level 0.95: name of the record ->
         :class:`Prediction`.
 
-        The bands are from slopes, as of :meth:`predict` with ``draws`` = 0.
+        The bands are from slopes, as in :meth:`predict` with ``draws`` = 0.
         """
         return {
             record_name: self._predict(record, record_name, _LEVEL)

@@ -73,7 +73,7 @@ class Noise(NamedTuple):
     """Statistics of the residuals of a column, by which a model that is inadequate shows.
 
     rms : root mean square of the residuals over sigma, dimensionless; 0 of a plan.
-    lag : lag-1 correlation of the residuals in the order of the coordinates, as of the times, in
+    lag : lag-1 correlation of the residuals in the order of the coordinates, as for the times, in
         [-1, 1]; 0 of a single point and of a plan.
     allowed : largest lag-1 correlation of noise: three standard deviations, 3/sqrt(points).
     is_noise : whether lag rms^2 <= ``allowed``, so that residuals far below sigma may correlate,
@@ -323,13 +323,15 @@ class Problem:
         return self.slopes(self.residuals, u, range(u.size))
 
     def cost(self, u: Floats) -> float:
-        """Return chi2, dimensionless: the sum of squared residuals r, or of a robust fit of 2
-        (sqrt(1 + r^2) - 1).
+        """Return chi2, which the fit minimises.
 
-        u : coordinates of the unknowns, (unknowns,).
+        It is the sum over all residuals r of r^2, or in a robust fit of 2 (sqrt(1 + r^2) - 1).
+
+        u : coordinates of the unknowns, (unknowns,), dimensionless.
+        Returns a float >= 0, dimensionless.
         """
-        z = self.residuals(u) ** 2
-        return float((2.0 * (np.sqrt(1.0 + z) - 1.0) if self.robust else z).sum())
+        squares = self.residuals(u) ** 2
+        return float((2.0 * (np.sqrt(1.0 + squares) - 1.0) if self.robust else squares).sum())
 
     def weighted(self, u: Floats) -> tuple[Floats, Floats]:
         """Return the residuals r and their derivatives, each row multiplied by the square root of

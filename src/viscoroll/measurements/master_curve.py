@@ -122,7 +122,7 @@ def sets_of(temperature: Floats, first: Integers | None) -> Sets:
     before is of the same set.
 
     temperature : temperature of each point, degrees Celsius, shape (n,), in any order.
-    first : index of the first point of each curve, each < n, (curves,), as of :func:`points_of`;
+    first : index of the first point of each curve, each < n, (curves,), as in :func:`points_of`;
         None: each set counts as a curve, in the order in which their first points come.
     Returns the :class:`Sets`; several curves may be of one set.
 
@@ -311,7 +311,7 @@ def master_curve(
         All are divided by that of the reference.
     on : "both" or "storage": the moduli by whose overlap shifts are found; not used where shifts
     are given.
-    vertical_shift : b_T by which moduli are divided, relative to the reference, as of
+    vertical_shift : b_T by which moduli are divided, relative to the reference, as in
     :class:`viscoroll.Material`.
 
     Returns
@@ -430,7 +430,7 @@ def undetermined_shifts(shifts: Shifts) -> list[str]:
     read.
     Returns a text for each pair whose ``freedom``, the decades over which its shift may be moved,
     is above :data:`LARGEST_FREEDOM`, one decade (1 itself and NaN are not), with both temperatures
-    and these decades, coldest first; an empty list where there is none, as of factors that were
+    and these decades, coldest first; an empty list where there is none, as for factors that were
     given.
     """
     pairs = zip(pairwise(shifts.temperature), shifts.freedom, strict=True)

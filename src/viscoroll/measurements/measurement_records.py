@@ -66,7 +66,7 @@ class Record:
     sigma : as given by the caller a number, an array, a dict or None; after ``__post_init__`` a
         dict, quantity -> standard deviations in its SI unit, in the shape of the points, or None
         where they are to be estimated.
-    load, temperature, name : as of :class:`Resistance`.
+    load, temperature, name : as in :class:`Resistance`.
     labels : :class:`Labels` of xarray or pandas of the arrays that were given; None without.
     """
 
@@ -373,12 +373,12 @@ class Traction(Record):
     V : speeds of the axis, m/s, one for all or one a point, (n,).
     delta : creepages (omega R - V)/V, dimensionless, (n,) or one number.
     Q : traction, N/m, positive for delta > 0 and V > 0, (n,); None: a plan.
-    sigma, load, temperature, name : as of :class:`Resistance`.
+    sigma, load, temperature, name : as in :class:`Resistance`.
 
     Raises
     ------
     ParameterError
-        As of :class:`Resistance`.
+        As in :class:`Resistance`.
 
     Examples
     --------
@@ -414,7 +414,7 @@ class Traction(Record):
         Raises
         ------
         ParameterError
-            As of :meth:`Resistance.model`.
+            As in :meth:`Resistance.model`.
 
         Warns
         -----
@@ -447,14 +447,14 @@ class Coastdown(Record):
         values.
     t0 : time of the release, s, before which the roller has its first speeds; (low, high): unknown.
     m : mass with which it rolled, kg/m; None: the cylinder's.
-    sigma : as of :class:`Resistance`; of several quantities {"V": ..., "omega": ...}, whose names
+    sigma : as in :class:`Resistance`; of several quantities {"V": ..., "omega": ...}, whose names
         are those that a plan measures.
-    load, temperature, name : as of :class:`Resistance`; without a name it is called "run".
+    load, temperature, name : as in :class:`Resistance`; without a name it is called "run".
 
     Raises
     ------
     ParameterError
-        As of :class:`Resistance`; times that fall or are no vector; t0 of another form.
+        As in :class:`Resistance`; times that fall or are no vector; t0 of another form.
 
     Examples
     --------

@@ -250,7 +250,7 @@ class Likelihood:
         whose relative interval, ``high - low``, is below a third of the narrowest one found before
         (all, if none was found).
 
-        which : indices of the undetermined unknowns, ascending, as of :meth:`undetermined`.
+        which : indices of the undetermined unknowns, ascending, as in :meth:`undetermined`.
         delta_chi2 : bound of the rise of chi2 above that of the best minimum, dimensionless, > 0.
         Returns a list of :class:`Product`, those with ``near`` False first, each part in the order
         in which the combinations are tried; [] for fewer than two unknowns, or where no product is

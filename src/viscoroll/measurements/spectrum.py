@@ -227,7 +227,7 @@ def has_plateau(data: Data, E: float) -> bool:
     of it.
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
-    E : long-time modulus of a fit of the data, in their unit, as of :func:`on_times`.
+    E : long-time modulus of a fit of the data, in their unit, as in :func:`on_times`.
     """
     return E > 1.0001 * _least_modulus(data)
 
@@ -404,7 +404,7 @@ def fewest_modes(
     ParameterError
         If no grid of times leaves a long-time modulus: the data are of a fluid.
     RuntimeError
-        As of :func:`on_times`, where SciPy's non-negative least squares do not end.
+        As in :func:`on_times`, where SciPy's non-negative least squares do not end.
     """
     starts = _fit_wider_grids(data, None if modes else target)
     if not starts:
@@ -512,7 +512,7 @@ def _leave_out_mode(
 
     data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
     spectrum : :class:`Spectrum`, spectrum of the data from which a mode is left out, of at least
-        one mode, all strengths > 0, as of :func:`on_times`.
+        one mode, all strengths > 0, as in :func:`on_times`.
     ends : (shortest, longest) time that is allowed, s.
     good : function of a spectrum that returns whether it is acceptable; None: any is.
     Returns the candidate with the least misfit as it is, its times not refined, if it is

@@ -199,7 +199,7 @@ def understand(
     """Read the table of a file, and find the quantities of its columns.
 
     test : "dma" or "relaxation".
-    path, columns, units, decimal, encoding : as of :func:`.dma_reader.read_dma`.
+    path, columns, units, decimal, encoding : as in :func:`.dma_reader.read_dma`.
     Returns :class:`Understood`.
     Raises ParameterError and FileError as :func:`.dma_reader.read_dma` does for these arguments and
     for what is no table.

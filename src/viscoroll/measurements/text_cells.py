@@ -187,7 +187,7 @@ def read_lines(path: str | PathLike[str], encoding: str | None) -> list[str]:
     Returns a list of texts, [""] of an empty file; lines may end by CR LF, CR or LF, and the text
     after the last end is a line too.
     Raises FileError for a file that cannot be read or decoded, for workbooks and archives, and for
-    a text with null characters, as of binary files; ParameterError for an encoding that Python does
+    a text with null characters, as in binary files; ParameterError for an encoding that Python does
     not know.
     """
     with as_file_error(path, "cannot be read"):
@@ -372,8 +372,8 @@ def _differ(unit: str, row: str) -> bool:
     """Return whether a heading and the row of units give two units of one dimension that are not
     equal.
 
-    unit, row : texts of both; what is no unit, and units of two dimensions, as of "Temperature (T)"
-        and "°C", where the one is a symbol, do not count.
+    unit, row : texts of both.  Texts that are no unit, and units of two dimensions, are not
+        compared: in "Temperature (T)" above "°C" the T is a symbol.
     """
     if not (may_be_unit(unit) and may_be_unit(row)):
         return False

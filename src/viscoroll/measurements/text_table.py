@@ -137,7 +137,7 @@ def read_table(
     decimal : "." or ","; None: the mark that is there.  Where a mark may be a separator of
         thousands too, the table is returned with ``decimal`` "", and :meth:`Table.numbers` refuses
         numbers with a mark.
-    encoding : name of the encoding, as Python calls it; None: as of :func:`.text_cells.read_lines`.
+    encoding : name of the encoding, as Python calls it; None: as in :func:`.text_cells.read_lines`.
     is_title : a function of the text of a line that returns whether the line may stand between
         rows, as one that states the temperature of those below; lines with two numbers and more in
         cells of their own are rows all the same.
@@ -212,7 +212,7 @@ class _Layout:
     path : path of the file.
     lines : lines of the file with their cells.
     separator : separator of the cells, a key of ``SEPARATORS``.
-    is_heading_line, is_title : as of :func:`read_table`.
+    is_heading_line, is_title : as in :func:`read_table`.
     width : most frequent number of cells of rows of numbers.
     cut : words on the separator, for messages.
     """
@@ -425,7 +425,7 @@ def named_table(
     A cell has a name if it is the name, alone or with a unit.
 
     path : path of the file.
-    names : names of columns; where no line has any, headings are found as of :func:`read_table`,
+    names : names of columns; where no line has any, headings are found as in :func:`read_table`,
     above the numbers.
     decimal : decimal mark, "." or ","; None: the one that the file has.
     encoding : name of the encoding, as Python calls it; None: UTF-16 by the first bytes, else the

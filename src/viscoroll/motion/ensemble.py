@@ -73,7 +73,7 @@ class Fastest(NamedTuple):
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Ensemble(RollResult):
-    """Motions 0 ... n - 1 at common output times, in the units of the roller, as of a
+    """Motions 0 ... n - 1 at common output times, in the units of the roller, as for a
     :class:`Motion`.
 
     Attributes
@@ -86,7 +86,7 @@ class Ensemble(RollResult):
     slip_loss, rolling_loss : likewise, the energy lost since t = 0, divided by m (R/T_ref)^2 or in
         J/m: the integrals of gamma (omega - V) Q >= 0 and of gamma (V + omega) M/2 over time.
         Without a drive their sum is what (V^2 + j omega^2)/2 has fallen by (at rest: all of it).
-    force, torque, work_force, work_torque, brake_loss : likewise, as of a :class:`Motion`; 0
+    force, torque, work_force, work_torque, brake_loss : likewise, as in a :class:`Motion`; 0
     without a drive.
     onset_time : (n,), first change from full to partial slip; NaN if there is none.
     rest_time : (n,), when max(|V|, R |omega|) fell below ``rest``; NaN if it did not.
@@ -98,7 +98,7 @@ class Ensemble(RollResult):
         ``angle`` among the fields, that relative to the path if larger, or, with a loss, that
         relative to the energy at the start if larger; NaN without a map.
     flow_problem : why a map that was tried could not be used, or "".
-    drive_error : as of a :class:`Motion`.
+    drive_error : as in a :class:`Motion`.
     drive : loads and prescribed speeds as they were given.
     labels : labels of the starts and loads, where they came as arrays of xarray or pandas;
     :meth:`to_xarray` has them.

@@ -63,8 +63,10 @@ class FlowMap:
 
     @property
     def slow_rate(self) -> float:
-        """Rate at which ln V falls at low speeds, in time gamma t: T_mean/(1 + j), a float; 0 if
-        elastic.
+        """Decay rate of a small speed, -d ln V/d(gamma t) as V -> 0, a float, dimensionless.
+
+        It is T_mean/(1 + j), with T_mean the slope dM/dV at V = 0 (:attr:`.Prony.T_mean`) and j the
+        moment of inertia divided by m R^2; 0 for elastic bodies.
         """
         material, _, _, j = self.parameters
         T_mean: float = (
@@ -141,7 +143,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     The time of last change of the file is set to now if it can be: maps that were used last are
     kept.
 
-    path : path of the file, as of :func:`path_of`.
+    path : path of the file, as in :func:`path_of`.
     parameters : (alpha or :class:`Prony` series, kappa, mu, j) that the map must have.
     Returns the :class:`FlowMap`; None if there is no file that can be read, also if others may
     write to it or to a folder above it, or if one belongs to another user; None with a
@@ -179,10 +181,10 @@ def save(new_map: FlowMap, path: Path) -> None:
 
     Nothing is raised if it cannot be written, or an old map not deleted (OSError), also if others
     may write to a folder above it: the map is then not on disk, or too many are.  The file has the
-    fields of :class:`FlowMap`, with the parameters as of :func:`_numbers`, and a seal.
+    fields of :class:`FlowMap`, with the parameters as in :func:`_numbers`, and a seal.
 
     new_map : the :class:`FlowMap`.
-    path : path of the file, as of :func:`path_of`; it is replaced if it exists.
+    path : path of the file, as in :func:`path_of`; it is replaced if it exists.
     """
     save_kept(path, KEPT, vars(new_map) | {"parameters": _numbers(new_map.parameters)})
 

@@ -99,7 +99,7 @@ def solve_batch(batch: Batch, method: str, speed: float | None) -> Solution:
 
     batch: :class:`Batch`, the motions.
     method: "auto" (a map is tried from :data:`FLOW_PAYS` motions on), "flow" (for any number) or
-    "integrate" (never), as of :func:`viscoroll.ensemble`.
+    "integrate" (never), as in :func:`viscoroll.ensemble`.
     speed: highest speed, > 0, for which the flow map is made, dimensionless; None: the largest |V0|
     or |omega0|.  It is ignored, and not checked, where no map is tried.
     Raises ParameterError for method "flow" with parameters that are arrays, with driven or unsteady

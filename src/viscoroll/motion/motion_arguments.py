@@ -99,10 +99,10 @@ def require_single(**arguments: Any) -> None:
 
 
 def _shape(value: Any) -> tuple[int, ...]:
-    """Return the shape of an argument, a tuple; () of what is no array, as None.
+    """Return the shape of an argument as an array.
 
-    value: what a caller gave; a list counts as an array, a ragged one as an array of objects.
-    Nothing is raised.
+    value: an argument of any type; a nested list of unequal lengths counts as a vector of lists.
+    Returns a tuple of ints; () for a number, None and all else that has no shape.  Never raises.
     """
     try:
         return tuple(np.shape(value if hasattr(value, "shape") else np.asarray(value, object)))

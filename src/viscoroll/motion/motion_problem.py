@@ -254,7 +254,7 @@ def _check_unsteady(unsteady: Any, scene: Parameters) -> bool:
     """
     if not check_bool("unsteady", unsteady):
         return False
-    refuse_cover(scene, "N is not available: leave unsteady=True out")
+    refuse_cover(scene, "N of M = M(V) + N dV/dt is not available: leave unsteady=True out")
     if not scene.like_bodies:
         sentence = (
             "unsteady = True: motions with the added mass N are computed for two bodies of "
@@ -422,7 +422,7 @@ def integrate_motions(
     0.
     Returns (V, omega, x, angle, delta, regime, slip_loss, rolling_loss, (8, n, times),
     dimensionless, NaN at times that a motion did not reach; status, steps, switches, onset and rest
-    time of each motion, (n, 5), as of :func:`integrate`).
+    time of each motion, (n, 5), as in :func:`integrate`).
     """
     material, kappa, mu, j = parameters
     law = law_table(material)

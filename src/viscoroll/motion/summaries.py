@@ -141,7 +141,7 @@ class Histogram(msgspec.Struct):
         return first + (position - lower) * (second - first)
 
     def _at_rank(self, ranks: Integers) -> Floats:
-        """Return the values of ranks from 0, as if those of each bin were evenly spread.
+        """Return the values of given ranks, assumed to be evenly distributed within each bin.
 
         The bin of zero is no interval: it holds 0 and positive values below 1e-310, and all of them
         count as 0.
@@ -152,16 +152,18 @@ class Histogram(msgspec.Struct):
         """
         below, above = edges_of(self.bins)
         above = np.where(self.bins == 0, below, above)
-        reached = np.cumsum(self.counts)
-        index = np.searchsorted(reached, ranks, side="right")
-        share = (ranks - (reached[index] - self.counts[index]) + 0.5) / self.counts[index]
-        return np.clip(below[index] + share * (above[index] - below[index]), self.low, self.high)
+        cumulative = np.cumsum(self.counts)
+        index = np.searchsorted(cumulative, ranks, side="right")
+        rank_in_bin = ranks - (cumulative[index] - self.counts[index])
+        fraction = (rank_in_bin + 0.5) / self.counts[index]
+        values = below[index] + fraction * (above[index] - below[index])
+        return np.clip(values, self.low, self.high)
 
 
 def edges_of(bins: NDArray[np.int32]) -> tuple[Any, Any]:
     """Return the edges of bins.
 
-    bins: numbers of bins, (bins,), as of :class:`Histogram`.
+    bins: numbers of bins, (bins,), as in :class:`Histogram`.
     Returns (smallest value of each bin; smallest value of the bin after it, infinite for the last
     bin of finite values), floats, in the shape of ``bins`` each.
     """

@@ -134,8 +134,8 @@ def roll_block(run: Run, block: int) -> tuple[dict[str, Floats], Ensemble]:
 
     run: :class:`runs.Run`, with its inputs, settings and output times.
     block: number of the block, from 0 to ``run.blocks - 1``.
-    Returns (name of an uncertain input -> values, (motions,), in the units of the run file, as of
-    :func:`block_inputs`; the motions, an :class:`Ensemble` with ``run.fields``, as of
+    Returns (name of an uncertain input -> values, (motions,), in the units of the run file, as in
+    :func:`block_inputs`; the motions, an :class:`Ensemble` with ``run.fields``, as in
     :func:`runs.roll_inputs`).
     Raises ParameterError for inputs that a motion does not allow, FileError for inputs that a
     material does not allow, CancelledError if the run was interrupted

@@ -101,7 +101,7 @@ def _decode_array(kind: Any, value: Any) -> np.ndarray:
     """Return the array of which :func:`_encode_array` made a list.
 
     kind: type of the field, which msgspec passes; it is not used.
-    value: [type as of numpy, "<i4" or "<i8"; bytes].
+    value: [type as named by numpy, "<i4" or "<i8"; bytes].
     Returns a read-only vector of that type.
     Raises ValueError for another type, or a number of bytes that is no multiple of its size.
     """

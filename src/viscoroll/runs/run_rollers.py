@@ -113,7 +113,7 @@ def _warm_bodies(
 ) -> dict[str, Any]:
     """Return the bodies of all motions at the temperatures at which their cylinders roll.
 
-    content: sections as of :func:`roller_of`, of which [heat] and [start] are read.
+    content: sections as in :func:`roller_of`, of which [heat] and [start] are read.
     numbers: [cylinder], numbers or arrays (n,); bodies: "material" and "base", those that the file
         has.
     Returns the bodies, of which those that relax are at the coldest equilibrium: a

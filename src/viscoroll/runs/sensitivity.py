@@ -319,7 +319,7 @@ def _estimated(values: Floats) -> Floats:
     of Table 2 of Saltelli et al. (2010).  scipy.stats.sobol_indices gives the same bits, but up to
     scipy 1.17 it fails for a single input.
 
-    values: outcomes, (2 + inputs, base points), as of :func:`_indices`, finite.  Where those of A
+    values: outcomes, (2 + inputs, base points), as in :func:`_indices`, finite.  Where those of A
         and B are all equal the indices are NaN or infinite.
     """
     A, B, *others = values - values[:2].mean()

@@ -310,7 +310,7 @@ class _Reader:
     """Collects the uncertain numbers of a run file, and replaces each by an :class:`Input`.
 
     path, si: path of the run file, and whether it is in SI units.
-    random, joint: as of :class:`Inputs`; they grow while the sections are read.
+    random, joint: as in :class:`Inputs`; they grow while the sections are read.
     files: path of a sample -> its first spelling: 'rows.csv' and './rows.csv' share their rows.
     """
 

@@ -89,7 +89,7 @@ def spread(
     if not high > low:
         raise ParameterError("high", high, f"> low = {low:g}")
     if high - low == np.inf:
-        raise ParameterError("high", high, f"less than 1.8e308 above low = {low:g}")
+        raise ParameterError("high", high, f"less than 1.8e308 + low, with low = {low:g}")
     return (np.geomspace if spacing == "log" else np.linspace)(
         low, high, check_integer("count", count, 2, MAX_NODES)
     )
@@ -104,7 +104,7 @@ def creep_nodes(
 
     Parameters
     ----------
-    what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, or a law, as of
+    what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, or a law, as in
     :func:`grid_build`.
     V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_ref, where
         T_ref is T_epsilon of a scene with alpha, else the unit of time of its material; of a
@@ -362,8 +362,11 @@ def build(
 def _coupled_dataset(
     roller: Scene | Cylinder, nodes: tuple[int, int] | None, progress: bool
 ) -> xr.Dataset:
-    """Return the table of the coupled solution of one roller; arguments as of
-    :func:`grid_build`.
+    """Return the table of the coupled solution of one roller as a dataset.
+
+    roller: a Scene, dimensionless, or a Cylinder, in SI units, with numbers for parameters.
+    nodes: numbers of nodes of speed and of creepage; None: those of :func:`.coupled_law`.
+    progress: whether a progress bar is drawn on standard error.
     """
     law = coupled_law(roller.scene(), nodes=nodes, progress=progress)
     if isinstance(roller, Cylinder):
@@ -410,7 +413,7 @@ def _evaluate(
     points: "V", and perhaps "delta" and "alpha" -> arrays that broadcast; without "delta" fields
         are at delta = 0 as an array (1,), which broadcasts too; without "alpha" the roller has its
         own.
-    names: names of the fields, as of :func:`viscoroll.contact`.
+    names: names of the fields, as in :func:`viscoroll.contact`.
     method: "table" (rows of the law) or "direct" (root solves of the printed equations).
     Raises ParameterError for a method that is unknown or that the bodies do not have, and for V out
     of range; ConvergenceError where an iteration of "direct" reaches its limit.  A Cylinder may
@@ -496,8 +499,8 @@ def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]
     KeyError).
     Returns field -> largest difference over all nodes, a float >= 0: for :data:`RELATIVE_FIELDS`
     divided by the magnitude in the rows at the same node, for other fields by the largest magnitude
-    in the rows.  Both are dimensionless.  Where that magnitude is 0, as of M of elastic bodies, the
-    difference itself is taken, in the unit of the field.
+    in the rows.  Both are dimensionless.  Where that magnitude is 0, for example for M of elastic
+    bodies, the difference itself is taken, in the unit of the field.
     """
     rows = _evaluate_nodes(
         roller, {name: table[name].values for name in table_files.axes_of(table)}, "table"

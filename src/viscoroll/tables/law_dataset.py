@@ -235,23 +235,23 @@ def measured_errors(
 def _measured_errors_of_cover(
     table: LawTable, count: int, random: np.random.Generator
 ) -> dict[str, float]:
-    """Compare the law of a layer at random speeds with solves of the contact, which have 60 terms
-    of the pressure.
-
-    Each speed takes a solve by the secant method (:func:`.cover_rows.solve_at_speed`).
+    """Compare the law of a layer at random speeds with solutions of the contact that have 60 terms
+    of the pressure (:func:`.cover_rows.solve_at_speed`).
 
     table: :class:`LawTable` of a cover.
     count: number of speeds u = kappa |V|, >= 1, drawn evenly in ln u at random, from a tenth of the
         slowest rate of the bodies (at most 0.1) to ten times the fastest (at least 10), rates
         multiplied by T_ref.
     random: numpy Generator, which draws the speeds and is advanced.
-    Returns function -> error, >= 0, dimensionless.  Largest relative errors: "lam", "epsilon",
-    "limit" (of L = 2 kappa delta_star/mu), "m_half_space" and "m_cylinder" (relative to their sum
-    M; 0 where M = 0).  Those that shear
-    has: the largest error divided by L at the same speed.  Not measured but bounded, to first
-    order, by share = lam/L and press = 1/L^2: "share" has the sum of the errors of lam and L,
-    "press" twice the error of L.
-    Raises ParameterError where a solve finds no contact length that carries the load.
+    Returns function -> largest error of all speeds, >= 0, dimensionless:
+
+    - "lam", "epsilon", "limit" (of L = 2 kappa delta_star/mu): relative errors;
+    - "m_half_space", "m_cylinder": errors divided by their sum M, 0 where M = 0;
+    - each of :data:`COVER_FUNCTIONS` from the second on, which describe the effect of shear: errors
+      divided by L;
+    - "share" = lam/L and "press" = 1/L^2: not compared, but bounded to first order, "share" by the
+      sum of the errors of lam and L, "press" by twice the error of L.
+    Raises ParameterError where a solution finds no contact length that carries the load.
     """
     cover: Any = table.material
     assert table.cover is not None
@@ -389,7 +389,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     ----------
     table : dataset of :func:`viscoroll.tables.law`, of :func:`viscoroll.tables.build`
         for a scene of one relaxation time, or of :func:`viscoroll.tables.load`.
-    count : number of random points, >= 1; of a layer that of the speeds, of every alpha as of
+    count : number of random points, >= 1; of a layer that of the speeds, of every alpha as in
         :func:`measured_errors`.
     seed : seed of the random points, >= 0.
 

@@ -272,8 +272,11 @@ def _write_header(dataset: xr.Dataset, path: Path) -> None:
 
 
 def _law_constants(table: LawTable, name: str) -> str:
-    """Return the constants of C of the rows of a law, of half-spaces or of a cover; ``name``: of
-    the law.
+    """Return the rows of a law as constants in C.
+
+    table: law of half-spaces or of a cover.
+    name: name of the law, an identifier of C, with which the names of the constants begin.
+    Returns the source text.
     """
     from ..kernels.law.cover_law import COVER_FRONT_SIZE
 

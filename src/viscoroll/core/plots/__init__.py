@@ -57,7 +57,7 @@ def new_figure(
     height: height of the figure, inches; its width is ``WIDTH``, 6.4 inches.
     options: keyword arguments of ``Figure.subplots``, as ``sharex``, ``squeeze`` and
     ``height_ratios``.
-    Returns (figure; its axes as of ``Figure.subplots``: one for a single row and column, a vector
+    Returns (figure; its axes as in ``Figure.subplots``: one for a single row and column, a vector
     for one row or one column, else an array (rows, columns); with ``squeeze=False`` always such an
     array).
     """
@@ -157,7 +157,7 @@ def zero_line(axes: Any) -> None:
 
 
 def small_legend(axes: Any, **options: Any) -> None:
-    """Add a legend without a frame to ``axes``; ``options`` as of ``Axes.legend``."""
+    """Add a legend without a frame to ``axes``; ``options`` as in ``Axes.legend``."""
     axes.legend(frameon=False, fontsize="small", **options)
 
 
@@ -266,7 +266,7 @@ def draw(data: xr.Dataset) -> Figure:
 
     Parameters
     ----------
-    data : dataset of the result, as of its ``to_xarray()``: a summary of an ensemble or of a run
+    data : dataset of the result, as in its ``to_xarray()``: a summary of an ensemble or of a run
         (axis "quantile"), Sobol indices ("input"), a motion ("t" and a variable "regime"),
         equilibria ("equilibrium"), stresses ("p", "tau" and "x"), else contact states or a table
         over at least one axis of several values.  A kind is recognised by the axes and names in

@@ -66,7 +66,7 @@ def varied_axes(data: xr.Dataset) -> list[str]:
 
 
 def field_curves(data: xr.Dataset) -> Figure:
-    """Draw each field of a dataset over its first axis of several values, with curves for at most
+    """Draw fields of a dataset against its first axis of several values, with curves for at most
     four of the second.
 
     data: fields of the contact over axes such as V and delta, with their coordinates and the
@@ -138,7 +138,7 @@ def stresses(data: xr.Dataset) -> Figure:
 def equilibria(data: xr.Dataset) -> Figure:
     """Draw the speeds of all equilibria over the load, stable (filled) or not (open).
 
-    data: dataset of steady rolling, as of ``Steady.to_xarray``: V, stable (1 or 0) and the loads.
+    data: dataset of steady rolling, as in ``Steady.to_xarray``: V, stable (1 or 0) and the loads.
         The load on the axis is the first of slope, force and torque that varies, else the force,
         which must be there then (KeyError).  Entries whose V is NaN, where there are fewer
         equilibria, are left out.
@@ -218,8 +218,12 @@ def motion(data: xr.Dataset) -> Figure:
 
 
 def _in_millimetres(data: xr.Dataset, name: str) -> xr.Dataset:
-    """Return a dataset with a length of the contact in mm, where it has it in m, and without lam,
-    its ratio to l0.
+    """Return a dataset whose contact length is in mm, for figures.
+
+    data: dataset of states.
+    name: name of the variable with the contact length.
+    Returns ``data`` itself if the variable is missing or is not in m; else a new dataset with the
+    length in mm and without lam, the same length divided by l0.
     """
     if name not in data.variables or data[name].attrs.get("units") != "m":
         return data

@@ -56,8 +56,13 @@ def graded(t):
 
 @inline_kernel
 def _gathered(t, spots, used):
-    """Return (sum over spots of weight sgn(t - place) ln(1 + |t - place|/width); its
-    derivative).
+    """Return the number of elements by which refinements shift t, and its derivative in t, floats.
+
+    It is the sum over refinements of weight sgn(t - t_k) ln(1 + |t - t_k|/width).
+
+    t : float, parameter of the mesh, in [0, 1].
+    spots : (most, 3), t_k, width and weight of each refinement, as in :func:`make_mesh`.
+    used : int, number of refinements.
     """
     total = 0.0
     rate = 0.0
@@ -390,12 +395,14 @@ def eliminate(H, C, at, coupled):
 
 @kernel(allocates=True)
 def strain_by_shear(T, C, B, coupled):
-    """Return (N, N): columns of the strain u' by q, and in the last column what u' is without q,
-    both with p free.
+    """Return the strain u' in the elements as a linear function of the shear q.
 
-    T, C : matrices of slopes, (N, N - 1).
-    B : elimination of p, of :func:`eliminate`.
-    coupled : whether C is not 0.
+    The pressure is not fixed: it follows q by p = a - B q.
+
+    T, C : matrices (N, N - 1), strain by shear and, with the opposite sign, by pressure.
+    B : elimination of p, (N, N), of :func:`eliminate`.
+    coupled : bool, whether C is not 0.
+    Returns (N, N): the factors of q in the first N - 1 columns, u' for q = 0 in the last.
     """
     N = B.shape[0]
     S = np.zeros((N, N))
@@ -414,14 +421,18 @@ def strain_by_shear(T, C, B, coupled):
 
 @kernel(allocates=True)
 def solve_zones(S, B, mu, zone, d, q):
-    """Solve for the shear with given zones; return whether it has a solution.
+    """Solve for the shear with given zones of stick and slip.
 
-    S, B : of :func:`strain_by_shear` and :func:`eliminate`.
-    mu : coefficient of friction.
+    A node that slips has q = zone mu p (Coulomb).  For a node that sticks the slip d - u' of the
+    element ahead of it is 0.
+
+    S : strain u' as a linear function of the shear, (N, N), of :func:`strain_by_shear`.
+    B : pressure p = a - B q as a linear function of the shear, (N, N), of :func:`eliminate`.
+    mu : float, coefficient of friction, > 0.
     zone : 0 for stick, 1 or -1 for slip at each inner node, (N - 1,).
-    d : creep.
-    q : (N - 1,), written.
-    A node that sticks demands no slip in the element ahead of it.
+    d : float, kappa times the creepage delta.
+    q : shear at the inner nodes, (N - 1,), written if there is a solution.
+    Returns whether there is a solution, a bool: False if the matrix is singular.
     """
     n = zone.size
     matrix = np.empty((n, n))
@@ -450,11 +461,13 @@ def solve_zones(S, B, mu, zone, d, q):
 
 @kernel(allocates=True)
 def pressure_and_strain(S, B, q, p, strain):
-    """Write pressure and strain of a shear; return g.
+    """Write pressure and strain that belong to a shear.
 
-    S, B : of :func:`strain_by_shear` and :func:`eliminate`.
-    q : (N - 1,).
-    p, strain : (N - 1,) and (N,), written.
+    S : strain u' as a linear function of the shear, (N, N), of :func:`strain_by_shear`.
+    B : pressure p = a - B q as a linear function of the shear, (N, N), of :func:`eliminate`.
+    q : shear at the inner nodes, (N - 1,).
+    p, strain : pressure at the inner nodes, (N - 1,), and u' in the elements, (N,), written.
+    Returns g, a float: distance of the middle of the contact ahead of the axis, divided by l0.
     """
     n = q.size
     g = 0.0
@@ -478,12 +491,16 @@ def pressure_and_strain(S, B, q, p, strain):
 def find_zones(S, B, mu, d, zone, kept, p, q, strain):
     """Find the zones of stick and slip of one contact by exchange of nodes.
 
-    S, B : of :func:`strain_by_shear` and :func:`eliminate`.
-    mu, d : coefficient of friction, creep.
-    zone : (N - 1,), changed in place, from a first guess.
-    kept : number of inner nodes from the rear whose zone is not changed.
-    p, q, strain : (N - 1,), (N - 1,) and (N,), written.
-    Returns (whether zones were found; g).
+    Nodes that stick with |q| > mu p begin to slip; nodes whose slip is against q begin to stick.
+
+    S : strain u' as a linear function of the shear, (N, N), of :func:`strain_by_shear`.
+    B : pressure p = a - B q as a linear function of the shear, (N, N), of :func:`eliminate`.
+    mu, d : floats, coefficient of friction, kappa times the creepage delta.
+    zone : 0 for stick, 1 or -1 for slip at each inner node, (N - 1,); a first guess, changed.
+    kept : int, number of inner nodes from the rear whose zone is not changed.
+    p, q : pressure and shear at the inner nodes, (N - 1,) each, written.
+    strain : u' in the elements, (N,), written.
+    Returns (whether zones were found, a bool; g of :func:`pressure_and_strain`, a float).
     """
     n = zone.size
     new = np.empty(n)

@@ -303,8 +303,13 @@ def _slopes(x):
 
 @inline_kernel
 def _corners(rows, nodes):
-    """Return the weights of four nodes, vectors; ``rows``, ``nodes``: those of both rows and
-    nodes, of :func:`_values` or :func:`_slopes`.
+    """Return the weights of a bicubic Hermite interpolation at the four corners of a cell.
+
+    rows : weights (a0, a1, b0, b1) in the direction of the speed, of :func:`_values` or
+        :func:`_slopes` of a :class:`Weights`: of the values at both rows, then of the slopes there.
+    nodes : the same in the direction of the creepage, (c0, c1, d0, d1).
+    Returns four vectors of four numbers, for (row 0, node 0), (row 0, node 1), (row 1, node 0) and
+    (row 1, node 1): the weights of value, slope in speed, slope in creepage and mixed derivative.
     """
     a0, a1, b0, b1 = rows
     c0, c1, d0, d1 = nodes

@@ -43,7 +43,7 @@ _MOST_CENTRINGS = 6
 _MOST_LENGTHS = 20
 #: relative error of the load, for which lam is then corrected to first order
 _LOAD_ERROR = 5e-6
-#: relative error of the load where only zones are asked
+#: relative error of the load where only zones are needed
 _ROUGH_LOAD = 1e-3
 #: least change of ln(c) from which a secant is taken: that of a new mesh is smaller
 _LEAST_CHANGE = 1e-3
@@ -57,7 +57,7 @@ WIDTH_OF_SPOT = 0.1
 WEIGHT_OF_SPOT = 1.0
 #: elements in a factor of e of the distance from the front edge, down to the edge layer
 WEIGHT_OF_LAYER = 3.0
-#: integral of negative pressure over the load that counts as tension
+#: integral of negative pressure, divided by the load, that counts as tension
 _TENSION = 1e-6
 #: steps of the bisection of the creep where the other slip opens: to 5e-4 of the distance of the
 #: onsets
@@ -192,13 +192,19 @@ def gather(row, contact, c, spots):
 
 @kernel(allocates=True)
 def solve_contact(row, contact, c, mu, d, spots, again):
-    """Solve one contact of half length c with its zones of stick and slip.
+    """Solve for pressure, shear and zones of stick and slip of one contact of given length.
 
-    row : :class:`Row`.  contact : :class:`Contact`, written; its zones are the first guess.
-    c : half length.  mu : friction.  d : creep.
-    spots : (MOST_SPOTS, 3), where the mesh gathers; written, or read if ``again``: the mesh of the
-    call before is kept.
-    Returns (status; g; whether the edges found lie where the mesh gathers).
+    row : :class:`Row`, kernels of both bodies at one speed.
+    contact : :class:`Contact`, mesh, matrices and tractions, written; its zones are a first guess.
+    c : float, half length of the contact divided by l0, > 0.
+    mu : float, coefficient of friction, > 0.
+    d : float, kappa times the creepage delta; infinite: full slip in the zones of ``contact``.
+    spots : (MOST_SPOTS, 3), refinements of the mesh at edges of zones, as in :func:`make_mesh`;
+        written, or with ``again`` read.
+    again : bool, whether the mesh of the previous call is kept and scaled to c.
+    Returns three values: the status, an int, SOLVED, NO_ZONES or SINGULAR; the distance g of the
+    middle of the contact ahead of the axis, divided by l0; whether the edges of the zones lie
+    within OFF_SPOT elements of the refinements of the mesh.
     """
     count = contact.at.size
     edges = 0
@@ -226,10 +232,11 @@ def solve_contact(row, contact, c, mu, d, spots, again):
 
 @kernel
 def slip_work(contact, d):
-    """Return the work of slip, the integral of q (d - u') over the elements that slip, per unit of
-    speed.
+    """Return the slip loss divided by V: the integral of q (d - u') over the elements that slip.
 
-    contact : solved :class:`Contact`.  d : creep.
+    contact : solved :class:`Contact`.
+    d : float, kappa times the creepage delta.
+    Returns a float, in the units of the module.
     """
     found = 0.0
     for e in range(contact.at.size):
@@ -244,8 +251,10 @@ def slip_work(contact, d):
 
 @kernel
 def stick_length(contact):
-    """Return the length of the elements that stick over that of the contact.  contact: solved
-    :class:`Contact`.
+    """Return the length of the elements that stick, divided by the length of the contact.
+
+    contact : solved :class:`Contact`.
+    Returns a float in [0, 1].
     """
     found = 0.0
     for e in range(contact.at.size):
@@ -256,7 +265,7 @@ def stick_length(contact):
 
 @inline_kernel
 def _of_matrix(matrix, e, values):
-    """Return the product of row e of a matrix and a vector."""
+    """Return the scalar product of row e of a matrix (rows, n) and a vector ``values`` (n,)."""
     found = 0.0
     for j in range(values.size):
         found += matrix[e, j] * values[j]
@@ -265,9 +274,11 @@ def _of_matrix(matrix, e, values):
 
 @kernel(allocates=True)
 def split_powers(row, contact):
-    """Return (int p times the slope of the cylinder; int q times its strain), of a solved contact.
+    """Return (integral of p times the slope of the cylinder, integral of q times its strain).
 
-    The matrices of ``contact`` are overwritten by those of the cylinder.
+    row : :class:`Row`, of which the kernels of the cylinder alone are read.
+    contact : solved :class:`Contact`, whose matrices are overwritten by those of the cylinder.
+    Both are floats, in the units of the module.
     """
     assemble(row.own, row.own_instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
     add_local(row.own_local, contact.nodes, contact.at, contact.C)
@@ -285,10 +296,15 @@ def split_powers(row, contact):
 
 @kernel(allocates=True)
 def write_state(row, contact, c, g, mu, d, status, out):
-    """Write a solved state without the powers of the cylinder.
+    """Write the quantities of a solved state, except moment and work of the cylinder alone.
 
-    out : (COLUMNS,), written; lam is that of the elements' load, 2 c.
-    Returns the integral of p.
+    row : not read.
+    contact : solved :class:`Contact`.
+    c, g : floats, half length, and distance of the middle ahead of the axis, divided by l0.
+    mu, d : floats, coefficient of friction; kappa times the creepage delta, infinite in full slip.
+    status : int, status of the solution; a solution with tension becomes TENSION.
+    out : (COLUMNS,), written; lam = 2 c belongs to the load of the elements, not yet to LOAD.
+    Returns the load of the elements, the integral of p, a float.
     """
     total, moment = moments(contact.nodes, contact.p)
     traction, _ = moments(contact.nodes, contact.q)
@@ -315,14 +331,18 @@ def write_state(row, contact, c, g, mu, d, status, out):
 
 @kernel(allocates=True)
 def find_length(row, contact, c, slope, mu, d, tolerance, out):
-    """Find the half length at which the contact bears the load, by the secant method in logarithms.
+    """Find the half length at which the contact carries the load, by the secant method in
+    logarithms.
 
-    The mesh of each length gathers at the edges that the one before had.
+    The mesh of each length is refined at the edges of the zones of the previous length.
 
-    c, slope : first guesses of the half length and of d ln(load)/d ln(c).
-    tolerance : relative error of the load.
-    out : (COLUMNS,), written.
-    Returns (half length; slope).
+    row : :class:`Row`.
+    contact : :class:`Contact`, written; its zones are the first guess.
+    c, slope : floats, first guesses of the half length and of d ln(load)/d ln(c).
+    mu, d : floats, coefficient of friction; kappa times the creepage delta, infinite in full slip.
+    tolerance : float, largest relative error of the load.
+    out : (COLUMNS,), written, with a status other than SOLVED if no solution was found.
+    Returns (half length divided by l0, d ln(load)/d ln(c)), floats.
     """
     spots = np.empty((MOST_SPOTS, 3))
     y = math.log(c)
@@ -353,7 +373,12 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
 
 @kernel(allocates=True)
 def finish_state(row, contact, out):
-    """Write the powers of the cylinder into a state, ``out``, of a contact that was solved last."""
+    """Write moment and work of the cylinder alone into a state.
+
+    row : :class:`Row`.
+    contact : the solved :class:`Contact` of the state; its matrices are overwritten.
+    out : (COLUMNS,), the state of :func:`write_state`, of which columns 5 and 6 are written.
+    """
     if row.split:
         total, _ = moments(contact.nodes, contact.p)
         moment, work = split_powers(row, contact)
@@ -366,14 +391,19 @@ def finish_state(row, contact, out):
 
 @kernel(allocates=True)
 def full_slip(row, mu, sign, count, c, out):
-    """Solve full slip of one sign; write the state and return (its onset, the creep d; d
-    ln(load)/d ln(c)).
+    """Solve full slip of one sign, and find the creepage at which it begins.
 
-    row : :class:`Row`.  mu : friction.  count : number of elements.
-    sign : 1.0, -1.0, the sign of the slip.  c : guess of the half length.  out : (COLUMNS,),
-    written.  The onset is the largest strain of that sign; at the edges it is extrapolated, by the
-    parameter of the mesh, or by its square where u' falls like a root (without local coupling it
-    does not).
+    The onset is the largest strain of that sign.  At both edges the strain is extrapolated from
+    three elements: as a polynomial of the parameter of the mesh with coupling, where the strain
+    varies like the root of the distance, else of the square of the parameter.
+
+    row : :class:`Row`.
+    mu : float, coefficient of friction.
+    sign : float, 1.0 or -1.0, sign of the slip.
+    count : int, number of elements.
+    c : float, guess of the half length divided by l0.
+    out : (COLUMNS,), the state, written.
+    Returns (kappa times the creepage of the onset; d ln(load)/d ln(c)), floats.
     """
     contact = new_contact(count)
     contact.zone[:] = sign
@@ -398,13 +428,12 @@ def full_slip(row, mu, sign, count, c, out):
 
 @kernel(allocates=True)
 def move_edges(place, last, before, count, ahead):
-    """Move the nodes of a mesh so that the edges of its zones lie where those of two states point
-    to.
+    """Move the nodes of a mesh to the edges of zones that are extrapolated from two states.
 
     place : parameters of the nodes, (N + 1,), changed; they stay where edges would meet.
     last, before : edges of the last state and of the one before it, in column 0, (MOST_SPOTS, 3).
     count : number of edges of both.
-    ahead : step to the next state over that between the two.
+    ahead : float, step to the next state divided by the step between the two.
     """
     old = np.zeros(count + 2)
     new = np.zeros(count + 2)
@@ -418,16 +447,20 @@ def move_edges(place, last, before, count, ahead):
 
 @kernel(allocates=True)
 def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
-    """Solve states at creeps between the onsets, in their order, each from the zones and length to
-    which the two before it point.
+    """Solve states between the onsets of full slip, in their order.
 
-    row : :class:`Row`.  mu : friction.
-    creeps : d of each, (n,); neighbours should be near each other.
-    at : places of the states in a coordinate over which they are smooth, ascending, (n,).
-    count : number of elements.
-    c, slope : guesses of the first half length and of d ln(load)/d ln(c).
-    apart : whether each is solved from nothing, so that it does not depend on the others.
+    The first guess of each state, zones and length, is extrapolated from the two before it.
+
+    row : :class:`Row`.
+    mu : float, coefficient of friction.
+    creeps : kappa times the creepage delta of each state, (n,); neighbours should be close.
+    at : coordinate of the states in which they change smoothly, ascending, (n,).
+    count : int, number of elements.
+    c, slope : floats, guesses of the first half length and of d ln(load)/d ln(c).
+    apart : bool, whether each state starts from stick and the guess c instead, so that it does not
+        depend on the others.
     out : (n, COLUMNS), written.
+    Returns nothing.
     """
     contact = new_contact(count)
     edges = np.zeros((2, MOST_SPOTS, 3))
@@ -455,12 +488,15 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
 
 @kernel(allocates=True)
 def rear_slip(row, contact, c, slope, mu, d, out):
-    """Solve a state and return (slip of sign + in its rear half; of sign -; zone at the rear edge;
-    half length).
+    """Solve a state roughly, and return the directions of slip in the rear half of the contact.
 
-    row, contact : :class:`Row`, :class:`Contact`, of which the second is written.
-    c, slope : guesses of the half length and of d ln(load)/d ln(c).  mu : friction.  d : creep.
+    row : :class:`Row`.
+    contact : :class:`Contact`, written.
+    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
+    mu, d : floats, coefficient of friction, kappa times the creepage delta.
     out : (COLUMNS,), written.
+    Returns (whether a node there slips with sign +; with sign -; zone of the rear node, 0 in stick;
+    half length divided by l0).
     """
     c, _ = find_length(row, contact, c, slope, mu, d, _ROUGH_LOAD, out)
     plus = False
@@ -473,13 +509,18 @@ def rear_slip(row, contact, c, slope, mu, d, out):
 
 @kernel(allocates=True)
 def touch_creep(row, mu, low, high, count, c, slope):
-    """Return the creep d at which slip of the other sign opens in the rear half, between the onsets
-    low and high.
+    """Return kappa times the creepage at which the slip in the rear half changes its sign.
 
-    row : :class:`Row`.  mu : friction.  count : number of elements.
-    c, slope : guesses of the half length and of d ln(load)/d ln(c).
-    Below it the rear slips backwards, above it forwards; where both do in between it is the creep
-    at which the sign at the rear edge ends.  Found by bisection on the zones.
+    Below it the rear half slips with sign -, above it with sign +.  If zones of both signs exist in
+    an interval of creepages, it is the lower end of the interval if the rear edge slips with sign -
+    there, else the upper end.  It is found by bisection on the zones.
+
+    row : :class:`Row`.
+    mu : float, coefficient of friction.
+    low, high : floats, kappa times the creepages of both onsets of full slip.
+    count : int, number of elements.
+    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
+    Returns a float between ``low`` and ``high``.
     """
     contact = new_contact(count)
     out = np.zeros(COLUMNS)
@@ -510,12 +551,15 @@ def touch_creep(row, mu, low, high, count, c, slope):
 
 @kernel(allocates=True)
 def solve_one(row, mu, d, count, c, slope, sign, out):
-    """Solve one state and return its :class:`Contact`.
+    """Solve one state and return its :class:`Contact`, with nodes and tractions.
 
-    row : :class:`Row`.  mu : friction.  count : number of elements.
-    d : creep; infinite: full slip of the sign ``sign``.
-    c, slope : guesses of the half length and of d ln(load)/d ln(c).
-    out : (COLUMNS,), written.
+    row : :class:`Row`.
+    mu : float, coefficient of friction.
+    d : float, kappa times the creepage delta; infinite: full slip.
+    count : int, number of elements.
+    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
+    sign : float, 1.0 or -1.0, sign of full slip; not read otherwise.
+    out : (COLUMNS,), the state, written.
     """
     contact = new_contact(count)
     if math.isinf(d):

@@ -50,7 +50,13 @@ class HeatRequest(NamedTuple):
 
 @inline_kernel
 def _rest(n, r, request, law):
-    """Return f and its slope at the rise r, K, of state n: floats, K and dimensionless."""
+    """Return f, K, and its slope df/dr, dimensionless, floats.
+
+    n : int, index of the state.
+    r : float, rise of the temperature above ambient, K.
+    request : :class:`HeatRequest`, the states.
+    law : law of the material.
+    """
     above = request.ambient[n] - request.pole + r
     u = np.exp2(request.x_hot[n] + request.slope / above)
     functions = length_and_moment(locate_row(u, law), u, law)
@@ -63,9 +69,13 @@ def _rest(n, r, request, law):
 
 @kernel
 def _find_zero(n, low, high, r, falling, request, law):
-    """Return the zero of f between ``low`` and ``high``, K: Newton's iteration from r in a bracket.
+    """Return the zero of f in a bracket, a float, K, by Newton's iteration with bisection.
 
-    falling : whether f > 0 at ``low``, and < 0 at ``high``; else the reverse.
+    n : int, index of the state.
+    low, high : floats, rises between which f changes its sign, K.
+    r : float, first guess, K.
+    falling : bool, whether f > 0 at ``low`` and < 0 at ``high``; else the reverse.
+    request, law : as in :func:`_rest`.
     """
     if not low < r < high:
         r = 0.5 * (low + high)
@@ -87,10 +97,14 @@ def _find_zero(n, low, high, r, falling, request, law):
 
 @kernel
 def _find_turn(n, low, high, positive, request, law):
-    """Return a rise between ``low`` and ``high``, K, at which f has the other sign than
-    ``positive`` states, else NaN.
+    """Return a rise near a minimum of |f| at which f has changed its sign, K; NaN if there is none.
 
-    |f| has a minimum there, which is bracketed by its slope.
+    The minimum is bracketed by the sign of the slope of f.
+
+    n : int, index of the state.
+    low, high : floats, rises between which the minimum lies, K.
+    positive : bool, whether f > 0 at both.
+    request, law : as in :func:`_rest`.
     """
     for _ in range(_STEPS):
         r = 0.5 * (low + high)
@@ -106,9 +120,16 @@ def _find_turn(n, low, high, positive, request, law):
 
 @inline_kernel
 def _write(n, rise, stable, count, request, number, out, is_stable):
-    """Write a zero of state n as the one of index ``count``, and return the next index.
+    """Append one zero to the output, and return the number of zeros so far, an int.
 
     A zero above the hottest temperature is left out; beyond the end of ``out`` it is only counted.
+
+    n : int, index of the state.
+    rise : float, the zero, K above ambient.
+    stable : bool, whether the equilibrium is stable.
+    count : int, number of zeros before.
+    request : :class:`HeatRequest`, of which ambient and hottest are read.
+    number, out, is_stable : vectors of state, rise, K, and stability of all zeros, written.
     """
     if request.ambient[n] + rise > request.hottest[n]:
         return count

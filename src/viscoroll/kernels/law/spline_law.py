@@ -320,8 +320,12 @@ def _traction(mu, at, table):
 
 @inline_kernel
 def _sloped_traction(mu, kappa, at, table):
-    """Return Q as a :class:`Load`, with slopes 0 where it is limited; arguments as of
-    :func:`_load` and :func:`_traction`.
+    """Return Q of one state with its slopes, a :class:`Load`.
+
+    mu, kappa : floats, coefficient of friction and slenderness.
+    at : :class:`TablePlace`, the state in the table.
+    table : vector of :mod:`.coupled_splines`.
+    The slopes are 0 where |Q| is limited to mu times the entry LIMIT of the table.
     """
     value = _traction(mu, at, table)
     if abs(value) >= mu * table[LIMIT]:
@@ -356,12 +360,13 @@ def look_up(table, u, D):
 
 @kernel
 def table_loop(table, request, count):
-    """Write the requested fields of states.
+    """Write the requested fields of many states, in their order.
 
     table : vector of :mod:`.coupled_splines`, with all fields.
-    request : :class:`.law_record.Request`, of which ``order`` is not read; its ``out`` is
-    written.
-    count : number of states.
+    request : :class:`.law_record.Request`: the states, the requested fields, and ``out``, (fields,
+        states), which is written; ``order`` is not read.
+    count : int, number of states.
+    Returns nothing.
     """
     for n in range(count):
         _write_state(table, read_state(request.states, n), n, request)
@@ -418,7 +423,13 @@ def _write_state(table, given, n, request):
 def _write_slopes(table, given, at, delta, n, request):
     """Write the requested slopes of one state, of Q and of the moments.
 
-    at : :class:`TablePlace`.  delta : creepage.  Other arguments as of :func:`_write_state`.
+    table : vector of :mod:`.coupled_splines`.
+    given : :class:`.law_record.State`, the state.
+    at : :class:`TablePlace`, the state in the table.
+    delta : float, creepage.
+    n : int, index of the state in ``request.out``.
+    request : :class:`.law_record.Request`, whose ``out`` is written.
+    Returns nothing.
     """
     to = request.to
     V = given.V
@@ -527,13 +538,16 @@ def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
 
 @kernel
 def balance_loop(table, kappa, mu, u, load, of_spin, out):
-    """Find the creeps at which friction is in balance with a load at given speeds V >= 0, by
-    bisection of d = sigma w.
+    """Find the creepages at which friction balances given loads, by bisection of d = sigma w.
 
-    kappa, mu, u : slenderness, friction, kappa V, (n,) each.
-    load : value of Q - M_half_space, or where ``of_spin`` of Q + M_cylinder, (n,).
-    out : (n, 2), written: 2 kappa delta, within the onsets; what of ``load`` is not balanced, 0 but
-    at an onset.
+    table : vector of :mod:`.coupled_splines`.
+    kappa, mu : slenderness and coefficient of friction of each state, (n,).
+    u : kappa V of each state, >= 0, (n,).
+    load : required value of Q - M_half_space, with ``of_spin`` of Q + M_cylinder, (n,).
+    of_spin : bool, whether the cylinder is balanced, instead of the axis.
+    out : (n, 2), written: 2 kappa delta, within the onsets of full slip; the part of ``load`` that
+        the friction cannot balance, 0 within the onsets.
+    Returns nothing.
     """
     for n in range(u.size):
         speed = locate_speed(u[n], table)

@@ -169,10 +169,14 @@ def _loads(V, d, sigma, kappa, mu, table):
 
 @inline_kernel
 def pull_of_table(d, kappa, mu, rows, table):
-    """Return what friction does at V = 0, in the direction of the regime: force on the axis, torque
-    against the spin, and their derivatives in d.
+    """Return force on the axis and torque against the spin at V = 0, in the direction of the
+    regime, and their derivatives with respect to d.
 
-    rows: what the rows give, of a law without a table.  Other arguments as of :func:`_pull`.
+    d: float, creepage divided by that of the onset of full slip, in [-1, 1].
+    kappa, mu: floats, slenderness and coefficient of friction.
+    rows: the same four numbers by the rows of the law, which are returned if there is no table.
+    table: vector of :mod:`.coupled_splines`, or None.
+    Returns four floats, dimensionless: Q - M_half_space, Q + M_cylinder, their derivatives.
     """
     if table is None:
         return rows
@@ -233,14 +237,19 @@ def balance_of_table(load, kappa, mu, rows, table):
 
 @inline_kernel
 def friction_by_shear(V, omega, Q, kappa, mu, rows, table):
-    """Return the power of friction less (omega - V) Q, which is what the bodies take by the strain
-    of their surfaces along the path, negative; in units of P R/T_ref.
+    """Return the slip loss minus (omega - V) Q, a power in units of P R/T_ref.
 
-    V, omega: floats, speeds, V >= 0.  Q: traction.  kappa, mu: slenderness and friction.
-    rows: what the rows give, of a law without friction in a table.
+    The strains of both surfaces along the path make the slip of the surfaces differ from omega - V.
+    The returned power is minus the power that the bodies lose by shear on these strains.
+
+    V, omega: floats, speed of the axis, >= 0, and angular velocity, dimensionless.
+    Q: float, traction divided by P.
+    kappa, mu: floats, slenderness and coefficient of friction.
+    rows: float, the same power by the rows of the law, which is returned if there is no table, or
+        the table does not have the slip loss.
     table: vector of :mod:`.coupled_splines`, or None.
-    Friction is a spline of its own, so that it is not the difference of two where almost all of the
-    contact sticks.
+    Returns a float.  The slip loss has its own spline: where almost all of the contact sticks, the
+    difference of two other splines would have no correct digits.
     """
     if table is None:
         return rows
