@@ -220,9 +220,8 @@ UNKNOWN = Validity(
 UNKNOWN_OF_COVERS = Assumption(
     None,
     None,
-    "the quasi-steady assumption for motions cannot be checked for a layer of finite thickness, "
-    "whose N is "
-    "not available",
+    "not checked for motions on a layer of finite thickness: N, by which they are compared with "
+    "steady rolling, is not computed for layers; states at a constant speed do not need it",
 )
 
 

@@ -172,6 +172,8 @@ class Equilibria(Values):
     """
 
     _heading: str
+    #: word of the report for an equilibrium that is not stable
+    _unstable = "unstable"
     _rows: tuple[str, ...]
     _ranges: tuple[str, ...]
 
@@ -198,7 +200,7 @@ class Equilibria(Values):
             ]
         rows = [SummaryRow("reason", str(self.reason))] if self.reason else []
         for n in range(int(self.count)):
-            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else "unstable"))
+            rows.append(SummaryRow("equilibrium", "stable" if self.stable[n] else self._unstable))
             rows += [
                 SummaryRow(f"  {name}", f"{float(self[name][n]):.6g}", units[name])
                 for name in self._rows
@@ -245,8 +247,8 @@ class Steady(Equilibria):
     M_half_space, M_cylinder : the parts of M by the losses in either body.
     beta : stick zone divided by contact length, 0 in full slip.
     grip : friction reserve 1 - |Q|/(mu P), 0 in full slip.
-    stable : whether (V, omega) returns after any small disturbance: both eigenvalues have a real
-        part < 0.
+    stable : whether (V, omega) returns after any small disturbance at constant force and torque:
+        both eigenvalues have a real part < 0.  A drive that prescribes V holds an unstable one too.
     eigenvalues : complex, on a last axis of two, the one of the smaller real part first: growth
         rates of small disturbances of (V, omega), in units of gamma/T_ref.  At rest the first
         is -infinite.
@@ -270,6 +272,7 @@ class Steady(Equilibria):
     """
 
     _heading = "Steady rolling"
+    _unstable = "unstable if force and torque are held constant"
     _rows = "V", "omega", "delta", "force", "torque", "Q", "M", "beta", "grip"
     _ranges = ("V",)
 

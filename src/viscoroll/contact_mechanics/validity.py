@@ -366,7 +366,7 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
     half the contact length divided by the thickness of the thinner layer; it holds where that of
     each layer is at most the limit for its Poisson's ratio, from 3 at nu = 0 to 1.25 at nu = 1/2,
     up to which one stick zone in front with slip behind is right at every creepage).  Both have the
-    broadcast shape.  The sentence states the errors of the thinnest cover, and the limit for the
+    broadcast shape.  The sentence states the thickness of the thinnest cover, and the limit for the
     cover whose limit is lowest.
     Raises ParameterError for kappa |V| above 1e300, shapes that do not broadcast, and a layer too
     thin for its law.
@@ -387,8 +387,7 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
         f"{float(np.max(theta, initial=0.0)):.2g} times the "
         f"thickness; up to {np.min(np.concatenate([*map(np.ravel, limits)])):.3g} times is "
         "allowed, where the contact "
-        "sticks in front and slips behind (beyond: method='coupled'); the error of Q by the fast "
-        f"law is up to {100.0 * stated_error(thickness):.1f} % of mu P"
+        "sticks in front and slips behind (beyond: method='coupled')"
     )
     return ContactLengths.of(state["lam"], state["epsilon"], scene.kappa), Assumption(
         holds, theta, sentence
@@ -434,12 +433,13 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     levers = np.abs(free) + 0.5 * star * np.minimum(value, 1.0)
     error_of_M = 2.0 * scene.kappa * scene.mu * error * levers
     largest = float(np.max(value, initial=0.0))
-    beyond = "both ends slip, and the law does not hold: use method='coupled'"
+    beyond = (
+        f" where the value is at most 1; it is up to {largest:.2g}: above 1 both ends slip, and "
+        "the law does not hold: use method='coupled'"
+    )
     errors = (
         f"the error of Q is up to {100.0 * np.max(error, initial=0.0):.2g} % of mu P and that of "
-        f"M up to {np.max(error_of_M, initial=0.0):.1g} "
-        f"P l0 where this value, up to {largest:.2g}, is at most 1"
-        + ("; above, " + beyond if largest > 1.0 else "")
+        f"M up to {np.max(error_of_M, initial=0.0):.1g} P l0" + (beyond if largest > 1.0 else "")
     )
     if scene.tabulated:
         sentence = (
