@@ -2,7 +2,7 @@
 
 The folder of every cache, and files in it that nobody else can have written.
 
-Its files are run (:mod:`jit`) or trusted (``motion/flow_store.py``), and a checksum that a file
+Its files are run (:mod:`jit`) or trusted (``motion/flow.py``), and a checksum that a file
 carries itself does not say who wrote it.  So a file is used only if it and every folder above it
 belong to this user or to the system, and nobody else may write to them.
 
