@@ -309,3 +309,9 @@ def test_losses_in_slip_of_free_rolling_on_a_table_are_not_below_zero():
     assert (loss.slip >= -tol.BALANCE_OF_STEADY * power).all()
     assert (loss.half_space >= 0.0).all()
     assert close(loss.slip + loss.half_space + loss.cylinder, power, tol.BALANCE_OF_STEADY)
+
+
+def test_a_table_at_minus_zero_speed_is_that_of_zero():
+    layer = vr.Cover(vr.Prony([2.0, 6.0], [1.0, 0.01]), nu=0.5, thickness=0.5, on="base")
+    scene = vr.Scene(material=layer, kappa=10.0, mu=0.3)
+    assert scene.contact(-0.0, omega=1e-3).Q == scene.contact(0.0, omega=1e-3).Q == 0.3

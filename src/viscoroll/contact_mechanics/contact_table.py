@@ -382,7 +382,11 @@ def evaluate_law(
         laws, order = (
             ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         )
-        request = states.Request(states.State(*parts, creep_is_omega), order, rows, out, start)
+        kappa, mu, V, creep = parts
+        if coupled:
+            V = V + 0.0  # at V = -0.0 a table has the sign of V > 0, as rows have
+        given = states.State(kappa, mu, V, creep, creep_is_omega)
+        request = states.Request(given, order, rows, out, start)
         scratch = np.empty(states.SCRATCH_SIZE)
         if coupled:
             from ..kernels.law.spline_law import table_loop

@@ -62,7 +62,7 @@ static inline double vr_field(const vr_table *table, vr_cubic u, vr_cubic t, int
 /* delta_star: distance of the onset from free rolling, delta_0, on the side of the creepage; N is not known: NaN */
 static inline vr_state vr_table_contact(const vr_table *table, double kappa, double V, double slip) {
   vr_state s;
-  double u = kappa * fabs(V), D = 2.0 * kappa * vr_creepage(V, slip), sign = copysign(1.0, V);
+  double u = kappa * fabs(V), D = 2.0 * kappa * vr_creepage(V, slip), sign = V < 0.0 ? -1.0 : 1.0;
   s.lam = s.epsilon = s.delta_star = s.delta_0 = s.beta = s.Q = s.M = s.M_half_space = s.M_cylinder = s.N = NAN;
   if (!(kappa > 0.0 && u <= 1e300 && fabs(slip) < HUGE_VAL && D == D)) return s;
   vr_cubic row = vr_rows_at(table, u), node;
