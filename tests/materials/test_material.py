@@ -118,7 +118,7 @@ def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
     ],
 )
 def test_bulk_terms_in_another_unit_than_shear_warn(make):
-    with pytest.warns(vr.ModelWarning, match="make nu = -"):
+    with pytest.warns(vr.ModelWarning, match="Poisson's ratio -"):
         make()
 
 
