@@ -44,7 +44,7 @@ from ..laws.cover_solve import CoverModes, pressure
 from ..laws.law_rows import series_record
 from ..materials.bodies import Cover, total_series
 from .assumptions import moment_error, transit_frequency
-from .contact_table import ACCURACY, evaluate_contact, field_names
+from .contact_table import ACCURACY, NOT_IN_GRIDS, evaluate_contact, field_names
 from .model_warnings import warn_of_contact
 from .parameters import Parameters, Roller, resolve_model
 
@@ -222,6 +222,9 @@ def contact(
     like = scene.like_bodies
     cover = scene.tabulated or isinstance(scene.material, Cover)
     names = field_names(fields, slopes, method, like=like, si=scale.si, cover=cover)
+    law = scene._law
+    if fields is None and law is not None and law.coupled is not None and not law.coupled.graded:
+        names = tuple(name for name in names if name not in NOT_IN_GRIDS)
     given, labels = strip_labels({"V": V, creep_name: omega if delta is None else delta}, scale)
     speed, ends = check_array_extent("V", given["V"])
     creep, _ = check_array_extent(creep_name, given[creep_name])

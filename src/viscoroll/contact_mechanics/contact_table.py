@@ -78,6 +78,8 @@ FREE_CREEP = "delta_0"
 DEPTH = "depth"
 #: Creepages at which full slip begins: default fields of method "coupled".
 ONSETS = ("delta_minus", "delta_plus")
+#: Fields that the law of a grid of another program does not have.
+NOT_IN_GRIDS = ("beta", "epsilon", "lam", "length", "zeta")
 #: Fields that method "coupled" alone has, with the default ones first.
 OF_COUPLED = ("loss_slip", "loss_half_space", "loss_cylinder", DEPTH)
 #: Accuracy of M by the data of the materials, of a cylinder in SI units alone.
@@ -312,9 +314,8 @@ def evaluate_contact(
         arrays["alpha"] = np.arange(len(material), dtype=np.float64)
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
-        unknown = sorted({"lam", "length", "zeta", "epsilon", "beta"}.intersection(names))
-        if unknown and not material.coupled.graded:
-            raise ParameterError("fields", unknown[0], "left out: a grid states Q and M alone")
+        if not material.coupled.graded:
+            refuse_fields(NOT_IN_GRIDS, names, "left out: a grid states Q and M alone")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
     rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)

@@ -81,6 +81,7 @@ class LawGrid:
     R : radius in m; 1 for a dimensionless grid.
     load : force per length P in N/m; 1 for a dimensionless grid, and where it is not known.
     title : title of the file; "of another program" without one.
+    kappa : R/l0 for which a dimensionless grid was computed; None where it states none.
     """
 
     rows: CoupledRows
@@ -91,6 +92,7 @@ class LawGrid:
     R: float
     load: float
     title: str
+    kappa: float | None
 
     def __repr__(self) -> str:
         return f"LawGrid({self.title}; for vr.law alone, or as the material of a Scene)"
@@ -101,8 +103,10 @@ class LawGrid:
 
         kappa: R/l0 of the scene, a number, which has no effect on the motion.
         Raises ParameterError for a grid without mu, or that does not slip fully at both ends of its
-        axis of delta.
+        axis of delta, and for another kappa than the grid states.
         """
+        if self.kappa is not None and abs(kappa - self.kappa) > _ROUNDING * self.kappa:
+            raise ParameterError("kappa", kappa, f"{self.kappa:g}, for which the grid was computed")
         if not self.slips:
             allowed = "states mu (in SI units with a load), and slips fully at both ends of delta"
             raise ParameterError("material", repr(self), f"a grid that {allowed}")
@@ -435,6 +439,9 @@ def _law_of(table: xr.Dataset) -> LawGrid:
         R=check_number("R", table.attrs["R"], above=0.0),
         load=float(table.attrs.get("load", 1.0)),
         title=str(table.attrs.get("title", "of another program")),
+        kappa=check_number("kappa", table.attrs["kappa"], above=0.0)
+        if "kappa" in table.attrs
+        else None,
     )
 
 
