@@ -691,8 +691,8 @@ TABLE_ENERGY = 1e-6
 #: losses of a motion fall by less where friction touches 0, over all losses: 3e-10, the error of
 #: motions between their steps
 TABLE_LOSS = 1e-9
-#: Power of a motion's states by the table and by the solver, over the losses; seen 4.7e-5 on the
-#: belt, 1.7e-4 on a compressible lining.
+#: Power of a motion's states by the table and by the solver, over the losses; seen 4.7e-6 on the
+#: belt, 2.3e-5 on a compressible lining.
 TABLE_POWER = 1e-4
 #: The header of C of a table beside its kernels: rounding of the place in creep.
 TABLE_HEADER = 1e-11
