@@ -56,5 +56,5 @@ def test_a_grid_rolls_at_its_own_kappa_and_has_the_fields_that_it_states(tmp_pat
     state = vr.contact(vr.Scene(material=law, kappa=10.0, mu=0.2), 1.0, delta=0.05)
     assert state.Q == 0.2
     assert "beta" not in state.as_dict()
-    with pytest.raises(vr.ParameterError, match="kappa = 12.0: must be 10, for which the grid"):
+    with pytest.raises(vr.ParameterError, match=r"kappa = 12\.0: must be 10, for which the grid"):
         vr.Scene(material=law, kappa=12.0, mu=0.2)
