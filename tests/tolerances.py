@@ -705,3 +705,6 @@ GRID_MOTION = 1e-6
 # Losses of steady states on a table beside the load's power: force and torque come from a balance
 # solved to 1e-14 of mu P; seen 5e-11 where the power is 1e-4 of that.
 BALANCE_OF_STEADY = 1e-9
+
+#: A motion on a cover at rtol 1e-10 against Radau's method on its law at 1e-10; seen 1e-13.
+COVER_MOTION = 1e-10
