@@ -176,14 +176,24 @@ def warm_pair(pair: Pair, *factors: tuple[Floats, Any] | None) -> Pair:
     factors: of cylinder and base each a_T and sqrt(b_T), (m,); None: the body stays.
     """
     bodies = [
-        Solid(
-            E=body.E * each[1] ** 2, nu=body.nu, prony=body.prony.slower(each[0]), T_ref=body.T_ref
-        )
-        if each
-        else body
+        warm_solid(body, *each) if each else body
         for body, each in zip((pair.cylinder, pair.half_space), factors, strict=True)
     ]
     return Pair(bodies[0], bodies[1], pair.plane)
+
+
+def warm_solid(body: Any, a_T: Floats, root_b: Any) -> Solid:
+    """Return a body at m states of temperature, from that at the reference.
+
+    body: a Material or a Solid; a_T, root_b: shift and sqrt(b_T), (m,).
+    """
+    return Solid(
+        E=body.E * root_b**2,
+        nu=body.nu,
+        prony=body.prony.slower(a_T),
+        T_ref=body.T_ref,
+        thickness=body.thickness,
+    )
 
 
 def heated_body(roller: Roller, call: str, slip_share: float) -> Heated:

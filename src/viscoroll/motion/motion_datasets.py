@@ -255,11 +255,8 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     texts: dict[str, Any] = {}
     for name, given in result.drive.given.items():
         key = f"drive_{name}"
-        value = given
-        gains = {}
-        if isinstance(given, Feedback):
-            value = given.value
-            gains = {"gain_V": given.V, "gain_omega": given.omega}
+        value, gains = _value_and_gains(given)
+        gains = {f"gain_{speed}": gain for speed, gain in gains.items()}
         if callable(value):
             parts = (
                 f", {gain} = {format_value(x) if np.ndim(x) else f'{x:.15g}'}"
@@ -285,6 +282,13 @@ def _describe_drive(result: RollResult) -> tuple[dict[str, Any], dict[str, Any]]
     return variables, texts
 
 
+def _value_and_gains(given: Any) -> tuple[Any, dict[str, Any]]:
+    """Return (value, speed -> gain) of a load as it was given; no gains without a Feedback."""
+    if isinstance(given, Feedback):
+        return given.value, {"V": given.V, "omega": given.omega}
+    return given, {}
+
+
 def describe_load(given: Any, unit: str) -> str:
     """Return a text on a load or speed as it was given: its value with the unit, and the gains of a
     feedback.
@@ -296,11 +300,7 @@ def describe_load(given: Any, unit: str) -> str:
     and largest value; "a function of t"; and "0.5 N m m-1 - 0.1 omega" of a feedback, without gains
     that are 0.
     """
-    value = given
-    gains = {}
-    if isinstance(given, Feedback):
-        value = given.value
-        gains = {"V": given.V, "omega": given.omega}
+    value, gains = _value_and_gains(given)
     if callable(value):
         text = "a function of t"
     elif isinstance(value, Schedule):

@@ -183,6 +183,7 @@ def make_problem(
             "rest", rest, "None", "rest needs the same R and T_ref (or T_epsilon) for all motions"
         )
     unsteady = unsteady is not False and _check_unsteady(unsteady, scene)
+    driven = unsteady or (acts and drive.acts)
     try:
         limits = controls(rtol, rest, max_steps, scale)
         last = float(end) / scale["t"]
@@ -191,7 +192,7 @@ def make_problem(
         omega0 = make_dimensionless("omega0", start[1], scale)
         spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
         prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
-        if scene.tabulated and not (acts and drive.acts):
+        if scene.tabulated and not driven:
             start_speeds(prepared.V0, prepared.omega0, LEAST_ON_TABLE)
         functions = prepared.functions
         if functions is not None:  # a step ends at every corner
@@ -207,7 +208,6 @@ def make_problem(
     if single and many > 1:
         allowed = "the drive of one motion: for many use ensemble"
         raise described_error("drive", f"has values for {many} motions", allowed)
-    driven = unsteady or (acts and drive.acts)
     return MotionProblem(
         roller=roller,
         scene=scene,

@@ -141,16 +141,10 @@ def _warm_bodies(
         if body.prony.alpha > 1.0 and not theta.ndim:
             warm[name] = body.at(float(theta))
         elif body.prony.alpha > 1.0:
+            from ..heat.heated_bodies import warm_solid
             from ..heat.shift_curve import shift_curve
 
-            a_T, root_b = shift_curve(body).factors(theta)
-            warm[name] = Solid(
-                E=body.E * root_b**2,
-                nu=body.nu,
-                prony=body.prony.slower(a_T),
-                T_ref=body.T_ref,
-                thickness=body.thickness,
-            )
+            warm[name] = warm_solid(body, *shift_curve(body).factors(theta))
     return warm
 
 
