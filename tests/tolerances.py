@@ -21,7 +21,7 @@ STRESS_ELLIPSE = 1e-15
 STRESS_CARTER = 1e-13
 
 # --- steady states (test_steady.py) ---
-# Slow eigenvalue at rest against that at V = 1e-6 and the limit -T_mean/(1 + j): of the order of V
+# Slow eigenvalue at rest against that at V = 1e-8 and the limit -T_mean/(1 + j): of the order of V
 # and of roundings.
 SLOWEST = 1e-4
 
