@@ -473,7 +473,7 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
     A cell is drawn with equal probability for each axis, then the place in it evenly in the
     coordinate itself.
 
-    table: the grid, dataset of :func:`grid_build`; also an atlas.
+    table: the grid, dataset of :func:`grid_build`.
     count: number of points, >= 0.
     seed: seed of the generator, >= 0.
     Returns axis -> coordinates, (count,), in the units of the grid.

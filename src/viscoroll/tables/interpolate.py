@@ -1,9 +1,7 @@
 """Interpolation between the nodes of a grid, by tensor cubic splines.
 
 A grid is a table of fields of the contact over speed V, creepage delta and perhaps alpha,
-T_epsilon/T_sigma.  An atlas is the table that version 0.1.0 wrote: over alpha, kappa_V = kappa V,
-where kappa is the radius divided by the contact length at rest, and s = |delta|/delta_star,
-creepage divided by critical creepage, in [0, 1].
+T_epsilon/T_sigma.
 """
 
 from __future__ import annotations
@@ -41,9 +39,7 @@ class Interpolant:
     table : a Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
         The spline of a field is computed at its first use, from the values at that time.
     linear : whether to interpolate linearly in V, delta and alpha, as look-up blocks do; else by
-        cubic splines in ln V, delta and ln alpha.  Tables over (V, delta) that version 0.1.0 wrote
-        are
-        interpolated linearly in any case.
+        cubic splines in ln V, delta and ln alpha.
 
     Raises
     ------
@@ -70,20 +66,18 @@ class Interpolant:
 
         table : the grid, dataset of a file or of ``build``.
         linear : whether interpolation is linear in V, delta and alpha, else by cubic splines in ln
-            V, delta and ln alpha; grids of the kinds "literal" and "material" (of version 0.1.0)
-            are always interpolated linearly.
+            V, delta and ln alpha.
         Raises FileError if it is not a grid, is incomplete or in other units; ParameterError for
         its mu and load.
         """
         table_files.check_grid(table, getattr(table, "encoding", {}).get("source", "interpolate"))
         self._table = table
         self._axes = table_files.axes_of(table)
-        # Files of version 0.1.0 state the errors of linear interpolation in V, delta and alpha.
-        self._linear = linear or table.attrs[table_files.KIND] in ("literal", "material")
+        self._linear = linear
         self._splines: dict[str, tuple[tuple[str, ...], Any]] = {}
         # The law has these bounds; a spline may exceed them near the kink at delta_star.
         limit = friction_limit(table.attrs)
-        self._bounds = {"Q": (-limit, limit), "Q_over_mu": (-1.0, 1.0), "beta": (0.0, 1.0)}
+        self._bounds = {"Q": (-limit, limit), "beta": (0.0, 1.0)}
 
     def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
         """Interpolate fields at points.
@@ -94,8 +88,8 @@ class Interpolant:
             coordinate is needed on each axis of the fields, also on one of a single node; others
             may be given too.
         Returns the fields as :class:`Values`, each a new array of the broadcast shape of all
-        points, a float where all are numbers.  Q, Q_over_mu and beta are clipped to the bounds of
-        the law: |Q| <= mu P, |Q_over_mu| <= 1 and 0 <= beta <= 1.
+        points, a float where all are numbers.  Q and beta are clipped to the bounds of the law:
+        |Q| <= mu P and 0 <= beta <= 1.
         Raises ParameterError and OutOfTableError as :func:`interpolate`.
         """
         known = table_files.fields_of(self._table)
@@ -135,7 +129,7 @@ class Interpolant:
         Raises
         ------
         ParameterError
-            An unknown field, and one of an atlas of 0.1.0.
+            An unknown field.
 
         Examples
         --------
@@ -157,10 +151,6 @@ class Interpolant:
         (name,) = check_names(
             "field", field, table_files.fields_of(self._table), "a field of this table"
         )
-        if self._table.attrs[table_files.KIND] == "atlas":
-            raise ParameterError(
-                "field", name, "a field of a grid over V and delta; this grid has other axes"
-            )
         dims, found = self._spline(name)
         logs = () if self._linear else ("V", "alpha")
         return spline_at, pack_spline(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
@@ -177,9 +167,8 @@ class Interpolant:
         numbers, for shapes that do not broadcast and for a unit of another dimension;
         OutOfTableError for a point outside of an axis, whose ends belong to it.
         Returns (each axis of ``points`` -> coordinates of the interpolation, read-only, in the
-        broadcast shape; that shape, () of numbers).  Coordinates are ln V, ln alpha and ln kappa_V,
-        s/(1 + sqrt(1 - s)) for s, and delta as it is; where the interpolation is linear all are as
-        given.
+        broadcast shape; that shape, () of numbers).  Coordinates are ln V, ln alpha, and delta as
+        it is; where the interpolation is linear all are as given.
         """
         needed = {str(dim) for name in names for dim in self._table[name].dims}
         if not needed <= points.keys() <= set(self._axes):
@@ -208,16 +197,12 @@ class Interpolant:
 
         Splines are fitted and evaluated in that coordinate.
 
-        name: name of the axis: "V", "delta" or "alpha" of a grid; "alpha", "kappa_V" or "s" of an
-            atlas (module docstring).
-        values: values on the axis, of any shape, > 0 on V, alpha and kappa_V, in [0, 1] on s.
+        name: name of the axis: "V", "delta" or "alpha".
+        values: values on the axis, of any shape, > 0 on V and alpha.
         Returns an array of the same shape.  Where the interpolation is linear, and on delta:
-        ``values`` itself, not a copy.  Else ln(values) on V, alpha and kappa_V, and s/(1 + sqrt(1 -
-        s)) on s, which is 0 at s = 0, 1 at s = 1, and resolves the end of the stick zone at s = 1.
+        ``values`` itself, not a copy.  Else ln(values).
         """
-        if self._linear or name == "delta":
-            return values
-        return values / (1.0 + np.sqrt(1.0 - values)) if name == "s" else np.log(values)
+        return values if self._linear or name == "delta" else np.log(values)
 
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
         """Return the spline of a field, computed at its first use and kept in ``_splines``.
@@ -250,8 +235,7 @@ def interpolate(
     fields : a name or names out of the table's fields; default all, which need a coordinate on
         every axis.
     **points : coordinates, numbers or arrays that broadcast, in the table's units: ``V``, ``delta``
-        and, where the table has it, ``alpha``.  ``delta`` is needed for beta and Q only.  Of an
-        atlas of 0.1.0: ``alpha``, ``kappa_V`` = kappa V and ``s`` = |delta|/delta_star, in [0, 1].
+        and, where the table has it, ``alpha``.  ``delta`` is needed for beta and Q only.
 
     Returns
     -------
@@ -286,10 +270,9 @@ def interpolate(
     fewer than four nodes, clipped to |Q| <= mu P and 0 <= beta <= 1; the largest error at random
     points is stated in ``spline_error`` of each field, which another point may exceed
     (``tests/tables/test_grids.py``), and the point in ``spline_error_at``.  The largest errors of
-    beta occur where full slip begins, as beta falls there with a vertical tangent.  Tables over (V,
-    delta) of version 0.1.0 are interpolated linearly, as their files state.  Each call builds the
-    splines anew, which takes most of its time; keep an :class:`tables.Interpolant` for repeated
-    calls.  A law (:func:`viscoroll.tables.law`, :func:`viscoroll.contact`) has none of
+    beta occur where full slip begins, as beta falls there with a vertical tangent.  Each call
+    builds the splines anew, which takes most of its time; keep an :class:`tables.Interpolant` for
+    repeated calls.  A law (:func:`viscoroll.tables.law`, :func:`viscoroll.contact`) has none of
     these errors.
     """
     return Interpolant(table)(fields, **points)

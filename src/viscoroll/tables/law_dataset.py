@@ -449,14 +449,10 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
       most half of the largest magnitude of the field at the nodes, unless that is 0.
 
     Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a
-    cylinder, a material, or of version 0.1.0); KeyError for a field without ``spline_error``.
+    cylinder or a material); KeyError for a field without ``spline_error``.
     """
     table_files.check_grid(table, source)
-    if (
-        table.attrs[table_files.KIND] != "grid"
-        or not {"kappa", "mu"} <= table.attrs.keys()
-        or "material" in table.attrs
-    ):
+    if not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
         raise FileError(
             source,
             "is not a grid of a scene with an alpha: only such grids can be compared with the law",

@@ -24,6 +24,8 @@ if TYPE_CHECKING:
 
 #: Attributes of a grid with the parameters of its roller.
 _PARAMETERS = ("alpha", "kappa", "mu", "R", "m", "load")
+#: Attribute of a field of a grid with the largest absolute error of linear interpolation.
+_ERROR = "linear_error"
 
 
 def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
@@ -42,8 +44,7 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     ------
     ParameterError
         Another suffix; for C a file name that, without its suffix, is no identifier; for Modelica a
-        grid over several alphas or an atlas (a grid of version 0.1.0, over three axes), as its
-        tables have two inputs.
+        grid over several alphas, as its tables have two inputs.
     FileError
         If it is no path or cannot be written there; ``table`` is neither a law nor a grid, is
         incomplete, of another major version of the schema, or a law whose numbers differ from their
@@ -111,8 +112,8 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
     table: dataset of a grid over V and delta with Q and M (else KeyError); an axis alpha must have
     one node.
     path: file to write; it is replaced if it exists.
-    Raises ParameterError for a grid over several alphas, and for an atlas; FileError if the file
-    cannot be written; KeyError as :func:`_modelica_header`.
+    Raises ParameterError for a grid over several alphas; FileError if the file cannot be written;
+    KeyError as :func:`_modelica_header`.
     """
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
     if table_files.axes_of(plane) != ("V", "delta"):
@@ -158,7 +159,8 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
     for name in ("Q", "M"):
         point = table[name].attrs.get("linear_error_at")
         errors.append(
-            f"error_{name} = {linear_error(table[name]):.3g}" + (f" at {point}" if point else "")
+            f"error_{name} = {table[name].attrs.get(_ERROR, np.nan):.3g}"
+            + (f" at {point}" if point else "")
         )
     return [
         f"viscoroll {__version__}: {table.attrs['title']}",
@@ -176,18 +178,6 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
         "nodes:",
         *errors,
     ]
-
-
-def linear_error(field: xr.DataArray) -> float:
-    """Return the stated error of linear interpolation in a field, absolute, in its unit.
-
-    field: variable of a grid.  Its attribute "linear_error" is returned; files of version 0.1.0
-        state that error as "interpolation_error".
-    Returns the error; NaN if the field states none, and of an atlas, whose errors are of another
-    interpolation.
-    """
-    spline = field.attrs.get("interpolation_error", np.nan) if "V" in field.dims else np.nan
-    return float(field.attrs.get("linear_error", spline))
 
 
 def _write_matlab(table: xr.Dataset, path: Path) -> None:
@@ -212,7 +202,7 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
     arrays = {name: table[name].values.squeeze() for name in (*table_files.axes_of(table), *names)}
     content: dict[str, Any] = arrays | {
         "dimensions": {name: ", ".join(map(str, table[name].squeeze().dims)) for name in names},
-        "linear_error": {name: linear_error(table[name]) for name in names},
+        "linear_error": {name: table[name].attrs.get(_ERROR, np.nan) for name in names},
         "linear_error_at": {name: table[name].attrs.get("linear_error_at", "") for name in names},
         "about": f"viscoroll {__version__}. {table.attrs['title']}. {PAPER}. Breakpoints and "
         "tables for n-D lookup; "

@@ -25,7 +25,6 @@ from .. import __version__
 from ..core import PAPER, SYMBOLS, FileError, attributes, read_sealed, write_dataset
 from ..laws.law_grid import check_nodes, refuse_filled
 from ..materials import checked_netcdf
-from ..materials.checked_netcdf import KINDS as LAW_KINDS
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,16 +36,14 @@ if TYPE_CHECKING:
 SCHEMA_VERSION = "1.4"
 #: Global attribute with the kind of a file.
 KIND = "viscoroll_table"
-#: Kinds of grids; all but the first are of version 0.1.0.
-KINDS = ("grid", "atlas", "literal", "material")
+#: Kind of the file of a grid.
+GRID = "grid"
 #: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
 #: Fields over V and delta (and alpha).
 VOLUME = ("beta", "Q")
 #: Fields over V that of a layer are over V and delta: there they depend on the traction.
 OF_TRACTION = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "zeta")
-#: Fields of a file of kind "atlas".
-_ATLAS_FIELDS = ("beta", "Q_over_mu", "lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
 
 #: Attribute ``comment`` of a grid.
 COMMENT = (
@@ -69,24 +66,16 @@ COMMENT = (
 def axes_of(table: xr.Dataset) -> tuple[str, ...]:
     """Return the names of the axes of a grid, the first of which varies slowest.
 
-    table: dataset of a grid, or of an atlas, the table of version 0.1.0.
-    Returns ("V", "delta") or, if the dataset has that dimension, ("V", "delta", "alpha") of a grid;
-    ("alpha", "kappa_V", "s") of an atlas, where s = |delta|/delta_star.
-    Every kind but "atlas" counts as a grid, and whether the dataset has the axes is not checked.
-    Raises KeyError for a dataset without the attribute :data:`KIND`, "viscoroll_table".
+    table: dataset of a grid.
+    Returns ("V", "delta") or, if the dataset has that dimension, ("V", "delta", "alpha"); whether
+    the dataset has the axes is not checked.
     """
-    if table.attrs[KIND] == "atlas":
-        return ("alpha", "kappa_V", "s")
     return ("V", "delta", *(("alpha",) if "alpha" in table.dims else ()))
 
 
 def fields_of(table: xr.Dataset) -> tuple[str, ...]:
     """Return the names of the fields of a grid ``table``."""
-    return (
-        _ATLAS_FIELDS
-        if table.attrs[KIND] == "atlas"
-        else (*VOLUME, *(name for name in PLANE if name in table))
-    )
+    return (*VOLUME, *(name for name in PLANE if name in table))
 
 
 def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
@@ -135,7 +124,7 @@ def global_attributes(title: str, grid: str, command: str | None) -> dict[str, s
         "history": f"{now} {command or shlex.join(sys.orig_argv)}",
         "references": PAPER,
         "comment": COMMENT,
-        KIND: "grid",
+        KIND: GRID,
         "schema_version": SCHEMA_VERSION,
         "viscoroll_version": __version__,
         "grid": grid,
@@ -150,8 +139,7 @@ def check_grid(table: Any, path: Any) -> None:
     of a contact (:func:`.law_grid.check_nodes`); each axis at least one, strictly increasing;
     dimensions
     must be axes of the grid, in their order, and units those that :func:`variable` writes.  beta
-    and Q are required, of the fields over V (:data:`PLANE`) none, of an atlas all fields; other
-    variables are not examined.
+    and Q are required, of the fields over V (:data:`PLANE`) none; other variables are not examined.
 
     Parameters
     ----------
@@ -168,11 +156,11 @@ def check_grid(table: Any, path: Any) -> None:
     if not hasattr(table, "attrs"):
         raise FileError(path, f"needs a dataset, not {table!r:.60}: read a file by vr.tables.load")
     about = table.attrs
-    if str(about.get(KIND)) in LAW_KINDS:
+    if is_law(table):
         raise FileError(
             path, "is a law, not a grid: load it by vr.load_law, and evaluate it by vr.contact"
         )
-    if str(about.get(KIND)) not in KINDS:
+    if str(about.get(KIND)) != GRID:
         raise FileError(
             path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}"
         )
@@ -213,7 +201,7 @@ def check_grid(table: Any, path: Any) -> None:
 #: Largest size of a file; no table is larger.
 _MAX_BYTES = 1 << 31
 #: Attribute of a field with an error of interpolation -> its name in :func:`tables.info`.
-_ERROR_NAMES = {"spline_error": "spline", "linear_error": "linear", "interpolation_error": "stated"}
+_ERROR_NAMES = {"spline_error": "spline", "linear_error": "linear"}
 
 
 def is_law(table: Any) -> bool:
@@ -277,7 +265,7 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
 
 
 def load(path: str | PathLike[str]) -> xr.Dataset:
-    """Read a law or a grid of the schema 1.x (all versions since 0.1.0) into memory, check it and
+    """Read a law or a grid of the schema 1.x into memory, check it and
     close the file.
 
     Parameters
@@ -335,7 +323,7 @@ def info(path: str | PathLike[str]) -> str:
         Lines to print, joined by newlines: path, kind and size of the file; title; of a law a line
         for each function with its largest error; of a grid a line for each axis with its nodes and
         range, then one for each field with its axes and the absolute errors that it states
-        ("spline", "linear", "stated" in old files); at the end those of the attributes material,
+        ("spline", "linear"); at the end those of the attributes material,
         comment, source, history and checksum that the file has.
 
     Raises
