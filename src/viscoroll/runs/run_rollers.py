@@ -141,8 +141,7 @@ def _warm_bodies(
         if body.prony.alpha > 1.0 and not theta.ndim:
             warm[name] = body.at(float(theta))
         elif body.prony.alpha > 1.0:
-            from ..heat.heated_bodies import warm_solid
-            from ..heat.shift_curve import shift_curve
+            from ..heat.heated_bodies import shift_curve, warm_solid
 
             warm[name] = warm_solid(body, *shift_curve(body).factors(theta))
     return warm
