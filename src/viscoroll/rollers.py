@@ -17,9 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .contact_mechanics.assumptions import DUNDURS_LIMIT
-from .contact_mechanics.body_data import BodyData
-from .contact_mechanics.parameters import Parameters, Roller
+from .contact_mechanics import DUNDURS_LIMIT, BodyData, Parameters, Roller
 from .core import (
     MEASURED,
     SI,
@@ -38,11 +36,17 @@ from .core import (
     shape_error,
     slope_tan_cos,
 )
-from .laws.law_table import LawTable
-from .materials.bodies import Bodies, Cover
-from .materials.material import Material, refuse_short_retardation
-from .materials.pair import Pair, Plane, effective_modulus
-from .materials.prony import Prony
+from .laws import LawTable
+from .materials import (
+    Bodies,
+    Cover,
+    Material,
+    Pair,
+    Plane,
+    Prony,
+    effective_modulus,
+    refuse_short_retardation,
+)
 
 if TYPE_CHECKING:
     from . import (

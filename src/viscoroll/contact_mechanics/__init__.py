@@ -5,3 +5,7 @@ A roller (:mod:`.parameters`), speeds and creepages enter :func:`.contact.contac
 kernels of the law.  Results leave as :class:`viscoroll.Values` and :class:`.steady_result.Steady`,
 a law for integrators as :class:`.bound_law.Law`, violated assumptions through :mod:`.validity`.
 """
+
+from .. import _open_room
+
+__getattr__ = _open_room(__name__, __file__)

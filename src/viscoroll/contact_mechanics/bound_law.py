@@ -16,7 +16,7 @@ import numpy as np
 
 from ..core import Floats, Numbers, ParameterError, check_array, check_bool
 from ..kernels.records import Loads, LoadsAndSlopes
-from ..laws.law_grid import LawGrid
+from ..laws import LawGrid
 from .contact import contact
 from .contact_table import refuse_overflow
 from .model_warnings import warn_of_contact

@@ -40,9 +40,8 @@ from ..core import (
     run_blocks,
     strip_labels,
 )
-from ..laws.cover_solve import CoverModes, pressure
-from ..laws.law_rows import series_record
-from ..materials.bodies import Cover, total_series
+from ..laws import CoverModes, pressure, series_record
+from ..materials import Cover, total_series
 from .assumptions import moment_error, transit_frequency
 from .contact_table import ACCURACY, NOT_IN_GRIDS, evaluate_contact, field_names
 from .model_warnings import warn_of_contact

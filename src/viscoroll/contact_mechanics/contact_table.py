@@ -46,11 +46,14 @@ from ..core import (
     extent,
     run_blocks,
 )
-from ..laws.law_rows import evaluate_by_modes
-from ..laws.law_table import LawTable
-from ..laws.laws_per_element import record_of_materials, records_of_alphas, sort_by_octave
-from ..materials.bodies import Bodies
-from ..materials.prony import Prony
+from ..laws import (
+    LawTable,
+    evaluate_by_modes,
+    record_of_materials,
+    records_of_alphas,
+    sort_by_octave,
+)
+from ..materials import Bodies, Prony
 from .parameters import Parameters
 
 # --- The fields of a contact state ---

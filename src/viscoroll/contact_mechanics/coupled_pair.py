@@ -34,9 +34,8 @@ from scipy.special import exp1, expi
 from ..core import Floats, ParameterError
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
-from ..laws.cover_solve import layer_nodes
-from ..materials.bodies import Bodies
-from ..materials.prony import series_of_alpha
+from ..laws import layer_nodes
+from ..materials import Bodies, series_of_alpha
 
 # --- Kernels of the boundary elements at one speed ---
 

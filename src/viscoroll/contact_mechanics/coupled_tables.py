@@ -37,9 +37,8 @@ from ..core import (
 )
 from ..kernels.numerics.cache_folder import cache_root, is_quiet
 from ..kernels.numerics.jit import sources_digest
-from ..laws.law_rows import FIELDS, CoupledRows, grade
-from ..laws.law_table import LawTable, coupled_table
-from ..materials.prony import lock_array
+from ..laws import FIELDS, CoupledRows, LawTable, coupled_table, grade
+from ..materials import lock_array
 from .assumptions import DUNDURS_LIMIT
 from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth
 

@@ -31,10 +31,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Booleans, Floats, Integers, Scale
-from ..laws.law_rows import evaluate_by_modes
+from ..laws import evaluate_by_modes
 from ..laws.law_table import law_table
-from ..materials.bodies import total_series
-from ..materials.prony import Prony
+from ..materials import Prony, total_series
 from .contact_table import pure_rolling_fields
 from .parameters import Parameters, refuse_cover, series_in_own_time
 

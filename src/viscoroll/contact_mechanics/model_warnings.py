@@ -19,11 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import warn_of_model
+from ..core import warn_of_model
 from ..kernels.numerics.cache_folder import is_worker
-from ..materials.bodies import Bodies, Cover
-from ..materials.measured_data import Measured
-from ..materials.prony import Prony
+from ..materials import Bodies, Cover, Measured, Prony
 from .assumptions import (
     LEAST_KAPPA,
     MISFIT_LIMIT,

@@ -50,7 +50,7 @@ from ..core import (
     make_dimensionless,
     strip_labels,
 )
-from ..laws.law_table import LawTable
+from ..laws import LawTable
 from .contact_table import Contacts
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of

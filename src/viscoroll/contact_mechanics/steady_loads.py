@@ -48,8 +48,7 @@ from ..core import (
     described_error,
     slope_tan_cos,
 )
-from ..laws.law_rows import FIELDS
-from ..laws.law_table import LawTable
+from ..laws import FIELDS, LawTable
 from .contact_table import Contacts, refuse_overflow
 from .parameters import Parameters
 from .rolling_resistance import find_zeros, speed_nodes

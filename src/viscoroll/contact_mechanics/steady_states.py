@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Floats, Integers, run_blocks
-from ..laws.law_table import LawTable
+from ..laws import LawTable
 from .contact_table import Contacts
 from .rolling_resistance import branches
 from .steady_loads import (

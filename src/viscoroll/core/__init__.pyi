@@ -43,6 +43,7 @@ from .errors import exactly_one_error as exactly_one_error
 from .errors import import_extra as import_extra
 from .errors import mark_dimensionless as mark_dimensionless
 from .errors import shape_error as shape_error
+from .errors import suggest_arguments as suggest_arguments
 from .errors import suggestion as suggestion
 from .errors import unknown_name_error as unknown_name_error
 from .errors import warn_of_model as warn_of_model
@@ -87,3 +88,8 @@ from .scale import Units as Units
 from .scale import attributes as attributes
 from .scale import dimension_powers as dimension_powers
 from .scale import si_unit as si_unit
+from .toml_sections import as_section_error as as_section_error
+from .toml_sections import as_struct as as_struct
+from .toml_sections import check_keys as check_keys
+from .toml_sections import read_toml as read_toml
+from .toml_sections import section_error as section_error

@@ -39,9 +39,8 @@ from ..core import (
     shape_error,
     warn_of_model,
 )
-from ..laws.law_netcdf import parse_law
-from ..laws.law_table import LawTable
-from ..materials.checked_netcdf import dataset_content
+from ..laws import LawTable, parse_law
+from ..materials import dataset_content
 from ..rollers import Cylinder
 
 # --- The variables of both models ---

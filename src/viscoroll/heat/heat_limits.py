@@ -17,35 +17,25 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics.assumptions import Assumption
-from ..contact_mechanics.model_warnings import warn_of_contact
-from ..contact_mechanics.parameters import Roller, refuse_arrays, resolve_model
+from ..contact_mechanics import Assumption, Roller, refuse_arrays, resolve_model, warn_of_contact
 from ..core import (
-    Floats,
-    Numbers,
-    ParameterError,
-    Schedule,
-    Values,
-    check_array,
-    check_number,
-    described_error,
-    shape_error,
-    strip_labels,
-)
-from ..core.checks import (
+    SI,
     Booleans,
     Floats,
     Integers,
     Numbers,
+    ParameterError,
+    Schedule,
+    Values,
     broadcast_shape,
     check_array,
     check_choice,
     check_number,
+    check_one_given,
+    described_error,
+    shape_error,
+    strip_labels,
 )
-from ..core.errors import ParameterError, check_one_given, described_error, shape_error
-from ..core.labels import strip_labels
-from ..core.results import Values
-from ..core.scale import SI
 from .heated_bodies import NODES, check_ambient, heat_states
 from .temperature import HOTTEST, zeros_at_speed
 
@@ -519,7 +509,9 @@ def warming(
     for span in pairwise(np.unique([0.0, *corners[corners < last], last]).tolist()):
         own = times[(times > span[0]) & (times <= span[1])]
         stops = np.union1d(own, span[1])
-        found = solve_ivp(rates, span, y, "DOP853", stops, rtol=_TIME_TOLERANCE, atol=_TOLERANCE)
+        found = solve_ivp(
+            rates, span, y, "DOP853", stops, rtol=_TIME_TOLERANCE, atol=_TIME_TOLERANCE
+        )
         if not found.success:
             what = f"cannot be integrated ({found.message})"
             raise described_error("temperature", what, "one that a balance has")

@@ -22,31 +22,40 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics.contact_table import evaluate_law
-from ..contact_mechanics.parameters import Parameters, Roller, refuse_arrays
-from ..contact_mechanics.steady_loads import Loads, loads_of
-from ..contact_mechanics.steady_states import Field, states_at
-from ..core import Floats, ModelWarning, ParameterError, ViscorollError, described_error
-from ..core.checks import (
+from ..contact_mechanics import (
+    Field,
+    Loads,
+    Parameters,
+    Roller,
+    evaluate_law,
+    loads_of,
+    refuse_arrays,
+    states_at,
+)
+from ..core import (
     Floats,
     Integers,
+    ModelWarning,
+    ParameterError,
+    ViscorollError,
     broadcast_shape,
     check_array,
     check_array_extent,
     check_number,
+    described_error,
+    make_dimensionless,
 )
-from ..core.drive_arguments import make_dimensionless
-from ..core.errors import ParameterError, described_error
-from ..materials.material import Material
-from ..materials.measured_data import (
+from ..materials import (
     ABSOLUTE_ZERO,
     WLF,
     Arrhenius,
+    Material,
+    Pair,
+    Solid,
     check_celsius,
     relative_shift,
     vertical_factor,
 )
-from ..materials.pair import Pair, Solid
 
 # --- The shift of a body over the temperature ---
 

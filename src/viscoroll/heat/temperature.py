@@ -18,15 +18,30 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics.contact_table import evaluate_law, pure_rolling_fields
-from ..contact_mechanics.model_warnings import warn_of_contact
-from ..contact_mechanics.parameters import Roller, resolve_model
+from ..contact_mechanics import (
+    Equilibria,
+    Roller,
+    evaluate_law,
+    pad,
+    pure_rolling_fields,
+    resolve_model,
+    warn_of_contact,
+)
 from ..contact_mechanics.steady import steady
-from ..contact_mechanics.steady_result import Equilibria, pad
-from ..core import Floats, Labels, ModelWarning, Numbers, described_error, strip_labels
-from ..core.checks import Booleans, Floats, Integers, check_array, check_number
-from ..core.errors import described_error, shape_error
-from ..laws.law_table import LawTable
+from ..core import (
+    Booleans,
+    Floats,
+    Integers,
+    Labels,
+    ModelWarning,
+    Numbers,
+    check_array,
+    check_number,
+    described_error,
+    shape_error,
+    strip_labels,
+)
+from ..laws import LawTable
 from .heated_bodies import (
     FARTHEST,
     MOMENTS,

@@ -40,7 +40,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Floats, ParameterError
-from ..materials.bodies import Cover
+from ..materials import Cover
 from .cover_solve import (
     LARGE_ALPHA,
     LARGEST_THETA,

@@ -16,29 +16,29 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..core import FileError, Floats, ParameterError, check_number, described_error, is_real
-from ..materials.bodies import Bodies, Cover
-from ..materials.checked_netcdf import (
+from ..materials import (
     AXIS,
     COUPLED,
     COVER,
+    HIGHEST_ALPHA,
     KIND,
     KINDS,
     LAW,
     REMEDY,
+    Bodies,
     Content,
+    Cover,
+    Material,
+    Pair,
+    Prony,
+    lock_array,
     make_dataset,
-    read_law,
-)
-from ..materials.material import Material
-from ..materials.material_toml import (
     material_as_toml,
     parse_materials,
     parse_series,
+    read_law,
     series_as_toml,
 )
-from ..materials.pair import Pair
-from ..materials.prony import Prony, lock_array
-from ..materials.prony_forms import HIGHEST_ALPHA
 from .law_grid import load_grid
 from .law_rows import FIELDS, CoupledRows
 from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table

@@ -29,8 +29,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats, Integers
-from ..materials.prony import Block, lock_array
+from ..core import Floats, Integers
+from ..materials import Block, lock_array
 from .law_rows import TERMS, Rows, modes_record, row_range
 
 #: functions of a table in their order: the first five depend on u = kappa |V|, the others on v =

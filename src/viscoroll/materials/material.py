@@ -558,7 +558,7 @@ class Material(FromPrograms):
         >>> import viscoroll as vr
         >>> vr.Material.elastic(2.1e11, 0.3).to_netcdf("steel.nc")
         """
-        from ..core.files import write_dataset
+        from ..core import write_dataset
 
         write_dataset(self.to_xarray(), path, sealed=True)
 

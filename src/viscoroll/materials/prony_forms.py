@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ..core.checks import Floats
+from ..core import Floats
 
 #: highest alpha: beyond 1e18 the 1/alpha is lost beside 1; at 1e12 the law is that of alpha ->
 #: infinity where alpha zeta is large

@@ -19,12 +19,7 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact_mechanics.assumptions import (
-    MISFIT_LIMIT,
-    Assumption,
-    assess_measured_band,
-    transit_frequency,
-)
+from ..contact_mechanics import MISFIT_LIMIT, Assumption, assess_measured_band, transit_frequency
 from ..contact_mechanics.contact import contact
 from ..core import (
     Booleans,
@@ -37,10 +32,7 @@ from ..core import (
     warn_of_model,
 )
 from ..core.plots.result_figures import series_fit
-from ..materials.importers import check_poisson
-from ..materials.material import Material
-from ..materials.measured_data import WLF, Measured, VerticalShift
-from ..materials.prony import Prony
+from ..materials import WLF, Material, Measured, Prony, VerticalShift, check_poisson
 from .dynamic_moduli import UNITS, Curve, KramersKronig, Relaxation
 from .master_curve import Shifts, undetermined_shifts
 from .spectrum import Data, has_plateau, spectrum_of

@@ -28,7 +28,7 @@ from ..core import (
     to_unit,
     warn_of_model,
 )
-from ..materials.measured_data import (
+from ..materials import (
     NEAR,
     USUAL_RANGE,
     ShiftFactors,

@@ -36,12 +36,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics.assumptions import transit_speeds
+from ..contact_mechanics import transit_speeds
 from ..contact_mechanics.contact import contact
 from ..core import Floats, described_error
-from ..materials.measured_data import Measured
-from ..materials.prony import Prony
-from ..materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
+from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Measured, Prony
 from ..rollers import Scene
 from .dynamic_moduli import Curve, Relaxation
 

@@ -14,10 +14,15 @@ from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_mechanics.assumptions import Validity
-from ..contact_mechanics.contact_table import FASTEST, refuse_beyond
-from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
-from ..contact_mechanics.parameters import Roller, scale_of
+from ..contact_mechanics import (
+    FASTEST,
+    Roller,
+    Validity,
+    refuse_beyond,
+    scale_of,
+    warn_of_speeds,
+    warn_of_start,
+)
 from ..contact_mechanics.validity import validity
 from ..core import (
     Booleans,

@@ -24,11 +24,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from ..contact_mechanics.parameters import Parameters
+from ..contact_mechanics import Parameters
 from ..core import Floats, Integers, broadcast_vector, load_kept, run_blocks, save_kept
 from ..kernels.numerics.cache_folder import cache_root
 from ..kernels.records import Motions
-from ..materials.prony import Prony
+from ..materials import Prony
 from .motion_problem import integrate_motions
 
 # --- A flow map, and its file beside the compiled kernels ---

@@ -41,8 +41,8 @@ from ..core import Floats
 from ..kernels.motion import flow_layout
 from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, FlowTables
 from ..kernels.numerics.interpolation import gauss
+from ..laws import interleave_pairs
 from ..laws.law_table import law_table
-from ..laws.row_layout import interleave_pairs
 from .flow_pieces import (
     FULL_SLIP_RETURNS,
     NODES,

@@ -12,10 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import __version__
-from ..contact_mechanics.assumptions import Validity
-from ..contact_mechanics.free_rolling import FreeRolling
-from ..contact_mechanics.parameters import PARAMETERS, Parameters, Roller
-from ..contact_mechanics.validity import Steadiness
+from ..contact_mechanics import PARAMETERS, FreeRolling, Parameters, Roller, Steadiness, Validity
 from ..core import (
     Feedback,
     Floats,
@@ -28,8 +25,7 @@ from ..core import (
     format_value,
     unit_of,
 )
-from ..materials.bodies import Bodies, Cover
-from ..materials.prony import Prony
+from ..materials import Bodies, Cover, Prony
 from .motion_arguments import ROWS, STATES, Drive
 
 if TYPE_CHECKING:

@@ -13,11 +13,16 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from ..contact_mechanics import (
+    LARGEST_LOSS,
+    FreeRolling,
+    Parameters,
+    Roller,
+    refuse_beyond,
+    refuse_cover,
+    resolve_model,
+)
 from ..contact_mechanics.contact import contact
-from ..contact_mechanics.contact_table import refuse_beyond
-from ..contact_mechanics.free_rolling import FreeRolling
-from ..contact_mechanics.parameters import Parameters, Roller, refuse_cover, resolve_model
-from ..contact_mechanics.validity import LARGEST_LOSS
 from ..core import (
     Floats,
     HasUnits,

@@ -11,10 +11,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ..contact_mechanics.assumptions import Validity, assess_heat
+from ..contact_mechanics import (
+    Roller,
+    Validity,
+    assess_heat,
+    scale_of,
+    warn_of_speeds,
+    warn_of_start,
+)
 from ..contact_mechanics.contact import contact
-from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
-from ..contact_mechanics.parameters import Roller, scale_of
 from ..contact_mechanics.validity import validity
 from ..core import (
     UNLABELLED_TYPES,

@@ -14,12 +14,11 @@ from typing import Any
 import msgspec
 import numpy as np
 
-from ..contact_mechanics.assumptions import transit_frequency
+from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
 from ..contact_mechanics.contact import contact
-from ..contact_mechanics.model_warnings import warn_of_contact, warn_of_unmeasured_starts
 from ..core import SYMBOLS, Floats, shape_error
-from ..motion.ensemble import Ensemble, ensemble
-from ..motion.motion_datasets import column_attributes
+from ..motion import Ensemble, column_attributes
+from ..motion.ensemble import ensemble
 from ..roller_toml import CylinderSection
 from ..rollers import UNITS
 from ..sampling import points

@@ -455,8 +455,8 @@ def _time_of_laws(run: Run) -> float:
     Raises ParameterError for inputs of the first block that no cylinder allows or a layer too thin
     for its law, FileError for those that no material allows.
     """
+    from ..laws import count_laws
     from ..laws.cover_rows import cover_rows
-    from ..laws.laws_per_element import count_laws
 
     scene = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene()
     start = time.perf_counter()

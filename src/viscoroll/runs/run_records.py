@@ -30,8 +30,7 @@ import numpy as np
 
 from .. import __version__
 from ..core import FileError, as_file_error, import_extra, seal, seal_matches, write_bytes
-from ..motion.motion_datasets import provenance
-from ..motion.summaries import Summary
+from ..motion import Summary, provenance
 from .runfile import Run
 
 if TYPE_CHECKING:

@@ -12,10 +12,15 @@ from typing import Any, ClassVar
 import numpy as np
 
 from ..core import Floats, ParameterError, Scale, Schedule, check_array, described_error
-from ..materials.material import Material
-from ..materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
-from ..materials.measured_data import Measured
-from ..materials.pair import Solid
+from ..materials import (
+    SECTIONS,
+    Material,
+    Measured,
+    Solid,
+    parse_materials,
+    parse_series,
+    parse_shifts,
+)
 from ..roller_toml import make_roller
 from ..rollers import Cylinder, Scene, scene_of
 

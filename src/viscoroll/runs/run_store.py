@@ -21,8 +21,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ..core import FileError, as_file_error, write_bytes
-from ..motion.ensemble import Ensemble
-from ..motion.summaries import Summary, merge_summaries, summarise, summary_dataset
+from ..motion import Ensemble, Summary, merge_summaries, summarise, summary_dataset
 from . import run_records
 from .run_blocks import attributes, roll_block, roll_inputs
 from .run_records import (

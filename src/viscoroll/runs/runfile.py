@@ -29,14 +29,26 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from ..core import FileError, Floats, ParameterError, check_names
-from ..core.toml_sections import as_section_error, read_toml, section_error
-from ..materials.material_toml import material_as_toml, parse_materials
-from ..motion.ensemble import FIELDS
-from ..motion.many_motions import FLOW_PAYS
-from ..motion.motion_arguments import Drive, output_times
-from ..motion.motion_problem import SolverOptions, make_problem
-from ..motion.summaries import LEVELS, QUANTITIES
+from ..core import (
+    FileError,
+    Floats,
+    ParameterError,
+    as_section_error,
+    check_names,
+    read_toml,
+    section_error,
+)
+from ..materials import material_as_toml, parse_materials
+from ..motion import (
+    FIELDS,
+    FLOW_PAYS,
+    LEVELS,
+    QUANTITIES,
+    Drive,
+    SolverOptions,
+    make_problem,
+    output_times,
+)
 from ..roller_toml import check_sections, locate_error
 from ..sampling import Design
 from .run_rollers import Rollers, drive_of, roller_of

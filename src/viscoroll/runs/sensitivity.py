@@ -26,8 +26,7 @@ from ..core import (
     run_blocks,
     unit_of,
 )
-from ..motion.motion_datasets import column_attributes, provenance
-from ..motion.summaries import QUANTITIES
+from ..motion import QUANTITIES, column_attributes, provenance
 from ..sampling import points
 from .run_blocks import roll_inputs, warn_of_materials
 from .runfile import Run

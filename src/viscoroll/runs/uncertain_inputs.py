@@ -21,9 +21,8 @@ from typing import Any
 
 import numpy as np
 
-from ..core import FileError, Floats, import_extra, si_unit, suggestion
-from ..core.toml_sections import check_keys, section_error
-from ..materials.material_toml import SECTIONS
+from ..core import FileError, Floats, check_keys, import_extra, section_error, si_unit, suggestion
+from ..materials import SECTIONS
 from ..roller_toml import SCHEMA
 from ..sampling import LARGEST, SMALLEST
 

@@ -21,8 +21,8 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ..contact_mechanics import coupled_law
 from ..contact_mechanics.contact import contact
-from ..contact_mechanics.coupled_tables import coupled_law
 from ..core import (
     Floats,
     ParameterError,
@@ -33,10 +33,8 @@ from ..core import (
     described_error,
     shape_error,
 )
-from ..laws.law_netcdf import bodies_as_toml, law_as_dataset, parse_law
-from ..laws.law_table import LawTable
-from ..materials.checked_netcdf import dataset_content
-from ..materials.prony_forms import HIGHEST_ALPHA
+from ..laws import LawTable, bodies_as_toml, law_as_dataset, parse_law
+from ..materials import HIGHEST_ALPHA, dataset_content
 from ..rollers import Cylinder, Scene
 from . import table_files
 from .interpolate import Interpolant

@@ -21,7 +21,7 @@ from ..core import (
     check_array,
     check_names,
 )
-from ..laws.law_grid import fit_spline, friction_limit, pack_spline
+from ..laws import fit_spline, friction_limit, pack_spline
 from . import table_files
 
 if TYPE_CHECKING:

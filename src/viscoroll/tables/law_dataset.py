@@ -23,25 +23,23 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from .. import __version__
-from ..contact_mechanics.contact_table import Contacts
-from ..contact_mechanics.coupled_pair import CoupledPair
-from ..contact_mechanics.coupled_tables import measure_errors
+from ..contact_mechanics import Contacts, CoupledPair, measure_errors
 from ..core import FileError, ParameterError, check_integer, check_one_given
-from ..laws import law_table
-from ..laws.cover_rows import solve_at_speed
-from ..laws.law_netcdf import law_as_dataset, law_table_of, parse_axis, parse_law
-from ..laws.law_rows import Rows, evaluate_by_modes
-from ..laws.law_table import LawTable
-from ..laws.row_layout import AXIS_FUNCTIONS, COVER_FUNCTIONS, FUNCTIONS
-from ..materials.checked_netcdf import (
-    AXIS,
-    COUPLED,
-    COVER,
-    KIND,
-    LAW,
-    dataset_content,
-    stated_errors,
+from ..laws import (
+    AXIS_FUNCTIONS,
+    COVER_FUNCTIONS,
+    FUNCTIONS,
+    LawTable,
+    Rows,
+    evaluate_by_modes,
+    law_as_dataset,
+    law_table,
+    law_table_of,
+    parse_axis,
+    parse_law,
+    solve_at_speed,
 )
+from ..materials import AXIS, COUPLED, COVER, KIND, LAW, dataset_content, stated_errors
 from ..rollers import Cylinder, Scene
 from . import table_files
 from .grid_build import RELATIVE_FIELDS, differences, errors_at, random_points

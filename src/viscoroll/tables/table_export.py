@@ -14,9 +14,8 @@ import numpy as np
 
 from .. import __version__
 from ..core import PAPER, Floats, ParameterError, as_path, described_error, replace_file, write_text
-from ..laws.law_netcdf import parse_law
-from ..laws.law_table import LawTable
-from ..materials.checked_netcdf import CHECKSUM, dataset_content
+from ..laws import LawTable, parse_law
+from ..materials import CHECKSUM, dataset_content
 from . import table_files
 
 if TYPE_CHECKING:

@@ -23,7 +23,7 @@ import numpy as np
 
 from .. import __version__
 from ..core import PAPER, SYMBOLS, FileError, attributes, read_sealed, write_dataset
-from ..laws.law_grid import check_nodes, refuse_filled
+from ..laws import check_nodes, refuse_filled
 from ..materials import checked_netcdf
 
 if TYPE_CHECKING:
