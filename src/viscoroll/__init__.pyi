@@ -15,8 +15,8 @@ from .contact_mechanics.rolling_resistance import resistance_extrema as resistan
 from .contact_mechanics.steady import steady as steady
 from .contact_mechanics.steady_result import Steady as Steady
 from .contact_mechanics.validity import validity as validity
-from .core.drive_arguments import Feedback as Feedback
-from .core.drive_arguments import Schedule as Schedule
+from .core.drives_and_labels import Feedback as Feedback
+from .core.drives_and_labels import Schedule as Schedule
 from .core.errors import ConvergenceError as ConvergenceError
 from .core.errors import FileError as FileError
 from .core.errors import MissingDependencyError as MissingDependencyError

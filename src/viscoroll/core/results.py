@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from .labels import Labels, dataset_axes, state_axes
+from .drives_and_labels import Labels, dataset_axes, state_axes
 from .scale import attributes
 
 if TYPE_CHECKING:
@@ -282,8 +282,8 @@ class Values(Result):
             has such a unit.
         title: first line of the summary, title of dataset and figure.
         si: whether values are in SI units, else dimensionless.
-        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape,
-            also after axes of the roller; None: fields stay plain arrays.
+        labels: :class:`.drives_and_labels.Labels` of the caller's arrays, put onto the fields of
+            their shape, also after axes of the roller; None: fields stay plain arrays.
         about: further attributes of the dataset by name; None: there are none.
         """
         self._about = about or {}
