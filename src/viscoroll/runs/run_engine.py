@@ -44,10 +44,9 @@ from ..core import (
     import_extra,
     thread_count,
 )
-from .run_blocks import block_inputs, warn_of_materials
 from .run_records import Record, encoded
 from .run_rollers import roller_of
-from .run_store import Store, block_content, locked
+from .run_store import Store, block_content, block_inputs, locked, warn_of_materials
 from .runfile import Run
 
 # --- Evaluation of the blocks of a run ---
@@ -122,7 +121,7 @@ def run_ensemble(
     -----
     ModelWarning
         Of motions beyond the model or the measured bands of the materials
-        (:func:`.run_blocks.warn_of_materials`).
+        (:func:`.run_store.warn_of_materials`).
 
     Notes
     -----
@@ -409,7 +408,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     -----
     ModelWarning
         Of motions beyond the model or the measured bands of the materials
-        (:func:`.run_blocks.warn_of_materials`).
+        (:func:`.run_store.warn_of_materials`).
 
     Examples
     --------

@@ -28,7 +28,7 @@ from ..core import (
 )
 from ..motion import QUANTITIES, column_attributes, provenance
 from ..sampling import points
-from .run_blocks import roll_inputs, warn_of_materials
+from .run_store import roll_inputs, warn_of_materials
 from .runfile import Run
 from .uncertain_inputs import Inputs, inputs_in
 
@@ -99,7 +99,7 @@ def sobol_indices(
     -----
     ModelWarning
         Of motions beyond the model or the measured bands of the materials
-        (:func:`.run_blocks.warn_of_materials`).
+        (:func:`.run_store.warn_of_materials`).
 
     Notes
     -----
