@@ -2,7 +2,7 @@
 
     results.zarr/
       V_mean, V_quantiles, V_histogram, ...             the summaries: xarray.open_zarr(path)
-      motions/V, omega, x, onset_time, status, ...      each motion (keep = "all"): a block is a chunk
+      motions/V, omega, x, onset_time, status, ...      motions (keep = "all"): a block is a chunk
       records/start, 000000000, 000000001, ..., end     the complete parts (see :mod:`run_records`)
 
 Each file is written whole or not at all, its record after it, and no file depends on when, where or
