@@ -7,8 +7,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
+import msgspec
 import numpy as np
 
 from ..core import Floats, ParameterError, Scale, Schedule, check_array, described_error
@@ -23,6 +24,60 @@ from ..materials import (
 )
 from ..roller_toml import make_roller
 from ..rollers import Cylinder, Scene, scene_of
+
+# --- Sections of a run file beside the roller's and [run] ---
+
+#: A list of numbers that is not empty.
+Numbers = Annotated[list[float], msgspec.Meta(min_length=1)]
+
+
+class StartSection(msgspec.Struct):
+    """[start]: start speeds; one that [drive] prescribes is left out; an omega0 "rolling" is
+    replaced before.
+    """
+
+    V0: float | None = None
+    omega0: float | None = None
+
+
+class ScheduleSection(msgspec.Struct):
+    """{ times = [...], values = [...] }: a piecewise linear load."""
+
+    times: Numbers
+    values: Numbers
+
+
+class DriveSection(msgspec.Struct):
+    """[drive]: loads, and prescribed speeds."""
+
+    force: float | ScheduleSection | None = None
+    torque: float | ScheduleSection | None = None
+    brake: float | ScheduleSection | None = None
+    slope: float | None = None
+    drag: float | None = None
+    V: float | ScheduleSection | None = None
+    omega: float | ScheduleSection | None = None
+
+
+class HeatSection(msgspec.Struct):
+    """[heat]: the material of a motion is at the temperature at which its cylinder, from cold,
+    rolls at a speed.
+
+    ambient : temperature of the surroundings, degrees Celsius.
+    conductance : heat given off per kelvin, W/(m K).
+    speed : m/s; default: V0 of the motion.
+    """
+
+    ambient: float
+    conductance: float
+    speed: float | None = None
+
+
+#: Sections whose numbers may be uncertain -> their keys, in the order in which inputs are drawn.
+RUN_SECTIONS: dict[str, Any] = {"start": StartSection, "drive": DriveSection, "heat": HeatSection}
+
+
+# --- The motions that they describe ---
 
 
 class Rollers(Cylinder):

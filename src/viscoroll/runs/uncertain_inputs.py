@@ -25,6 +25,7 @@ from ..core import FileError, Floats, check_keys, import_extra, section_error, s
 from ..materials import SECTIONS
 from ..roller_toml import SCHEMA
 from ..sampling import LARGEST, SMALLEST
+from .run_rollers import RUN_SECTIONS
 
 # --- Uncertain inputs ---
 
@@ -279,7 +280,7 @@ def inputs_in(part: Any) -> list[Input]:
 #: Section -> first letters of the names of its inputs; those of the other sections have none.
 PREFIXES = {"base": "base_", "drive": "drive_"}
 #: Sections that may have uncertain numbers.
-_SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive", "heat")
+_SECTIONS = (*SCHEMA, *SECTIONS, *RUN_SECTIONS)
 #: Key -> the word for it in the name of an input, if that is another; "" is left out.
 _WORDS = {"prony": "", "creep": "", "values": "", "times": "time"}
 #: Keys of a material that may be uncertain.
