@@ -7,13 +7,13 @@ from . import runs as runs
 from . import sampling as sampling
 from . import tables as tables
 from .contact_mechanics.assumptions import Validity as Validity
-from .contact_mechanics.bound_law import Law as Law
-from .contact_mechanics.bound_law import law as law
+from .contact_mechanics.contact import Law as Law
 from .contact_mechanics.contact import contact as contact
-from .contact_mechanics.contact import stress as stress
+from .contact_mechanics.contact import law as law
 from .contact_mechanics.rolling_resistance import resistance_extrema as resistance_extrema
 from .contact_mechanics.steady import steady as steady
 from .contact_mechanics.steady_result import Steady as Steady
+from .contact_mechanics.stress import stress as stress
 from .contact_mechanics.validity import validity as validity
 from .core.drives_and_labels import Feedback as Feedback
 from .core.drives_and_labels import Schedule as Schedule
