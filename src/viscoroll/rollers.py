@@ -560,7 +560,7 @@ class Cylinder(Methods):
         """:class:`.Scale`: the SI value of 1 of each quantity of the scene, by name, as
         ``scale["V"]`` in m/s; a float, or an array (n,) where a parameter in it is one.
         """
-        return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
+        return Scale(self.R, self.T_ref, P=self.load, m=self.m, l0=self.l0, E_prime=self.E_prime)
 
     def scene(self) -> Scene:
         """Return the dimensionless scene of this cylinder: alpha or material, kappa, mu, gamma and
@@ -618,7 +618,16 @@ class Cylinder(Methods):
         if law is None:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
             self._refuse_coupled_ratios(law)
-        scene = scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+        scene = scene_of(
+            self.R,
+            self.m,
+            load=self.load,
+            E_prime=self.E_prime,
+            T_ref=self.T_ref,
+            law=law,
+            mu=self.mu,
+            j=self.j,
+        )
         return scene.replace(coupled=self.coupled)
 
     def _refuse_coupled_ratios(self, law: Prony | Bodies | Cover) -> None:

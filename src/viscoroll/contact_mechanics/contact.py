@@ -227,9 +227,13 @@ def contact(
     if method == "coupled":
         from .stress import evaluate_coupled
 
-        found = evaluate_coupled(scene, speed, creep, delta is None, names)
+        found = evaluate_coupled(
+            scene, speed, creep=creep, creep_is_omega=delta is None, names=names
+        )
     else:
-        found = evaluate_contact(scene, speed, creep, delta is None, names, method)
+        found = evaluate_contact(
+            scene, speed, creep=creep, creep_is_omega=delta is None, names=names, method=method
+        )
     if scale.si:
         if ACCURACY in found:
             frequency = transit_frequency(given["V"], found[ACCURACY] * scale["length"])

@@ -321,7 +321,14 @@ def evaluate_contact(
             refuse_fields(NOT_IN_GRIDS, names, "left out: a grid states Q and M alone")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
-    rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)
+    rows = evaluate_law(
+        material,
+        [*arrays.values()],
+        shape=shape,
+        creep_is_omega=creep_is_omega,
+        names=computed,
+        direct=direct,
+    )
     return complete(names, computed, rows, shape)
 
 
@@ -389,8 +396,8 @@ def evaluate_law(
         kappa, mu, V, creep = parts
         if coupled:
             V = V + 0.0  # at V = -0.0 a table has the sign of V > 0, as rows have
-        given = states.State(kappa, mu, V, creep, creep_is_omega)
-        request = states.Request(given, order, rows, out, start)
+        given = states.State(kappa=kappa, mu=mu, V=V, creep=creep, creep_is_omega=creep_is_omega)
+        request = states.Request(states=given, order=order, to=rows, out=out, first=start)
         scratch = np.empty(states.SCRATCH_SIZE)
         if coupled:
             from ..kernels.law.spline_law import table_loop
@@ -508,7 +515,7 @@ class Contacts(NamedTuple):
         Returns the fields, (names, n), dimensionless.
         """
         state = [1.0, self.kappa, self.mu, V, delta]
-        return evaluate_law(self.law, state, V.shape, False, names)
+        return evaluate_law(self.law, state, shape=V.shape, creep_is_omega=False, names=names)
 
     def free_creep(self, V: Floats) -> Any:
         """Return delta_0 at V > 0, (n,), the creepage of free rolling, at which Q = 0; it does not

@@ -189,7 +189,11 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
         state = _fields(row.states([free]), np.array([free]), u, mu)[0]
         friction = 0.5 * (mu * state[0] * free - state[6] - state[7])
         _hold_friction(
-            t, fields, place, max(friction, 0.0), {body.side for body in row.pair.bodies}
+            t,
+            fields,
+            place=place,
+            friction=max(friction, 0.0),
+            sides={body.side for body in row.pair.bodies},
         )
     return [middle, low, high, free], fields
 

@@ -347,7 +347,15 @@ class FreeRolling:
             u = np.asarray(scene.kappa * np.abs(V) * unit + 0.0 * index)
             g = gamma * unit * unit / (1.0 + np.asarray(scene.j))
         u, index = np.broadcast_arrays(u, index, g)[:2]
-        return cls(materials, index, u, g, 1.0 / (scene.kappa * unit), unit, 1.0 / scene.kappa)
+        return cls(
+            materials=materials,
+            index=index,
+            u=u,
+            g=g,
+            speed=1.0 / (scene.kappa * unit),
+            time=unit,
+            length=1.0 / scene.kappa,
+        )
 
     def scaled(self, scale: Scale) -> FreeRolling:
         """Return the same states with results in m/s, s and m for a ``scale`` of a cylinder; itself

@@ -483,4 +483,6 @@ def pack_result(
             name: labels.apply(name, each, *axes_after.get(name, ("equilibrium",)))
             for name, each in found.items()
         }
-    return Steady(found, rows[len(_FIELDS) : len(_FIELDS) + 2], reasons, scale, labels)
+    return Steady(
+        found, rows[len(_FIELDS) : len(_FIELDS) + 2], reasons=reasons, scale=scale, labels=labels
+    )

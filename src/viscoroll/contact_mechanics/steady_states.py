@@ -368,7 +368,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
         losses = moments_of_losses(contacts, V, delta)
         rows[Field.DELTA, rest != 0.0] = np.nan
         rows[Field.Q] += rest
-        return States.of(loads, load, sign, rows, losses)
+        return States.of(loads, load, sign=sign, answers=rows, free=losses)
     delta_0 = contacts.free_creep(V)
     names = "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
     free = contacts.fields(V, delta_0, *names)
@@ -410,4 +410,6 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
         missing = (~exists).nonzero()[0]
         rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], missing] = 0.0
         rows[Field.DELTA, missing] = np.nan
-    return States.of(loads, load, sign, rows, None if law.cover is None else free[:2])
+    return States.of(
+        loads, load, sign=sign, answers=rows, free=None if law.cover is None else free[:2]
+    )

@@ -339,11 +339,9 @@ def stress(
             position = divide_by_unit("x", position, scale["length"])
             speed = divide_by_unit("V", speed, scale["V"])
             creep = divide_by_unit(creep_name, creep, scale[creep_name])
-    if method == "coupled":
-        find = coupled_stress
-    else:
-        find = _stress_of_law
-    stresses = find(scene, position, speed, creep, creep_name == "omega")
+    find = coupled_stress if method == "coupled" else _stress_of_law
+    by_omega = creep_name == "omega"
+    stresses = find(scene, x=position, V=speed, creep=creep, creep_is_omega=by_omega)
     stresses *= scale["p"]  # in place: a copy would double the memory of a large call
     found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
     return Values(found, given, si=scale.si, title="Stresses", labels=labels)
@@ -365,7 +363,11 @@ def _stress_of_law(
 
     scene = scene.uncoupled
     lam, epsilon, beta, zeta, delta = evaluate_contact(
-        scene, V, creep, creep_is_omega, ("lam", "epsilon", "beta", "zeta", "delta")
+        scene,
+        V,
+        creep=creep,
+        creep_is_omega=creep_is_omega,
+        names=("lam", "epsilon", "beta", "zeta", "delta"),
     ).values()
     # For V < 0 positions are mirrored, and tau changes its sign.
     mirror = np.where(V < 0.0, -1.0, 1.0)
@@ -402,7 +404,9 @@ def _stress_of_law(
         mirrored = read_mirror(start, stop) * read_x(start, stop)
         mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
         points = Points(mirrored, *(read(start, stop) for read in readers))
-        _compute_stresses(scene, read_alpha(start, stop), points, p[start:stop], tau[start:stop])
+        _compute_stresses(
+            scene, read_alpha(start, stop), points=points, p=p[start:stop], tau=tau[start:stop]
+        )
         if scene.cover is None:  # else tau is not computed
             tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
 

@@ -167,7 +167,15 @@ def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
             return pole + slope / np.maximum(x + own, _LEAST)
 
         low = pole + slope / (FARTHEST + own)
-        return ShiftCurve(material, low, math.inf, temperature_of, slope, pole, own)
+        return ShiftCurve(
+            material=material,
+            low=low,
+            high=math.inf,
+            temperature_of=temperature_of,
+            slope=slope,
+            pole=pole,
+            own=own,
+        )
     theta, a_T = _sampled(shift, reference)
     log2 = np.log2(a_T)
     if (rises := np.flatnonzero(np.diff(log2) > _ROUNDING)).size:
@@ -273,7 +281,7 @@ class HeatStates:
         """
         factors = self.curve.at(theta)
         if self.loads is None:
-            rolling = np.abs(self._free(n, factors, V, more, ("M",))[0])
+            rolling = np.abs(self._free(n, factors, V=V, more=more, names=("M",))[0])
             return self.body.part * self.load[n] * more * np.abs(V) * rolling
         rolling, slip = self._driven(n, factors, V)[1]
         return self.body.part * rolling + self.body.slip * slip
@@ -288,7 +296,7 @@ class HeatStates:
         factors = self.curve.factors(theta)
         load = self.load[n]
         if self.loads is None:
-            moments = self._free(n, factors, V, 1.0, MOMENTS)
+            moments = self._free(n, factors, V=V, more=1.0, names=MOMENTS)
             loss = load * V * moments[0]
             slip = np.zeros(n.size)
         else:
@@ -323,7 +331,7 @@ class HeatStates:
             kappa = self.kappa[n] * np.sqrt(warm.E_prime / pair.E_prime)
             unit = self.R[n] / warm.T_ref
         state = [index, kappa / np.sqrt(more), self.mu[n], V / unit, 0.0]
-        return evaluate_law(law, state, n.shape, False, names)
+        return evaluate_law(law, state, shape=n.shape, creep_is_omega=False, names=names)
 
     def _driven(
         self, n: Integers, factors: tuple[Floats, Any], V: Any
@@ -340,7 +348,9 @@ class HeatStates:
         vectors = {name: getattr(loads, name)[n] for name in ("force", "torque", "mu", "j")}
         loads = loads._replace(kappa=loads.kappa[n] * root_b, **vectors)
         every = np.arange(n.size)
-        rows = states_at(self.law, loads, every, sign, np.where(speed == 0.0, 1.0, speed)).rows
+        rows = states_at(
+            self.law, loads, load=every, sign=sign, V=np.where(speed == 0.0, 1.0, speed)
+        ).rows
         moments = rows[[Field.M_HALF_SPACE, Field.M_CYLINDER, Field.DELTA]]
         delta = np.nan_to_num(moments[2])
         # as Steady.loss: what shear changes in the moments is taken from friction
@@ -475,7 +485,7 @@ def heat_states(
         force, torque = (
             make_dimensionless(name, driven[name], roller.scale) for name in ("force", "torque")
         )
-        loads = loads_of(scene, force, torque, driven["slope"], np.ones(shape))
+        loads = loads_of(scene, force, torque=torque, slope=driven["slope"], V=np.ones(shape))
     return HeatStates(
         roller,
         scene.table or several,

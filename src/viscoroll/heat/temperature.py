@@ -104,12 +104,14 @@ def zeros_at_speed(
     curve = states.curve
     if isinstance(states.law, LawTable) and states.loads is None and curve.slope:
         x = kappa * np.where(speed == 0.0, 1.0, speed * states.roller.T_ref / states.R[n])
-        return _zeros_by_kernel(states.law, curve, np.log2(x), ambient, rise, top)
+        return _zeros_by_kernel(
+            states.law, curve, x=np.log2(x), ambient=ambient, rise=rise, hottest=top
+        )
 
     def heat(k: Integers, theta: Floats) -> Floats:
         return states.heat(n[k], theta, V[k], more if np.ndim(more) == 0 else more[k])
 
-    return zeros_of(heat, curve, ambient, conductance, top)
+    return zeros_of(heat, curve, ambient=ambient, conductance=conductance, hottest=top)
 
 
 def _zeros_by_kernel(
@@ -371,7 +373,9 @@ def temperature(
             "V", "is not given", "given, or a force, torque or slope from which it follows"
         )
     beside = driven if loaded and V is not None else None
-    states = heat_states(roller, scene, "temperature", plain, slip_share, beside)
+    states = heat_states(
+        roller, scene, call="temperature", given=plain, slip_share=slip_share, driven=beside
+    )
     if states.V is None:
         rows, zeros = _under_load(level, states, driven)
     else:
@@ -413,9 +417,9 @@ def _under_load(
     zeros = zeros_of(
         lambda k, theta: power[k] / states.curve.at(theta)[0],
         states.curve,
-        states.ambient[n],
-        states.conductance[n],
-        np.full(n.size, HOTTEST),
+        ambient=states.ambient[n],
+        conductance=states.conductance[n],
+        hottest=np.full(n.size, HOTTEST),
     )
     k = zeros.state
     a_T = states.curve.factors(zeros.theta)[0]
@@ -439,7 +443,7 @@ def _pack(
     speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
     inside = (speed == 0.0) | (speed >= low) & (speed <= high)
     known = np.isfinite(rows["loss"] + rows["a_T"])
-    reason = _reasons(states, zeros, known, inside, rows)
+    reason = _reasons(states, zeros, known=known, inside=inside, rows=rows)
     order = np.lexsort((zeros.theta, zeros.state))
     order = order[known[order]]
     state = zeros.state[order]
@@ -590,7 +594,11 @@ def pair_temperatures(
         index = np.arange(float(theta.shape[1]))
         fields = ("M_cylinder", "M_half_space")
         state = [index, own, 1.0, speed * warm.T_ref / scale["R"], 0.0]
-        return load * speed * evaluate_law(warm.law, state, index.shape, False, fields)
+        return (
+            load
+            * speed
+            * evaluate_law(warm.law, state, shape=index.shape, creep_is_omega=False, names=fields)
+        )
 
     def rest(theta: Any) -> Floats:
         """Return the rise that the losses make less that of the temperatures, K, (2, m)."""

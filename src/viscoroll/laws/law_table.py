@@ -260,7 +260,11 @@ class LawTable:
     def record(self) -> Any:
         """Record of the law that kernels read (:class:`.law_record.Law`)."""
         made = pack_record(
-            self.steady_coefficients, self.e0, self.alpha, self.fast_limit, self.cover
+            self.steady_coefficients,
+            self.e0,
+            alpha=self.alpha,
+            fast_limit=self.fast_limit,
+            cover=self.cover,
         )
         return made if self.coupled is None else made._replace(table=self.coupled.vector)
 

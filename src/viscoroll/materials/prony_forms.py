@@ -159,7 +159,9 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
         high = np.where(beyond, mid, high)
     distance = np.exp(0.5 * (low + high))
     for _ in range(_NEWTON_STEPS):
-        distance = _improve_distance(distance, origin, side, seen, weight, constant)
+        distance = _improve_distance(
+            distance, origin, side=side, seen=seen, weight=weight, constant=constant
+        )
     return np.swapaxes((side * distance)[..., None] - seen, -1, -2)
 
 

@@ -210,7 +210,14 @@ def fit_prony(
         shifts = None
     else:
         curve, shifts = master_curve(
-            omega, storage, loss, temperature, reference, shift, on, vertical_shift
+            omega,
+            storage,
+            loss=loss,
+            temperature=temperature,
+            reference=reference,
+            shift=shift,
+            on=on,
+            vertical_shift=vertical_shift,
         )
     data, fields, errors = _fit_series(curve, modes, misfit)
     return Fit(

@@ -159,7 +159,9 @@ def identify(
     if not unknowns:
         raise described_error("unknown", "is empty", "at least one name and its range")
     _refuse_tables(cylinder, unknowns)
-    problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
+    problem = Problem(
+        cylinder, unknowns, records=records, robust=check_bool("robust", robust), shifts=shifts
+    )
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
         allowed = (

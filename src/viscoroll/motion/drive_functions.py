@@ -542,7 +542,9 @@ def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> F
     terms = np.take_along_axis(terms, piece[..., None], 1)
     same = (first == starts) & (last == ends)
     return _start_at_zero(
-        np.where(same[..., None], terms, _substitute(terms, first, last, starts, ends))
+        np.where(
+            same[..., None], terms, _substitute(terms, first, last=last, starts=starts, ends=ends)
+        )
     )
 
 

@@ -329,7 +329,7 @@ def fit_callable(
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
             raise mark_dimensionless(ParameterError("resolve", resolve, allowed))
         samples = max(math.ceil(end / resolve), SAMPLES)
-    sampled = _Sampled(name, function, end, rtol, low, samples)
+    sampled = _Sampled(name, function, end=end, rtol=rtol, low=low, samples=samples)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
     starts = np.array([piece.start for piece in pieces])
     starts[0] = 0.0  # a jump there leaves one value before it
@@ -516,7 +516,9 @@ def piecewise(
         function = function.value
     if callable(function):
         require_time_argument(name, function)
-        starts, terms, error = fit_callable(name, function, end, rtol, low, resolve)
+        starts, terms, error = fit_callable(
+            name, function, end=end, rtol=rtol, low=low, resolve=resolve
+        )
         after = np.zeros((1, terms.shape[1]))
         after[0, 0] = terms[-1].sum()
         starts = np.append(starts, end)[None]

@@ -224,7 +224,9 @@ class Ensemble(RollResult):
             if self.x is None
             else np.vstack([np.zeros(index.size), self.x[index].T])
         )
-        return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
+        return self._add_steadiness(
+            report, roller, V=np.nan_to_num(speeds), rolls=rolls, x=x, ends=True
+        )
 
     def fastest(self) -> Fastest:
         """Return the motions that :meth:`validity` examines, with their highest speeds.
@@ -452,9 +454,16 @@ def ensemble(
     options = SolverOptions(
         rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
     )
-    problem = make_problem(roller, start, drive, times[-1], options)
+    problem = make_problem(roller, start, drive=drive, end=times[-1], options=options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)
-    warn_of_start(problem.roller, problem.scene, start, problem.V0, problem.omega0, problem.driven)
+    warn_of_start(
+        problem.roller,
+        problem.scene,
+        start=start,
+        V0=problem.V0,
+        omega0=problem.omega0,
+        driven=problem.driven,
+    )
     scale = problem.roller.scale
     scene = problem.scene
     several = scene.material_array is not None or np.ndim(scene.alpha) > 0

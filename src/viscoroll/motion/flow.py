@@ -332,7 +332,12 @@ def fill_tables(new_map: Any, threads: int | None) -> str:
             slow = fill_manifold(problem, parts)
             for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
                 fill_layers(
-                    problem, sign, first, slow, parts.asymptote[family], parts.layer[family]
+                    problem,
+                    sign,
+                    first=first,
+                    slow=slow,
+                    asymptote=parts.asymptote[family],
+                    layer=parts.layer[family],
                 )
     except NoFlowMap as reason:
         return str(reason)
@@ -524,11 +529,11 @@ class FlowResult(NamedTuple):
         Returns a :class:`FlowResult` of new arrays.
         """
         return cls(
-            np.empty((rows, count, times)),
-            np.full(count, -1, np.int8),
-            np.empty(count),
-            np.empty(count),
-            np.zeros(count, np.int64),
+            out=np.empty((rows, count, times)),
+            status=np.full(count, -1, np.int8),
+            onset=np.empty(count),
+            rest=np.empty(count),
+            switches=np.zeros(count, np.int64),
         )
 
 

@@ -397,7 +397,7 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
             * between
             / problem.contact_states(between, np.zeros(1))[MOMENT]
         )
-        (V,), (delta,) = problem.integrate(V, delta, gamma, step, FULL_SLIP_RETURNS)
+        (V,), (delta,) = problem.integrate(V, delta, gamma=gamma, t=step, reason=FULL_SLIP_RETURNS)
         if not V[0] < between[0]:
             raise NoFlowMap(OUT_OF_RANGE)
         halves.append((V, delta))
@@ -410,7 +410,11 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
         inside = np.flatnonzero((nodes <= start) & (nodes > end))
         if inside.size:
             (states[0, inside],), (states[1, inside],) = problem.integrate(
-                V, delta, gamma, (start - nodes[inside]) / rate, FULL_SLIP_RETURNS
+                V,
+                delta,
+                gamma=gamma,
+                t=(start - nodes[inside]) / rate,
+                reason=FULL_SLIP_RETURNS,
             )
     V, delta = states[:, ::-1].reshape(2, *rows.x.shape)
     return rows, V, delta
@@ -470,7 +474,7 @@ def fill_layers(
     k0 = _stiff_rate(problem, V0)
     split_powers = _split_powers(problem, sign, onsets)
     split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
-    V, delta, V_end = _layer_motions(problem, sign, V0, k0, split)
+    V, delta, V_end = _layer_motions(problem, sign, V0=V0, k0=k0, split=split)
     # over (octave, V, octave of u, u)
     width = np.where(
         np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT,
@@ -574,9 +578,9 @@ def _layer_motions(
     V_on, delta_on = problem.integrate(
         V[:, -1],
         delta[:, -1],
-        1.0 / k0.ravel(),
-        np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
-        STICK_ENDS,
+        gamma=1.0 / k0.ravel(),
+        t=np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
+        reason=STICK_ENDS,
     )
     shape = (*V0.shape, _LAYER.half.size, _COARSE.t.size)
     V_whole, delta_whole = (

@@ -447,9 +447,9 @@ def motion_dataset(motion: Any) -> xr.Dataset:
     return _dataset(
         motion,
         "Motion of a viscoelastic cylinder rolling with partial slip",
-        ("t",),
-        variables,
-        about,
+        dims=("t",),
+        variables=variables,
+        about=about,
     )
 
 
@@ -473,7 +473,9 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
         variables[name] = "motion", result[name], column_attributes(name, si)
     variables["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
     about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
-    dataset = _dataset(result, "Ensemble of motions", ("motion", "t"), variables, about)
+    dataset = _dataset(
+        result, "Ensemble of motions", dims=("motion", "t"), variables=variables, about=about
+    )
     if result.labels is None or result.labels.shape != (len(result),):
         return dataset
     return dataset.assign_coords(

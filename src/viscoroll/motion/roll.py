@@ -263,7 +263,7 @@ class Motion(RollResult):
         if self.scene.cover is None:
             rolls = whole.regime[reached] > 0
             x = whole.x[reached]
-            report = self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
+            report = self._add_steadiness(report, self.roller, V=V, rolls=rolls, x=x, ends=False)
         last = np.searchsorted(t, outputs)
         return Validity(
             *(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report)
@@ -588,9 +588,16 @@ def roll(
     options = SolverOptions(
         rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
     )
-    problem = make_problem(roller, (V0, omega0), drive, times[-1], options, single=True)
+    problem = make_problem(
+        roller, (V0, omega0), drive=drive, end=times[-1], options=options, single=True
+    )
     warn_of_start(
-        problem.roller, problem.scene, (V0, omega0), problem.V0, problem.omega0, problem.driven
+        problem.roller,
+        problem.scene,
+        start=(V0, omega0),
+        V0=problem.V0,
+        omega0=problem.omega0,
+        driven=problem.driven,
     )
     motion = integrate_motion(problem, times)
     warn_of_speeds(problem.roller, V0, motion.V)

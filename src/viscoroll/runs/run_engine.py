@@ -153,7 +153,9 @@ def run_ensemble(
             store.start()
             evaluated = 0
             try:
-                for motions in _evaluate_missing(store, shared, pool, workers, advance):
+                for motions in _evaluate_missing(
+                    store, shared, pool=pool, workers=workers, advance=advance
+                ):
                     evaluated += 1
                     advance(motions)
             except KeyboardInterrupt:

@@ -117,7 +117,14 @@ class Rollers(Cylinder):
             return super()._scene
         T = self.T_ref
         scene = scene_of(
-            self.R, self.m, self.load, self.E_prime, T, T / self.T_sigma, self.mu, self.j
+            self.R,
+            self.m,
+            load=self.load,
+            E_prime=self.E_prime,
+            T_ref=T,
+            law=T / self.T_sigma,
+            mu=self.mu,
+            j=self.j,
         )
         return scene.replace(gamma=scene.gamma / T)
 

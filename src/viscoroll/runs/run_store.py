@@ -85,7 +85,15 @@ def block_inputs(run: Run, block: int, most: int | None = None) -> dict[str, Flo
     dimensions = len(run.inputs.dimensions)
     stop = stop if most is None else min(stop, start + most)
     return run.inputs.values(
-        points(settings.design, settings.seed, settings.n, dimensions, start, stop, block)
+        points(
+            settings.design,
+            settings.seed,
+            n=settings.n,
+            dimensions=dimensions,
+            start=start,
+            stop=stop,
+            block=block,
+        )
     )
 
 

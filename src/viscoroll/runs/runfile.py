@@ -316,9 +316,9 @@ def read_run(path: str | PathLike[str]) -> Run:
     digest = _digest(
         settings,
         times,
-        content,
-        [material_as_toml(material) for material in certain.values()],
-        inputs,
+        content=content,
+        materials=[material_as_toml(material) for material in certain.values()],
+        inputs=inputs,
     )
     run = Run(path=path, text=text, settings=settings, inputs=inputs, t=times, digest=digest)
     if not settings.summaries:
@@ -418,7 +418,9 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
             unsteady=settings.unsteady,
             rested=settings.rested,
         )
-        make_problem(roller, start, Drive(**drive_of(content)), run.t[-1], options)
+        make_problem(
+            roller, start, drive=Drive(**drive_of(content)), end=run.t[-1], options=options
+        )
     except (ParameterError, FileError) as error:
         return error
     return None

@@ -223,7 +223,9 @@ def _points(count: int, base: int, seed: int) -> Floats:
     each motion: the points of A, those of B, then for each input n the points of A with row n taken
     from B.
     """
-    A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
+    A, B = np.split(
+        points("sobol", seed, n=base, dimensions=2 * count, start=0, stop=base, block=0), 2
+    )
     mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
     return np.hstack([A, B, *mixed])
 

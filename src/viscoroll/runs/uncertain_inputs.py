@@ -562,7 +562,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     else:
         raise ValueError("a sample must be .csv, .nc or .parquet")
     if path.suffix != ".csv":
-        factor, offset = conversion_of_column(path, column, given, unit, advice)
+        factor, offset = conversion_of_column(path, column, unit=given, wanted=unit, advice=advice)
         values = factor * values + offset
     if (
         values.ndim != 1
