@@ -15,12 +15,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .contact_mechanics import DUNDURS_LIMIT, BodyData, Parameters, Roller
 from .core import (
     MEASURED,
     SI,
+    ArrayLike,
     ParameterError,
     Result,
     Scale,

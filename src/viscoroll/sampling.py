@@ -21,10 +21,10 @@ from functools import lru_cache
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .core import (
     Floats,
+    NDArray,
     ParameterError,
     check_array,
     check_integer,

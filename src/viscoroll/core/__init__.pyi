@@ -5,9 +5,15 @@ from .blocks import broadcast_vector as broadcast_vector
 from .blocks import cancel_with as cancel_with
 from .blocks import run_blocks as run_blocks
 from .blocks import thread_count as thread_count
+from .checks import ArrayLike as ArrayLike
 from .checks import Booleans as Booleans
+from .checks import DataArray as DataArray
+from .checks import DataFrame as DataFrame
+from .checks import Dataset as Dataset
+from .checks import Figure as Figure
 from .checks import Floats as Floats
 from .checks import Integers as Integers
+from .checks import NDArray as NDArray
 from .checks import Numbers as Numbers
 from .checks import broadcast_shape as broadcast_shape
 from .checks import check_array as check_array

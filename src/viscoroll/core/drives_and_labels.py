@@ -13,9 +13,8 @@ from inspect import signature
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .checks import broadcast_shape, check_array, divide_by_unit, read_only
+from .checks import ArrayLike, broadcast_shape, check_array, divide_by_unit, read_only
 from .errors import ParameterError, described_error, shape_error
 from .quantities import convert, has_no_unit, split_unit, to_unit
 from .scale import HasUnits, Scale

@@ -21,14 +21,11 @@ from contextlib import contextmanager, suppress
 from dataclasses import is_dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
+from typing import Any, TypeVar, get_args, get_type_hints
 
 from ..kernels.numerics.cache_folder import read_private, write_private
+from .checks import Dataset
 from .errors import FileError, ParameterError, suggestion
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- Files that are written whole, and read if they are as they were written ---
 
@@ -256,7 +253,7 @@ def write_text(path: str | PathLike[str], text: str) -> None:
     write_bytes(path, text.encode())
 
 
-def fix_texts(dataset: xr.Dataset) -> xr.Dataset:
+def fix_texts(dataset: Dataset) -> Dataset:
     """Return a ``dataset`` whose attributes have texts of fixed length, as netCDF's C library
     writes them.
 
@@ -275,7 +272,7 @@ def fix_texts(dataset: xr.Dataset) -> xr.Dataset:
 
 
 def write_dataset(
-    dataset: xr.Dataset,
+    dataset: Dataset,
     path: str | PathLike[str],
     encoding: dict[str, Any] | None = None,
     *,

@@ -14,7 +14,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Callable
 from functools import lru_cache
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -30,6 +30,7 @@ from ..contact_mechanics import (
 from ..contact_mechanics.steady import steady
 from ..core import (
     Booleans,
+    Dataset,
     Floats,
     Integers,
     Labels,
@@ -53,10 +54,6 @@ from .heated_bodies import (
     shift_curve,
     warm_pair,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- Zeros of the balance of heat ---
 
@@ -259,7 +256,7 @@ class Temperatures(Equilibria):
         self.reason = reason
         self._labels = labels
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
 
         Returns

@@ -12,11 +12,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..core import (
     SI,
+    ArrayLike,
     Floats,
+    NDArray,
     ParameterError,
     check_array,
     check_bool,

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core import Floats
+from ..core import Floats, NDArray
 
 #: highest alpha: beyond 1e18 the 1/alpha is lost beside 1; at 1e12 the law is that of alpha ->
 #: infinity where alpha zeta is large

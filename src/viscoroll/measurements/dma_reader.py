@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from itertools import product
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..core import FileError, Floats, Result, SummaryRow, warn_of_model
+from ..core import Dataset, Figure, FileError, Floats, Result, SummaryRow, warn_of_model
 from .dma_columns import UNITS, Column, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli, rows_of
 from .table_reader import (
@@ -35,11 +35,6 @@ from .table_reader import (
     warn_of_assumed_units,
 )
 from .text_table import Table
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
-
 
 # --- Relaxation modulus over time from a text file ---
 
@@ -82,7 +77,7 @@ class RelaxationModulus(Result):
         """Return an iterator over t and relaxation, (n,) each."""
         return iter((self.t, self.relaxation))
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the points as a dataset.
 
         Returns

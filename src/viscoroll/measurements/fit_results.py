@@ -17,12 +17,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..contact_mechanics import MISFIT_LIMIT, Assumption, assess_measured_band, transit_frequency
 from ..contact_mechanics.contact import contact
 from ..core import (
+    ArrayLike,
     Booleans,
+    Dataset,
     Floats,
     Numbers,
     Result,
@@ -38,8 +39,6 @@ from .master_curve import Shifts, undetermined_shifts
 from .spectrum import Data, has_plateau, spectrum_of
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..rollers import Cylinder
 
 
@@ -499,7 +498,7 @@ class SeriesFit(Result):
         data = self.data._replace(**{self.data._fields[0]: points.ravel()})
         return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the data, the fit and its series as a dataset.
 
         Returns

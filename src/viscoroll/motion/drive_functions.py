@@ -12,11 +12,11 @@ from functools import cache, cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core import (
     Feedback,
     Floats,
+    NDArray,
     ParameterError,
     broadcast_shape,
     check_array,

@@ -29,11 +29,11 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import NDArray
 
 from ..core import (
     Feedback,
     Floats,
+    NDArray,
     ParameterError,
     Schedule,
     check_array,

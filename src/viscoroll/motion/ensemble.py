@@ -9,10 +9,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact_mechanics import (
     FASTEST,
@@ -26,11 +25,14 @@ from ..contact_mechanics import (
 from ..contact_mechanics.validity import validity
 from ..core import (
     Booleans,
+    Dataset,
     Feedback,
+    Figure,
     Floats,
     Integers,
     Labels,
     MotionStatus,
+    NDArray,
     Numbers,
     ParameterError,
     Schedule,
@@ -51,11 +53,6 @@ from .many_motions import Batch, Solution, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
 from .motion_datasets import RollResult
 from .motion_problem import MotionProblem, SolverOptions, make_problem
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
-
 
 # --- The result of many motions ---
 
@@ -148,7 +145,7 @@ class Ensemble(RollResult):
         codes, counts = np.unique(self.status, return_counts=True)
         return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
 
-    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
+    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> Dataset:
         """Compute moments, quantiles and histograms over the motions, per output time, named as
         those of a run's store.
 
@@ -291,7 +288,7 @@ class Ensemble(RollResult):
             )
         return f"Ensemble of {len(self)} motions", rows + ends
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status,
         drive and scene.
 

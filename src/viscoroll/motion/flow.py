@@ -22,10 +22,9 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact_mechanics import Parameters
-from ..core import Floats, Integers, broadcast_vector, load_kept, run_blocks, save_kept
+from ..core import Floats, Integers, NDArray, broadcast_vector, load_kept, run_blocks, save_kept
 from ..kernels.motion import flow_layout
 from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, FlowTables
 from ..kernels.numerics.cache_folder import cache_root

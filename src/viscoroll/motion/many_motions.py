@@ -11,7 +11,6 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact_mechanics import Parameters
 from ..core import (
@@ -20,6 +19,7 @@ from ..core import (
     Floats,
     Integers,
     MotionStatus,
+    NDArray,
     ParameterError,
     broadcast_vector,
     extent,

@@ -6,17 +6,18 @@ Motions and ensembles as xarray datasets, with names, units and provenance.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import __version__
 from ..contact_mechanics import PARAMETERS, FreeRolling, Parameters, Roller, Steadiness, Validity
 from ..core import (
+    Dataset,
     Feedback,
     Floats,
     MotionStatus,
+    NDArray,
     Result,
     Scale,
     Schedule,
@@ -27,9 +28,6 @@ from ..core import (
 )
 from ..materials import Bodies, Cover, Prony
 from .motion_arguments import ROWS, STATES, Drive
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # --- Common data of one motion and of an ensemble ---
 
@@ -187,7 +185,7 @@ def _dataset(
     dims: tuple[str, ...],
     variables: dict[str, Any],
     about: dict[str, Any],
-) -> xr.Dataset:
+) -> Dataset:
     """Return the dataset of a motion or an ensemble.
 
     result: :class:`Motion` or :class:`Ensemble`, whose quantities, t, drive, scene and roller are
@@ -420,7 +418,7 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
     }
 
 
-def motion_dataset(motion: Any) -> xr.Dataset:
+def motion_dataset(motion: Any) -> Dataset:
     """Return the dataset over t of one motion; of a driven one with loads, works, losses and the
     times at which V reverses.
 
@@ -453,7 +451,7 @@ def motion_dataset(motion: Any) -> xr.Dataset:
     )
 
 
-def ensemble_dataset(result: Any) -> xr.Dataset:
+def ensemble_dataset(result: Any) -> Dataset:
     """Return the dataset over (motion, t) of an ensemble.
 
     result: an :class:`Ensemble`; labels of its starts of length n become coordinates, called

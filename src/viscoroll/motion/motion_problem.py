@@ -11,7 +11,6 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact_mechanics import (
     LARGEST_LOSS,
@@ -28,6 +27,7 @@ from ..core import (
     HasUnits,
     Integers,
     MotionStatus,
+    NDArray,
     ParameterError,
     Scale,
     broadcast_vector,

@@ -6,10 +6,9 @@ import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..contact_mechanics import (
     Roller,
@@ -23,7 +22,10 @@ from ..contact_mechanics.contact import contact
 from ..contact_mechanics.validity import validity
 from ..core import (
     UNLABELLED_TYPES,
+    ArrayLike,
+    Dataset,
     Feedback,
+    Figure,
     Floats,
     MotionStatus,
     Numbers,
@@ -38,10 +40,6 @@ from ..core import (
 from .motion_arguments import ROWS, SPEED_RANGE, Drive, output_times, strip_units
 from .motion_datasets import RollResult, Switch, describe_load, describe_values
 from .motion_problem import NO_NOTES, MotionProblem, SolverOptions, integrate_single, make_problem
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 #: Changes of regime that are kept.
 _SWITCHES_KEPT = 1000
@@ -370,7 +368,7 @@ class Motion(RollResult):
         t = self.course.t
         return RollResult._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the dataset over t with V, omega, x, angle, delta and regime, and the scene as
         attributes.
 

@@ -22,11 +22,10 @@ from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from ..contact_mechanics import transit_frequency, warn_of_contact, warn_of_unmeasured_starts
 from ..contact_mechanics.contact import contact
-from ..core import SYMBOLS, FileError, Floats, as_file_error, shape_error, write_bytes
+from ..core import SYMBOLS, FileError, Floats, NDArray, as_file_error, shape_error, write_bytes
 from ..motion import (
     Ensemble,
     Summary,

@@ -9,15 +9,17 @@ scrambled Sobol sequence; scipy.stats.sobol_indices, which has them too, fails f
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core import (
+    DataFrame,
+    Dataset,
     Floats,
     MotionStatus,
+    NDArray,
     ParameterError,
     check_bool,
     check_integer,
@@ -31,10 +33,6 @@ from ..sampling import points
 from .run_store import roll_inputs, warn_of_materials
 from .runfile import Run
 from .uncertain_inputs import Inputs, inputs_in
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
 
 #: Level of the confidence intervals.
 CONFIDENCE = 0.95
@@ -57,7 +55,7 @@ _INDICES = {
 
 def sobol_indices(
     run: Run, n: int = 4096, *, threads: int | None = None, progress: bool = False
-) -> xr.Dataset:
+) -> Dataset:
     """Estimate first-order and total Sobol indices of the summarised quantities over all uncertain
     inputs.
 
@@ -331,7 +329,7 @@ def _estimated(values: Floats) -> Floats:
     )
 
 
-def table(indices: xr.Dataset) -> pd.DataFrame:
+def table(indices: Dataset) -> DataFrame:
     """Return a row for each quantity, time and input that has indices, the largest total index
     first at each t.
 

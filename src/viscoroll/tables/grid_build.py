@@ -22,7 +22,6 @@ from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .. import __version__
 from ..contact_mechanics import coupled_law
@@ -30,6 +29,8 @@ from ..contact_mechanics.contact import contact
 from ..core import (
     PAPER,
     SYMBOLS,
+    ArrayLike,
+    Dataset,
     Floats,
     ParameterError,
     attributes,
@@ -302,7 +303,7 @@ def global_attributes(title: str, grid: str, command: str | None) -> dict[str, s
 
 
 def build(
-    what: Scene | Cylinder | LawTable | xr.Dataset,
+    what: Scene | Cylinder | LawTable | Dataset,
     V: ArrayLike | None = None,
     *,
     delta: ArrayLike | None = None,
@@ -311,7 +312,7 @@ def build(
     nodes: tuple[int, int] | None = None,
     progress: bool = False,
     command: str | None = None,
-) -> xr.Dataset:
+) -> Dataset:
     """Compute a table of the contact over (V, delta) or (V, delta, alpha), and its errors of
     interpolation.
 
@@ -440,7 +441,7 @@ def build(
 
 def _coupled_dataset(
     roller: Scene | Cylinder, nodes: tuple[int, int] | None, progress: bool
-) -> xr.Dataset:
+) -> Dataset:
     """Return the table of the coupled solution of one roller as a dataset.
 
     roller: a Scene, dimensionless, or a Cylinder, in SI units, with numbers for parameters.
@@ -503,7 +504,7 @@ def _evaluate(
     return contact(own, points["V"], delta=creep, fields=names, method=method).as_dict()
 
 
-def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
+def _state_errors(table: Dataset, roller: Scene | Cylinder) -> None:
     """Add the largest errors of both interpolations, and where they occur, to the attributes of the
     fields of a grid.
 
@@ -526,7 +527,7 @@ def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
 
 
 def errors_at(
-    table: xr.Dataset, roller: Scene | Cylinder, points: dict[str, Floats], linear: bool = False
+    table: Dataset, roller: Scene | Cylinder, points: dict[str, Floats], linear: bool = False
 ) -> dict[str, Floats]:
     """Return the absolute errors of interpolation in a grid: field -> errors, (n,), in the unit of
     the field.
@@ -545,7 +546,7 @@ def errors_at(
     return {name: np.abs(found[name] - exact[name]) for name in fields_of(table)}
 
 
-def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
+def random_points(table: Dataset, count: int, seed: int) -> dict[str, Floats]:
     """Return random points in random cells of a grid; along an axis of one node they all have its
     coordinate.
 
@@ -569,7 +570,7 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
     return points
 
 
-def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
+def differences(table: Dataset, roller: Scene | Cylinder) -> dict[str, float]:
     """Return the largest difference of each field between the nodes of a grid and the rows of the
     law.
 

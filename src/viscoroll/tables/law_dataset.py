@@ -18,13 +18,13 @@ The rows of a law are its polynomials, one for each octave of speed.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import __version__
 from ..contact_mechanics import Contacts, CoupledPair, measure_errors
-from ..core import FileError, ParameterError, check_integer, check_one_given
+from ..core import Dataset, FileError, ParameterError, check_integer, check_one_given
 from ..laws import (
     AXIS_FUNCTIONS,
     COVER_FUNCTIONS,
@@ -44,10 +44,6 @@ from ..rollers import Cylinder, Scene
 from . import table_files
 from .grid_build import RELATIVE_FIELDS, differences, errors_at, random_points
 from .table_files import is_law
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- The law of one material or pair, or of every alpha ---
 
@@ -72,7 +68,7 @@ _SEED = 20250701
 
 def law(
     material: Any = None, base: Any = None, *, alpha: tuple[float, float] | None = None
-) -> xr.Dataset:
+) -> Dataset:
     r"""Return the contact law of one material or pair for other programs: polynomials, one for each
     octave of speed.
 
@@ -374,7 +370,7 @@ class Report:
         )
 
 
-def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
+def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
     """Check a table by numbers that were not used to make it, and return a :class:`Check` for each
     difference.
 
@@ -428,7 +424,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     ]
 
 
-def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
+def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Check]:
     """Compare a grid with the rows of the law: two checks for each field, of its nodes and of the
     splines between them.
 

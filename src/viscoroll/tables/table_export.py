@@ -8,18 +8,24 @@ from collections.abc import Callable
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .. import __version__
-from ..core import PAPER, Floats, ParameterError, as_path, described_error, replace_file, write_text
+from ..core import (
+    PAPER,
+    Dataset,
+    Floats,
+    ParameterError,
+    as_path,
+    described_error,
+    replace_file,
+    write_text,
+)
 from ..laws import LawTable, parse_law
 from ..materials import CHECKSUM, dataset_content
 from . import table_files
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: Attributes of a grid with the parameters of its roller.
 _PARAMETERS = ("alpha", "kappa", "mu", "R", "m", "load")
@@ -27,7 +33,7 @@ _PARAMETERS = ("alpha", "kappa", "mu", "R", "m", "load")
 _ERROR = "linear_error"
 
 
-def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
+def export(table: Dataset, path: str | PathLike[str]) -> None:
     """Write a law or a grid for another program, whole or not at all.
 
     Parameters
@@ -72,7 +78,7 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     formats[suffix](table, path)
 
 
-def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
+def _write_netcdf3(table: Dataset, path: Path) -> None:
     """Write a law or a grid in the 64-bit offset format (CDF-2), which every netCDF library since
     2004 reads.
 
@@ -85,7 +91,7 @@ def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
         table.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT", encoding=encoding)
 
 
-def _write_csv(table: xr.Dataset, path: Path) -> None:
+def _write_csv(table: Dataset, path: Path) -> None:
     """Write a grid as CSV: a row of names, then one for every node, the first axis slowest.
 
     Columns are the axes, then the fields; a field that does not depend on the creepage is repeated
@@ -100,7 +106,7 @@ def _write_csv(table: xr.Dataset, path: Path) -> None:
         fields.to_dataframe(dim_order=list(table_files.axes_of(table))).to_csv(temporary)
 
 
-def _write_modelica(table: xr.Dataset, path: Path) -> None:
+def _write_modelica(table: Dataset, path: Path) -> None:
     """Write tables of a grid for Modelica: Q over (V, delta) for CombiTable2D, M over V for
     CombiTable1D blocks.
 
@@ -139,7 +145,7 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
     write_text(path, "\n".join([*lines, ""]))
 
 
-def _modelica_header(table: xr.Dataset) -> list[str]:
+def _modelica_header(table: Dataset) -> list[str]:
     """Return the lines that describe a grid and its use in Modelica, without marks of a comment.
 
     table: dataset of the grid.
@@ -179,7 +185,7 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
     ]
 
 
-def _write_matlab(table: xr.Dataset, path: Path) -> None:
+def _write_matlab(table: Dataset, path: Path) -> None:
     """Write a grid as one struct ``viscoroll`` of MATLAB: breakpoints, tables, linear errors,
     dimensions, parameters.
 
@@ -216,7 +222,7 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
         savemat(temporary, {"viscoroll": content}, do_compression=True)
 
 
-def _write_header(dataset: xr.Dataset, path: Path) -> None:
+def _write_header(dataset: Dataset, path: Path) -> None:
     """Write the numbers of a law and their evaluator as one header of C.
 
     The header contains title, source, T_ref, checksum and material as a comment, the evaluator
@@ -315,7 +321,7 @@ def _initializer(values: Floats) -> str:
     return text.translate(str.maketrans("[]", "{}")).replace("NaN", "NAN")
 
 
-def _write_json(dataset: xr.Dataset, path: Path) -> None:
+def _write_json(dataset: Dataset, path: Path) -> None:
     """Write the variables, as nested lists of numbers, and some attributes of a law as one JSON
     object.
 
@@ -349,7 +355,7 @@ def _write_json(dataset: xr.Dataset, path: Path) -> None:
 
 
 #: Suffix -> function that writes a law or a grid.
-_EITHER: dict[str, Callable[[xr.Dataset, Path], None]] = {
+_EITHER: dict[str, Callable[[Dataset, Path], None]] = {
     ".nc": table_files.save,
     ".cdf": _write_netcdf3,
 }

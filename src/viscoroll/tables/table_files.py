@@ -15,13 +15,14 @@ import io
 from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .. import __version__
 from ..core import (
+    ArrayLike,
+    Dataset,
     FileError,
     Floats,
     OutOfTableError,
@@ -36,9 +37,6 @@ from ..core import (
 )
 from ..laws import check_nodes, fit_spline, friction_limit, pack_spline, refuse_filled
 from ..materials import checked_netcdf
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # --- The schema of the file of a grid ---
 
@@ -56,7 +54,7 @@ VOLUME = ("beta", "Q")
 OF_TRACTION = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "zeta")
 
 
-def axes_of(table: xr.Dataset) -> tuple[str, ...]:
+def axes_of(table: Dataset) -> tuple[str, ...]:
     """Return the names of the axes of a grid, the first of which varies slowest.
 
     table: dataset of a grid.
@@ -66,7 +64,7 @@ def axes_of(table: xr.Dataset) -> tuple[str, ...]:
     return ("V", "delta", *(("alpha",) if "alpha" in table.dims else ()))
 
 
-def fields_of(table: xr.Dataset) -> tuple[str, ...]:
+def fields_of(table: Dataset) -> tuple[str, ...]:
     """Return the names of the fields of a grid ``table``."""
     return (*VOLUME, *(name for name in PLANE if name in table))
 
@@ -166,7 +164,7 @@ def check_content(table: Any, path: Any) -> None:
         check_grid(table, path)
 
 
-def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
+def save(table: Dataset, path: str | PathLike[str]) -> None:
     """Write a law or a grid as netCDF-4/HDF5: whole and synced, or not at all.
 
     The file ends with a SHA-256 of its bytes, which other programs do not see.
@@ -204,7 +202,7 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     write_dataset(plain, path, encoding, sealed=True)
 
 
-def load(path: str | PathLike[str]) -> xr.Dataset:
+def load(path: str | PathLike[str]) -> Dataset:
     """Read a law or a grid of the schema 1.x into memory, check it and
     close the file.
 
@@ -343,7 +341,7 @@ class Interpolant:
     True
     """
 
-    def __init__(self, table: xr.Dataset, linear: bool = False) -> None:
+    def __init__(self, table: Dataset, linear: bool = False) -> None:
         """Check a table and choose its axes and bounds; splines are computed at the first use of a
         field.
 
@@ -505,9 +503,7 @@ class Interpolant:
         return self._splines[name]
 
 
-def interpolate(
-    table: xr.Dataset, fields: Iterable[str] | None = None, **points: ArrayLike
-) -> Values:
+def interpolate(table: Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
     """Interpolate fields of a grid between its nodes, without extrapolation.
 
     Parameters

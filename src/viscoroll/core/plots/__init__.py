@@ -10,18 +10,14 @@ from __future__ import annotations
 import re
 from os import PathLike
 from textwrap import fill
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..checks import DataArray, Dataset, Figure, NDArray
 from ..errors import FileError, ParameterError
 from ..files import as_path, replace_file
 from ..scale import MEASURED, SYMBOLS
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 # --- Common parts of all figures ---
 
@@ -292,7 +288,7 @@ _SHADE = "0.87"
 _JUMP_RTOL = 1e-9
 
 
-def varied_axes(data: xr.Dataset) -> list[str]:
+def varied_axes(data: Dataset) -> list[str]:
     """Return the names of the axes of several values that the shown fields of ``data`` depend on,
     in its order.
     """
@@ -300,7 +296,7 @@ def varied_axes(data: xr.Dataset) -> list[str]:
     return [str(dim) for dim, size in data.sizes.items() if size > 1 and dim in dims]
 
 
-def field_curves(data: xr.Dataset) -> Figure:
+def field_curves(data: Dataset) -> Figure:
     """Draw fields of a dataset against its first axis of several values, with curves for at most
     four of the second.
 
@@ -347,7 +343,7 @@ def field_curves(data: xr.Dataset) -> Figure:
     return figure
 
 
-def stresses(data: xr.Dataset) -> Figure:
+def stresses(data: Dataset) -> Figure:
     """Draw pressure and, where it is known, shear stress along the contact.
 
     data: dataset with ``x``, place along the contact, ``p``, pressure, and, but for a cover,
@@ -370,7 +366,7 @@ def stresses(data: xr.Dataset) -> Figure:
     return figure
 
 
-def equilibria(data: xr.Dataset) -> Figure:
+def equilibria(data: Dataset) -> Figure:
     """Draw the speeds of all equilibria over the load, stable (filled) or not (open).
 
     data: dataset of steady rolling, as in ``Steady.to_xarray``: V, stable (1 or 0) and the loads.
@@ -414,7 +410,7 @@ def equilibria(data: xr.Dataset) -> Figure:
     return figure
 
 
-def motion(data: xr.Dataset) -> Figure:
+def motion(data: Dataset) -> Figure:
     """Draw V and omega, the distance x, and force and torque of a motion over time; sliding is
     shaded.
 
@@ -452,7 +448,7 @@ def motion(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _in_millimetres(data: xr.Dataset, name: str) -> xr.Dataset:
+def _in_millimetres(data: Dataset, name: str) -> Dataset:
     """Return a dataset whose contact length is in mm, for figures.
 
     data: dataset of states.
@@ -467,7 +463,7 @@ def _in_millimetres(data: xr.Dataset, name: str) -> xr.Dataset:
     )
 
 
-def _add_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
+def _add_corners(data: Dataset, name: str) -> tuple[NDArray, NDArray]:
     """Add the corners and both sides of the jumps of a schedule to a quantity of a motion over
     time, for its curve.
 
@@ -499,7 +495,7 @@ def _add_corners(data: xr.Dataset, name: str) -> tuple[NDArray, NDArray]:
     return times[order], found[order]
 
 
-def _shown_fields(data: xr.Dataset) -> list[str]:
+def _shown_fields(data: Dataset) -> list[str]:
     """Return the fields of ``data`` that vary, else all of them; of like bodies without the parts
     of M.
     """
@@ -509,13 +505,13 @@ def _shown_fields(data: xr.Dataset) -> list[str]:
     return [name for name in names if np.ptp(_finite(data[name])) > 0.0] or names
 
 
-def _finite(values: xr.DataArray) -> NDArray[Any]:
+def _finite(values: DataArray) -> NDArray[Any]:
     """Return the finite ``values``, 0 if there is none."""
     found: NDArray[Any] = values.values[np.isfinite(values.values)]
     return found if found.size else np.zeros(1)
 
 
-def _value_label(data: xr.Dataset, name: str, index: int) -> str:
+def _value_label(data: Dataset, name: str, index: int) -> str:
     """Return a value of the axis ``name`` of ``data``, at an ``index``, in words."""
     values = data[name].values
     return f"{symbol_label(data[name])} = {values[index]:{'.4g' if has_numbers(values) else ''}}"
@@ -524,7 +520,7 @@ def _value_label(data: xr.Dataset, name: str, index: int) -> str:
 # --- Figures of results ---
 
 
-def draw(data: xr.Dataset) -> Figure:
+def draw(data: Dataset) -> Figure:
     """Draw a result, by the figure that its axes and variables call for.
 
     Parameters
