@@ -35,7 +35,7 @@ from viscoroll.materials.material_toml import read_materials
 from viscoroll.presets import PAPER_CYLINDER
 from viscoroll.roller_toml import read_law_source, read_roller
 from viscoroll.runs import estimate
-from viscoroll.runs.run_blocks import block_inputs
+from viscoroll.runs.run_store import block_inputs
 from viscoroll.runs.uncertain_inputs import read_column
 
 pytestmark = [

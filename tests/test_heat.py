@@ -386,7 +386,7 @@ def test_beyond_the_ranges_is_named():
 
 def test_run_file_with_uncertain_surroundings(tmp_path):
     """Each motion has the material at the temperature of its own ambient and conductance."""
-    from viscoroll.runs.run_blocks import roll_inputs
+    from viscoroll.runs.run_store import roll_inputs
 
     path = tmp_path / "run.toml"
     path.write_text(

@@ -13,7 +13,7 @@ SMALL_TRACTION = 1e-11
 # times the condition of what is computed, a motion's and a fit's below 1e3.
 UNIT_CONVERTED = 1e-11
 
-# --- contact_mechanics/contact.py (test_stress.py) ---
+# --- contact_mechanics/stress.py (test_stress.py) ---
 #: V = 0 and alpha = 1 are ellipses: roundings of the edge distances; relative to the peak.
 STRESS_ELLIPSE = 1e-15
 #: Carter's shear: near the stick edge the reference's beta^2 - (..)^2 cancels; relative to mu times

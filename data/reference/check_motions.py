@@ -45,7 +45,7 @@ from pipeline.evidence.truth.reference import (
     free_motion,
 )
 from viscoroll import Bodies
-from viscoroll.core.drive_arguments import Feedback, Schedule
+from viscoroll.core.drives_and_labels import Feedback, Schedule
 from viscoroll.core.errors import ConvergenceError
 from viscoroll.core.files import write_text
 from viscoroll.rollers import Scene

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from viscoroll.contact_mechanics.contact import contact, stress
+from viscoroll.contact_mechanics.contact import contact
+from viscoroll.contact_mechanics.stress import stress
 from viscoroll.core.plots import LINES, THIN, axis_label, new_figure
 from viscoroll.rollers import Scene
 

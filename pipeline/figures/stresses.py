@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from viscoroll.contact_mechanics.contact import stress
+from viscoroll.contact_mechanics.stress import stress
 from viscoroll.core.plots import LINES, THIN, axis_label, new_figure
 from viscoroll.motion.roll import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_STARTS

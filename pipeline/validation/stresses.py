@@ -7,7 +7,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from viscoroll.contact_mechanics.contact import contact, stress
+from viscoroll.contact_mechanics.contact import contact
+from viscoroll.contact_mechanics.stress import stress
 from viscoroll.rollers import Scene
 from viscoroll.tables.law_dataset import Check
 

@@ -8,6 +8,7 @@ dimensionless, a ``Cylinder`` in SI units.  Public names are imported at their f
 from __future__ import annotations
 
 import sys
+from collections.abc import Callable
 from importlib import import_module
 from os.path import splitext
 from typing import Any
@@ -35,6 +36,25 @@ def _read_modules(file: str) -> dict[str, str]:
         }
 
 
+def _open_room(room: str, file: str) -> Callable[[str], Any]:
+    """Return the ``__getattr__`` of a room: it imports a name of the room at its first use, since
+    Python calls it for a name that it does not find, and keeps it there.
+
+    room, file: name and path of the room's ``__init__.py``.
+    The function raises AttributeError for a name that ``__init__.pyi`` does not list.
+    """
+    modules = _read_modules(file)
+
+    def find(name: str) -> Any:
+        if name not in modules:
+            raise AttributeError(f"module {room!r} has no attribute {name!r}")
+        value = getattr(import_module(modules[name], room), name)
+        setattr(sys.modules[room], name, value)
+        return value
+
+    return find
+
+
 _MODULES = _read_modules(__file__)
 __all__ = ["__version__", *_MODULES]  # noqa: PLE0604
 
@@ -50,7 +70,7 @@ def __getattr__(name: str) -> Any:
     """
     if name not in _MODULES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    from .core.errors import suggest_arguments
+    from .core import suggest_arguments
 
     if (path := _MODULES[name]) == ".":
         home = import_module(f".{name}", __name__)

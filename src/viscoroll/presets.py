@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from .materials.material import Material
-from .materials.prony import Prony
+from .materials import Material, Prony
 from .rollers import Cylinder, Scene
 
 __all__ = [

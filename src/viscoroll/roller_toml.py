@@ -14,18 +14,27 @@ from typing import Any, Literal
 
 import msgspec
 
-from .core import FileError, ParameterError, check_one_given, unknown_name_error
-from .core.toml_sections import as_section_error, as_struct, check_keys, read_toml, section_error
-from .materials.checked_netcdf import SUFFIX
-from .materials.material_toml import (
+from .core import (
+    FileError,
+    ParameterError,
+    as_section_error,
+    as_struct,
+    check_keys,
+    check_one_given,
+    read_toml,
+    section_error,
+    unknown_name_error,
+)
+from .materials import (
     SECTIONS,
+    SUFFIX,
     CreepSection,
+    Pair,
     PronySection,
     parse_materials,
     parse_series,
     read_materials,
 )
-from .materials.pair import Pair
 from .presets import PRESETS
 from .rollers import Cylinder, Scene
 

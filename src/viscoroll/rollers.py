@@ -15,14 +15,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from .contact_mechanics.assumptions import DUNDURS_LIMIT
-from .contact_mechanics.body_data import BodyData
-from .contact_mechanics.parameters import Parameters, Roller
+from .contact_mechanics import DUNDURS_LIMIT, BodyData, Parameters, Roller
 from .core import (
     MEASURED,
     SI,
+    ArrayLike,
     ParameterError,
     Result,
     Scale,
@@ -38,11 +36,17 @@ from .core import (
     shape_error,
     slope_tan_cos,
 )
-from .laws.law_table import LawTable
-from .materials.bodies import Bodies, Cover
-from .materials.material import Material, refuse_short_retardation
-from .materials.pair import Pair, Plane, effective_modulus
-from .materials.prony import Prony
+from .laws import LawTable
+from .materials import (
+    Bodies,
+    Cover,
+    Material,
+    Pair,
+    Plane,
+    Prony,
+    effective_modulus,
+    refuse_short_retardation,
+)
 
 if TYPE_CHECKING:
     from . import (
@@ -556,7 +560,7 @@ class Cylinder(Methods):
         """:class:`.Scale`: the SI value of 1 of each quantity of the scene, by name, as
         ``scale["V"]`` in m/s; a float, or an array (n,) where a parameter in it is one.
         """
-        return Scale(self.R, self.T_ref, self.load, self.m, self.l0, self.E_prime)
+        return Scale(self.R, self.T_ref, P=self.load, m=self.m, l0=self.l0, E_prime=self.E_prime)
 
     def scene(self) -> Scene:
         """Return the dimensionless scene of this cylinder: alpha or material, kappa, mu, gamma and
@@ -614,7 +618,16 @@ class Cylinder(Methods):
         if law is None:
             law = self.pair.law if self.pair.covered is None else self.pair.cover(self.l0)
             self._refuse_coupled_ratios(law)
-        scene = scene_of(self.R, self.m, self.load, self.E_prime, self.T_ref, law, self.mu, self.j)
+        scene = scene_of(
+            self.R,
+            self.m,
+            load=self.load,
+            E_prime=self.E_prime,
+            T_ref=self.T_ref,
+            law=law,
+            mu=self.mu,
+            j=self.j,
+        )
         return scene.replace(coupled=self.coupled)
 
     def _refuse_coupled_ratios(self, law: Prony | Bodies | Cover) -> None:

@@ -21,10 +21,10 @@ from functools import lru_cache
 from typing import Any, Literal, TypeAlias, get_args
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .core import (
     Floats,
+    NDArray,
     ParameterError,
     check_array,
     check_integer,
@@ -129,7 +129,7 @@ def sample(
     if design not in get_args(Design):
         raise unknown_name_error("design", design, get_args(Design), "a design")
     random = [name for name, value in quantities.items() if _is_distribution(name, value)]
-    rows = points(design, seed, n, len(random), 0, n, 0)
+    rows = points(design, seed, n=n, dimensions=len(random), start=0, stop=n, block=0)
     with np.errstate(all="ignore"):  # a draw that overflows is infinite, which is refused
         drawn = {
             name: check_array(name, quantities[name].ppf(column))

@@ -25,7 +25,7 @@ def test_outputs_after_rest_are_filled_not_integrated():
 
 
 def test_no_table_file_is_read_at_run_time():
-    """Neither the atlas nor any other netCDF file: the coefficients of the ratios are all that is
+    """No netCDF file is read: the coefficients of the ratios are all that is
     read.
     """
     printed(

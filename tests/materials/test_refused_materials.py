@@ -32,7 +32,7 @@ from refusals import each, refused
 import viscoroll as vr
 from viscoroll.core import errors
 from viscoroll.runs import read_run
-from viscoroll.runs.run_blocks import roll_inputs
+from viscoroll.runs.run_store import roll_inputs
 from viscoroll.runs.sensitivity import sobol_indices
 from viscoroll.runs.uncertain_inputs import read_column
 

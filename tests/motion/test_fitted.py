@@ -11,8 +11,8 @@ from closeness import close
 from drives import ROLLER
 
 import viscoroll as vr
-from viscoroll.motion import drive_fit
-from viscoroll.motion.piecewise import piecewise
+from viscoroll.motion import drive_pieces
+from viscoroll.motion.drive_pieces import piecewise
 
 END = 20.0
 #: smooth and steep; from next to nothing; with corners of order one to three; with jumps; with a
@@ -81,7 +81,7 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
     """Noise, and a wave of 10^10 periods: the first after some halvings, the second after as many
     values as it may.
     """
-    monkeypatch.setattr(drive_fit, "MOST", 20_000)
+    monkeypatch.setattr(drive_pieces, "MOST", 20_000)
     for given in (lambda t: float(hash(t) % 997), lambda t: math.sin(1e10 * t)):
         function = Counted(given)
         with pytest.raises(
@@ -92,7 +92,7 @@ def test_what_polynomials_do_not_follow_is_refused(monkeypatch):
             ),
         ):
             vr.roll(ROLLER, 0.5, 0.5, END, torque=function)
-        assert function.calls <= 2 * drive_fit.MOST
+        assert function.calls <= 2 * drive_pieces.MOST
 
 
 @pytest.mark.parametrize("many", [False, True])

@@ -18,10 +18,9 @@ from run_files import CERTAIN, FILES, PAPER, run_of
 import viscoroll as vr
 from viscoroll.motion.many_motions import FLOW_PAYS
 from viscoroll.runs import export_netcdf, open_run, roll_inputs, run_ensemble, verify
-from viscoroll.runs.run_blocks import block_inputs, roll_block
 from viscoroll.runs.run_records import identity
 from viscoroll.runs.run_rollers import roller_of
-from viscoroll.runs.run_store import columns_of
+from viscoroll.runs.run_store import block_inputs, columns_of, roll_block
 from viscoroll.runs.sensitivity import sobol_indices
 
 pytestmark = pytest.mark.filterwarnings(

@@ -15,7 +15,7 @@ from scipy.stats import qmc
 import viscoroll as vr
 from viscoroll import sampling
 from viscoroll.motion.summaries import QUANTITIES, Histogram, merge_summaries, summarise
-from viscoroll.runs.run_blocks import roll_block
+from viscoroll.runs.run_store import roll_block
 from viscoroll.runs.uncertain_inputs import Distribution, Inputs, read_column
 
 pytestmark = pytest.mark.filterwarnings(

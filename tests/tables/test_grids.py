@@ -3,7 +3,6 @@ version.
 """
 
 import csv
-import gzip
 import re
 from dataclasses import replace
 from functools import cache, partial
@@ -14,7 +13,6 @@ import pytest
 import tolerances as tol
 import xarray as xr
 from closeness import close
-from places import ROOT
 from refusals import refused
 from scipy import io
 
@@ -251,27 +249,6 @@ def test_save_load_identity(table, tmp_path):
     told = vr.tables.info(tmp_path / "t.nc")
     for words in ("grid, ", "21 nodes in [0.01, 2]", "spline", "linear", "history: "):
         assert words in told
-
-
-@pytest.mark.parametrize("kind", ["atlas", "literal"])
-def test_files_of_the_first_version(kind, tmp_path):
-    path = tmp_path / f"{kind}.nc"
-    path.write_bytes(
-        gzip.decompress((ROOT / f"tests/tables/files/{kind}-0.1.0.nc.gz").read_bytes())
-    )
-    table = vr.tables.load(path)
-    if kind == "atlas":
-        scene = vr.Scene(5.0, 1.0, 1.0)
-        points = {"alpha": 5.0, "kappa_V": 0.7, "s": 0.3}
-        star = vr.contact(scene, 0.7, delta=0.0).delta_star
-        truth = vr.contact(scene, 0.7, delta=0.3 * star).Q
-        name = "Q_over_mu"
-    else:
-        points = {"alpha": 3.0, "V": 0.3, "delta": 0.011}
-        truth = vr.contact(vr.Scene(3.0, 2.91, 0.2), 0.3, delta=0.011).Q
-        name = "Q"
-    found = getattr(vr.tables.interpolate(table, name, **points), name)
-    assert abs(found - truth) <= table[name].attrs["interpolation_error"]
 
 
 # --- nodes that no contact has ---

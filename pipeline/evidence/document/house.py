@@ -21,7 +21,8 @@ import viscoroll as vr
 from viscoroll.cli.program import parser
 from viscoroll.materials.material_toml import MaterialSection
 from viscoroll.roller_toml import CylinderSection, SceneSection
-from viscoroll.runs.runfile import DriveSection, HeatSection, RunSection, StartSection
+from viscoroll.runs.run_rollers import RUN_SECTIONS
+from viscoroll.runs.runfile import RunSection
 
 from ...stage import ROOT
 from ..results import Results, table
@@ -32,11 +33,8 @@ _SECTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
     "[scene]": (SceneSection, (vr.Scene,)),
     "[cylinder]": (CylinderSection, (vr.Cylinder,)),
     "[material], [base]": (MaterialSection, (vr.Material,)),
-    "[start]": (StartSection, (vr.roll,)),
-    "[drive]": (DriveSection, (vr.roll,)),
-    "[heat]": (HeatSection, ()),
     "[run]": (RunSection, ()),
-}
+} | {f"[{name}]": (keys, (vr.roll,)) for name, keys in RUN_SECTIONS.items()}
 #: a role of reStructuredText, or a literal, which Markdown writes between single backticks
 _ROLE = re.compile(r"(?::\w+:`|``)\.?([^`]+)``?")
 _KINDS = {

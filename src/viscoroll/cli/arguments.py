@@ -14,16 +14,11 @@ from argparse import ArgumentTypeError, Namespace
 from collections.abc import Callable
 from operator import methodcaller
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import viscoroll as vr
 
-from ..core import write_dataset, write_text
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
+from ..core import DataFrame, Dataset, write_dataset, write_text
 
 # --- The table of commands, and the types of their arguments ---
 
@@ -226,7 +221,7 @@ def show(arguments: Namespace, result: Any, heading: str = "") -> None:
     deliver(arguments, data, frame, heading or data.attrs["title"])
 
 
-def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading: str) -> None:
+def deliver(arguments: Namespace, data: Dataset, frame: DataFrame, heading: str) -> None:
     """Print a table in the required format, or write it or the dataset in the format of the suffix.
 
     In json, an object of column -> list, numbers that are not finite are null.
@@ -265,7 +260,7 @@ def deliver(arguments: Namespace, data: xr.Dataset, frame: pd.DataFrame, heading
         write_text(path, text)
 
 
-def as_text(frame: pd.DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
+def as_text(frame: DataFrame, heading: str, meanings: dict[str, str] | None = None) -> str:
     """Return a table as aligned columns below a heading, or a single row as one line for each
     number.
 

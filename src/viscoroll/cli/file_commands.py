@@ -45,8 +45,8 @@ def show(arguments: Namespace) -> None:
     """
     import pandas as pd
 
-    from ..core.results import as_text
-    from ..materials.material_toml import read_materials
+    from ..core import as_text
+    from ..materials import read_materials
 
     for section, material in read_materials(arguments.file).items():
         print(f"[{section}] {as_text(*material._summary())}\n")
@@ -175,8 +175,8 @@ def fit(arguments: Namespace) -> int:
     Raises ParameterError for values that are not allowed, FileError for a file that cannot be read
     or written.
     """
-    from ..contact_mechanics.assumptions import MISFIT_LIMIT
-    from ..materials.material_toml import material_as_toml
+    from ..contact_mechanics import MISFIT_LIMIT
+    from ..materials import material_as_toml
 
     parts = (arguments.units or "").split(",")
     units: Any = dict(_named_heading(part) for part in parts) if "=" in parts[0] else tuple(parts)
@@ -527,7 +527,7 @@ def fmu(arguments: Namespace) -> None:
     Raises ParameterError for another model or version, FileError for a file that cannot be read or
     written, and MissingDependencyError without fmpy or a C compiler.
     """
-    from ..materials.checked_netcdf import is_law
+    from ..materials import is_law
     from ..roller_toml import SCENES, read_law_source, read_sections
 
     path = arguments.file

@@ -512,7 +512,7 @@ def _figure_of_netcdf(path: str) -> Any:
     import xarray as xr
 
     from ..core.plots import draw
-    from ..motion.summaries import drawn_summary
+    from ..motion import drawn_summary
 
     try:
         with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
@@ -551,8 +551,8 @@ def _figure_of_toml(path: str) -> Any:
     """
     import numpy as np
 
-    from ..core.toml_sections import read_toml
-    from ..materials.material_toml import read_materials
+    from ..core import read_toml
+    from ..materials import read_materials
     from ..roller_toml import SCENES, read_roller
 
     if not read_toml(path).keys() & set(SCENES):

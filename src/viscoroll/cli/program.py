@@ -405,7 +405,7 @@ def _run(argv: Sequence[str]) -> int:
     """
     try:
         arguments = parser().parse_args(argv)
-        from ..core.blocks import thread_count
+        from ..core import thread_count
 
         thread_count()  # refuses a wrong $VISCOROLL_THREADS for every command
         code = arguments.run(arguments) or 0

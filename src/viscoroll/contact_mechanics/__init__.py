@@ -1,7 +1,11 @@
 """Contact mechanics: Eqs. (5)-(18) and steady rolling for arrays of states, and how far they hold.
 
 A roller (:mod:`.parameters`), speeds and creepages enter :func:`.contact.contact` and
-:func:`.contact.stress`, loads enter :func:`.steady.steady`.  :mod:`.contact_table` alone calls the
+:func:`.stress.stress`, loads enter :func:`.steady.steady`.  :mod:`.contact_table` alone calls the
 kernels of the law.  Results leave as :class:`viscoroll.Values` and :class:`.steady_result.Steady`,
-a law for integrators as :class:`.bound_law.Law`, violated assumptions through :mod:`.validity`.
+a law for integrators as :class:`.contact.Law`, violated assumptions through :mod:`.validity`.
 """
+
+from .. import _open_room
+
+__getattr__ = _open_room(__name__, __file__)

@@ -13,9 +13,8 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Floats, SummaryRow, as_html, as_text
-from ..laws.law_rows import evaluate_by_modes
-from ..materials.measured_data import HIGHEST_RATE, Measured
-from ..materials.prony import Prony
+from ..laws import evaluate_by_modes
+from ..materials import HIGHEST_RATE, Measured, Prony
 
 #: Largest distance from the axis to the far end of the contact, divided by R.  The parabola of the
 #: theory lies (x/R)^2/4 = 1 % below the circle there.

@@ -19,10 +19,7 @@ import numpy as np
 
 from ..core import SI, Floats, check_number
 from ..laws.law_table import law_table
-from ..materials.bodies import Cover
-from ..materials.material import Material
-from ..materials.measured_data import Measured
-from ..materials.pair import Pair
+from ..materials import Cover, Material, Measured, Pair
 from .assumptions import (
     LEAST_KAPPA,
     MISFIT_LIMIT,

@@ -1,25 +1,17 @@
-"""States of the contact and stresses along it, at given speeds and creepages.
-
-The public contact law: :func:`contact`, the state of the contact at given speeds and creepages.
+"""The contact law: :func:`contact`, the state of the contact at given speeds and creepages,
+and :func:`law`, the same of one scene as a function for integrators.
 
 Numbers of equations are those of the paper: A. A. Zobova and I. G. Goryacheva, Dynamics of a
 viscoelastic cylinder on a viscoelastic half-space, Acta Mechanica (2020),
 doi:10.1007/s00707-020-02643-5.
-
-Pressure and shear stress along the contact: :func:`contact`.
-
-Numbers of equations are those of A. A. Zobova and I. G. Goryacheva, Acta Mechanica (2020),
-doi:10.1007/s00707-020-02643-5.  l0 is the contact length at rest of half-spaces, kappa = R/l0, mu
-the coefficient of friction; lam is the contact length over l0, epsilon its shift ahead of the axis
-over half the length, beta the part of it that sticks, zeta half the transit time in the unit of
-time of the material, alpha the instantaneous over the long-time modulus.
 """
 
 from __future__ import annotations
 
+import ctypes
 import math
-from collections.abc import Iterable
-from itertools import pairwise
+from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any, Literal, overload
 
 import numpy as np
@@ -28,27 +20,24 @@ from ..core import (
     DIMENSIONS,
     Floats,
     Numbers,
+    ParameterError,
     Values,
-    block_reader,
-    broadcast_shape,
     check_array,
     check_array_extent,
     check_bool,
-    check_choice,
     check_one_given,
     divide_by_unit,
-    run_blocks,
     strip_labels,
 )
-from ..laws.cover_solve import CoverModes, pressure
-from ..laws.law_rows import series_record
-from ..materials.bodies import Cover, total_series
+from ..kernels.records import Loads, LoadsAndSlopes
+from ..laws import LawGrid
+from ..materials import Cover
 from .assumptions import moment_error, transit_frequency
-from .contact_table import ACCURACY, NOT_IN_GRIDS, evaluate_contact, field_names
+from .contact_table import ACCURACY, NOT_IN_GRIDS, evaluate_contact, field_names, refuse_overflow
 from .model_warnings import warn_of_contact
-from .parameters import Parameters, Roller, resolve_model
+from .parameters import Roller, refuse_arrays, resolve_model
 
-# --- The public contact law ---
+# --- The state of the contact ---
 
 
 @overload
@@ -236,11 +225,15 @@ def contact(
         speed = divide_by_unit("V", speed, scale["V"])
         creep = divide_by_unit(creep_name, creep, scale[creep_name])
     if method == "coupled":
-        from .coupled_contact import evaluate_coupled
+        from .stress import evaluate_coupled
 
-        found = evaluate_coupled(scene, speed, creep, delta is None, names)
+        found = evaluate_coupled(
+            scene, speed, creep=creep, creep_is_omega=delta is None, names=names
+        )
     else:
-        found = evaluate_contact(scene, speed, creep, delta is None, names, method)
+        found = evaluate_contact(
+            scene, speed, creep=creep, creep_is_omega=delta is None, names=names, method=method
+        )
     if scale.si:
         if ACCURACY in found:
             frequency = transit_frequency(given["V"], found[ACCURACY] * scale["length"])
@@ -252,241 +245,323 @@ def contact(
     return Values(found, given, si=scale.si, labels=labels, about=about)
 
 
-# --- Pressure and shear stress along the contact ---
+# --- The law of one scene for integrators ---
 
-#: Points of a block: some milliseconds of work.
-_BLOCK = 1 << 15
+#: Types that the compiled function takes; others go through :func:`contact`.
+_NUMBERS = frozenset({float, int, np.float64})
+#: (lowest, highest) |V| between which nothing is warned of, where nothing is known of the bodies.
+_EVERY_SPEED = 0.0, math.inf
+#: Makes :class:`Loads` from four numbers, faster than its constructor.
+_loads = partial(tuple.__new__, Loads)
+#: Makes :class:`LoadsAndSlopes` from eight numbers.
+_loads_and_slopes = partial(tuple.__new__, LoadsAndSlopes)
 
 
-@overload
-def stress(
-    roller: Roller,
-    x: Numbers,
-    V: Numbers,
-    *,
-    delta: Numbers,
-    method: Literal["table", "coupled"] = "table",
-) -> Values: ...
-@overload
-def stress(
-    roller: Roller,
-    x: Numbers,
-    V: Numbers,
-    *,
-    omega: Numbers,
-    method: Literal["table", "coupled"] = "table",
-) -> Values: ...
-def stress(
-    roller: Roller,
-    x: Numbers,
-    V: Numbers,
-    *,
-    delta: Numbers | None = None,
-    omega: Numbers | None = None,
-    method: Literal["table", "coupled"] = "table",
-) -> Values:
-    """Compute pressure and shear stress along the contact of a rolling cylinder and its base, Eqs.
-    (11)-(14).
+class Law:
+    """The law of a scene or a cylinder as a function of V and omega: the result of
+    :func:`bound_law`.
 
-    The equations are those of Zobova and Goryacheva (2020), with the functions of the bodies at
-    hand (docs/theory.md).  The contact is that of steady rolling at a given speed and creepage,
-    whose lengths and slip :func:`contact` gives.
+    Attributes
+    ----------
+    roller : the scene or cylinder, of the law of a grid that grid.
+    scene : its dimensionless parameters; the law of a grid has none.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> law = vr.law(vr.presets.RUBBER_CYLINDER)
+    >>> loads = law(1.0, 10.2)  # m/s, rad/s
+    >>> loads.Q > 0.0 and loads.M == loads.M_half_space + loads.M_cylinder
+    True
+    >>> law(1.0, 10.2, slopes=True).dQ_domega >= 0.0
+    True
+    """
+
+    def __init__(self, roller: Roller) -> None:
+        """Check that ``roller`` is one scene or cylinder of one material, and compile its law.
+
+        roller: a scene or a cylinder whose alpha or material, kappa and mu are single; gamma and j
+        are not used.
+        Raises ParameterError for what is neither, for arrays in alpha, kappa or mu (also of shape
+        (1,)), for an array of materials, for times of a material beyond 1e-100 to 1e100 T_ref, and
+        for a layer too thin for its law.  Sets ``roller``, ``scene``, ``_kappa`` (kappa over the
+        unit of V), ``_covered``,
+        and the attributes of :meth:`_use`.
+        """
+        from ..kernels.law.law_callables import Jitted, pack_scenes
+
+        _, scene, scale = resolve_model(roller, "law")
+        refuse_arrays(
+            roller, scene, ("alpha", "kappa", "mu"), "one number: a law belongs to one scene"
+        )
+        table = scene.rolling_law
+        assert table is not None
+        self.roller = roller
+        self.scene = scene
+        self._kappa = np.asarray(scene.kappa / scale["V"])
+        #: (lowest, highest) |V| between which nothing is warned of, in the unit of V
+        self._covered = (roller.body_data and roller.body_data.covered_speeds) or _EVERY_SPEED
+        if table.coupled is not None:
+            from ..kernels.law.spline_law import jitted_table
+
+            self._use(jitted_table(table.record.table, table, scene.kappa, scene.mu, scale))
+            return
+        scenes = pack_scenes(table.record, table.unlike, scene.kappa, scene.mu, scale)
+        self._use(Jitted(scenes, table))
+
+    def _use(self, jitted: Any) -> None:
+        """Keep the compiled law for calls, as attributes of this object; for the constructors of a
+        scene and of a grid.
+
+        jitted: the :class:`.Jitted` law, of a scene or a grid, which has the C function
+            (``function``) and the addresses of its user data for results without slopes (``plain``)
+            and with slopes (``address``).
+        Sets ``_jitted`` (the law), ``_function``, ``_plain`` and ``_sloped`` (these three), and
+        ``_output``, the type of the buffer of eight doubles for the results.  Returns None.
+        """
+        from ..kernels.law.law_callables import ResultBuffer
+
+        self._jitted = jitted
+        self._output = ResultBuffer
+        self._function = jitted.function
+        self._plain = jitted.plain
+        self._sloped = jitted.address
+
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[False] = False
+    ) -> Loads[float]: ...
+    @overload
+    def __call__(  # type: ignore[overload-overlap]
+        self, V: float, omega: float, *, slopes: Literal[True]
+    ) -> LoadsAndSlopes[float]: ...
+    @overload
+    def __call__(
+        self, V: Numbers, omega: Numbers, *, slopes: Literal[False] = False
+    ) -> Loads[Floats]: ...
+    @overload
+    def __call__(
+        self, V: Numbers, omega: Numbers, *, slopes: Literal[True]
+    ) -> LoadsAndSlopes[Floats]: ...
+    def __call__(self, V: Any, omega: Any, *, slopes: bool = False) -> Any:
+        """Compute friction force Q and rolling moment M of the cylinder on its base at speed V and
+        spin omega.
+
+        These are Eqs. (15)-(18) of Zobova and Goryacheva (2020).
+
+        Parameters
+        ----------
+        V : velocity of the axis, any sign, a number or an array; of a Cylinder in m/s, of a Scene
+            divided by R/T_ref, where T_ref is its unit of time (T_epsilon where alpha is given).
+        omega : angular velocity, any sign, broadcasts with V; of a Cylinder in rad/s, of a Scene
+            multiplied by T_ref.  At V = 0 a value other than 0 means full slip; 0 is the limit V ->
+            0+ with the creepage 0.
+        slopes : whether the derivatives are computed too.
+
+        Returns
+        -------
+        Loads or LoadsAndSlopes
+            Named tuple of Q, M, M_half_space and M_cylinder (the parts of M by the losses in either
+            body); with slopes also dQ_dV at fixed omega, dQ_domega at fixed V, dM_half_space_dV,
+            dM_cylinder_dV and both slopes over omega.  Each is a float if V
+            and omega are numbers, else an array of the broadcast shape.  Of a Cylinder Q is in N/m
+            and M in N m/m, of a Scene they are divided by P and P R; slopes have these units
+            divided by that of V or omega.  In full slip
+            |Q| = mu P, and the slopes of Q are 0; at V = omega = 0 dQ_domega is infinite and
+            dQ_dV -infinite.
+
+        Raises
+        ------
+        ParameterError
+            NaN or infinite input, kappa |V| above 1e300, an omega T_ref beyond the doubles, shapes
+            that do not broadcast, a unit of another dimension, a ``slopes`` that is no truth value.
+        OutOfTableError
+            The law of a grid: a state outside of its axes.
+
+        Warns
+        -----
+        ModelWarning
+            Of a Cylinder, as :func:`contact`: a contact longer than the radius, or outside of the
+            measured band.
+        """
+        if slopes is not False:
+            slopes = check_bool("slopes", slopes)
+        if type(V) not in _NUMBERS or type(omega) not in _NUMBERS:
+            return self._of_arrays(V, omega, LoadsAndSlopes if slopes else Loads)
+        out = self._output()
+        try:
+            status = self._function(V, omega, out, self._sloped if slopes else self._plain)
+        except ctypes.ArgumentError:  # an integer beyond the doubles
+            status = 1
+        if status:
+            self._refuse(check_array("V", V), check_array("omega", omega))
+        low, high = self._covered
+        if abs(V) < low or abs(V) > high:
+            warn_of_contact(self.roller, V, (V, V))
+        return _loads_and_slopes(out) if slopes else _loads(out[:4])
+
+    def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
+        """Return the law at arrays, by :func:`contact`, because the compiled law takes one state.
+
+        V, omega: speeds in the units of the roller, of any shapes that broadcast; they may have
+        labels or units.
+        kind: class of the result, :class:`Loads`, without slopes, or :class:`LoadsAndSlopes`.
+        Returns a ``kind`` of arrays of the broadcast shape; empty ones for empty input.
+        Raises and warns as :func:`contact` does.
+        """
+        return kind(**contact(self.roller, V, omega=omega, fields=kind._fields).as_dict())
+
+    def _refuse(self, V: Floats, omega: Floats) -> None:
+        """Raise ParameterError: kappa |V| exceeds 1e300, or omega T_ref overflows.
+
+        V, omega: finite, arrays of shape (), in the units of the roller.
+        """
+        refuse_overflow(self._kappa, V)
+        raise ParameterError(
+            "omega", f"{float(omega):g}", "smaller in magnitude: omega T_ref overflows"
+        )
+
+    @property
+    def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:
+        """The law for functions that numba compiles, which take it as an argument or use it as a
+        global variable.
+
+        It is called as (V, omega) with two numbers in the units of the roller, and returns
+        :class:`LoadsAndSlopes` of eight floats; all of them are NaN where the law would raise an
+        error.  It does not warn.
+        """
+        return self._jitted  # type: ignore[no-any-return]
+
+    @property
+    def address(self) -> tuple[int, int]:
+        """Return two addresses for programs in C, as integers: that of a function and that of its
+        user data.
+
+        The function is ``int law(double V, double omega, double out[10], void *user_data)``.  It
+        takes V and omega in the units of the roller, fills ``out`` with the eight numbers of
+        :class:`LoadsAndSlopes` in their order (Q, M, M_half_space, M_cylinder, dQ_dV, dQ_domega,
+        dM_half_space_dV, dM_cylinder_dV, dM_half_space_domega, dM_cylinder_domega) and returns 0;
+        where the law
+        would raise an error, it fills ``out`` with NaN and returns another number.  Any number of
+        threads may call it, while this law exists.  All laws of half-spaces share the function, all
+        laws of covers another one, and all laws of grids a third.
+        """
+        return self._jitted.function_address, self._jitted.address
+
+    @property
+    def ctypes(self) -> tuple[Any, Any]:
+        """Function and user data of :attr:`address` for ctypes, as
+        ``scipy.LowLevelCallable(*law.ctypes)`` takes them.
+
+        Each of the two keeps the law alive.
+        """
+        return self._jitted.ctypes  # type: ignore[no-any-return]
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return law, (self.roller,)
+
+    def __repr__(self) -> str:
+        return f"law of {self.roller!r}"
+
+
+class _LawOfGrid(Law):
+    """The law of a grid of loads over V and delta, as read from a file: a :class:`Law` whose
+    numbers are those of splines.
+
+    Its ``roller`` is the :class:`LawGrid`; it has no ``scene``, and never warns.  Slopes of Q are 0
+    also where the grid gives |Q| = mu P.
+    """
+
+    def __init__(self, grid: LawGrid) -> None:
+        """Compile the splines of a ``grid`` of loads over V and delta; V and omega then have the
+        units of the grid.
+
+        Of the :class:`LawGrid`, which becomes ``roller``, ``rows``, ``most`` and ``R`` are read.
+        """
+        from ..kernels.law.spline_law import jitted_table
+
+        self.roller: Any = grid
+        self._covered = _EVERY_SPEED
+        scale = {"V": 1.0, "omega": 1.0 / grid.R, "Q": 1.0, "M": 1.0}
+        self._use(jitted_table(grid.rows.vector, grid, 1.0, grid.most, scale))
+
+    def _of_arrays(self, V: Any, omega: Any, kind: Any) -> Any:
+        """Return the law at arrays, one state after another, because the compiled law takes one
+        state.
+
+        V, omega: speeds in the units of the grid, of any shapes that broadcast.
+        kind: class of the result, :class:`Loads`, without slopes, or :class:`LoadsAndSlopes`.
+        Returns a ``kind`` of arrays of the broadcast shape, which is () for numbers; empty ones for
+        empty input.
+        Raises OutOfTableError for the first state outside of the axes, ParameterError for NaN or
+        infinite input, and ValueError of numpy for shapes that do not broadcast.
+        """
+        evaluate = np.vectorize(
+            lambda *state: tuple(self(*state, slopes=True)), otypes=[float] * 10
+        )
+        return kind(
+            *evaluate(check_array("V", V), check_array("omega", omega))[: len(kind._fields)]
+        )
+
+    def _refuse(self, V: Floats, omega: Floats) -> None:
+        """Raise OutOfTableError for a state that the splines found to be outside; V, omega: in
+        units of the grid.
+        """
+        self.roller.refuse_outside(V, omega)
+
+
+def law(roller: Roller | LawGrid) -> Law:
+    """Return the contact law of one cylinder on its base as a fast function of V and omega, for
+    your own integrator.
+
+    ``law(V, omega)`` gives the friction force and the rolling moment that :func:`contact` gives at
+    a given omega, Eqs. (6)-(10) and (15)-(18) of Zobova and Goryacheva (2020); the parameters of
+    the roller are checked once, here.  ``law.jitted`` and ``law.address`` are the same function for
+    numba and C.
 
     Parameters
     ----------
-    roller : a :class:`Scene`, of which alpha or material, kappa and mu are used; or a
-        :class:`Cylinder`, in SI units.
-    x : position divided by l0, of a Cylinder in m, from the point below the axis, positive in the
-        direction of a positive V; any value: the stresses are 0 outside the contact.
-    V : velocity of the axis, any sign; of a Cylinder m/s, of a Scene divided by R/T_ref.  T_ref is
-        the unit of time: T_epsilon of a Scene with ``alpha``, else the time in which the material
-        counts.
-    delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity, any sign; omega of a
-        Cylinder in rad/s, of a Scene multiplied by T_ref.  At V = 0 a delta means the limit V ->
-        0+, an omega other than 0 full slip.  All arguments broadcast.
-    method : "table", or "coupled" (:func:`contact`), with which layers have a shear stress too.
+    roller : a :class:`Scene`, of which alpha or material, kappa and mu are used, or a
+        :class:`Cylinder`, whose law takes and gives SI units: one number each, one material or two
+        bodies; or the grid of :func:`viscoroll.load_law`, in its units.
 
     Returns
     -------
-    Values
-        ``p``: pressure, >= 0.  ``tau``: shear stress on the cylinder in the direction of +x, of the
-        sign of omega R - V (at V = 0 of delta), 0 for delta = 0; |tau| <= mu p, with equality in
-        the slip zone and, in full slip, in the whole contact.  Both are in Pa of a Cylinder, else
-        divided by E', and 0 outside the contact.  If a body is a layer of finite thickness there is
-        ``p`` alone by method "table": its shear stress is not known.  Both have the broadcast shape
-        of arguments and roller; they are floats if all of these are numbers.
+    Law
+        A function (V, omega) -> named tuple of Q, M, M_half_space, M_cylinder; with ``slopes=True``
+        also of four derivatives (:meth:`Law.__call__`).  Threads may share it; pickled, it binds
+        its scene anew.
 
     Raises
     ------
     ParameterError
-        NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega, shapes
-        that do not broadcast, labelled arrays beside plain ones or with other coordinates, a unit
-        of another dimension; what is no scene and no cylinder; a layer too thin for its law, times
-        of a material beyond 1e-100 to 1e100 T_ref.
-
-    Warns
-    -----
-    ModelWarning
-        Of a Cylinder, as :func:`contact`: a contact longer than the radius, or outside of the
-        measured band.
-
-    Examples
-    --------
-    >>> import numpy as np
-    >>> import viscoroll as vr
-    >>> x = np.linspace(-0.01, 0.01, 201)  # m
-    >>> found = vr.stress(vr.presets.RUBBER_CYLINDER, x, 0.1, delta=0.001)
-    >>> bool(found.p.max() > 0.0)
-    True
+        What is no scene, cylinder or grid; arrays for alpha, kappa or mu; an array of materials;
+        times of a material beyond 1e-100 to 1e100 T_ref; a layer too thin for its law.
 
     Notes
     -----
-    The error relative to the peak is below 1e-11 for alpha zeta from 1e-8 to 1e8
-    (``tests/test_stress.py``).  Where V or the creepage are arrays, the state of the contact takes
-    56 bytes for each of their elements, beside the result.
+    For numbers the bits of Q and M are those of :func:`contact`, of a Scene also those of the
+    slopes; those of a Cylinder agree to two units in the last place.  For arrays :func:`contact` is
+    called (``tests/test_bound_law.py``).  At rest, V = omega = 0, dQ_domega is infinite and dQ_dV
+    is -infinite.  Where full slip begins, Q has a corner in V only; the slopes there are those of
+    full slip, 0.  A call without slopes does not compute them.
+
+    Calls of the law warn as :func:`contact` does; ``law.jitted`` and ``law.address`` cannot.
+
+    For a grid the numbers are those of its splines in ln \\|V\\| and delta, as good as the file
+    states (``tests/tables/test_splines.py``): clipped to \\|Q\\| <= mu P; below the slowest speed Q
+    is that at the slowest, and M in proportion to V; beyond both ends of delta \\|Q\\| is mu P
+    where the grid slips fully there.  Other states outside of the axes raise OutOfTableError.
+    Arrays are looked up one state after another.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> law = vr.law(vr.Scene(alpha=11.0, kappa=10.0, mu=0.3))
+    >>> loads = law(0.5, 0.51)
+    >>> loads.Q > 0.0
+    True
     """
-    _, scene, scale = resolve_model(roller, "stress")
-    creep_name = check_one_given(delta=delta, omega=omega)
-    check_choice("method", method, "table", "coupled")
-    given, labels = strip_labels(
-        {"x": x, "V": V, creep_name: omega if delta is None else delta}, scale
-    )
-    given = {name: check_array(name, value) for name, value in given.items()}
-    position, speed, creep = given.values()
-    if scale.si:
-        warn_of_contact(roller, speed)
-        # A position that overflows lies outside the contact, a speed that overflows is refused.
-        with np.errstate(over="ignore"):
-            position = divide_by_unit("x", position, scale["length"])
-            speed = divide_by_unit("V", speed, scale["V"])
-            creep = divide_by_unit(creep_name, creep, scale[creep_name])
-    if method == "coupled":
-        from .coupled_contact import coupled_stress as find
-    else:
-        find = _stress_of_law
-    stresses = find(scene, position, speed, creep, creep_name == "omega")
-    stresses *= scale["p"]  # in place: a copy would double the memory of a large call
-    found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
-    return Values(found, given, si=scale.si, title="Stresses", labels=labels)
-
-
-def _stress_of_law(
-    scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
-) -> Floats:
-    """Return pressure and shear stress by the fast law, without a table of the coupled solution.
-
-    scene: dimensionless parameters of one material; kappa and mu may be arrays.
-    x: distance ahead of the axis, divided by l0; broadcasts with the states.
-    V: speeds, dimensionless, any sign.
-    creep: omega if ``creep_is_omega``, else the creepage delta.
-    Returns p and tau divided by E', rows of an array, each of the broadcast shape; of a cover p
-    alone.
-    """
-    from ..kernels.law.modes import Points
-
-    scene = scene.uncoupled
-    lam, epsilon, beta, zeta, delta = evaluate_contact(
-        scene, V, creep, creep_is_omega, ("lam", "epsilon", "beta", "zeta", "delta")
-    ).values()
-    # For V < 0 positions are mirrored, and tau changes its sign.
-    mirror = np.where(V < 0.0, -1.0, 1.0)
-    alpha = (
-        scene.alpha
-        if scene.material_array is None
-        else np.arange(len(scene.material_array), dtype=np.float64)
-    )
-    arrays = {
-        "x": x,
-        "kappa": scene.kappa,
-        "mu": scene.mu,
-        "lam": lam,
-        "epsilon": epsilon,
-        "beta": beta,
-        "zeta": zeta,
-        "alpha": alpha,
-        "mirror": mirror,
-        "sign": np.sign(delta) * mirror,
-    }
-    arrays = {name: np.asarray(value, dtype=np.float64) for name, value in arrays.items()}
-    shape = broadcast_shape(**arrays)
-    read_x, *readers, read_alpha, read_mirror, read_sign = (
-        block_reader(array, shape) for array in arrays.values()
-    )
-    out = np.empty((2, math.prod(shape)))
-    p, tau = out
-
-    def work(start: int, stop: int) -> None:
-        """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1 of the flattened
-        broadcast shape, and write them into these elements of ``p`` and ``tau``; of a cover p
-        alone.
-        """
-        mirrored = read_mirror(start, stop) * read_x(start, stop)
-        mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
-        points = Points(mirrored, *(read(start, stop) for read in readers))
-        _compute_stresses(scene, read_alpha(start, stop), points, p[start:stop], tau[start:stop])
-        if scene.cover is None:  # else tau is not computed
-            tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
-
-    run_blocks(work, p.size, _BLOCK)
-    return out.reshape(2, *shape)[: 2 if scene.cover is None else 1]
-
-
-def _compute_stresses(
-    scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats
-) -> None:
-    """Compute the stresses at points, material by material, and write them into ``p`` and ``tau``.
-
-    scene: dimensionless parameters of the roller, of which the material alone is read.
-    alpha: alphas, or for an array of materials their indices as floats, (n,) or (1,); for one
-        material not used.  Consecutive points of one material are computed together.
-    points: record :class:`.modes.Points`; its fields (position, kappa, mu, lam,
-        epsilon, beta, zeta) are (n,) or (1,), dimensionless, positions in the frame where V > 0,
-        divided by l0.
-    p, tau: pressure and size of the shear stress divided by E', (n,), written, 0 outside the
-        contact; of a cover tau is not written.
-    """
-    from ..kernels.law.modes import new_memory_weights, stress_loop
-
-    ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(alpha))
-    for first, last in pairwise([0, *ends, p.size]):
-        part = points._make(each[first:last] if each.size > 1 else each for each in points)
-        index = int(alpha[min(first, alpha.size - 1)])  # of one of many materials
-        if scene.cover is not None:
-            p[first:last] = _cover_pressure(scene, index, part)
-            continue
-        material: Any = alpha if scene.series is None else scene.series
-        if scene.material_array is not None:
-            material = total_series(scene.material_array[index])
-        series, alphas = series_record(material)
-        stress_loop(
-            series,
-            alphas,
-            new_memory_weights(series),
-            new_memory_weights(series),
-            part,
-            p[first:last],
-            tau[first:last],
-        )
-
-
-def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
-    """Return p/E' at points on a cover, by one solve of the contact of the layer for each different
-    state.
-
-    scene: dimensionless parameters of a roller with a cover.
-    index: index of the cover, if the scene has an array of covers; else not used.
-    points: record :class:`.modes.Points`, of which position (divided by l0, in the
-        frame where V > 0), kappa, lam, epsilon and zeta (infinite at V = 0) are used, (n,) or (1,).
-    Returns p/E', dimensionless, >= 0 to rounding, 0 outside the contact, a new array (n,), where n
-    is the common length of these fields.
-    """
-    cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
-    modes = CoverModes(cover)
-    x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
-    states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
-    found = np.empty(x.size)
-    for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
-        place = which.ravel() == n
-        y = 2.0 * x[place] / lam - epsilon
-        found[place] = pressure(modes, zeta, 0.5 * lam, y) / (8.0 * np.pi * kappa * lam)
-    return found
+    if isinstance(roller, LawGrid):
+        return _LawOfGrid(roller)
+    return Law(roller)

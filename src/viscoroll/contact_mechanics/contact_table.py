@@ -46,11 +46,14 @@ from ..core import (
     extent,
     run_blocks,
 )
-from ..laws.law_rows import evaluate_by_modes
-from ..laws.law_table import LawTable
-from ..laws.laws_per_element import record_of_materials, records_of_alphas, sort_by_octave
-from ..materials.bodies import Bodies
-from ..materials.prony import Prony
+from ..laws import (
+    LawTable,
+    evaluate_by_modes,
+    record_of_materials,
+    records_of_alphas,
+    sort_by_octave,
+)
+from ..materials import Bodies, Prony
 from .parameters import Parameters
 
 # --- The fields of a contact state ---
@@ -318,7 +321,14 @@ def evaluate_contact(
             refuse_fields(NOT_IN_GRIDS, names, "left out: a grid states Q and M alone")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
-    rows = evaluate_law(material, [*arrays.values()], shape, creep_is_omega, computed, direct)
+    rows = evaluate_law(
+        material,
+        [*arrays.values()],
+        shape=shape,
+        creep_is_omega=creep_is_omega,
+        names=computed,
+        direct=direct,
+    )
     return complete(names, computed, rows, shape)
 
 
@@ -384,8 +394,8 @@ def evaluate_law(
             ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         )
         kappa, mu, V, creep = parts
-        given = states.State(kappa, mu, V, creep, creep_is_omega)
-        request = states.Request(given, order, rows, out, start)
+        given = states.State(kappa=kappa, mu=mu, V=V, creep=creep, creep_is_omega=creep_is_omega)
+        request = states.Request(states=given, order=order, to=rows, out=out, first=start)
         scratch = np.empty(states.SCRATCH_SIZE)
         if coupled:
             from ..kernels.law.spline_law import table_loop
@@ -503,7 +513,7 @@ class Contacts(NamedTuple):
         Returns the fields, (names, n), dimensionless.
         """
         state = [1.0, self.kappa, self.mu, V, delta]
-        return evaluate_law(self.law, state, V.shape, False, names)
+        return evaluate_law(self.law, state, shape=V.shape, creep_is_omega=False, names=names)
 
     def free_creep(self, V: Floats) -> Any:
         """Return delta_0 at V > 0, (n,), the creepage of free rolling, at which Q = 0; it does not

@@ -34,9 +34,8 @@ from scipy.special import exp1, expi
 from ..core import Floats, ParameterError
 from ..kernels.law import coupled_states
 from ..kernels.law.contact_elements import BINS, DEGREE, LOWEST, WIDTH
-from ..laws.cover_solve import layer_nodes
-from ..materials.bodies import Bodies
-from ..materials.prony import series_of_alpha
+from ..laws import layer_nodes
+from ..materials import Bodies, series_of_alpha
 
 # --- Kernels of the boundary elements at one speed ---
 
@@ -469,16 +468,16 @@ class CoupledRow:
         own = kernels.get("cylinder", next(iter(kernels.values())))
         coupled = bool(np.abs(table[:, :, 2]).max() > _ROUNDING * np.abs(table).max())
         self._row = coupled_states.Row(
-            table,
-            np.ascontiguousarray(own.table),
-            instant,
-            own.instant,
-            coupled,
-            len(kernels) == 2,
-            "cylinder" in kernels,
-            local,
-            own.local,
-            layer,
+            table=table,
+            own=np.ascontiguousarray(own.table),
+            instant=instant,
+            own_instant=own.instant,
+            coupled=coupled,
+            split=len(kernels) == 2,
+            cylinder="cylinder" in kernels,
+            local=local,
+            own_local=own.local,
+            layer=layer,
         )
         self._full = np.zeros((2, coupled_states.COLUMNS))
         length = 0.5 * math.sqrt(max(instant, 1e-3))

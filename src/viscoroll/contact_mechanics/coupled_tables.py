@@ -37,9 +37,8 @@ from ..core import (
 )
 from ..kernels.numerics.cache_folder import cache_root, is_quiet
 from ..kernels.numerics.jit import sources_digest
-from ..laws.law_rows import FIELDS, CoupledRows, grade
-from ..laws.law_table import LawTable, coupled_table
-from ..materials.prony import lock_array
+from ..laws import FIELDS, CoupledRows, LawTable, coupled_table, grade
+from ..materials import lock_array
 from .assumptions import DUNDURS_LIMIT
 from .coupled_pair import ELEMENTS, CoupledPair, CoupledRow, CoupledStates, growth
 
@@ -198,7 +197,11 @@ def _solve_row(row: CoupledRow, middle: float, t: Floats) -> tuple[list[float], 
         state = _fields(row.states([free]), np.array([free]), u, mu)[0]
         friction = 0.5 * (mu * state[0] * free - state[6] - state[7])
         _hold_friction(
-            t, fields, place, max(friction, 0.0), {body.side for body in row.pair.bodies}
+            t,
+            fields,
+            place=place,
+            friction=max(friction, 0.0),
+            sides={body.side for body in row.pair.bodies},
         )
     return [middle, low, high, free], fields
 

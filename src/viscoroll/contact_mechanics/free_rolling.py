@@ -31,10 +31,9 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Booleans, Floats, Integers, Scale
-from ..laws.law_rows import evaluate_by_modes
+from ..laws import evaluate_by_modes
 from ..laws.law_table import law_table
-from ..materials.bodies import total_series
-from ..materials.prony import Prony
+from ..materials import Prony, total_series
 from .contact_table import pure_rolling_fields
 from .parameters import Parameters, refuse_cover, series_in_own_time
 
@@ -348,7 +347,15 @@ class FreeRolling:
             u = np.asarray(scene.kappa * np.abs(V) * unit + 0.0 * index)
             g = gamma * unit * unit / (1.0 + np.asarray(scene.j))
         u, index = np.broadcast_arrays(u, index, g)[:2]
-        return cls(materials, index, u, g, 1.0 / (scene.kappa * unit), unit, 1.0 / scene.kappa)
+        return cls(
+            materials=materials,
+            index=index,
+            u=u,
+            g=g,
+            speed=1.0 / (scene.kappa * unit),
+            time=unit,
+            length=1.0 / scene.kappa,
+        )
 
     def scaled(self, scale: Scale) -> FreeRolling:
         """Return the same states with results in m/s, s and m for a ``scale`` of a cylinder; itself

@@ -19,11 +19,9 @@ from typing import Any
 
 import numpy as np
 
-from ..core.errors import warn_of_model
+from ..core import warn_of_model
 from ..kernels.numerics.cache_folder import is_worker
-from ..materials.bodies import Bodies, Cover
-from ..materials.measured_data import Measured
-from ..materials.prony import Prony
+from ..materials import Bodies, Cover, Measured, Prony
 from .assumptions import (
     LEAST_KAPPA,
     MISFIT_LIMIT,
@@ -255,7 +253,14 @@ def warn_of_start(
     if type(V0) is type(omega0) is float and not scene.shape:
         material = scene.alpha if scene.material is None else scene.material
         faults = _start_faults(
-            material, scene.kappa, scene.mu, scene.gamma, scene.j, V0, omega0, driven
+            material,
+            scene.kappa,
+            mu=scene.mu,
+            gamma=scene.gamma,
+            j=scene.j,
+            V0=V0,
+            omega0=omega0,
+            driven=driven,
         )
     else:
         faults = _worst_start_faults(scene, V0, omega0, driven)

@@ -29,11 +29,9 @@ from ..core import (
     shape_error,
     slope_tan_cos,
 )
-from ..laws.law_grid import LawGrid
-from ..laws.law_table import LawTable, coupled_table, law_table
-from ..materials.bodies import Bodies, Cover
-from ..materials.prony import Prony
-from ..materials.prony_forms import HIGHEST_ALPHA
+from ..laws import LawGrid, LawTable, coupled_table
+from ..laws.law_table import law_table
+from ..materials import HIGHEST_ALPHA, Bodies, Cover, Prony
 
 #: Names of the dimensionless numbers of a scene.
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")

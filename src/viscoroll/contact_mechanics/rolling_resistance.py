@@ -18,7 +18,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Booleans, Floats, Integers, ParameterError
-from ..laws.law_table import LawTable
+from ..laws import LawTable
 from .contact_table import pure_rolling_fields
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model

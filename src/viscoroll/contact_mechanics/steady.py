@@ -50,7 +50,7 @@ from ..core import (
     make_dimensionless,
     strip_labels,
 )
-from ..laws.law_table import LawTable
+from ..laws import LawTable
 from .contact_table import Contacts
 from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
@@ -211,7 +211,11 @@ def scan_states(law: LawTable, loads: Loads) -> States:
             if law.cover is not None:
                 rolling = problem.free_rolling(np.log2(contacts.kappa * rows[Field.V]))
                 free = np.stack([rolling.M_half_space, rolling.M_cylinder])
-            parts.append(States.of(loads, np.full(count, n), np.full(count, sign), rows, free))
+            parts.append(
+                States.of(
+                    loads, np.full(count, n), sign=np.full(count, sign), answers=rows, free=free
+                )
+            )
         parts += _spinning_at_rest(contacts, loads, n)
     return States.joined(*parts)
 
@@ -472,7 +476,7 @@ def steady(
     force = make_dimensionless("force", plain["force"], scale)
     torque = make_dimensionless("torque", plain["torque"], scale)
     V = make_dimensionless("V", plain["V"], scale)
-    loads = loads_of(scene, force, torque, slope, V)
+    loads = loads_of(scene, force, torque=torque, slope=slope, V=V)
     law = scene.rolling_law
     assert law is not None  # arrays of materials are refused
     elastic = law.alpha == 1.0
@@ -481,7 +485,7 @@ def steady(
     if loads.V is not None:  # one of force and torque is found; V = 0 is at rest
         moving = np.flatnonzero(loads.V)
         speed = loads.V[moving]
-        rolling = states_at(law, loads, moving, np.sign(speed), np.abs(speed))
+        rolling = states_at(law, loads, load=moving, sign=np.sign(speed), V=np.abs(speed))
     elif gained_by_omega:
         if law.coupled is not None:
             raise described_error(
@@ -503,7 +507,7 @@ def steady(
     )
     states = rolling.load, rolling.rows[Field.V], rolling.rows[Field.Q]
     reasons = Diagnosis(loads=loads, states=states, number=count, maximum=maximum, elastic=neutral)
-    found = pack_result(loads, existing, reasons, scale, labels)
+    found = pack_result(loads, existing, reasons=reasons, scale=scale, labels=labels)
     warn_of_contact(roller, found.V if labels is None else np.asarray(found.V))
     return found
 
@@ -547,6 +551,6 @@ def _states_under_load(law: LawTable, loads: Loads) -> States:
         return States.none()
     if law.coupled is not None or law.cover is not None:
         load, sign, V = find_speeds(law, loads)
-        return states_at(law, loads, load, sign, V)
+        return states_at(law, loads, load=load, sign=sign, V=V)
     load, sign, u = find_crossings(law, gain, total)
-    return states_at(law, loads, load, sign, u / loads.kappa[load])
+    return states_at(law, loads, load=load, sign=sign, V=u / loads.kappa[load])

@@ -35,9 +35,9 @@ from functools import partial
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..core import (
+    ArrayLike,
     Booleans,
     Feedback,
     Floats,
@@ -48,8 +48,7 @@ from ..core import (
     described_error,
     slope_tan_cos,
 )
-from ..laws.law_rows import FIELDS
-from ..laws.law_table import LawTable
+from ..laws import FIELDS, LawTable
 from .contact_table import Contacts, refuse_overflow
 from .parameters import Parameters
 from .rolling_resistance import find_zeros, speed_nodes

@@ -9,12 +9,13 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 from functools import cached_property
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ..core import (
     DIMENSIONS,
+    Dataset,
     Floats,
     Integers,
     Labels,
@@ -27,9 +28,6 @@ from ..core import (
 )
 from .steady_loads import Loads
 from .steady_states import Field, States
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: Fields of the result in the order of the rows.
 _FIELDS = (
@@ -207,7 +205,7 @@ class Equilibria(Values):
             ]
         return self._heading + ("" if self.count else ": no equilibrium"), rows
 
-    def _dataset(self, fields: dict[str, Any]) -> xr.Dataset:
+    def _dataset(self, fields: dict[str, Any]) -> Dataset:
         """Return a dataset of fields over states and equilibria, truth values as 0 or 1, and of
         ``count``.
 
@@ -374,7 +372,7 @@ class Steady(Equilibria):
     #: as :attr:`reason`
     message = reason
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
 
         Returns
@@ -483,4 +481,6 @@ def pack_result(
             name: labels.apply(name, each, *axes_after.get(name, ("equilibrium",)))
             for name, each in found.items()
         }
-    return Steady(found, rows[len(_FIELDS) : len(_FIELDS) + 2], reasons, scale, labels)
+    return Steady(
+        found, rows[len(_FIELDS) : len(_FIELDS) + 2], reasons=reasons, scale=scale, labels=labels
+    )

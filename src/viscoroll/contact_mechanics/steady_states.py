@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Floats, Integers, run_blocks
-from ..laws.law_table import LawTable
+from ..laws import LawTable
 from .contact_table import Contacts
 from .rolling_resistance import branches
 from .steady_loads import (
@@ -387,7 +387,7 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
         losses = moments_of_losses(contacts, V, delta)
         rows[Field.DELTA, rest != 0.0] = np.nan
         rows[Field.Q] += rest
-        return States.of(loads, load, sign, rows, losses)
+        return States.of(loads, load, sign=sign, answers=rows, free=losses)
     delta_0 = contacts.free_creep(V)
     names = "M_half_space", "M_cylinder", "delta_star", "lam", "dQ_ddelta"
     free = contacts.fields(V, delta_0, *names)
@@ -429,4 +429,6 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
         missing = (~exists).nonzero()[0]
         rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DDELTA]], missing] = 0.0
         rows[Field.DELTA, missing] = np.nan
-    return States.of(loads, load, sign, rows, None if law.cover is None else free[:2])
+    return States.of(
+        loads, load, sign=sign, answers=rows, free=None if law.cover is None else free[:2]
+    )

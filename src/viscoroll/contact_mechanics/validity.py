@@ -373,7 +373,9 @@ def assess_cover(scene: Parameters, V: Any) -> tuple[ContactLengths, Assumption]
     """
     cover = scene.cover
     assert cover is not None
-    state = evaluate_contact(scene, np.abs(V), np.zeros(()), False, ("lam", "epsilon"))
+    state = evaluate_contact(
+        scene, np.abs(V), creep=np.zeros(()), creep_is_omega=False, names=("lam", "epsilon")
+    )
     half = 0.5 * state["lam"]
     thickness = float(np.min(cover.thinnest))
     layers = [(nu, h) for _, nu, h in map(cover.body, ("cylinder", "base")) if h is not None]
@@ -417,7 +419,9 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     assert cover is not None
     names = ("delta_0", "delta_star", "M_half_space", "M_cylinder")
     forth, back = (
-        evaluate_contact(scene.uncoupled, np.abs(V), np.full((), slip), False, names)
+        evaluate_contact(
+            scene.uncoupled, np.abs(V), creep=np.full((), slip), creep_is_omega=False, names=names
+        )
         for slip in (_FULL_SLIP, -_FULL_SLIP)
     )
     change = {name: 0.5 * (back[name] - forth[name]) / scene.mu for name in names[2:]}
@@ -527,11 +531,13 @@ def validity(
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
         full: Any = np.abs(delta) >= scene.mu * np.asarray(lengths.reach)
         if scene.cover is not None:
-            full = evaluate_contact(law, speed, spin, True, ("full_slip",))["full_slip"]
+            full = evaluate_contact(
+                law, speed, creep=spin, creep_is_omega=True, names=("full_slip",)
+            )["full_slip"]
         report = report._replace(creep=assess_creep(delta, full))
     if roller.body_data is not None:
         return roller.body_data.extend_validity(
-            report, lengths.lam, given["V"], given.get("omega"), density
+            report, lengths.lam, V=given["V"], omega=given.get("omega"), density=density
         )
     if density is not None:
         sentence = "density needs a Cylinder: a Scene has no wave speed"

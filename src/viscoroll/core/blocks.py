@@ -17,9 +17,8 @@ from contextlib import suppress
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .checks import Floats, check_integer
+from .checks import Floats, NDArray, check_integer
 from .errors import ParameterError
 
 #: Blocks submitted for each worker and not yet awaited.  A future takes a kilobyte, so that not all

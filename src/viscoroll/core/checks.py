@@ -1,6 +1,7 @@
 """Checks of arguments, and the types of arrays that they give.
 
-Types of arrays, and of the numbers that callers may give, for type checkers.
+Types of arrays and results, and of the numbers that callers may give, for type checkers: no
+library is imported for them.
 
 Checks of numbers that callers give: they become float64 in the unit of the argument, or raise
 ParameterError.
@@ -32,6 +33,10 @@ Integers: TypeAlias = NDArray[np.int64]
 Booleans: TypeAlias = NDArray[np.bool_]
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import DataArray, Dataset
+
     Reals: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 
     class SupportsArray(Protocol):
@@ -48,7 +53,7 @@ if TYPE_CHECKING:
         | Sequence[Sequence[float]]
     )
 else:
-    Numbers = Any
+    Numbers = DataArray = DataFrame = Dataset = Figure = Any
 
 
 # --- Checks of numbers that callers give ---

@@ -8,18 +8,13 @@ import html
 from collections.abc import Iterable, Mapping
 from dataclasses import fields
 from os import PathLike
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from .labels import Labels, dataset_axes, state_axes
+from .checks import DataFrame, Dataset, Figure, NDArray
+from .drives_and_labels import Labels, dataset_axes, state_axes
 from .scale import attributes
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 #: Rows of a summary in a notebook: more do not fit a screen.
 _MAX_ROWS = 40
@@ -47,11 +42,11 @@ class Result:
         """
         raise NotImplementedError
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return all fields as a dataset, with long names and units; subclasses implement it."""
         raise NotImplementedError
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return the dataset of :meth:`to_xarray` as a pandas.DataFrame, a row for each time or
         state.
 
@@ -282,8 +277,8 @@ class Values(Result):
             has such a unit.
         title: first line of the summary, title of dataset and figure.
         si: whether values are in SI units, else dimensionless.
-        labels: :class:`.labels.Labels` of the caller's arrays, put onto the fields of their shape,
-            also after axes of the roller; None: fields stay plain arrays.
+        labels: :class:`.drives_and_labels.Labels` of the caller's arrays, put onto the fields of
+            their shape, also after axes of the roller; None: fields stay plain arrays.
         about: further attributes of the dataset by name; None: there are none.
         """
         self._about = about or {}
@@ -364,7 +359,7 @@ class Values(Result):
             for name, value in self._values.items()
         ]
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return all results and arguments as a dataset with long names and units.
 
         Returns

@@ -39,9 +39,8 @@ from ..core import (
     shape_error,
     warn_of_model,
 )
-from ..laws.law_netcdf import parse_law
-from ..laws.law_table import LawTable
-from ..materials.checked_netcdf import dataset_content
+from ..laws import LawTable, parse_law
+from ..materials import dataset_content
 from ..rollers import Cylinder
 
 # --- The variables of both models ---
@@ -201,7 +200,7 @@ def model_description(
         time = {"causality": "independent", "variability": "continuous", "unit": "s"}
         SubElement(variables, "Float64", {"name": "time", "valueReference": "0"} | time)
     for variable in model.variables:
-        _add_variable(variables, version, variable, references, starts)
+        _add_variable(variables, version, variable=variable, references=references, starts=starts)
     _add_structure(SubElement(root, "ModelStructure"), version, model, references)
     return _as_text(root)
 
@@ -400,13 +399,17 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
             f"{int(bool(MODELS[model].states))}\n#define L0 {l0!r}\n"
         )
         token = _write_sources(
-            folder, Path(fmpy.__file__).parent / "c-code", model, version, constants
+            folder,
+            Path(fmpy.__file__).parent / "c-code",
+            model=model,
+            version=version,
+            constants=constants,
         )
         library = folder / f"{model}{fmpy.sharedLibraryExtension}"
         _compile(compiler, folder / "fmu.c", library)
         content = {
             "modelDescription.xml": model_description(
-                version, model, starts, token, law.attrs["title"]
+                version, model, starts=starts, token=token, title=law.attrs["title"]
             ).encode()
         }
         if version == 3:

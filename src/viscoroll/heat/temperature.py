@@ -1,24 +1,208 @@
-"""The temperatures at which a roller runs: :func:`temperature`, all equilibria of heat with their
-stability.
+"""Temperatures at which a roller runs: :func:`temperature`, all equilibria of heat with their
+stability, and :func:`pair_temperatures` of two bodies with a temperature each.
+
+They are zeros of the balance of heat: loss less heat given off, over the temperature.  With the
+rise r = theta - ambient they are those of f(r) = w(ambient + r)/conductance - r, which is > 0 below
+ambient.  w changes with log2 a_T, so that nodes of the temperature are even in it.
+
+The law of a pair depends on kappa V a_T of one body and on the ratio of both times, so that each
+pair of temperatures has a law of its own, of which the rows are made where they are read.
 """
 
 from __future__ import annotations
 
 import warnings
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from functools import lru_cache
+from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics.model_warnings import warn_of_contact
-from ..contact_mechanics.parameters import Roller, resolve_model
+from ..contact_mechanics import (
+    Equilibria,
+    Roller,
+    evaluate_law,
+    pad,
+    pure_rolling_fields,
+    resolve_model,
+    warn_of_contact,
+)
 from ..contact_mechanics.steady import steady
-from ..contact_mechanics.steady_result import Equilibria, pad
-from ..core import Floats, Labels, ModelWarning, Numbers, described_error, strip_labels
-from .heat_balance import Zeros, zeros_at_speed, zeros_of
-from .heated_bodies import MOMENTS, HeatStates, heat_states
+from ..core import (
+    Booleans,
+    Dataset,
+    Floats,
+    Integers,
+    Labels,
+    ModelWarning,
+    Numbers,
+    check_array,
+    check_number,
+    described_error,
+    shape_error,
+    strip_labels,
+)
+from ..laws import LawTable
+from .heated_bodies import (
+    FARTHEST,
+    MOMENTS,
+    NODES,
+    HeatStates,
+    ShiftCurve,
+    check_ambient,
+    heat_states,
+    shift_curve,
+    warm_pair,
+)
 
-if TYPE_CHECKING:
-    import xarray as xr
+# --- Zeros of the balance of heat ---
+
+#: states of a block: arrays over nodes and states then stay in the cache
+_BLOCK = 256
+#: distance from a zero at which it is found, relative, and absolute in K
+_ZERO_TOLERANCE = {"xrtol": 1e-14, "xatol": 1e-15}
+#: No kappa M exceeds this: the pressure acts at most half the contact length at rest ahead of the
+#: axis; twice that, for b_T down to 1/4.
+_MOST = 1.0
+
+#: Function of indices of states and temperatures, degrees Celsius, (m,) each, that returns W/m.
+Heat = Callable[[Integers, Floats], Floats]
+
+
+class Zeros(NamedTuple):
+    """Zeros of a balance.
+
+    state : index of the state, (m,).
+    theta : temperature, degrees Celsius, (m,).
+    stable : whether f falls with temperature there, (m,).
+    """
+
+    state: Integers
+    theta: Floats
+    stable: Booleans
+
+
+def zeros_at_speed(
+    states: HeatStates, n: Integers, V: Floats, more: Any = 1.0, hottest: float | None = None
+) -> Zeros:
+    """Find all equilibria of states at speeds.
+
+    n: indices of the states; V: m/s, any sign; more: as in :meth:`.HeatStates.heat`, (m,) each.
+    hottest: temperature up to which they are sought; None: as high as the loss of free rolling
+    allows.
+    Returns the zeros, whose ``state`` counts the elements of n.
+    """
+    kappa = states.kappa[n] / np.sqrt(more)
+    ambient = states.ambient[n]
+    conductance = states.conductance[n]
+    speed = np.abs(V)
+    rise = states.body.part * states.load[n] * more * speed / (kappa * conductance)
+    top = ambient + _MOST * rise if hottest is None else np.full(n.size, hottest)
+    curve = states.curve
+    if isinstance(states.law, LawTable) and states.loads is None and curve.slope:
+        x = kappa * np.where(speed == 0.0, 1.0, speed * states.roller.T_ref / states.R[n])
+        return _zeros_by_kernel(
+            states.law, curve, x=np.log2(x), ambient=ambient, rise=rise, hottest=top
+        )
+
+    def heat(k: Integers, theta: Floats) -> Floats:
+        return states.heat(n[k], theta, V[k], more if np.ndim(more) == 0 else more[k])
+
+    return zeros_of(heat, curve, ambient=ambient, conductance=conductance, hottest=top)
+
+
+def _zeros_by_kernel(
+    law: LawTable, curve: ShiftCurve, x: Floats, ambient: Floats, rise: Floats, hottest: Floats
+) -> Zeros:
+    """Return the zeros of half-spaces of one law that roll freely, by a shift with a pole.
+
+    x: log2 of kappa V at the reference; rise: loss over kappa M and conductance, K; (n,) each.
+    """
+    from ..kernels.law.heat_zeros import HeatRequest, heat_loop
+
+    request = HeatRequest(
+        x_hot=x - curve.own,
+        ambient=ambient,
+        power=rise,
+        hottest=hottest,
+        pole=curve.pole,
+        slope=curve.slope,
+        curve=_kept_curve(law),
+        density=NODES,
+        farthest=FARTHEST,
+    )
+    size = count = 3 * x.size
+    while count >= size:  # some states have more zeros than three
+        size = count + 1
+        number = np.empty(size, np.int64)
+        above = np.empty(size)
+        stable = np.empty(size, bool)
+        count = heat_loop(law.record, request, number, above, stable)
+    n = number[:count]
+    return Zeros(n, ambient[n] + above[:count], stable[:count])
+
+
+@lru_cache(maxsize=16)
+def _kept_curve(law: LawTable) -> Floats:
+    """Return kappa M of a law at log2 kappa V = n/16 - 900, all of them."""
+    x = np.arange(2 * FARTHEST * NODES + 1) / NODES - FARTHEST
+    return pure_rolling_fields(law, np.exp2(x), "M")[0]
+
+
+def zeros_of(
+    heat: Heat, curve: ShiftCurve, ambient: Floats, conductance: Floats, hottest: Floats
+) -> Zeros:
+    """Find all zeros of balances: changes of sign between nodes, and pairs of zeros between
+    neighbouring nodes.
+
+    heat: of the states; curve: the shift of their body.
+    ambient, conductance: of the states, degrees Celsius and W/(m K); hottest: temperature up to
+    which zeros are sought; (n,) each, n may be 0.
+    A pair is found where |f| has a minimum at a node near which a parabola reaches 0 and f has the
+    other sign at the extremum; zeros at which f only touches 0 are not found.
+    Returns the :class:`Zeros`, to the rounding of f.
+    """
+    from scipy.optimize.elementwise import find_minimum, find_root
+
+    def rest(rise: Floats, n: Integers, sign: Any = 1.0) -> Floats:
+        return sign * (heat(n, ambient[n] + rise) / conductance[n] - rise)
+
+    parts = [(np.empty(0, np.int64), np.empty(0), np.empty(0, bool))]
+    for first in range(0, ambient.size, _BLOCK):
+        own = np.arange(first, min(first + _BLOCK, ambient.size))
+        nodes = curve.nodes(ambient[own].min() - 1.0, hottest[own].max() + 1.0)
+        rise = nodes - ambient[own, np.newaxis]
+        f = rest(rise.ravel(), np.repeat(own, nodes.size)).reshape(rise.shape)
+        n, k = _extrema(f)
+        if n.size:  # they take the places of their nodes
+            triple = rise[n, k - 1], rise[n, k], rise[n, k + 1]
+            sign = np.sign(f[n, k])
+            found = find_minimum(rest, triple, args=(own[n], sign))
+            rise[n, k] = found.x
+            f[n, k] = sign * found.f_x
+        positive = f > 0.0
+        n, k = (positive[:, 1:] != positive[:, :-1]).nonzero()
+        ends = rise[n, k], rise[n, k + 1]
+        found = find_root(rest, ends, args=(own[n],), tolerances=_ZERO_TOLERANCE)
+        parts.append((own[n], ambient[own[n]] + found.x, positive[n, k]))
+    n, theta, stable = (np.concatenate(each) for each in zip(*parts, strict=True))
+    found = theta <= hottest[n]
+    return Zeros(n[found], theta[found], stable[found])
+
+
+def _extrema(f: Floats) -> tuple[Integers, Integers]:
+    """Return (rows, columns) of nodes of f, (states, nodes), at which |f| has a minimum near which
+    a parabola reaches 0.
+    """
+    size = np.abs(f)
+    before, at, after = (size[:, k : f.shape[1] - 2 + k] for k in range(3))
+    near = (at <= before) & (at <= after) & (at < np.abs(np.diff(f, 2)))
+    one_sign = np.abs(np.diff(np.sign(f), axis=1)) == 0.0
+    n, k = (near & one_sign[:, 1:] & one_sign[:, :-1]).nonzero()
+    return n, k + 1
+
+
+# --- Temperatures at which a roller runs ---
 
 #: Temperature up to which equilibria under a given load are looked for, degrees Celsius: rubbers
 #: char below it.  At a given speed the loss bounds the temperature.
@@ -72,7 +256,7 @@ class Temperatures(Equilibria):
         self.reason = reason
         self._labels = labels
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the equilibria as a dataset of xarray, with names and units as attributes.
 
         Returns
@@ -186,7 +370,9 @@ def temperature(
             "V", "is not given", "given, or a force, torque or slope from which it follows"
         )
     beside = driven if loaded and V is not None else None
-    states = heat_states(roller, scene, "temperature", plain, slip_share, beside)
+    states = heat_states(
+        roller, scene, call="temperature", given=plain, slip_share=slip_share, driven=beside
+    )
     if states.V is None:
         rows, zeros = _under_load(level, states, driven)
     else:
@@ -228,9 +414,9 @@ def _under_load(
     zeros = zeros_of(
         lambda k, theta: power[k] / states.curve.at(theta)[0],
         states.curve,
-        states.ambient[n],
-        states.conductance[n],
-        np.full(n.size, HOTTEST),
+        ambient=states.ambient[n],
+        conductance=states.conductance[n],
+        hottest=np.full(n.size, HOTTEST),
     )
     k = zeros.state
     a_T = states.curve.factors(zeros.theta)[0]
@@ -254,7 +440,7 @@ def _pack(
     speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
     inside = (speed == 0.0) | (speed >= low) & (speed <= high)
     known = np.isfinite(rows["loss"] + rows["a_T"])
-    reason = _reasons(states, zeros, known, inside, rows)
+    reason = _reasons(states, zeros, known=known, inside=inside, rows=rows)
     order = np.lexsort((zeros.theta, zeros.state))
     order = order[known[order]]
     state = zeros.state[order]
@@ -305,3 +491,139 @@ def _reasons(
                 "band"
             )
     return found
+
+
+# --- Two bodies with a temperature each ---
+
+#: Nodes of each temperature, evenly spaced in ln a_T: some 0.05 s of contacts at 40 us each.
+_NODES = 41
+#: Step of difference quotients, K.
+_DIFFERENCE = 1e-4
+#: Largest residual of a zero over the larger rise, and distance in K within which zeros are one.
+_RESIDUAL = 1e-9
+_SAME = 1e-5
+
+
+class PairTemperatures(NamedTuple):
+    """Equilibria of heat of two bodies, by rising temperature of the cylinder.
+
+    temperature : of the cylinder and of the base, degrees Celsius, (n, 2).
+    stable : whether both return after small disturbances, of bodies of one capacity, (n,).
+    C_rr : coefficient of rolling resistance, (n,).
+    loss : of the cylinder and of the base, W/m, (n, 2).
+    """
+
+    temperature: Floats
+    stable: Booleans
+    C_rr: Floats
+    loss: Floats
+
+
+def pair_temperatures(
+    roller: Roller, V: float, *, ambient: tuple[float, float], conductance: tuple[float, float]
+) -> PairTemperatures:
+    """Find the temperatures of two half-spaces that both relax, of one or of two materials, in free
+    rolling.
+
+    Parameters
+    ----------
+    roller : a :class:`Cylinder` without arrays and thicknesses, of which both materials have a
+    ``shift``.
+    V : speed, m/s, other than 0.
+    ambient, conductance : of the cylinder and of the base, degrees Celsius and W/(m K), as in
+    :func:`temperature`.
+
+    Returns
+    -------
+    PairTemperatures
+        Named tuple of ``temperature``, ``stable``, ``C_rr`` and ``loss``.
+
+    Raises
+    ------
+    ParameterError
+        As in :func:`temperature`; a layer, a body that does not relax, arrays.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> rubber = vr.Material(
+    ...     3e6, 0.49, vr.Prony([2.0], [1.0]), 0.01, temperature=20.0, shift=vr.WLF(T0=-50.0)
+    ... )
+    >>> roller = vr.Cylinder(R=0.1, m=60.0, material=rubber, mu=0.6, load=2e4)
+    >>> found = vr.pair_temperatures(roller, 2.0, ambient=(20.0, 20.0), conductance=(6.0, 30.0))
+    >>> bool(found.temperature[0, 0] > found.temperature[0, 1])
+    True
+
+    Notes
+    -----
+    Zeros are sought from the cells of a grid of 41 by 41 temperatures in which both balances change
+    their sign; the balances hold to 1e-9 (``tests/test_heat.py``).
+    """
+    from scipy.optimize import root
+
+    _, scene, scale = resolve_model(roller, "pair_temperatures")
+    pair = roller.body_data and roller.body_data.pair
+    if pair is None or scene.shape or pair.covered:
+        raise described_error(
+            "roller", "has arrays, a layer or no Material", "a Cylinder of two half-spaces"
+        )
+    speed = abs(check_number("V", V, unit=scale))
+    around = check_array("ambient", ambient)
+    off = check_array("conductance", conductance, above=0.0)
+    for name, array in (("ambient", around), ("conductance", off)):
+        if array.shape != (2,):
+            raise shape_error(name, array.shape, "(2,), of cylinder and base")
+    if not speed:
+        raise described_error("V", "is 0, where nothing heats,", "other than 0")
+    curves = [shift_curve(body) for body in (pair.cylinder, pair.half_space)]
+    for at, curve in zip(around, curves, strict=True):
+        check_ambient(at, curve, "ambient")
+    load = roller.load  # type: ignore[attr-defined]
+    kappa = scene.kappa
+
+    def losses(theta: Floats) -> Floats:
+        """Return the loss of each body, W/m, (2, m).
+
+        theta: temperatures of cylinder and base, degrees Celsius, (2, m).
+        """
+        warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta, strict=True)))
+        own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
+        index = np.arange(float(theta.shape[1]))
+        fields = ("M_cylinder", "M_half_space")
+        state = [index, own, 1.0, speed * warm.T_ref / scale["R"], 0.0]
+        return (
+            load
+            * speed
+            * evaluate_law(warm.law, state, shape=index.shape, creep_is_omega=False, names=fields)
+        )
+
+    def rest(theta: Any) -> Floats:
+        """Return the rise that the losses make less that of the temperatures, K, (2, m)."""
+        return around[:, np.newaxis] + losses(theta) / off[:, np.newaxis] - theta
+
+    def slopes(theta: Any) -> Floats:
+        """Return the Jacobian of ``rest`` at temperatures of both, (2, 2)."""
+        values = rest(
+            theta[:, np.newaxis] + _DIFFERENCE * np.array([[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])
+        )
+        return (values[:, 1:] - values[:, :1]) / _DIFFERENCE
+
+    axes = []
+    for at, G, curve in zip(around, off, curves, strict=True):
+        hottest = min(at + 0.5 * load * speed / kappa / G, curve.high)
+        ends = np.log2(curve.at(np.array([at, hottest]))[0])
+        axes.append(curve.temperature_of(np.linspace(float(ends[0]), float(ends[1]), _NODES)))
+    grid = np.array(np.meshgrid(*axes, indexing="ij"))
+    F = rest(grid.reshape(2, -1)).reshape(grid.shape) > 0.0
+    corners = np.lib.stride_tricks.sliding_window_view(F, (2, 2), axis=(1, 2))
+    cells = (corners.any(axis=(3, 4)) & ~corners.all(axis=(3, 4))).all(axis=0)
+    found: list[Any] = []
+    for start in 0.5 * (grid[:, :-1, :-1] + grid[:, 1:, 1:])[:, cells].T:
+        at = root(lambda theta: rest(theta[:, np.newaxis])[:, 0], start, jac=slopes, tol=1e-14).x
+        good = np.abs(rest(at[:, np.newaxis])).max() <= _RESIDUAL * np.abs(at - around).max()
+        if good and all(np.abs(at - other).max() > _SAME for other in found):
+            found.append(at)
+    theta = np.array(sorted(found, key=tuple)).reshape(-1, 2)
+    loss = losses(theta.T).T
+    rates = [np.linalg.eigvals(off[:, np.newaxis] * slopes(at)).real.max() for at in theta]
+    return PairTemperatures(theta, np.array(rates) < 0.0, loss.sum(axis=1) / (load * speed), loss)

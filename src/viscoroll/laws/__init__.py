@@ -6,3 +6,7 @@ fitted
 by rows, which :mod:`.row_layout` alone arranges, or stand on a grid (:mod:`.law_grid`).  A law
 leaves as a record for kernels, or as a dataset (:mod:`.law_netcdf`).
 """
+
+from .. import _open_room
+
+__getattr__ = _open_room(__name__, __file__)

@@ -40,7 +40,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import Floats, ParameterError
-from ..materials.bodies import Cover
+from ..materials import Cover
 from .cover_solve import (
     LARGE_ALPHA,
     LARGEST_THETA,
@@ -336,10 +336,10 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
     fast, limits = _fit_fast_rows(
         u[-_END_NODES:],
         values[:, -_END_NODES:],
-        fast_limit,
-        x,
-        math.ldexp(1.0, last),
-        _LOG_TERMS if half_space_relaxes else 0,
+        limits=fast_limit,
+        x=x,
+        begin=math.ldexp(1.0, last),
+        log_terms=_LOG_TERMS if half_space_relaxes else 0,
     )
     fitted = np.concatenate([slow[:, :, None], inside, fast], axis=2)
     pressure = rows.fit_slopes(*fitted[:, : _FREE.start])
@@ -401,12 +401,16 @@ def _solve_node(
             - 0.5 * math.log1p((modes.alpha - 1.0) * u / (u + 1.0))
             - math.log1p(0.2 / thickness)
         )
-        start = _find_length(modes, u, rough, slope, orders, goal)[0][-1]
+        start = _find_length(modes, u, y=rough, slope=slope, orders=orders, goal=goal)[0][-1]
         # a slope as good as one that is extrapolated, for errors to be smooth over u
-        lengths, errors, _ = _find_length(modes, u, start + _OFFSET, slope, orders, goal)
+        lengths, errors, _ = _find_length(
+            modes, u, y=start + _OFFSET, slope=slope, orders=orders, goal=goal
+        )
         start = lengths[-1]
         slope = (errors[1] - errors[0]) / (lengths[1] - lengths[0])
-    y, errors, states = _find_length(modes, u, start + _OFFSET, slope, orders, goal)
+    y, errors, states = _find_length(
+        modes, u, y=start + _OFFSET, slope=slope, orders=orders, goal=goal
+    )
     slope = (errors[1] - errors[0]) / (y[1] - y[0])
     shifts = [state.shift * math.exp(-each) for state, each in zip(states, y)]
     shift_slope = (shifts[1] - shifts[0]) / (y[1] - y[0])
@@ -485,7 +489,7 @@ def _solve_nodes(modes: CoverModes, u: Floats, orders: int) -> Floats:
         start, slope = (
             (_EXTRAPOLATION @ known[n - count : n]).tolist() if n >= count else (None, 2.0)
         )
-        values[:, n], *known[n] = _solve_node(modes, speed, start, slope, orders)
+        values[:, n], *known[n] = _solve_node(modes, speed, start=start, slope=slope, orders=orders)
     return values
 
 
@@ -539,7 +543,9 @@ def _fit_fast_rows(
     x_inverse = (begin / x).ravel()
     values = values.copy()
     values[_MOMENTS] /= y
-    limits, first, (fitted, slopes) = _fit_end(y, values, limits, x_inverse, log_terms)
+    limits, first, (fitted, slopes) = _fit_end(
+        y, values, limits=limits, wanted=x_inverse, log_terms=log_terms
+    )
     slopes[_MOMENTS] = (slopes[_MOMENTS] + fitted[_MOMENTS]) * x_inverse
     fitted[_MOMENTS] = fitted[_MOMENTS] * x_inverse
     first *= begin

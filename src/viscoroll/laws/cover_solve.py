@@ -42,8 +42,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
-from ..materials.bodies import Cover
+from ..core import Floats
+from ..materials import Cover
 from .law_rows import modes_record
 
 # --- Steady rolling on bonded viscoelastic layers of finite thickness ---

@@ -18,11 +18,13 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from os import PathLike
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..core import (
+    DataArray,
+    Dataset,
     FileError,
     Floats,
     OutOfTableError,
@@ -36,10 +38,6 @@ from ..core import (
 )
 from .law_rows import FIELDS, CoupledRows
 from .law_table import LawTable, coupled_table
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- The law of a grid ---
 
@@ -228,7 +226,7 @@ def _told_of(path: Any) -> Iterator[None]:
         ) from error
 
 
-def _refuse_nodes(variable: xr.DataArray, bad: Any, path: Any, allowed: str) -> None:
+def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> None:
     """Raise FileError for the first bad node of a variable, with its value and its place; none if
     no node is bad.
 
@@ -247,7 +245,7 @@ def _refuse_nodes(variable: xr.DataArray, bad: Any, path: Any, allowed: str) -> 
         raise FileError(path, f"is not a grid of a law: {found}: must be {allowed}")
 
 
-def refuse_filled(variable: xr.DataArray, path: Any) -> None:
+def refuse_filled(variable: DataArray, path: Any) -> None:
     """Raise FileError for a node of a grid that has no value: not finite, a fill value, declared or
     customary, or outside of the range that the attributes ``valid_min``, ``valid_max`` or
     ``valid_range`` of the CF conventions declare.
@@ -269,7 +267,7 @@ def refuse_filled(variable: xr.DataArray, path: Any) -> None:
     _refuse_nodes(variable, (values < low) | (values > high), path, allowed)
 
 
-def check_nodes(table: xr.Dataset, path: Any) -> None:
+def check_nodes(table: Dataset, path: Any) -> None:
     """Raise FileError for a node of a grid whose field no contact has, with its value and place.
 
     All conditions are checked to the digits of a file, 1e-5 of the largest value:
@@ -332,7 +330,7 @@ def check_nodes(table: xr.Dataset, path: Any) -> None:
         )
 
 
-def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
+def _at_alpha(table: Dataset, path: Any, alpha: float | None) -> Dataset:
     """Return a grid at one alpha.
 
     table: dataset of a grid, with or without an axis alpha, > 0 and ascending; without it the grid
@@ -363,7 +361,7 @@ def _at_alpha(table: xr.Dataset, path: Any, alpha: float | None) -> xr.Dataset:
     )
 
 
-def _in_si(table: xr.Dataset) -> xr.Dataset:
+def _in_si(table: Dataset) -> Dataset:
     """Return a grid in SI units if its V has a unit, else without dimension.
 
     table: dataset of a grid; V, delta, Q, M, M_half_space and M_cylinder, where present, must have
@@ -397,7 +395,7 @@ def _in_si(table: xr.Dataset) -> xr.Dataset:
     return table
 
 
-def _law_of(table: xr.Dataset) -> LawGrid:
+def _law_of(table: Dataset) -> LawGrid:
     """Return the law of a grid, as splines: cubic, in ln V, and Q in delta too, clipped to |Q| <=
     :func:`friction_limit`.
 

@@ -11,41 +11,46 @@ from contextlib import contextmanager
 from dataclasses import replace
 from os import PathLike
 from types import SimpleNamespace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
-from ..core import FileError, Floats, ParameterError, check_number, described_error, is_real
-from ..materials.bodies import Bodies, Cover
-from ..materials.checked_netcdf import (
+from ..core import (
+    Dataset,
+    FileError,
+    Floats,
+    ParameterError,
+    check_number,
+    described_error,
+    is_real,
+)
+from ..materials import (
     AXIS,
     COUPLED,
     COVER,
+    HIGHEST_ALPHA,
     KIND,
     KINDS,
     LAW,
     REMEDY,
+    Bodies,
     Content,
+    Cover,
+    Material,
+    Pair,
+    Prony,
+    lock_array,
     make_dataset,
-    read_law,
-)
-from ..materials.material import Material
-from ..materials.material_toml import (
     material_as_toml,
     parse_materials,
     parse_series,
+    read_law,
     series_as_toml,
 )
-from ..materials.pair import Pair
-from ..materials.prony import Prony, lock_array
-from ..materials.prony_forms import HIGHEST_ALPHA
 from .law_grid import load_grid
 from .law_rows import FIELDS, CoupledRows
 from .law_table import LawAxis, LawTable, coupled_table, law_table, make_table
 from .row_layout import COVER_FUNCTIONS, CoverRows, steady_columns, steady_table
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: attributes of a cover that its file states besides the series; the last one where the other body
 #: is a layer
@@ -79,7 +84,7 @@ def law_table_of(material: Any, base: Any = None) -> LawTable:
     return law_table(check_number("alpha", material, low=1.0, high=HIGHEST_ALPHA))
 
 
-def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> xr.Dataset:
+def law_as_dataset(law: LawTable | LawAxis, errors: Mapping[str, float]) -> Dataset:
     """Return the content of the file of a law.
 
     law: the law of one material or cover, :class:`LawTable`, or of all alpha, :class:`LawAxis`.

@@ -39,9 +39,7 @@ from ..kernels.numerics.interpolation import (
     to_chebyshev,
     to_doubles,
 )
-from ..materials.bodies import Bodies
-from ..materials.prony import Prony, lock_array
-from ..materials.prony_forms import Modes
+from ..materials import Bodies, Modes, Prony, lock_array
 
 # --- Polynomials of one variable over octaves ---
 

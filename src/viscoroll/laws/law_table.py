@@ -32,10 +32,7 @@ from typing import Any
 import numpy as np
 
 from ..core import Floats, ParameterError, check_number
-from ..materials.bodies import Bodies, Cover, total_series
-from ..materials.pair import Pair
-from ..materials.prony import Prony, lock_array
-from ..materials.prony_forms import HIGHEST_ALPHA
+from ..materials import HIGHEST_ALPHA, Bodies, Cover, Pair, Prony, lock_array, total_series
 from .cover_rows import cover_rows
 from .law_rows import CoupledRows, Rows, evaluate_by_modes, refuse_distant_times, row_range
 from .row_layout import (
@@ -263,7 +260,11 @@ class LawTable:
     def record(self) -> Any:
         """Record of the law that kernels read (:class:`.law_record.Law`)."""
         made = pack_record(
-            self.steady_coefficients, self.e0, self.alpha, self.fast_limit, self.cover
+            self.steady_coefficients,
+            self.e0,
+            alpha=self.alpha,
+            fast_limit=self.fast_limit,
+            cover=self.cover,
         )
         return made if self.coupled is None else made._replace(table=self.coupled.vector)
 
@@ -411,7 +412,7 @@ def make_table(
 #: (tests/tables/test_law_axis.py)
 TERMS_OF_ALPHA = 16
 #: octaves of alpha from 1 to the highest alpha
-OCTAVES = math.frexp(HIGHEST_ALPHA)[1]
+OCTAVES: int = math.frexp(HIGHEST_ALPHA)[1]
 
 
 @dataclass(frozen=True, eq=False)

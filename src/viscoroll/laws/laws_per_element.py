@@ -18,8 +18,7 @@ from typing import Any
 import numpy as np
 
 from ..core import Floats, Integers, ParameterError
-from ..materials.bodies import Bodies, Cover
-from ..materials.prony import Prony, lock_array
+from ..materials import Bodies, Cover, Prony, lock_array
 from .cover_rows import cover_rows
 from .law_rows import refuse_distant_times
 from .law_table import OCTAVES, make_table, tables_of_octave

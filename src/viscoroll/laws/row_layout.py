@@ -29,8 +29,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats, Integers
-from ..materials.prony import Block, lock_array
+from ..core import Floats, Integers
+from ..materials import Block, lock_array
 from .law_rows import SHORT_TERMS, TERMS, Rows, modes_record, row_range
 
 #: functions of a table in their order: the first five depend on u = kappa |V|, the others on v =
@@ -237,7 +237,7 @@ def pack_record(
         L = cover.creep[0]
     rows, marks = allocate_rows(count)
     rows[: front.size] = front
-    rows[ROW_SIZE:] = _pack_rows(table, e0, front[0], front[2:4], L).ravel()
+    rows[ROW_SIZE:] = _pack_rows(table, e0, alpha=front[0], fast=front[2:4], cover_L=L).ravel()
     marks[[ROW_COUNT, E0]] = count, e0
     return Law(
         rows=lock_array(rows),
@@ -278,7 +278,7 @@ def _pack_rows(
     (lam_at, epsilon_at), _ = rows.read(np.stack([lam, epsilon]), u)
     L = lam_at * (1.0 + epsilon_at) if cover_L is None else rows.read(cover_L[None], u)[0][0]
     for _ in range(2):
-        value, slope = _read_press(rows, press, 2.0 * u / L, alpha, fast)
+        value, slope = _read_press(rows, press, v=2.0 * u / L, alpha=alpha, fast=fast)
         # Newton's method for L^2 press(2 u/L) = 1
         A = value - 0.5 * slope
         dL = -0.5 * L * slope / A

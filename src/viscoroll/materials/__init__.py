@@ -5,3 +5,7 @@
 arguments, from finite element programs (:mod:`.importers`) and from files (:mod:`.material_toml`,
 :mod:`.checked_netcdf`).  They leave as series, from which ``laws`` makes tables.
 """
+
+from .. import _open_room
+
+__getattr__ = _open_room(__name__, __file__)

@@ -19,9 +19,9 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..core import (
+    ArrayLike,
     Floats,
     Integers,
     ParameterError,

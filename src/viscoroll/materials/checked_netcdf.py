@@ -19,18 +19,14 @@ from datetime import UTC, datetime
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
 
 from .. import __version__
-from ..core import PAPER, FileError, ParameterError, read_sealed, seal_matches
+from ..core import PAPER, Dataset, FileError, ParameterError, read_sealed, seal_matches
 from .measured_data import Measured, shifts_as_toml, shifts_of_toml
 from .prony import Prony
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- The file of a law ---
 
@@ -122,7 +118,7 @@ def checksum(numbers: dict[str, Any], kind: str = LAW) -> str:
 
 def make_dataset(
     law: Any, kind: str, title: str, errors: Mapping[str, float], **attributes: str
-) -> xr.Dataset:
+) -> Dataset:
     """Return the dataset of a file: its numbers, their meaning and origin, and their checksum.
 
     law: the law, an object with the variables of its kind as attributes, and ``coefficients``,
@@ -315,7 +311,7 @@ _BAND = ("low", "high", "misfit", "strain")
 _ERRORS = ("measured_rate", "measured_M_error")
 
 
-def material_as_dataset(material: Any) -> xr.Dataset:
+def material_as_dataset(material: Any) -> Dataset:
     """Return both forms of the series, relaxation and creep, and the constants of a material as a
     dataset.
 

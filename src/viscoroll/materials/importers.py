@@ -12,11 +12,12 @@ import math
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
 from ..core import (
     SI,
+    ArrayLike,
     Floats,
+    NDArray,
     ParameterError,
     check_array,
     check_bool,
@@ -112,7 +113,16 @@ class FromPrograms:
                 )
                 raise ParameterError("tau", None, "one time for each g", sentence)
             g, k, tau = table.T
-        return cls._from_fractions(E0, nu, "g", g, tau, k, check_bool("long_term", long_term), more)
+        return cls._from_fractions(
+            E0,
+            nu,
+            name="g",
+            fractions=g,
+            tau=tau,
+            bulk=k,
+            long_term=check_bool("long_term", long_term),
+            more=more,
+        )
 
     @classmethod
     def ansys(
@@ -166,7 +176,9 @@ class FromPrograms:
         >>> vr.Material.ansys(10e6, 0.49, alpha=[0.2, 0.3], tau=[0.1, 10.0]).E
         5000000.0
         """
-        return cls._from_fractions(E0, nu, "alpha", alpha, tau, k, False, more)
+        return cls._from_fractions(
+            E0, nu, name="alpha", fractions=alpha, tau=tau, bulk=k, long_term=False, more=more
+        )
 
     @classmethod
     def comsol(
@@ -219,7 +231,9 @@ class FromPrograms:
         nu = check_poisson(nu)
         strengths, times = check_pairs("G", G, "tau", tau)
         bulk = None if K is None else check_pairs("K", K, "tau", times)[0]
-        return cls._from_moduli(E / (2.0 * (1.0 + nu)), nu, strengths, times, bulk, more, E=E)
+        return cls._from_moduli(
+            E / (2.0 * (1.0 + nu)), nu, G=strengths, tau=times, K=bulk, more=more, E=E
+        )
 
     @classmethod
     def lsdyna(
@@ -297,7 +311,9 @@ class FromPrograms:
             bulk = check_number("bulk", bulk, unit=SI, above=0.0)
             nu = _poisson(rest, bulk)
             terms = np.zeros_like(strengths) if terms is None else terms
-        return cls._from_moduli(rest, check_poisson(nu), strengths, times, terms, more, bulk)
+        return cls._from_moduli(
+            rest, check_poisson(nu), G=strengths, tau=times, K=terms, more=more, K_inf=bulk
+        )
 
     @classmethod
     def _from_fractions(
@@ -334,7 +350,13 @@ class FromPrograms:
         others = values if bulk is None else check_pairs("k", bulk, "tau", times)[0]
         if np.array_equal(values, others):  # nu is constant in time
             return cls._from_moduli(
-                1.0, nu, values / rest, times, None, more, E=E if long_term else E * rest
+                1.0,
+                nu,
+                G=values / rest,
+                tau=times,
+                K=None,
+                more=more,
+                E=E if long_term else E * rest,
             )
         rest_of_bulk = _remaining_fraction("k", others)
         G = E / (2.0 * (1.0 + nu))
@@ -343,7 +365,9 @@ class FromPrograms:
         if nu < 0.5:  # nu of long times
             nu = _poisson(G, K)
         bulk_terms = others / rest_of_bulk * (K if nu < 0.5 else 1.0)
-        return cls._from_moduli(G, nu, values / rest * G, times, bulk_terms, more, K)
+        return cls._from_moduli(
+            G, nu, G=values / rest * G, tau=times, K=bulk_terms, more=more, K_inf=K
+        )
 
     @classmethod
     def _from_moduli(
@@ -379,7 +403,7 @@ class FromPrograms:
         if K is not None and nu < 0.5:  # an incompressible body has no bulk strain that could relax
             K_inf = E / (3.0 * (1.0 - 2.0 * nu)) if K_inf is None else K_inf
             if not np.array_equal(K * G_inf, G * K_inf):
-                prony = plane_strain(G_inf, G, K_inf, K, tau)
+                prony = plane_strain(G_inf, G, K_inf=K_inf, K=K, tau=tau)
                 early = _poisson(G_inf + math.fsum(G), K_inf + math.fsum(K))
             _warn_of_poisson(nu, early)
         check_names("keyword", more, _MATERIAL_KEYWORDS, "a keyword of this function")

@@ -6,13 +6,15 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
 from os import PathLike
-from typing import TYPE_CHECKING, Any, Literal
+from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..core import (
     SI,
+    ArrayLike,
+    Dataset,
+    Figure,
     Floats,
     ParameterError,
     Result,
@@ -24,10 +26,6 @@ from ..core import (
 from .importers import FromPrograms, check_poisson
 from .measured_data import Measured, check_celsius, check_fields, relative_shift, vertical_factor
 from .prony import Prony
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 
 @dataclass(frozen=True)
@@ -478,7 +476,7 @@ class Material(FromPrograms):
         growth = -np.expm1(-self._divide_time(t, self.prony.T))
         return (1.0 / self.prony.alpha + (self.prony.J * growth).sum(axis=-1))[()]
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return both forms of the series and the constants as a dataset, with names and units, as
         in files.
 
@@ -558,7 +556,7 @@ class Material(FromPrograms):
         >>> import viscoroll as vr
         >>> vr.Material.elastic(2.1e11, 0.3).to_netcdf("steel.nc")
         """
-        from ..core.files import write_dataset
+        from ..core import write_dataset
 
         write_dataset(self.to_xarray(), path, sealed=True)
 

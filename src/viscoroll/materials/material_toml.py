@@ -17,8 +17,7 @@ from typing import Any, Literal
 import msgspec
 import numpy as np
 
-from ..core import FileError, check_number
-from ..core.toml_sections import as_section_error, as_struct, read_toml, section_error
+from ..core import FileError, as_section_error, as_struct, check_number, read_toml, section_error
 from .checked_netcdf import SUFFIX, is_law, read_law
 from .material import Material
 from .measured_data import ABSOLUTE_ZERO, WLF, Arrhenius, Measured, relative_shift, shifts_as_toml

@@ -15,7 +15,7 @@ from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
-from ..core.errors import ParameterError, described_error
+from ..core import ParameterError, described_error
 from .bodies import Bodies, Cover
 from .material import Material
 from .prony import Prony

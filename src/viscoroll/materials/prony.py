@@ -18,9 +18,17 @@ from functools import cached_property
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 
-from ..core import Floats, Integers, ParameterError, broadcast_shape, check_array, shape_error
+from ..core import (
+    ArrayLike,
+    Floats,
+    Integers,
+    NDArray,
+    ParameterError,
+    broadcast_shape,
+    check_array,
+    shape_error,
+)
 from .prony_forms import (
     HIGHEST_ALPHA,
     LARGEST_TIME_RATIO,

@@ -14,9 +14,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core.checks import Floats
+from ..core import Floats, NDArray
 
 #: highest alpha: beyond 1e18 the 1/alpha is lost beside 1; at 1e12 the law is that of alpha ->
 #: infinity where alpha zeta is large
@@ -159,7 +158,9 @@ def zeros_from_poles(spread: NDArray, weight: NDArray, constant: NDArray) -> Flo
         high = np.where(beyond, mid, high)
     distance = np.exp(0.5 * (low + high))
     for _ in range(_NEWTON_STEPS):
-        distance = _improve_distance(distance, origin, side, seen, weight, constant)
+        distance = _improve_distance(
+            distance, origin, side=side, seen=seen, weight=weight, constant=constant
+        )
     return np.swapaxes((side * distance)[..., None] - seen, -1, -2)
 
 

@@ -18,8 +18,8 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.errors import FileError, ParameterError, suggestion
-from ..materials.measured_data import ABSOLUTE_ZERO
+from ..core import FileError, ParameterError, suggestion
+from ..materials import ABSOLUTE_ZERO
 from .text_cells import NO_UNIT, Numbers, conversion, readings
 from .text_table import Table, find_column
 

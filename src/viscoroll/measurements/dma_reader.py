@@ -13,11 +13,11 @@ from dataclasses import dataclass, field
 from itertools import product
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
-from ..core import FileError, Floats, Result, SummaryRow, warn_of_model
+from ..core import Dataset, Figure, FileError, Floats, Result, SummaryRow, warn_of_model
 from .dma_columns import UNITS, Column, numbers_of
 from .dynamic_moduli import SAME_TEMPERATURE, DynamicModuli, rows_of
 from .table_reader import (
@@ -35,11 +35,6 @@ from .table_reader import (
     warn_of_assumed_units,
 )
 from .text_table import Table
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
-
 
 # --- Relaxation modulus over time from a text file ---
 
@@ -82,7 +77,7 @@ class RelaxationModulus(Result):
         """Return an iterator over t and relaxation, (n,) each."""
         return iter((self.t, self.relaxation))
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the points as a dataset.
 
         Returns
@@ -196,7 +191,7 @@ def read_relaxation(
     ([3200000.0, 2700000.0, 2400000.0], 'tension')
     """
     table, found, others = source = understand(
-        path, "relaxation", columns, units, decimal, encoding
+        path, "relaxation", columns=columns, units=units, decimal=decimal, encoding=encoding
     )
     alike: dict[str, list[Column]] = {}
     for column in found:
@@ -233,14 +228,14 @@ def read_relaxation(
     mode, notes = source.mode(next((each.mode for each in alike[pair[0]] if each.mode), ""))
     notes += ["the modulus is stress over strain"] * (len(pair) > 1) + source.notes(taken)
     return RelaxationModulus(
-        numbers["time"],
-        relaxation,
-        None if temperature is None else float(np.median(temperature)),
-        mode,
-        Path(path).name.encode(errors="replace").decode(),
-        {column.name: column.heading for column in taken},
-        {column.name: column.unit for column in taken},
-        tuple(notes),
+        t=numbers["time"],
+        relaxation=relaxation,
+        temperature=None if temperature is None else float(np.median(temperature)),
+        mode=mode,
+        source=Path(path).name.encode(errors="replace").decode(),
+        columns={column.name: column.heading for column in taken},
+        units={column.name: column.unit for column in taken},
+        notes=tuple(notes),
     )
 
 
@@ -332,7 +327,9 @@ def read_dma(
     >>> import viscoroll as vr
     >>> omega, storage, loss = vr.read_dma(vr.datasets.path("dma.csv"))  # rad/s, Pa, Pa
     """
-    table, found, others = source = understand(path, "dma", columns, units, decimal, encoding)
+    table, found, others = source = understand(
+        path, "dma", columns=columns, units=units, decimal=decimal, encoding=encoding
+    )
     mode, pair, columns_of_quantity = _choose_columns(table, found, others)
     mode, assumed = source.mode(mode)
     notes = [f"{len(table.starts)} tables"] * (len(table.starts) > 1) + assumed
@@ -389,16 +386,16 @@ def read_dma(
         notes.append(f"no temperature is read from {stated}: give temperature= to fit_prony")
     _warn_of_per_cent(table, taken)
     record = DynamicModuli(
-        omega,
-        storage,
-        loss,
-        temperature,
-        mode,
-        Path(path).name.encode(errors="replace").decode(),
-        {column.name: column.heading for column in taken},
-        {column.name: column.unit for column in taken},
-        tuple(notes),
-        strain,
+        omega=omega,
+        storage=storage,
+        loss=loss,
+        temperature=temperature,
+        mode=mode,
+        source=Path(path).name.encode(errors="replace").decode(),
+        columns={column.name: column.heading for column in taken},
+        units={column.name: column.unit for column in taken},
+        notes=tuple(notes),
+        strain=strain,
     )
     _refuse_mixed_sweeps(table, record)
     return record

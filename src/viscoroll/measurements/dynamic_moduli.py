@@ -13,12 +13,14 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
+from typing import Any, NamedTuple, TypeVar
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..core import (
+    ArrayLike,
+    Dataset,
+    Figure,
     Floats,
     ParameterError,
     Result,
@@ -27,11 +29,6 @@ from ..core import (
     shape_error,
     warn_of_model,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
-
 
 # --- Measured moduli, checked and sorted ---
 
@@ -371,7 +368,7 @@ class DynamicModuli(Result):
             return (self.omega, self.storage, self.loss)[name]
         return super().__getitem__(name)
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the points as a dataset.
 
         Returns

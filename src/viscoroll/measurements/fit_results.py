@@ -17,17 +17,13 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..contact_mechanics.assumptions import (
-    MISFIT_LIMIT,
-    Assumption,
-    assess_measured_band,
-    transit_frequency,
-)
+from ..contact_mechanics import MISFIT_LIMIT, Assumption, assess_measured_band, transit_frequency
 from ..contact_mechanics.contact import contact
 from ..core import (
+    ArrayLike,
     Booleans,
+    Dataset,
     Floats,
     Numbers,
     Result,
@@ -37,17 +33,12 @@ from ..core import (
     warn_of_model,
 )
 from ..core.plots.result_figures import series_fit
-from ..materials.importers import check_poisson
-from ..materials.material import Material
-from ..materials.measured_data import WLF, Measured, VerticalShift
-from ..materials.prony import Prony
+from ..materials import WLF, Material, Measured, Prony, VerticalShift, check_poisson
 from .dynamic_moduli import UNITS, Curve, KramersKronig, Relaxation
 from .master_curve import Shifts, undetermined_shifts
 from .spectrum import Data, has_plateau, spectrum_of
 
 if TYPE_CHECKING:
-    import xarray as xr
-
     from ..rollers import Cylinder
 
 
@@ -507,7 +498,7 @@ class SeriesFit(Result):
         data = self.data._replace(**{self.data._fields[0]: points.ravel()})
         return spectrum_of(self.prony, self.E, self.T_ref).modulus(data).reshape(-1, *points.shape)
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the data, the fit and its series as a dataset.
 
         Returns

@@ -25,9 +25,7 @@ from ..core import (
     check_number,
     described_error,
 )
-from ..materials.measured_data import VerticalShift, check_celsius
-from ..materials.prony import Prony
-from ..materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
+from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Prony, VerticalShift, check_celsius
 from .dma_reader import RelaxationModulus
 from .dynamic_moduli import Curve, DynamicModuli, Relaxation, data_of, kramers_kronig, thinned
 from .fit_results import Fit, Misfit, Mode, RelaxationFit
@@ -212,7 +210,14 @@ def fit_prony(
         shifts = None
     else:
         curve, shifts = master_curve(
-            omega, storage, loss, temperature, reference, shift, on, vertical_shift
+            omega,
+            storage,
+            loss=loss,
+            temperature=temperature,
+            reference=reference,
+            shift=shift,
+            on=on,
+            vertical_shift=vertical_shift,
         )
     data, fields, errors = _fit_series(curve, modes, misfit)
     return Fit(

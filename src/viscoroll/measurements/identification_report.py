@@ -8,15 +8,13 @@ attributes, ``_problem`` (:class:`.least_squares.Problem`), ``_likelihood``
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .. import __version__
+from ..core import Dataset
 from .measurement_records import ROLLING
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: points of full slip in a motion below which the report says that mu rests on few
 _FEW = 5
@@ -265,7 +263,7 @@ def _phases(fit: Any) -> Iterator[str]:
             yield f"{found}: record that phase more densely"
 
 
-def as_dataset(fit: Any) -> xr.Dataset:
+def as_dataset(fit: Any) -> Dataset:
     """Return an identification as a dataset, for files.
 
     Parameters

@@ -337,9 +337,9 @@ class Identification(Result):
         return self._predict(
             record,
             "",
-            level,
-            check_integer("draws", draws, 0, _DRAWS),
-            check_integer("seed", seed, 0),
+            level=level,
+            draws=check_integer("draws", draws, 0, _DRAWS),
+            seed=check_integer("seed", seed, 0),
         )
 
     def _predict(

@@ -22,15 +22,18 @@ from ..core import (
     FileError,
     Floats,
     ParameterError,
+    as_struct,
     check_bool,
     check_integer,
+    check_keys,
     check_names,
     described_error,
+    read_toml,
+    section_error,
     suggestion,
     warn_of_model,
 )
-from ..core.toml_sections import as_struct, check_keys, read_toml, section_error
-from ..materials.material_toml import SECTIONS, parse_shifts
+from ..materials import SECTIONS, parse_shifts
 from ..roller_toml import read_roller
 from ..rollers import Cylinder
 from .identification_result import Identification
@@ -156,7 +159,9 @@ def identify(
     if not unknowns:
         raise described_error("unknown", "is empty", "at least one name and its range")
     _refuse_tables(cylinder, unknowns)
-    problem = Problem(cylinder, unknowns, records, check_bool("robust", robust), shifts)
+    problem = Problem(
+        cylinder, unknowns, records=records, robust=check_bool("robust", robust), shifts=shifts
+    )
     most = problem.points - any(column.estimated for column in problem.columns)
     if len(unknowns) > most:
         allowed = (

@@ -16,9 +16,9 @@ from itertools import pairwise, zip_longest
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..core import (
+    ArrayLike,
     Floats,
     Integers,
     ParameterError,
@@ -28,7 +28,7 @@ from ..core import (
     to_unit,
     warn_of_model,
 )
-from ..materials.measured_data import (
+from ..materials import (
     NEAR,
     USUAL_RANGE,
     ShiftFactors,

@@ -29,7 +29,7 @@ from ..core import (
     strip_labels,
     to_unit,
 )
-from ..materials.measured_data import ABSOLUTE_ZERO
+from ..materials import ABSOLUTE_ZERO
 from ..rollers import Cylinder
 
 #: word for an initial angular velocity of V0/R

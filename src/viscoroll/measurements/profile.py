@@ -12,7 +12,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..core.checks import Floats
+from ..core import Floats
 from .least_squares import Minimum, Problem
 
 #: longest first step of a coordinate

@@ -36,12 +36,10 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from ..contact_mechanics.assumptions import transit_speeds
+from ..contact_mechanics import transit_speeds
 from ..contact_mechanics.contact import contact
 from ..core import Floats, described_error
-from ..materials.measured_data import Measured
-from ..materials.prony import Prony
-from ..materials.prony_forms import LARGEST_TIME_RATIO, MOST_MODES
+from ..materials import LARGEST_TIME_RATIO, MOST_MODES, Measured, Prony
 from ..rollers import Scene
 from .dynamic_moduli import Curve, Relaxation
 
@@ -254,7 +252,9 @@ def refined(data: Data, spectrum: Spectrum, ends: tuple[float, float], calls: in
     low[0] = np.log(_least_modulus(data))
     high[0] = np.inf
     low[1 + count :], high[1 + count :] = np.log(ends)
-    return on_times(data, np.exp(_minimize(data, start, low, high, calls)[1 + count :]))
+    return on_times(
+        data, np.exp(_minimize(data, start, low=low, high=high, calls=calls)[1 + count :])
+    )
 
 
 #: range of the logarithm of a strength about its start
@@ -637,7 +637,9 @@ def admissible_spectra(data: Data, fit: Spectrum) -> AdmissibleSpectra:
     for at in rate.tolist():
         pull = _slopes_of_moment(problem, best, at)
         for sign in (-1.0, 1.0):
-            found = problem.spectrum(_pulled(problem, best, pull, sign, allowed), MOST_MODES)
+            found = problem.spectrum(
+                _pulled(problem, best, pull=pull, sign=sign, allowed=allowed), MOST_MODES
+            )
             series = Prony(found.strength / found.E, found.tau / T_ref)
             changes.append(_moments(series, math.sqrt(found.E / fit.E), V) / M - 1.0)
             E.append(found.E)

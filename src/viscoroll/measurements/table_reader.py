@@ -224,7 +224,7 @@ def understand(
             problem = f"has {len(table.headings)} columns, and no headings for {' and '.join(bare)}"
             raise FileError(path, f"{problem}; they are called {called}: {_NAME_THEM}")
         named = dict(zip(bare, table.headings, strict=True))
-    found, others = columns_of(table, test, named, overruling, defaults)
+    found, others = columns_of(table, test, named=named, overruling=overruling, defaults=defaults)
     check_names("units", overruling, [column.name for column in found], "a quantity of this file")
     return Understood(table, found, others)
 

@@ -529,7 +529,9 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
     heading = table.headings[index]
     advice = f"write its unit in the heading, as in '{heading} [{wanted}]'"
-    factor, offset = conversion_of_column(table.path, heading, unit, wanted, advice)
+    factor, offset = conversion_of_column(
+        table.path, heading, unit=unit, wanted=wanted, advice=advice
+    )
     values = table.numbers(index).values
     base = found[0].log if found else 0.0
     return factor * (base**values if base else values) + offset

@@ -16,8 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..core import ParameterError, check_array, check_names, check_number, si_unit
-from ..materials.material import Material
-from ..materials.prony import Prony
+from ..materials import Material, Prony
 from ..rollers import Cylinder
 from .measurement_records import OF_RECORDS, Record
 

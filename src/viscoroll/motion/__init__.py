@@ -5,3 +5,7 @@ A roller, a start, times and a drive enter :func:`.roll.roll` and :func:`.ensemb
 integrator, :mod:`.flow` looks up free motions.  They leave as :class:`.roll.Motion` and
 :class:`.ensemble.Ensemble`, as datasets, and as summaries that merge (:mod:`.summaries`).
 """
+
+from .. import _open_room
+
+__getattr__ = _open_room(__name__, __file__)

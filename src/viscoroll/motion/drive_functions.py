@@ -16,6 +16,7 @@ import numpy as np
 from ..core import (
     Feedback,
     Floats,
+    NDArray,
     ParameterError,
     broadcast_shape,
     check_array,
@@ -26,13 +27,15 @@ from ..core import (
 )
 from ..kernels.records import (
     COL_COEFFICIENTS,
+    COL_SCALE,
+    COL_START,
     N_DRIVE_FUNCTIONS,
     NOT_PRESCRIBED,
     PRESCRIBED_OMEGA,
     PRESCRIBED_V,
 )
+from .drive_pieces import Piecewise, ends_of, piecewise
 from .motion_arguments import Drive, start_speeds
-from .piecewise import Piecewise, differentiate, pack_pieces, piecewise, values_at_start
 
 #: Bytes of pieces that are packed at a time where motions have functions of their own: little
 #: beside the schedules, and yet many motions at once where these are short.
@@ -63,6 +66,15 @@ _PRESCRIBED_CODES = {"": NOT_PRESCRIBED, "omega": PRESCRIBED_OMEGA, "V": PRESCRI
 #: (pieces (1 or m, k, columns); gains (4, 1 or m); code of the prescribed speed), as the kernels
 #: take a drive.
 KernelDrive = tuple[Floats, Floats, int]
+#: First value of a piece divided by the size of its terms, dimensionless, that counts as rounding:
+#: some 50 roundings.
+_ROUNDING = 1e-14
+#: The same of the slope of a piece, which the differentiation makes larger.
+_ROUNDING_OF_SLOPE = 1e-12
+#: Jump of a prescribed speed divided by its largest size, dimensionless, that counts as rounding.
+_ROUNDING_OF_JUMP = 1e-12
+#: Duration of a piece, in T_ref, that counts as none: 2 divided by it and by gamma is to be finite.
+_INSTANT = 1e-280
 
 
 @dataclass(frozen=True, eq=False)
@@ -72,7 +84,7 @@ class DriveFunctions:
 
     Attributes
     ----------
-    functions : name -> :class:`.piecewise.Piecewise`; always "force", "torque" and "brake" (0
+    functions : name -> :class:`.drive_pieces.Piecewise`; always "force", "torque" and "brake" (0
         where not given), and the prescribed speed, "omega" or "V", if there is one.
     tangent : tangent of the slope, > 0 downhill along +V, which adds to the force, () or (m,).
     prescribed : name of the prescribed speed, "omega", "V" or "".
@@ -404,3 +416,176 @@ def refuse_rest(rest: Any, functions: DriveFunctions | None) -> None:
         )
         sentence += "leave it out (a brake stops the motion in finite time: see switches)"
         raise ParameterError("rest", rest, "None", sentence)
+
+
+# --- Layout of the kernels ---
+
+
+def differentiate(name: str, speed: Piecewise) -> Piecewise:
+    """Return the derivative with respect to time of a prescribed speed.
+
+    name: name of the argument, for the refusal.
+    speed: :class:`Piecewise`, prescribed speed, dimensionless, time in T_ref.
+    Raises ParameterError where the speed jumps by more than rounding (1e-12 of its largest
+    coefficient) and four times the error of its fit.
+    Returns :class:`Piecewise` with the same starts, dimensionless.  It has one term less; of a
+    speed of one term, which is constant, it has one term that is 0.  It is 0 in pieces without
+    length or end, and its value at the left end of a piece is shifted to 0 where it is rounding.
+    Its ``error`` is still that of the speed.
+    """
+    lengths = speed.ends - speed.starts
+    first = values_at_start(speed.terms)
+    last = speed.terms.sum(axis=-1)
+    # for each motion by itself: a slow one must not jump either
+    scale = np.maximum(np.abs(speed.terms).max(axis=(1, 2), initial=0.0), 1e-300)[:, None]
+    least = _ROUNDING_OF_JUMP * scale + 4.0 * speed.error
+    jumps = (lengths == 0.0) & (np.abs(last - first) > least)  # in pieces without length
+    jumps[:, 1:] |= np.abs(last[:, :-1] - first[:, 1:]) > least
+    if jumps.any():
+        when = np.broadcast_to(speed.starts, jumps.shape)[jumps][0]
+        allowed = "continuous, as it is a prescribed speed"
+        raise mark_dimensionless(described_error(name, f"jumps at t = {when:.6g}", allowed))
+    order = np.arange(1, speed.terms.shape[-1])
+    dx_dt = np.divide(2.0, lengths, out=np.zeros_like(lengths), where=lengths > 0.0)
+    terms = speed.terms[..., 1:] * order * dx_dt[..., None]
+    return speed._replace(
+        terms=_start_at_zero(terms, _ROUNDING_OF_SLOPE)
+        if order.size
+        else np.zeros_like(speed.terms)
+    )
+
+
+def values_at_start(terms: Floats) -> Floats:
+    """Return the values at x = -1 of polynomials, (...).
+
+    terms: coefficients of powers of x in [-1, 1], ascending, (..., terms).
+    """
+    return (terms * (-1.0) ** np.arange(terms.shape[-1])).sum(axis=-1)
+
+
+def _start_at_zero(terms: Floats, rounding: float = _ROUNDING) -> Floats:
+    """Set the value at the left end of pieces to 0 where it is rounding, as it would move a
+    cylinder at rest.
+
+    terms: coefficients of powers of x in [-1, 1], ascending, (..., terms).
+    rounding: ratio of that value to the sum of the magnitudes of the coefficients below which it
+    counts as rounding.
+    Returns new coefficients, (..., terms).  Where the value counts as rounding it is subtracted
+    from the constant coefficient; all others are the same.
+    """
+    first = values_at_start(terms)
+    size = np.abs(terms).sum(axis=-1)
+    shifted = terms.copy()
+    shifted[..., 0] -= np.where(np.abs(first) < rounding * size, first, 0.0)
+    return shifted
+
+
+def pack_pieces(functions: tuple[Piecewise, ...], end: float) -> Floats:
+    """Return several functions over common pieces, in the layout of the kernels.
+
+    functions: piecewise polynomials, each for the same m motions, or the same for all.
+    end: last time, in T_ref.  Pieces that for every motion start at or after it are left out; the
+    first piece always stays.
+    Returns (1 or m, k, 2 + number of functions * terms): start of each piece in T_ref; 2 divided by
+    its length, 0 of one without length or end; then the coefficients of each function in turn,
+    padded with 0 to the largest number of terms.  Where motions have times of their own, pieces
+    between equal times have no length; the kernels skip them.  Pieces of a motion that start at or
+    beyond ``end``, but are kept since other motions have them before it, repeat the coefficients of
+    its last piece before ``end``.
+    """
+    rows = max(len(f.starts) for f in functions)
+    own = [np.broadcast_to(f.starts, (rows, f.starts.shape[1])) for f in functions]
+    starts = np.sort(np.concatenate([own[0], *(part[:, 1:] for part in own[1:])], axis=1), axis=1)
+    starts = starts[:, (ends_of(starts) > starts + _INSTANT).any(axis=0)]
+    kept = max(int((starts < end).any(axis=0).sum()), 1)
+    ends = ends_of(starts)[:, :kept]
+    starts = starts[:, :kept]
+    count = max(len(f.terms) for f in functions)
+    terms = max(f.terms.shape[-1] for f in functions)
+    packed = np.zeros((count, kept, COL_COEFFICIENTS + len(functions) * terms))
+    lengths = ends - starts
+    packed[..., COL_START] = starts
+    packed[..., COL_SCALE] = np.divide(
+        2.0, lengths, out=np.zeros(lengths.shape), where=lengths > _INSTANT
+    )
+    for n, function in enumerate(functions):
+        part = _restrict(function, rows, starts, ends)
+        packed[..., COL_COEFFICIENTS + n * terms :][..., : part.shape[-1]] = part
+    at_end = np.maximum((starts < end).sum(axis=1) - 1, 0)
+    late = starts > np.take_along_axis(starts, at_end[:, None], axis=1)
+    if late.any():  # the last piece before the end acts after it too
+        acting = packed[np.arange(count), np.broadcast_to(at_end, count), COL_COEFFICIENTS:]
+        packed[..., COL_COEFFICIENTS:] = np.where(
+            late[..., None], acting[:, None], packed[..., COL_COEFFICIENTS:]
+        )
+    return packed
+
+
+def _restrict(function: Piecewise, rows: int, starts: Floats, ends: Floats) -> Floats:
+    """Return the coefficients of a function over finer pieces.
+
+    function: :class:`Piecewise` of one motion or of m motions.
+    rows: number of motions with times of their own, or 1.
+    starts, ends: when the finer pieces start and end, (rows, k), in T_ref; none extends over a
+    start of the function's own.  The last may end at infinity.
+    Returns coefficients of powers of x in [-1, 1] on the finer pieces, (1 or m, k, terms); their
+    value at the left end of a piece is shifted to 0 where it is rounding.
+    """
+    piece = _piece_at(function.starts, starts)
+    shape = rows, function.starts.shape[1]
+    first, last = (
+        np.take_along_axis(np.broadcast_to(t, shape), piece, 1)
+        for t in (function.starts, function.ends)
+    )
+    piece = np.broadcast_to(piece, (max(rows, len(function.terms)), piece.shape[1]))
+    terms = np.broadcast_to(function.terms, (len(piece), *function.terms.shape[1:]))
+    terms = np.take_along_axis(terms, piece[..., None], 1)
+    same = (first == starts) & (last == ends)
+    return _start_at_zero(
+        np.where(
+            same[..., None], terms, _substitute(terms, first, last=last, starts=starts, ends=ends)
+        )
+    )
+
+
+def _piece_at(begins: Floats, times: Floats) -> NDArray:
+    """Return the index of the piece that acts at each time: the last that starts by then.
+
+    begins: when pieces start, (1 or m, k), ascending, the first at 0.
+    times: times in the unit of ``begins``, >= 0, (m, n); where ``begins`` has one row, m is any
+    number.
+    Returns indices in 0 ... k - 1, int, in the shape of ``times``.  Takes memory in proportion to
+    its input, and n log k steps for each row.
+    """
+    if len(begins) == 1:
+        return np.searchsorted(begins[0], times, side="right") - 1
+    # Complex numbers are sorted by their real parts first: one search through the pieces of all
+    # motions in a row.
+    row = np.arange(len(begins))[:, None]
+    found = np.searchsorted((row + 1j * begins).ravel(), row + 1j * times, side="right")
+    return found - row * begins.shape[1] - 1
+
+
+def _substitute(
+    terms: Floats, first: NDArray, last: NDArray, starts: NDArray, ends: NDArray
+) -> Floats:
+    """Return the coefficients of polynomials on parts of their pieces, by Horner's scheme with x ->
+    shift + scale x.
+
+    terms: coefficients of powers of x in [-1, 1], ascending, (m, k, terms).
+    first, last: start and end of each piece, (1 or m, k).
+    starts, ends: start and end of each part, (1 or m, k), in the unit of ``first``.
+    Returns the coefficients on the parts, (m, k, terms).  Of a piece without length, or without end
+    (``last`` infinite), they are those of a constant: its value at x = 0.
+    """
+    endless = np.isinf(last) | (last == first)
+    length = np.where(endless, 1.0, last - first)
+    scale = np.where(endless, 0.0, (ends - starts) / length)
+    shift = np.where(endless, 0.0, (starts - first) / length * 2.0 - 1.0 + scale)
+    result = np.zeros_like(terms)
+    for n in range(terms.shape[-1] - 1, -1, -1):
+        raised = np.zeros_like(result)
+        raised[..., 1:] = result[..., :-1] * scale[..., None]
+        result = result * shift[..., None] + raised
+        result[..., 0] += terms[..., n]
+    return result

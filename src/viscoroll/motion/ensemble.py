@@ -9,23 +9,30 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..contact_mechanics.assumptions import Validity
-from ..contact_mechanics.contact_table import FASTEST, refuse_beyond
-from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
-from ..contact_mechanics.parameters import Roller, scale_of
+from ..contact_mechanics import (
+    FASTEST,
+    Roller,
+    Validity,
+    refuse_beyond,
+    scale_of,
+    warn_of_speeds,
+    warn_of_start,
+)
 from ..contact_mechanics.validity import validity
 from ..core import (
     Booleans,
+    Dataset,
     Feedback,
+    Figure,
     Floats,
     Integers,
     Labels,
     MotionStatus,
+    NDArray,
     Numbers,
     ParameterError,
     Schedule,
@@ -46,11 +53,6 @@ from .many_motions import Batch, Solution, solve_batch
 from .motion_arguments import ACTING, ROWS, Drive, output_times, strip_units, with_scales
 from .motion_datasets import RollResult
 from .motion_problem import MotionProblem, SolverOptions, make_problem
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
-
 
 # --- The result of many motions ---
 
@@ -143,7 +145,7 @@ class Ensemble(RollResult):
         codes, counts = np.unique(self.status, return_counts=True)
         return {MotionStatus(code).message: int(n) for code, n in zip(codes, counts, strict=True)}
 
-    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> xr.Dataset:
+    def summary(self, quantiles: Iterable[float] = (0.05, 0.25, 0.5, 0.75, 0.95)) -> Dataset:
         """Compute moments, quantiles and histograms over the motions, per output time, named as
         those of a run's store.
 
@@ -219,7 +221,9 @@ class Ensemble(RollResult):
             if self.x is None
             else np.vstack([np.zeros(index.size), self.x[index].T])
         )
-        return self._add_steadiness(report, roller, np.nan_to_num(speeds), rolls, x, ends=True)
+        return self._add_steadiness(
+            report, roller, V=np.nan_to_num(speeds), rolls=rolls, x=x, ends=True
+        )
 
     def fastest(self) -> Fastest:
         """Return the motions that :meth:`validity` examines, with their highest speeds.
@@ -284,7 +288,7 @@ class Ensemble(RollResult):
             )
         return f"Ensemble of {len(self)} motions", rows + ends
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the dataset over (motion, t) with starts, outputs, onset and rest times, status,
         drive and scene.
 
@@ -447,9 +451,16 @@ def ensemble(
     options = SolverOptions(
         rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
     )
-    problem = make_problem(roller, start, drive, times[-1], options)
+    problem = make_problem(roller, start, drive=drive, end=times[-1], options=options)
     inputs, count = _broadcast_inputs(problem, drive.numbers)
-    warn_of_start(problem.roller, problem.scene, start, problem.V0, problem.omega0, problem.driven)
+    warn_of_start(
+        problem.roller,
+        problem.scene,
+        start=start,
+        V0=problem.V0,
+        omega0=problem.omega0,
+        driven=problem.driven,
+    )
     scale = problem.roller.scale
     scene = problem.scene
     several = scene.material_array is not None or np.ndim(scene.alpha) > 0

@@ -22,13 +22,26 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..contact_mechanics.parameters import Parameters
-from ..core import Floats, Integers, broadcast_vector, load_kept, run_blocks, save_kept
+from ..contact_mechanics import Parameters
+from ..core import Floats, Integers, NDArray, broadcast_vector, load_kept, run_blocks, save_kept
+from ..kernels.motion import flow_layout
+from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, FlowTables
 from ..kernels.numerics.cache_folder import cache_root
 from ..kernels.records import Motions
-from ..materials.prony import Prony
+from ..laws import interleave_pairs
+from ..laws.law_table import law_table
+from ..materials import Prony
+from .flow_tables import (
+    NODES,
+    OUT_OF_RANGE,
+    SPEEDS,
+    STOPS,
+    FlowProblem,
+    NoFlowMap,
+    fill_layers,
+    fill_manifold,
+)
 from .motion_problem import integrate_motions
 
 # --- A flow map, and its file beside the compiled kernels ---
@@ -161,11 +174,9 @@ def _read(data: Any, parameters: tuple[Any, ...]) -> FlowMap:
     Raises ValueError for one of another scene or with a table of another size, and KeyError for one
     that lacks an array.
     """
-    from ..kernels.motion.flow_layout import SIZE
-
     if not np.array_equal(data["parameters"], _numbers(parameters)):
         raise ValueError("it belongs to another scene")
-    if data["table"].shape != (SIZE,):
+    if data["table"].shape != (flow_layout.SIZE,):
         raise ValueError("the size of its table is wrong")
     return FlowMap(
         parameters=parameters,
@@ -225,12 +236,10 @@ def map_key(scene: Parameters, speed: float) -> tuple[tuple[Any, ...], int]:
     octave is the least multiple of 4 with kappa ``speed`` <= 2**octave, but at least -16 and at
     most 14, the limits of the tables; a scene with faster motions has no map for those.
     """
-    from ..kernels.motion.flow_layout import OCTAVE_RANGE
-
     parameters = (scene.in_own_time()[0], scene.kappa, scene.mu, scene.j)
     octave = math.ceil((math.log2(scene.kappa) + math.log2(speed)) / _OCTAVE_STEP) * _OCTAVE_STEP
     return parameters, min(
-        max(octave, OCTAVE_RANGE[0]), OCTAVE_RANGE[1]
+        max(octave, flow_layout.OCTAVE_RANGE[0]), flow_layout.OCTAVE_RANGE[1]
     )  # motions beyond find nothing there
 
 
@@ -287,13 +296,10 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
     Raises ParameterError for a number of threads that is no whole number >= 1, unless the scene is
     elastic.
     """
-    from ..kernels.motion.flow_layout import OCTAVES, SIZE
-    from .flow_tables import fill_tables
-
     new_map = FlowMap(
         parameters=parameters,
-        first=octave - OCTAVES,
-        table=np.zeros(SIZE),
+        first=octave - flow_layout.OCTAVES,
+        table=np.zeros(flow_layout.SIZE),
         errors=(math.inf,) * 3,
         problem="",
     )
@@ -301,6 +307,87 @@ def build_map(parameters: tuple[Any, ...], octave: int, threads: int | None = No
     if problem:
         return replace(new_map, problem=problem)
     return replace(new_map, errors=_measure_errors(new_map, octave, threads))
+
+
+def fill_tables(new_map: Any, threads: int | None) -> str:
+    """Fill the tables of a new flow map.
+
+    new_map : the :class:`.flow.FlowMap`, whose ``table`` is written.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    Returns "", or the reason why the scene has no map, a sentence; the table is then incomplete.
+    Of an elastic scene, which never slows down, nothing is written.
+    """
+    if new_map.slow_rate == 0.0:
+        return "an elastic cylinder never slows down"
+    parts = flow_layout.views(new_map.table)
+    first = new_map.first
+    problem = FlowProblem(
+        new_map.parameters, law_table(new_map.parameters[0]).record, new_map.slow_rate, threads
+    )
+    try:
+        with np.errstate(all="ignore"):  # what is not finite is refused
+            _fill_full_slip(problem, parts)
+            slow = fill_manifold(problem, parts)
+            for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
+                fill_layers(
+                    problem,
+                    sign,
+                    first=first,
+                    slow=slow,
+                    asymptote=parts.asymptote[family],
+                    layer=parts.layer[family],
+                )
+    except NoFlowMap as reason:
+        return str(reason)
+    return ""
+
+
+def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
+    """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2 in time
+    gamma t.
+
+    problem : the :class:`FlowProblem`.
+    parts : :class:`FlowTables`, views of the tables, of which ``slide``, ``after`` and ``onset``
+    are written.
+    Raises :class:`NoFlowMap`, with the tables incomplete: for the reason STOPS where at some speed
+    the rolling resistance can hold the sliding cylinder, or nearly can, and where the speed at the
+    onset of partial slip is no unique function of the quantity that is constant while sliding; for
+    OUT_OF_RANGE where numbers leave the range of doubles.
+    """
+    _, kappa, mu, j = problem.parameters
+    V = SPEEDS.x / kappa
+    least = 2.0**flow_layout.LOW / kappa
+    state = problem.contact_states(V, np.zeros(V.shape))
+    limit = state[DELTA_STAR] * V
+    for n, sign in enumerate((1.0, -1.0)):
+        rate = mu - sign * 0.5 * state[MOMENT]
+        if not np.isfinite(limit / rate).all():
+            raise NoFlowMap(OUT_OF_RANGE)
+        if not (rate > 0.0).all():
+            raise NoFlowMap(STOPS)
+        half = SPEEDS.half / kappa
+        T = NODES.integrals(1.0 / rate, half, least / mu)
+        X = NODES.integrals(V / rate, half, 0.5 * least * least / mu)
+        slip = 2.0 * mu * T - V * (1.0 - j) + sign * j * limit
+        if not (np.diff(slip.ravel(), prepend=0.0) > 0.0).all():
+            raise NoFlowMap(STOPS)
+        time = NODES.powers(T)
+        path = NODES.powers(X)
+        onset = NODES.powers(slip)
+        parts.slide[n] = np.concatenate(
+            [interleave_pairs(time, NODES.powers(limit)), path], axis=-1
+        )
+        # nearly held: the inverse would end before the speeds that are served
+        if not kappa * mu * time[-3].sum() < 2.0 ** (flow_layout.HIGH - 1):
+            raise NoFlowMap(STOPS)
+        parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
+        u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
+        values = [
+            NODES.powers(value)
+            for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))
+        ]
+        parts.onset[n] = np.concatenate([interleave_pairs(*values[:2]), values[2]], axis=-1)
 
 
 def _measure_errors(new_map: FlowMap, octave: int, threads: int | None) -> tuple[float, ...]:
@@ -406,10 +493,8 @@ def _stiff_time(new_map: FlowMap, speed: float) -> float:
     last octave counts.
     Returns the time gamma t, a float > 0, dimensionless.
     """
-    from ..kernels.motion.flow_layout import PLUS, views
-
     # the constant of the second of a pair: at the middle of an octave
-    rates = views(new_map.table).asymptote[PLUS, :, 2]
+    rates = flow_layout.views(new_map.table).asymptote[flow_layout.PLUS, :, 2]
     octave = math.floor(math.log2(new_map.parameters[1] * speed)) - new_map.first
     return float(1.0 / rates[min(max(octave, 0), rates.size - 1)])
 
@@ -443,11 +528,11 @@ class FlowResult(NamedTuple):
         Returns a :class:`FlowResult` of new arrays.
         """
         return cls(
-            np.empty((rows, count, times)),
-            np.full(count, -1, np.int8),
-            np.empty(count),
-            np.empty(count),
-            np.zeros(count, np.int64),
+            out=np.empty((rows, count, times)),
+            status=np.full(count, -1, np.int8),
+            onset=np.empty(count),
+            rest=np.empty(count),
+            switches=np.zeros(count, np.int64),
         )
 
 

@@ -1,32 +1,21 @@
-"""The tables of a flow map: slow manifold, boundary layers, integrals.
-
-The slow manifold of a flow map: :func:`fill_manifold`.
+"""The tables of a flow map in partial slip, made from the rows of the law and from integrated
+motions: :func:`fill_manifold`, :func:`fill_layers`; and the polynomials of which they consist.
+All is dimensionless, times are gamma t.
 
 The slow manifold is the curve in (V, delta) that all motions in partial slip approach, on which V
 decays to rest.  The slow logarithm of V falls linearly in time along it, at
-``FlowProblem.slow_rate``; it tends to ln V plus a constant as V -> 0.  All is dimensionless, times
-are gamma t.
+``FlowProblem.slow_rate``; it tends to ln V plus a constant as V -> 0.
 
-The boundary layers of a flow map after the onset of partial slip: :func:`fill_layers`.
+After the onset of partial slip omega - V relaxes in a boundary layer at the rate k0, until the
+motion follows the slow manifold.  E = k0 (tau - tau_onset), tau = gamma t, is the time since the
+onset in units of 1/k0.  The law has a kink at delta = 0.  Each layer is therefore divided at a
+value of E, its split: that at which delta passes 0, or 1 where delta does not.  The layer
+coordinate u grows with E, linearly on either side of the split, from 2^LAYER_LOW at the onset over
+1 at the split to 2^LAYER_HIGH at the end.  The two families are the motions with omega > V and with
+omega < V at the onset.  V0 is the speed at the onset.
 
-After the onset omega - V relaxes at the rate k0, until the motion follows the slow manifold
-(:mod:`.flow_tables`).  E = k0 (tau - tau_onset), tau = gamma t, is the time since the onset in
-units of 1/k0.  The law has a kink at delta = 0.  Each layer is therefore divided at a value of E,
-its split: that at which delta passes 0, or 1 where delta does not.  The layer coordinate u grows
-with E, linearly on either side of the split, from 2^LAYER_LOW at the onset over 1 at the split to
-2^LAYER_HIGH at the end.  The two families are the motions with omega > V and with omega < V at the
-onset.  V0 is the speed at the onset.  All is dimensionless.
-
-The tables of a flow map, made from the rows of the law and from integrated motions:
-:func:`fill_tables`.
-
-A flow map is a set of tables from which any free motion of a scene follows without integration
-(:mod:`viscoroll.kernels.motion.flow_layout`).  In full slip the motion is an integral of the law.
-Behind the onset of partial slip it passes a boundary layer, in which omega - V relaxes, and then
-follows
-the slow manifold, one curve in (V, delta) that all motions approach.  Motions give V and delta at
-interpolation nodes; distance, angle and loss are integrals of their polynomials.  All is
-dimensionless, times are gamma t.
+Motions give V and delta at interpolation nodes; distance, angle and loss are integrals of their
+polynomials.
 """
 
 from __future__ import annotations
@@ -39,23 +28,240 @@ from numpy.polynomial.polynomial import polyval
 
 from ..core import Floats
 from ..kernels.motion import flow_layout
-from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, FlowTables
-from ..kernels.numerics.interpolation import gauss
-from ..laws.law_table import law_table
-from ..laws.row_layout import interleave_pairs
-from .flow_pieces import (
-    FULL_SLIP_RETURNS,
-    NODES,
-    OUT_OF_RANGE,
-    SPEEDS,
-    STICK_ENDS,
-    STOPS,
-    FlowProblem,
-    Nodes,
-    NoFlowMap,
-    Rows,
-    octaves,
+from ..kernels.motion.flow_layout import DELTA_STAR, MOMENT, STIFFNESS, TRACTION, FlowTables, states
+from ..kernels.numerics.interpolation import (
+    Interpolation,
+    chebyshev,
+    gauss,
+    powers_of_chebyshev,
+    to_chebyshev,
 )
+from ..kernels.numerics.simd import TERMS
+from ..kernels.records import PARTIAL_SLIP
+from ..laws import interleave_pairs
+from .motion_problem import integrate_motions
+
+# --- Piecewise polynomials of one variable, one for each octave ---
+
+#: limit of Newton's iteration for the inverse function
+_MAX_ITERATIONS = 20
+#: relative step after which the iteration ends: the error that remains is about its square
+_CONVERGED = 1e-8
+
+
+class Nodes:
+    """Chebyshev nodes in [-1, 1], and linear maps of the values of functions there, along the last
+    axis.
+
+    An integral is fitted through its values; this drops its highest Chebyshev term, which the
+    values do not determine.
+
+    count : number of nodes.
+    t : the nodes, ascending, (count,).
+    """
+
+    def __init__(self, count: int) -> None:
+        rule = Interpolation(chebyshev(count))
+        self.t = rule.nodes
+        self._integrals = rule.integrals([*rule.exact, 1])
+        self._chebyshev = to_chebyshev(count)
+        self._powers = powers_of_chebyshev(count, 0.0, 1.0).T.copy()
+
+    def powers(self, values: Floats) -> Floats:
+        """Return the coefficients of the powers of t in [-1, 1] of the polynomials through values
+        at the nodes.
+
+        They are computed by way of Chebyshev coefficients, which limits the rounding errors.
+
+        values : values at the nodes, (..., nodes).
+        Returns the coefficients, ascending, (..., nodes).
+        """
+        return _multiply(self._powers, _multiply(self._chebyshev, values))
+
+    def integrals(self, slopes: Floats, half: Any, start: Any = 0.0) -> Floats:
+        """Return the integral of a piecewise polynomial at the nodes, continuous over all rows.
+
+        slopes : values of the integrand at the nodes, (..., rows, nodes).
+        half : half the length of each row, a number, (rows,) or (..., rows).
+        start : value of the integral at the left end of the first row, a number.
+        Returns the integral from that end to each node plus ``start``, in the shape of ``slopes``.
+        """
+        whole = _multiply(self._integrals, slopes) * np.asarray(half)[..., None]
+        rises = np.cumsum(whole[..., -1], axis=-1) - whole[..., -1]
+        return whole[..., :-1] + (start + rises)[..., None]
+
+    def end(self, slopes: Floats, half: Any) -> Floats:
+        """Return the integral over all rows together.
+
+        slopes : values of the integrand at the nodes, (..., rows, nodes).
+        half : half the length of each row, (rows,) or (..., rows).
+        Returns one integral for each function, (...), a number for slopes of shape (rows, nodes).
+        """
+        return (_multiply(self._integrals[-1:], slopes)[..., 0] * half).sum(axis=-1)
+
+
+def _multiply(matrix: Floats, values: Floats) -> Floats:
+    """Return the products of a matrix with vectors along the last axis.
+
+    BLAS is not used, as its last bits differ between machines.
+
+    matrix : (m, n).
+    values : vectors, (..., n).
+    Returns the products, (..., m).
+    """
+    return np.einsum("...n,mn->...m", values, matrix)
+
+
+NODES = Nodes(TERMS)
+
+
+class Rows:
+    """Consecutive intervals of one variable, the rows, with a polynomial in each.
+
+    edges : ends of the rows, ascending, (rows + 1,).
+    half : half the length of each row, (rows,).
+    x : interpolation nodes of all rows, (rows, nodes).
+    """
+
+    def __init__(self, edges: Floats) -> None:
+        self.edges = edges
+        self.half = 0.5 * np.diff(edges)
+        self.x = self.node_positions(NODES)
+
+    def node_positions(self, nodes: Nodes) -> Floats:
+        """Return interpolation nodes of all rows, (rows, nodes), ascending; nodes: :class:`Nodes`
+        in [-1, 1].
+        """
+        return self.edges[:-1, None] + self.half[:, None] * (1.0 + nodes.t)
+
+    def value(self, powers: Floats, x: Floats) -> Floats:
+        """Evaluate a piecewise polynomial.
+
+        powers : coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers).
+        x : arguments, an array of any shape; beyond the ends the polynomial of the first or last
+        row is continued, and an inner edge belongs to the row on its right.
+        Returns the values, of the shape of x.
+        """
+        row = np.searchsorted(self.edges[1:-1], x, side="right")
+        t = (x - self.edges[row]) / self.half[row] - 1.0
+        return np.asarray(polyval(t, np.moveaxis(powers[row], -1, 0), tensor=False))
+
+    def inverse(self, powers: Floats, target: Floats) -> Floats:
+        """Return the arguments at which an increasing piecewise polynomial takes given values, by
+        Newton's iteration.
+
+        It ends when all relative steps are at most :data:`_CONVERGED`, or after
+        :data:`_MAX_ITERATIONS` steps without an error.
+
+        powers : coefficients of powers of t in [-1, 1] on each row, ascending, (rows, powers); its
+        values are > 0.
+        target : values, > 0, of any shape.
+        Returns the arguments, of the shape of ``target``; the upper end of the last row for values
+        beyond it; for values below those of the first row, those of its polynomial continued.
+        """
+        slopes = powers[:, 1:] * np.arange(1, powers.shape[1]) / self.half[:, None]
+        x = np.interp(np.log(target), np.log(self.value(powers, self.x).ravel()), self.x.ravel())
+        for _ in range(_MAX_ITERATIONS):
+            change = (self.value(powers, x) - target) / self.value(slopes, x)
+            x = np.minimum(x - change, self.edges[-1])
+            if (np.abs(change) <= _CONVERGED * np.abs(x)).all():
+                break
+        return x
+
+
+def octaves(low: int, high: int) -> Rows:
+    """Return the :class:`Rows` of the high - low octaves from 2^low to 2^high; low, high: ints, low
+    < high.
+    """
+    return Rows(np.ldexp(1.0, np.arange(low, high + 1)))
+
+
+# --- A scene for which a flow map is built ---
+
+#: Reason: the rolling resistance exceeds the friction.
+STOPS = "the sliding cylinder can reach a steady speed"
+#: Reason: a motion of the slow manifold leaves partial slip.
+FULL_SLIP_RETURNS = "full slip returns"
+#: Reason: a motion of a boundary layer leaves partial slip.
+STICK_ENDS = "the cylinder can return from partial slip to full slip"
+#: Reason: numbers that are not finite.
+OUT_OF_RANGE = "its speeds or times exceed the range of double precision"
+
+#: Octaves of the tables over kappa V.
+SPEEDS = octaves(flow_layout.LOW, flow_layout.HIGH)
+
+
+class NoFlowMap(Exception):
+    """The scene has no flow map; the message is the reason."""
+
+
+class FlowProblem(NamedTuple):
+    """A scene for which a map is made.
+
+    parameters : (material, kappa, mu, j), numbers; the material is alpha, or a :class:`Prony`
+    series in its own unit of time.
+    law : the kernels' record of the contact law of the material.
+    slow_rate : rate at which ln V falls at low speeds, in units of gamma, > 0.
+    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
+    available.
+    """
+
+    parameters: tuple[Any, ...]
+    law: Any
+    slow_rate: float
+    threads: int | None
+
+    def contact_states(self, V: Floats, delta: Floats) -> Floats:
+        """Return critical creepage, moment, traction and its slope at speeds and creepages inside
+        the stick zone.
+
+        V, delta : speeds, > 0, and creepages, |delta| < delta_star, dimensionless, of one shape.
+        Returns (4, ...), dimensionless, in this order, each in the shape of V: delta_star, M, Q
+        with the sign of delta (0 at delta = 0), dQ/d delta at fixed V; :mod:`.flow_layout`
+        names the indices.
+        """
+        _, kappa, mu, _ = self.parameters
+        out = np.empty((4, V.size))
+        states(
+            np.ascontiguousarray(V).ravel(),
+            np.ascontiguousarray(delta).ravel(),
+            kappa,
+            mu,
+            self.law,
+            out,
+        )
+        return out.reshape(4, *V.shape)
+
+    def integrate(
+        self, V: Floats, delta: Floats, gamma: Floats, t: Floats, reason: str
+    ) -> tuple[Floats, Floats]:
+        """Integrate motions that start and stay in partial slip, or start just before its onset.
+
+        V, delta : start speeds, > 0 (not checked), and creepages, (n,), n >= 1, dimensionless.
+        gamma : ratio of the load to inertia, which sets the time scale, of each motion, > 0, (n,)
+        or (1,).
+        t : output times since the start, >= 0, ascending, (times,), common to all, dimensionless;
+        the tables count the time gamma t, so that t is the time of the tables divided by the gamma
+        of each motion.
+        reason : message of :class:`NoFlowMap` if a motion is not in partial slip with V > 0 at an
+        output time.
+        Raises :class:`NoFlowMap` for this reason, which includes motions that could not be
+        integrated to the end; and for OUT_OF_RANGE if V, delta, gamma, their product or t is not
+        finite, or gamma is not positive.
+        Returns (V, delta), each (n, times), dimensionless.
+        """
+        if not (
+            np.isfinite(V * delta * gamma).all() and (gamma > 0.0).all() and np.isfinite(t).all()
+        ):
+            raise NoFlowMap(OUT_OF_RANGE)
+        starts = V, V * (1.0 + delta)
+        (V, _, _, _, delta, regime, *_), _ = integrate_motions(
+            self.parameters, starts, gamma, t, threads=self.threads
+        )
+        if not ((regime == PARTIAL_SLIP) & (V > 0.0)).all():
+            raise NoFlowMap(reason)
+        return V, delta
+
 
 # --- The slow manifold of a flow map ---
 
@@ -191,7 +397,7 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
             * between
             / problem.contact_states(between, np.zeros(1))[MOMENT]
         )
-        (V,), (delta,) = problem.integrate(V, delta, gamma, step, FULL_SLIP_RETURNS)
+        (V,), (delta,) = problem.integrate(V, delta, gamma=gamma, t=step, reason=FULL_SLIP_RETURNS)
         if not V[0] < between[0]:
             raise NoFlowMap(OUT_OF_RANGE)
         halves.append((V, delta))
@@ -204,7 +410,11 @@ def _integrate_manifold(problem: FlowProblem) -> tuple[Rows, Floats, Floats]:
         inside = np.flatnonzero((nodes <= start) & (nodes > end))
         if inside.size:
             (states[0, inside],), (states[1, inside],) = problem.integrate(
-                V, delta, gamma, (start - nodes[inside]) / rate, FULL_SLIP_RETURNS
+                V,
+                delta,
+                gamma=gamma,
+                t=(start - nodes[inside]) / rate,
+                reason=FULL_SLIP_RETURNS,
             )
     V, delta = states[:, ::-1].reshape(2, *rows.x.shape)
     return rows, V, delta
@@ -264,7 +474,7 @@ def fill_layers(
     k0 = _stiff_rate(problem, V0)
     split_powers = _split_powers(problem, sign, onsets)
     split = np.asarray(polyval(_COARSE.t, split_powers.T), np.float64)
-    V, delta, V_end = _layer_motions(problem, sign, V0, k0, split)
+    V, delta, V_end = _layer_motions(problem, sign, V0=V0, k0=k0, split=split)
     # over (octave, V, octave of u, u)
     width = np.where(
         np.arange(_LAYER.half.size) < _OCTAVES_BEFORE_SPLIT,
@@ -368,9 +578,9 @@ def _layer_motions(
     V_on, delta_on = problem.integrate(
         V[:, -1],
         delta[:, -1],
-        1.0 / k0.ravel(),
-        np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
-        STICK_ENDS,
+        gamma=1.0 / k0.ravel(),
+        t=np.append(u[_OCTAVES_BEFORE_SPLIT:] - 1.0, _JOIN_E),
+        reason=STICK_ENDS,
     )
     shape = (*V0.shape, _LAYER.half.size, _COARSE.t.size)
     V_whole, delta_whole = (
@@ -426,82 +636,3 @@ def _pad(powers: Floats) -> Floats:
     Returns a new array (rows, nodes).
     """
     return np.pad(powers, [(0, 0), (0, NODES.t.size - powers.shape[-1])])
-
-
-# --- The tables of a flow map ---
-
-
-def fill_tables(new_map: Any, threads: int | None) -> str:
-    """Fill the tables of a new flow map.
-
-    new_map : the :class:`.flow.FlowMap`, whose ``table`` is written.
-    threads : number of threads; None: ``$VISCOROLL_THREADS``, or where that is not set the cores
-    available.
-    Returns "", or the reason why the scene has no map, a sentence; the table is then incomplete.
-    Of an elastic scene, which never slows down, nothing is written.
-    """
-    if new_map.slow_rate == 0.0:
-        return "an elastic cylinder never slows down"
-    parts = flow_layout.views(new_map.table)
-    first = new_map.first
-    problem = FlowProblem(
-        new_map.parameters, law_table(new_map.parameters[0]).record, new_map.slow_rate, threads
-    )
-    try:
-        with np.errstate(all="ignore"):  # what is not finite is refused
-            _fill_full_slip(problem, parts)
-            slow = fill_manifold(problem, parts)
-            for family, sign in ((flow_layout.PLUS, 1.0), (flow_layout.MINUS, -1.0)):
-                fill_layers(
-                    problem, sign, first, slow, parts.asymptote[family], parts.layer[family]
-                )
-    except NoFlowMap as reason:
-        return str(reason)
-    return ""
-
-
-def _fill_full_slip(problem: FlowProblem, parts: FlowTables) -> None:
-    """Fill the tables of full slip, V > 0 and V < 0, from the equation V' = +-mu - M/2 in time
-    gamma t.
-
-    problem : the :class:`FlowProblem`.
-    parts : :class:`FlowTables`, views of the tables, of which ``slide``, ``after`` and ``onset``
-    are written.
-    Raises :class:`NoFlowMap`, with the tables incomplete: for the reason STOPS where at some speed
-    the rolling resistance can hold the sliding cylinder, or nearly can, and where the speed at the
-    onset of partial slip is no unique function of the quantity that is constant while sliding; for
-    OUT_OF_RANGE where numbers leave the range of doubles.
-    """
-    _, kappa, mu, j = problem.parameters
-    V = SPEEDS.x / kappa
-    least = 2.0**flow_layout.LOW / kappa
-    state = problem.contact_states(V, np.zeros(V.shape))
-    limit = state[DELTA_STAR] * V
-    for n, sign in enumerate((1.0, -1.0)):
-        rate = mu - sign * 0.5 * state[MOMENT]
-        if not np.isfinite(limit / rate).all():
-            raise NoFlowMap(OUT_OF_RANGE)
-        if not (rate > 0.0).all():
-            raise NoFlowMap(STOPS)
-        half = SPEEDS.half / kappa
-        T = NODES.integrals(1.0 / rate, half, least / mu)
-        X = NODES.integrals(V / rate, half, 0.5 * least * least / mu)
-        slip = 2.0 * mu * T - V * (1.0 - j) + sign * j * limit
-        if not (np.diff(slip.ravel(), prepend=0.0) > 0.0).all():
-            raise NoFlowMap(STOPS)
-        time = NODES.powers(T)
-        path = NODES.powers(X)
-        onset = NODES.powers(slip)
-        parts.slide[n] = np.concatenate(
-            [interleave_pairs(time, NODES.powers(limit)), path], axis=-1
-        )
-        # nearly held: the inverse would end before the speeds that are served
-        if not kappa * mu * time[-3].sum() < 2.0 ** (flow_layout.HIGH - 1):
-            raise NoFlowMap(STOPS)
-        parts.after[n] = NODES.powers(SPEEDS.inverse(time, SPEEDS.x / (kappa * mu)) / kappa)
-        u = SPEEDS.inverse(onset, SPEEDS.x * (1.0 + j) / kappa)
-        values = [
-            NODES.powers(value)
-            for value in (u / kappa, SPEEDS.value(time, u), SPEEDS.value(path, u))
-        ]
-        parts.onset[n] = np.concatenate([interleave_pairs(*values[:2]), values[2]], axis=-1)

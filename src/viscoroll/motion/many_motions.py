@@ -11,15 +11,15 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
-from ..contact_mechanics.parameters import Parameters
+from ..contact_mechanics import Parameters
 from ..core import (
     TIME_POWERS,
     Booleans,
     Floats,
     Integers,
     MotionStatus,
+    NDArray,
     ParameterError,
     broadcast_vector,
     extent,
@@ -27,9 +27,9 @@ from ..core import (
     run_blocks,
 )
 from ..kernels.records import Motions
+from ..laws import record_of_alphas, record_of_materials
 from ..laws.law_table import law_table
-from ..laws.laws_per_element import record_of_alphas, record_of_materials
-from ..materials.bodies import Bodies
+from ..materials import Bodies
 from .flow import FlowResult, flow_map, look_up_ensemble
 from .motion_arguments import LOSSES, ROWS, SPEED_RANGE, STATES
 from .motion_problem import MotionProblem, integrate

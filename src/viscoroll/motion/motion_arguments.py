@@ -13,9 +13,9 @@ import sys
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from ..core import (
+    ArrayLike,
     Feedback,
     Floats,
     HasUnits,

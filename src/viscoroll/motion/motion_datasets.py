@@ -6,20 +6,18 @@ Motions and ensembles as xarray datasets, with names, units and provenance.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
 from .. import __version__
-from ..contact_mechanics.assumptions import Validity
-from ..contact_mechanics.free_rolling import FreeRolling
-from ..contact_mechanics.parameters import PARAMETERS, Parameters, Roller
-from ..contact_mechanics.validity import Steadiness
+from ..contact_mechanics import PARAMETERS, FreeRolling, Parameters, Roller, Steadiness, Validity
 from ..core import (
+    Dataset,
     Feedback,
     Floats,
     MotionStatus,
+    NDArray,
     Result,
     Scale,
     Schedule,
@@ -28,12 +26,8 @@ from ..core import (
     format_value,
     unit_of,
 )
-from ..materials.bodies import Bodies, Cover
-from ..materials.prony import Prony
+from ..materials import Bodies, Cover, Prony
 from .motion_arguments import ROWS, STATES, Drive
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # --- Common data of one motion and of an ensemble ---
 
@@ -191,7 +185,7 @@ def _dataset(
     dims: tuple[str, ...],
     variables: dict[str, Any],
     about: dict[str, Any],
-) -> xr.Dataset:
+) -> Dataset:
     """Return the dataset of a motion or an ensemble.
 
     result: :class:`Motion` or :class:`Ensemble`, whose quantities, t, drive, scene and roller are
@@ -424,7 +418,7 @@ def _mode_variables(series: Prony, count: int, prefix: str, title: str) -> dict[
     }
 
 
-def motion_dataset(motion: Any) -> xr.Dataset:
+def motion_dataset(motion: Any) -> Dataset:
     """Return the dataset over t of one motion; of a driven one with loads, works, losses and the
     times at which V reverses.
 
@@ -451,13 +445,13 @@ def motion_dataset(motion: Any) -> xr.Dataset:
     return _dataset(
         motion,
         "Motion of a viscoelastic cylinder rolling with partial slip",
-        ("t",),
-        variables,
-        about,
+        dims=("t",),
+        variables=variables,
+        about=about,
     )
 
 
-def ensemble_dataset(result: Any) -> xr.Dataset:
+def ensemble_dataset(result: Any) -> Dataset:
     """Return the dataset over (motion, t) of an ensemble.
 
     result: an :class:`Ensemble`; labels of its starts of length n become coordinates, called
@@ -477,7 +471,9 @@ def ensemble_dataset(result: Any) -> xr.Dataset:
         variables[name] = "motion", result[name], column_attributes(name, si)
     variables["flow"] = "motion", result.flow.astype(np.int8), column_attributes("flow")
     about = {"flow_error": result.flow_error, "flow_problem": result.flow_problem}
-    dataset = _dataset(result, "Ensemble of motions", ("motion", "t"), variables, about)
+    dataset = _dataset(
+        result, "Ensemble of motions", dims=("motion", "t"), variables=variables, about=about
+    )
     if result.labels is None or result.labels.shape != (len(result),):
         return dataset
     return dataset.assign_coords(

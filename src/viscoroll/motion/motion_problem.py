@@ -11,18 +11,23 @@ import math
 from typing import Any, NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..contact_mechanics import (
+    LARGEST_LOSS,
+    FreeRolling,
+    Parameters,
+    Roller,
+    refuse_beyond,
+    refuse_cover,
+    resolve_model,
+)
 from ..contact_mechanics.contact import contact
-from ..contact_mechanics.contact_table import refuse_beyond
-from ..contact_mechanics.free_rolling import FreeRolling
-from ..contact_mechanics.parameters import Parameters, Roller, refuse_cover, resolve_model
-from ..contact_mechanics.validity import LARGEST_LOSS
 from ..core import (
     Floats,
     HasUnits,
     Integers,
     MotionStatus,
+    NDArray,
     ParameterError,
     Scale,
     broadcast_vector,
@@ -191,7 +196,9 @@ def make_problem(
         V0 = make_dimensionless("V0", start[0], scale)
         omega0 = make_dimensionless("omega0", start[1], scale)
         spacing = None if resolve is None else _sample_spacing(resolve, drive, scale)
-        prepared = prepare_drive(drive.over(scale), V0, omega0, last, rtol, spacing)
+        prepared = prepare_drive(
+            drive.over(scale), V0, omega0=omega0, end=last, rtol=rtol, resolve=spacing
+        )
         if scene.tabulated and not driven:
             start_speeds(prepared.V0, prepared.omega0, LEAST_ON_TABLE)
         functions = prepared.functions
@@ -389,7 +396,15 @@ def integrate_single(
     arrays = np.array(numbers, float).reshape(-1, 1)
     arrays.flags.writeable = False  # as in an ensemble: numba would compile for the other kind anew
     batch = law.unsteady_record if problem.unsteady else law.record, law.unlike, *arrays
-    out, info = integrate(1, batch, problem.kernel_drive(), times, problem.limits, _ALL_ROWS, notes)
+    out, info = integrate(
+        1,
+        batch,
+        drive=problem.kernel_drive(),
+        times=times,
+        limits=problem.limits,
+        rows=_ALL_ROWS,
+        notes=notes,
+    )
     if law.coupled is not None:
         refuse_beyond(law, scene.kappa * np.abs(np.nan_to_num(out[ROWS.index("V"), 0])))
     return out[:, 0], info[0].tolist()
@@ -435,7 +450,9 @@ def integrate_motions(
     def work(start: int, stop: int) -> None:
         parts = (array[start:stop] if array.size > 1 else array for array in arrays)
         batch = law.record, law.unlike, *parts
-        blocks[start] = integrate(stop - start, batch, undriven(), t, _MAP_LIMITS, _FREE_ROWS)
+        blocks[start] = integrate(
+            stop - start, batch, drive=undriven(), times=t, limits=_MAP_LIMITS, rows=_FREE_ROWS
+        )
 
     run_blocks(work, count, _BLOCK, threads=threads)
     out, info = zip(*(blocks[start] for start in sorted(blocks)), strict=True)

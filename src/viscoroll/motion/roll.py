@@ -6,19 +6,26 @@ import warnings
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from ..contact_mechanics.assumptions import Validity, assess_heat
+from ..contact_mechanics import (
+    Roller,
+    Validity,
+    assess_heat,
+    scale_of,
+    warn_of_speeds,
+    warn_of_start,
+)
 from ..contact_mechanics.contact import contact
-from ..contact_mechanics.model_warnings import warn_of_speeds, warn_of_start
-from ..contact_mechanics.parameters import Roller, scale_of
 from ..contact_mechanics.validity import validity
 from ..core import (
     UNLABELLED_TYPES,
+    ArrayLike,
+    Dataset,
     Feedback,
+    Figure,
     Floats,
     MotionStatus,
     Numbers,
@@ -33,10 +40,6 @@ from ..core import (
 from .motion_arguments import ROWS, SPEED_RANGE, Drive, output_times, strip_units
 from .motion_datasets import RollResult, Switch, describe_load, describe_values
 from .motion_problem import NO_NOTES, MotionProblem, SolverOptions, integrate_single, make_problem
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 #: Changes of regime that are kept.
 _SWITCHES_KEPT = 1000
@@ -258,7 +261,7 @@ class Motion(RollResult):
         if self.scene.cover is None:
             rolls = whole.regime[reached] > 0
             x = whole.x[reached]
-            report = self._add_steadiness(report, self.roller, V, rolls, x, ends=False)
+            report = self._add_steadiness(report, self.roller, V=V, rolls=rolls, x=x, ends=False)
         last = np.searchsorted(t, outputs)
         return Validity(
             *(entry.worst_of_parts(last) if np.ndim(entry.holds) else entry for entry in report)
@@ -365,7 +368,7 @@ class Motion(RollResult):
         t = self.course.t
         return RollResult._figure(self.at(np.union1d(t, np.linspace(0.0, t[-1], _DRAWN))))
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the dataset over t with V, omega, x, angle, delta and regime, and the scene as
         attributes.
 
@@ -583,9 +586,16 @@ def roll(
     options = SolverOptions(
         rtol=rtol, rest=rest, max_steps=max_steps, resolve=resolve, unsteady=unsteady, rested=rested
     )
-    problem = make_problem(roller, (V0, omega0), drive, times[-1], options, single=True)
+    problem = make_problem(
+        roller, (V0, omega0), drive=drive, end=times[-1], options=options, single=True
+    )
     warn_of_start(
-        problem.roller, problem.scene, (V0, omega0), problem.V0, problem.omega0, problem.driven
+        problem.roller,
+        problem.scene,
+        start=(V0, omega0),
+        V0=problem.V0,
+        omega0=problem.omega0,
+        driven=problem.driven,
     )
     motion = integrate_motion(problem, times)
     warn_of_speeds(problem.roller, V0, motion.V)

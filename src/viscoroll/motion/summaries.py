@@ -20,18 +20,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from functools import partial
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
-from ..core import Floats, Integers, MotionStatus, ParameterError
+from ..core import Dataset, Floats, Integers, MotionStatus, NDArray, ParameterError
 from .motion_datasets import column_attributes, provenance
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- Counts and moments of one quantity, which merge with those of further values ---
 
@@ -338,7 +333,7 @@ class Summary(msgspec.Struct):
     mapped: int
 
 
-def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
+def summary_of(motions: Any, levels: tuple[float, ...]) -> Dataset:
     """Return the summary of an ensemble in memory with exact quantiles, see ``Ensemble.summary``.
 
     motions: the :class:`Ensemble`.
@@ -366,7 +361,7 @@ def summary_of(motions: Any, levels: tuple[float, ...]) -> xr.Dataset:
     )
 
 
-def drawn_summary(ensemble: xr.Dataset) -> xr.Dataset:
+def drawn_summary(ensemble: Dataset) -> Dataset:
     """Return the summary by which an ensemble is drawn: of both speeds, the distance and the angle,
     as it has them.
 
@@ -442,7 +437,7 @@ def merge_summaries(summaries: Iterator[Summary]) -> Summary:
     return total
 
 
-def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bool) -> xr.Dataset:
+def summary_dataset(total: Summary, t: Floats, levels: tuple[float, ...], si: bool) -> Dataset:
     """Return moments, quantiles and histograms, and counts of how motions ended, as a dataset.
 
     total: the :class:`Summary`, with at least one histogram for each quantity.

@@ -44,10 +44,9 @@ from ..core import (
     import_extra,
     thread_count,
 )
-from .run_blocks import block_inputs, warn_of_materials
 from .run_records import Record, encoded
 from .run_rollers import roller_of
-from .run_store import Store, block_content, locked
+from .run_store import Store, block_content, block_inputs, locked, warn_of_materials
 from .runfile import Run
 
 # --- Evaluation of the blocks of a run ---
@@ -122,7 +121,7 @@ def run_ensemble(
     -----
     ModelWarning
         Of motions beyond the model or the measured bands of the materials
-        (:func:`.run_blocks.warn_of_materials`).
+        (:func:`.run_store.warn_of_materials`).
 
     Notes
     -----
@@ -154,7 +153,9 @@ def run_ensemble(
             store.start()
             evaluated = 0
             try:
-                for motions in _evaluate_missing(store, shared, pool, workers, advance):
+                for motions in _evaluate_missing(
+                    store, shared, pool=pool, workers=workers, advance=advance
+                ):
                     evaluated += 1
                     advance(motions)
             except KeyboardInterrupt:
@@ -409,7 +410,7 @@ def estimate(run: Run, threads: int | None = None) -> Estimate:
     -----
     ModelWarning
         Of motions beyond the model or the measured bands of the materials
-        (:func:`.run_blocks.warn_of_materials`).
+        (:func:`.run_store.warn_of_materials`).
 
     Examples
     --------
@@ -455,8 +456,8 @@ def _time_of_laws(run: Run) -> float:
     Raises ParameterError for inputs of the first block that no cylinder allows or a layer too thin
     for its law, FileError for those that no material allows.
     """
+    from ..laws import count_laws
     from ..laws.cover_rows import cover_rows
-    from ..laws.laws_per_element import count_laws
 
     scene = roller_of(run.path, run.inputs.filled(block_inputs(run, 0))).scene()
     start = time.perf_counter()

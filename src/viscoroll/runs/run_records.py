@@ -23,20 +23,15 @@ import zlib
 from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
 
 from .. import __version__
-from ..core import FileError, as_file_error, import_extra, seal, seal_matches, write_bytes
-from ..motion.motion_datasets import provenance
-from ..motion.summaries import Summary
+from ..core import Dataset, FileError, as_file_error, import_extra, seal, seal_matches, write_bytes
+from ..motion import Summary, provenance
 from .runfile import Run
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- Records ---
 
@@ -184,7 +179,7 @@ _METADATA = (".zgroup", ".zarray", ".zattrs")
 
 
 def motion_files(
-    motions: xr.Dataset, count: int, block: int, number: int | None = None
+    motions: Dataset, count: int, block: int, number: int | None = None
 ) -> dict[str, bytes]:
     """Return files of the group of all motions, as zarr encodes them in memory; nothing is written
     to disk.
@@ -229,7 +224,7 @@ def motion_files(
     )
 
 
-def dataset_files(dataset: xr.Dataset) -> dict[str, bytes]:
+def dataset_files(dataset: Dataset) -> dict[str, bytes]:
     """Return all files of a small dataset as zarr writes them: path below its group -> content;
     nothing is written.
 

@@ -15,11 +15,13 @@ import os
 from dataclasses import dataclass
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from ..core import (
+    DataFrame,
+    Dataset,
     FileError,
     MotionStatus,
     Result,
@@ -32,11 +34,6 @@ from ..core import (
 )
 from .run_records import RECORDS, Record, read_record, refuse_unreadable
 from .run_store import MOTIONS, problems
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
-
 
 # --- Check of a results store against its records ---
 
@@ -182,7 +179,7 @@ class RunResults(Result):
     (16, 7)
     """
 
-    def __init__(self, path: Path, summaries: xr.Dataset) -> None:
+    def __init__(self, path: Path, summaries: Dataset) -> None:
         self.path = path
         self.summaries = summaries
 
@@ -209,7 +206,7 @@ class RunResults(Result):
         """Folder of the motions, which exists if they are kept."""
         return self.path / MOTIONS
 
-    def motions(self) -> xr.Dataset:
+    def motions(self) -> Dataset:
         """Open the dataset of every motion with its inputs, over (motion, t); values are read when
         they are needed.
 
@@ -250,7 +247,7 @@ class RunResults(Result):
             )
         return xr.open_zarr(self.path, group=MOTIONS, chunks=None)
 
-    def to_xarray(self) -> xr.Dataset:
+    def to_xarray(self) -> Dataset:
         """Return the summaries: moments, quantiles, histograms, and how the motions ended.
 
         Returns
@@ -278,7 +275,7 @@ class RunResults(Result):
         """
         return self.summaries
 
-    def to_pandas(self) -> pd.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """Return a row for each quantity and time: mean, std, min, max, and a column for each
         quantile.
 

@@ -7,17 +7,77 @@ from __future__ import annotations
 from collections.abc import Mapping
 from functools import cached_property
 from pathlib import Path
-from typing import Any, ClassVar
+from typing import Annotated, Any, ClassVar
 
+import msgspec
 import numpy as np
 
 from ..core import Floats, ParameterError, Scale, Schedule, check_array, described_error
-from ..materials.material import Material
-from ..materials.material_toml import SECTIONS, parse_materials, parse_series, parse_shifts
-from ..materials.measured_data import Measured
-from ..materials.pair import Solid
+from ..materials import (
+    SECTIONS,
+    Material,
+    Measured,
+    Solid,
+    parse_materials,
+    parse_series,
+    parse_shifts,
+)
 from ..roller_toml import make_roller
 from ..rollers import Cylinder, Scene, scene_of
+
+# --- Sections of a run file beside the roller's and [run] ---
+
+#: A list of numbers that is not empty.
+Numbers = Annotated[list[float], msgspec.Meta(min_length=1)]
+
+
+class StartSection(msgspec.Struct):
+    """[start]: start speeds; one that [drive] prescribes is left out; an omega0 "rolling" is
+    replaced before.
+    """
+
+    V0: float | None = None
+    omega0: float | None = None
+
+
+class ScheduleSection(msgspec.Struct):
+    """{ times = [...], values = [...] }: a piecewise linear load."""
+
+    times: Numbers
+    values: Numbers
+
+
+class DriveSection(msgspec.Struct):
+    """[drive]: loads, and prescribed speeds."""
+
+    force: float | ScheduleSection | None = None
+    torque: float | ScheduleSection | None = None
+    brake: float | ScheduleSection | None = None
+    slope: float | None = None
+    drag: float | None = None
+    V: float | ScheduleSection | None = None
+    omega: float | ScheduleSection | None = None
+
+
+class HeatSection(msgspec.Struct):
+    """[heat]: the material of a motion is at the temperature at which its cylinder, from cold,
+    rolls at a speed.
+
+    ambient : temperature of the surroundings, degrees Celsius.
+    conductance : heat given off per kelvin, W/(m K).
+    speed : m/s; default: V0 of the motion.
+    """
+
+    ambient: float
+    conductance: float
+    speed: float | None = None
+
+
+#: Sections whose numbers may be uncertain -> their keys, in the order in which inputs are drawn.
+RUN_SECTIONS: dict[str, Any] = {"start": StartSection, "drive": DriveSection, "heat": HeatSection}
+
+
+# --- The motions that they describe ---
 
 
 class Rollers(Cylinder):
@@ -57,7 +117,14 @@ class Rollers(Cylinder):
             return super()._scene
         T = self.T_ref
         scene = scene_of(
-            self.R, self.m, self.load, self.E_prime, T, T / self.T_sigma, self.mu, self.j
+            self.R,
+            self.m,
+            load=self.load,
+            E_prime=self.E_prime,
+            T_ref=T,
+            law=T / self.T_sigma,
+            mu=self.mu,
+            j=self.j,
         )
         return scene.replace(gamma=scene.gamma / T)
 
@@ -141,8 +208,7 @@ def _warm_bodies(
         if body.prony.alpha > 1.0 and not theta.ndim:
             warm[name] = body.at(float(theta))
         elif body.prony.alpha > 1.0:
-            from ..heat.heated_bodies import warm_solid
-            from ..heat.shift_curve import shift_curve
+            from ..heat.heated_bodies import shift_curve, warm_solid
 
             warm[name] = warm_solid(body, *shift_curve(body).factors(theta))
     return warm

@@ -29,17 +29,29 @@ from typing import Annotated, Any, Literal
 
 import msgspec
 
-from ..core import FileError, Floats, ParameterError, check_names
-from ..core.toml_sections import as_section_error, read_toml, section_error
-from ..materials.material_toml import material_as_toml, parse_materials
-from ..motion.ensemble import FIELDS
-from ..motion.many_motions import FLOW_PAYS
-from ..motion.motion_arguments import Drive, output_times
-from ..motion.motion_problem import SolverOptions, make_problem
-from ..motion.summaries import LEVELS, QUANTITIES
+from ..core import (
+    FileError,
+    Floats,
+    ParameterError,
+    as_section_error,
+    check_names,
+    read_toml,
+    section_error,
+)
+from ..materials import material_as_toml, parse_materials
+from ..motion import (
+    FIELDS,
+    FLOW_PAYS,
+    LEVELS,
+    QUANTITIES,
+    Drive,
+    SolverOptions,
+    make_problem,
+    output_times,
+)
 from ..roller_toml import check_sections, locate_error
 from ..sampling import Design
-from .run_rollers import Rollers, drive_of, roller_of
+from .run_rollers import RUN_SECTIONS, Rollers, drive_of, roller_of
 from .uncertain_inputs import Inputs, correlated, inputs_in, inputs_of
 
 #: Largest number of motions of a block, by method: some seconds of work.
@@ -54,52 +66,8 @@ _NOT_IN_DIGEST = ("n", "method", "block")
 
 #: A positive whole number.
 Whole = Annotated[int, msgspec.Meta(ge=1, le=10**12)]
-#: A list of numbers that is not empty.
-Numbers = Annotated[list[float], msgspec.Meta(min_length=1)]
 #: A number in [0, 1].
 Share = Annotated[float, msgspec.Meta(ge=0.0, le=1.0)]
-
-
-class StartSection(msgspec.Struct):
-    """[start]: start speeds; one that [drive] prescribes is left out; an omega0 "rolling" is
-    replaced before.
-    """
-
-    V0: float | None = None
-    omega0: float | None = None
-
-
-class ScheduleSection(msgspec.Struct):
-    """{ times = [...], values = [...] }: a piecewise linear load."""
-
-    times: Numbers
-    values: Numbers
-
-
-class DriveSection(msgspec.Struct):
-    """[drive]: loads, and prescribed speeds."""
-
-    force: float | ScheduleSection | None = None
-    torque: float | ScheduleSection | None = None
-    brake: float | ScheduleSection | None = None
-    slope: float | None = None
-    drag: float | None = None
-    V: float | ScheduleSection | None = None
-    omega: float | ScheduleSection | None = None
-
-
-class HeatSection(msgspec.Struct):
-    """[heat]: the material of a motion is at the temperature at which its cylinder, from cold,
-    rolls at a speed.
-
-    ambient : temperature of the surroundings, degrees Celsius.
-    conductance : heat given off per kelvin, W/(m K).
-    speed : m/s; default: V0 of the motion.
-    """
-
-    ambient: float
-    conductance: float
-    speed: float | None = None
 
 
 class TimesSection(msgspec.Struct):
@@ -313,14 +281,7 @@ def read_run(path: str | PathLike[str]) -> Run:
     path = Path(path)
     inputs = inputs_of(path, content)
     medians = inputs.filled(inputs.medians)
-    sections = {
-        "start": StartSection,
-        "drive": DriveSection,
-        "run": RunSection,
-        "correlation": None,
-        "heat": HeatSection,
-    }
-    check_sections(path, medians, sections)
+    check_sections(path, medians, RUN_SECTIONS | {"run": RunSection, "correlation": None})
     for name, needed in (("run", "n and t"), ("start", "V0 and omega0")):
         if name not in content:
             raise section_error(path, "", name, f"section [{name}] is missing: it needs {needed}")
@@ -355,9 +316,9 @@ def read_run(path: str | PathLike[str]) -> Run:
     digest = _digest(
         settings,
         times,
-        content,
-        [material_as_toml(material) for material in certain.values()],
-        inputs,
+        content=content,
+        materials=[material_as_toml(material) for material in certain.values()],
+        inputs=inputs,
     )
     run = Run(path=path, text=text, settings=settings, inputs=inputs, t=times, digest=digest)
     if not settings.summaries:
@@ -457,7 +418,9 @@ def _fault_of(run: Run, values: dict[str, Any]) -> ParameterError | FileError | 
             unsteady=settings.unsteady,
             rested=settings.rested,
         )
-        make_problem(roller, start, Drive(**drive_of(content)), run.t[-1], options)
+        make_problem(
+            roller, start, drive=Drive(**drive_of(content)), end=run.t[-1], options=options
+        )
     except (ParameterError, FileError) as error:
         return error
     return None

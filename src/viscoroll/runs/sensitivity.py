@@ -9,15 +9,17 @@ scrambled Sobol sequence; scipy.stats.sobol_indices, which has them too, fails f
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import msgspec
 import numpy as np
-from numpy.typing import NDArray
 
 from ..core import (
+    DataFrame,
+    Dataset,
     Floats,
     MotionStatus,
+    NDArray,
     ParameterError,
     check_bool,
     check_integer,
@@ -26,16 +28,11 @@ from ..core import (
     run_blocks,
     unit_of,
 )
-from ..motion.motion_datasets import column_attributes, provenance
-from ..motion.summaries import QUANTITIES
+from ..motion import QUANTITIES, column_attributes, provenance
 from ..sampling import points
-from .run_blocks import roll_inputs, warn_of_materials
+from .run_store import roll_inputs, warn_of_materials
 from .runfile import Run
 from .uncertain_inputs import Inputs, inputs_in
-
-if TYPE_CHECKING:
-    import pandas as pd
-    import xarray as xr
 
 #: Level of the confidence intervals.
 CONFIDENCE = 0.95
@@ -58,7 +55,7 @@ _INDICES = {
 
 def sobol_indices(
     run: Run, n: int = 4096, *, threads: int | None = None, progress: bool = False
-) -> xr.Dataset:
+) -> Dataset:
     """Estimate first-order and total Sobol indices of the summarised quantities over all uncertain
     inputs.
 
@@ -100,7 +97,7 @@ def sobol_indices(
     -----
     ModelWarning
         Of motions beyond the model or the measured bands of the materials
-        (:func:`.run_blocks.warn_of_materials`).
+        (:func:`.run_store.warn_of_materials`).
 
     Notes
     -----
@@ -224,7 +221,9 @@ def _points(count: int, base: int, seed: int) -> Floats:
     each motion: the points of A, those of B, then for each input n the points of A with row n taken
     from B.
     """
-    A, B = np.split(points("sobol", seed, base, 2 * count, 0, base, 0), 2)
+    A, B = np.split(
+        points("sobol", seed, n=base, dimensions=2 * count, start=0, stop=base, block=0), 2
+    )
     mixed = [np.where(np.arange(count)[:, np.newaxis] == n, B, A) for n in range(count)]
     return np.hstack([A, B, *mixed])
 
@@ -330,7 +329,7 @@ def _estimated(values: Floats) -> Floats:
     )
 
 
-def table(indices: xr.Dataset) -> pd.DataFrame:
+def table(indices: Dataset) -> DataFrame:
     """Return a row for each quantity, time and input that has indices, the largest total index
     first at each t.
 

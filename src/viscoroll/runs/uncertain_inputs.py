@@ -21,11 +21,11 @@ from typing import Any
 
 import numpy as np
 
-from ..core import FileError, Floats, import_extra, si_unit, suggestion
-from ..core.toml_sections import check_keys, section_error
-from ..materials.material_toml import SECTIONS
+from ..core import FileError, Floats, check_keys, import_extra, section_error, si_unit, suggestion
+from ..materials import SECTIONS
 from ..roller_toml import SCHEMA
 from ..sampling import LARGEST, SMALLEST
+from .run_rollers import RUN_SECTIONS
 
 # --- Uncertain inputs ---
 
@@ -280,7 +280,7 @@ def inputs_in(part: Any) -> list[Input]:
 #: Section -> first letters of the names of its inputs; those of the other sections have none.
 PREFIXES = {"base": "base_", "drive": "drive_"}
 #: Sections that may have uncertain numbers.
-_SECTIONS = (*SCHEMA, *SECTIONS, "start", "drive", "heat")
+_SECTIONS = (*SCHEMA, *SECTIONS, *RUN_SECTIONS)
 #: Key -> the word for it in the name of an input, if that is another; "" is left out.
 _WORDS = {"prony": "", "creep": "", "values": "", "times": "time"}
 #: Keys of a material that may be uncertain.
@@ -562,7 +562,7 @@ def read_column(path: Path, column: str, unit: str) -> Floats:
     else:
         raise ValueError("a sample must be .csv, .nc or .parquet")
     if path.suffix != ".csv":
-        factor, offset = conversion_of_column(path, column, given, unit, advice)
+        factor, offset = conversion_of_column(path, column, unit=given, wanted=unit, advice=advice)
         values = factor * values + offset
     if (
         values.ndim != 1

@@ -10,16 +10,15 @@ other programs.
     grid = vr.tables.build(roller, V=vr.tables.spread(1e-3, 10.0, 201, "log"), delta=[-0.01, 0.0,
     0.01]) vr.tables.export(grid, "rubber.txt")  # Modelica
 
-Modules, in the order of reading: :mod:`law_dataset`, :mod:`grid_build`, :mod:`grid_build`,
-:mod:`table_files` (file of a grid), :mod:`interpolate`, :mod:`table_files` (atomic save, checked
-load), :mod:`table_export` (formats of other programs).
+Modules, in the order of reading: :mod:`law_dataset`, :mod:`grid_build`, :mod:`table_files` (file
+of a grid, interpolation, atomic save, checked load), :mod:`table_export` (formats of other
+programs).
 """
 
 from .grid_build import build, creep_nodes, spread
-from .interpolate import Interpolant, interpolate
 from .law_dataset import law
 from .table_export import export
-from .table_files import info, load, save
+from .table_files import Interpolant, info, interpolate, load, save
 
 __all__ = [
     "Interpolant",

@@ -15,17 +15,25 @@ contact.
 from __future__ import annotations
 
 import math
+import shlex
+import sys
 from dataclasses import replace
+from datetime import UTC, datetime
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
+from .. import __version__
+from ..contact_mechanics import coupled_law
 from ..contact_mechanics.contact import contact
-from ..contact_mechanics.coupled_tables import coupled_law
 from ..core import (
+    PAPER,
+    SYMBOLS,
+    ArrayLike,
+    Dataset,
     Floats,
     ParameterError,
+    attributes,
     check_array,
     check_choice,
     check_integer,
@@ -33,13 +41,20 @@ from ..core import (
     described_error,
     shape_error,
 )
-from ..laws.law_netcdf import bodies_as_toml, law_as_dataset, parse_law
-from ..laws.law_table import LawTable
-from ..materials.checked_netcdf import dataset_content
-from ..materials.prony_forms import HIGHEST_ALPHA
+from ..laws import LawTable, bodies_as_toml, law_as_dataset, parse_law
+from ..materials import HIGHEST_ALPHA, dataset_content
 from ..rollers import Cylinder, Scene
-from . import table_files
-from .interpolate import Interpolant
+from .table_files import (
+    GRID,
+    KIND,
+    OF_TRACTION,
+    PLANE,
+    SCHEMA_VERSION,
+    VOLUME,
+    Interpolant,
+    axes_of,
+    fields_of,
+)
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -168,7 +183,7 @@ def roller_of(what: Any, alpha: Any) -> Scene | Cylinder:
     whose parameters are arrays, for a cylinder whose scene is out of range, and for alpha of a
     cylinder or beside a material; FileError for a dataset of a law that is incomplete.
     """
-    if str(getattr(what, "attrs", {}).get(table_files.KIND)) == "law":
+    if str(getattr(what, "attrs", {}).get(KIND)) == "law":
         what = parse_law(dataset_content(what), "law")
     if isinstance(what, LawTable) and what.cover is None:
         what = Scene(kappa=1.0, mu=1.0, material=what)
@@ -216,10 +231,79 @@ RELATIVE_FIELDS = ("lam", "zeta", "delta_star")
 _SCENE_NUMBERS = ("alpha", "kappa", "mu")
 #: Attributes with the parameters of a cylinder.
 _CYLINDER_NUMBERS = ("R", "m", "mu", "load")
+#: Attribute ``comment`` of a grid.
+COMMENT = (
+    "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, "
+    "delta_star, delta_0 and beta "
+    "are even in V; M, its two parts and Q(V, delta) are odd. Let d = delta - delta_0(V), where "
+    "delta_0 is 0 in a "
+    "grid without this field, where beta is even in d, Q odd. beta has a kink at |d| = "
+    "delta_star(V), in a grid with delta_0 at other d of either sign, beyond which the whole "
+    "contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. "
+    "A grid is for plots and for look-up blocks of other programs. Do not use it where the onset "
+    "of full slip decides a result: look-up smooths the kink, and spline_error and "
+    "linear_error of Q and "
+    "beta, which are absolute, occur there. The file of a law (viscoroll tables law) is exact at "
+    "every V, delta, "
+    "kappa and mu, and has a tenth of the size; law.nc of make tables holds every alpha."
+)
+
+
+def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
+    """Make a variable of a grid, with long_name, units, symbol, range, equation and reference as
+    attributes.
+
+    name: name of the quantity, a key of ``core.symbols.SYMBOLS``.
+    dims: names of the axes of the variable.
+    values: array of its values, over ``dims``.
+    si: whether the values are in SI units, else dimensionless; the range of Q is then that of "mu
+    P" in place of "mu".
+    Returns the variable, float64.
+    Raises KeyError for another name, ValueError of xarray where ``values`` have another number of
+    axes than ``dims``.
+    """
+    import xarray as xr
+
+    symbol = SYMBOLS[name]
+    allowed = symbol.range.replace("mu", "mu P") if si else symbol.range  # of Q
+    about = {
+        "symbol": symbol.latex,
+        "range": allowed,
+        "equation": symbol.equation,
+        "reference": PAPER,
+    }
+    return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes(name, si) | about)
+
+
+def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
+    """Return the global attributes of a grid that is computed now.
+
+    title: title of the grid.
+    grid: axes of the grid in words.
+    command: command that computed it, for ``history``; None or "": the command line of this
+    process.
+    Returns name -> text: Conventions, title, institution, source, history (time of the call in UTC
+    and the command), references, comment, viscoroll_table ("grid"), schema_version,
+    viscoroll_version and grid.
+    """
+    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
+    return {
+        "Conventions": "CF-1.11",
+        "title": title,
+        "institution": "made by its user with the open-source package viscoroll",
+        "source": f"viscoroll {__version__}: the contact law, Eqs. (6), (8)-(10), (15), (16)",
+        "history": f"{now} {command or shlex.join(sys.orig_argv)}",
+        "references": PAPER,
+        "comment": COMMENT,
+        KIND: GRID,
+        "schema_version": SCHEMA_VERSION,
+        "viscoroll_version": __version__,
+        "grid": grid,
+    }
 
 
 def build(
-    what: Scene | Cylinder | LawTable | xr.Dataset,
+    what: Scene | Cylinder | LawTable | Dataset,
     V: ArrayLike | None = None,
     *,
     delta: ArrayLike | None = None,
@@ -228,7 +312,7 @@ def build(
     nodes: tuple[int, int] | None = None,
     progress: bool = False,
     command: str | None = None,
-) -> xr.Dataset:
+) -> Dataset:
     """Compute a table of the contact over (V, delta) or (V, delta, alpha), and its errors of
     interpolation.
 
@@ -331,21 +415,17 @@ def build(
         )
     plane = tuple(name for name in axes if name != "delta")
     data = {
-        name: table_files.variable(
-            name, tuple(axes) if values.ndim == len(axes) else plane, values, si
-        )
+        name: variable(name, tuple(axes) if values.ndim == len(axes) else plane, values, si)
         for name, values in _evaluate_nodes(what, axes, method).items()
     }
-    coordinates = {
-        name: table_files.variable(name, (name,), axis, si) for name, axis in axes.items()
-    }
+    coordinates = {name: variable(name, (name,), axis, si) for name, axis in axes.items()}
     units = "in SI units, per m of length" if si else "dimensionless"
     title = f"Contact of a viscoelastic cylinder rolling with partial slip, {units}"
     grid = ", ".join(
         f"{name} {axis.size} in [{axis[0]:g}, {axis[-1]:g}]" for name, axis in axes.items()
     )
     table = xr.Dataset(
-        data, coordinates, table_files.global_attributes(title, grid, command) | {"method": method}
+        data, coordinates, global_attributes(title, grid, command) | {"method": method}
     )
     numbers = _CYLINDER_NUMBERS if si else _SCENE_NUMBERS
     table.attrs |= {name: float(getattr(what, name)) for name in numbers if name not in axes}
@@ -361,7 +441,7 @@ def build(
 
 def _coupled_dataset(
     roller: Scene | Cylinder, nodes: tuple[int, int] | None, progress: bool
-) -> xr.Dataset:
+) -> Dataset:
     """Return the table of the coupled solution of one roller as a dataset.
 
     roller: a Scene, dimensionless, or a Cylinder, in SI units, with numbers for parameters.
@@ -392,11 +472,11 @@ def _evaluate_nodes(
     grid = dict(zip(axes, np.meshgrid(*axes.values(), indexing="ij", sparse=True), strict=True))
     plane = {name: nodes for name, nodes in grid.items() if name != "delta"}
     scene = roller.scene() if isinstance(roller, Cylinder) else roller
-    of_traction = () if scene.cover is None else table_files.OF_TRACTION
-    names = tuple(name for name in table_files.PLANE if name not in of_traction)
+    of_traction = () if scene.cover is None else OF_TRACTION
+    names = tuple(name for name in PLANE if name not in of_traction)
     names = names if scene.cover is not None else tuple(name for name in names if name != "delta_0")
     fields = _evaluate(roller, plane, names, method)
-    volume = _evaluate(roller, grid, (*table_files.VOLUME, *of_traction), method)
+    volume = _evaluate(roller, grid, (*VOLUME, *of_traction), method)
     return volume | {name: np.take(values, 0, axis=1) for name, values in fields.items()}
 
 
@@ -424,7 +504,7 @@ def _evaluate(
     return contact(own, points["V"], delta=creep, fields=names, method=method).as_dict()
 
 
-def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
+def _state_errors(table: Dataset, roller: Scene | Cylinder) -> None:
     """Add the largest errors of both interpolations, and where they occur, to the attributes of the
     fields of a grid.
 
@@ -447,7 +527,7 @@ def _state_errors(table: xr.Dataset, roller: Scene | Cylinder) -> None:
 
 
 def errors_at(
-    table: xr.Dataset, roller: Scene | Cylinder, points: dict[str, Floats], linear: bool = False
+    table: Dataset, roller: Scene | Cylinder, points: dict[str, Floats], linear: bool = False
 ) -> dict[str, Floats]:
     """Return the absolute errors of interpolation in a grid: field -> errors, (n,), in the unit of
     the field.
@@ -461,26 +541,26 @@ def errors_at(
     delta and ln alpha.
     Raises OutOfTableError for a point outside of an axis.
     """
-    exact = _evaluate(roller, points, table_files.fields_of(table))
+    exact = _evaluate(roller, points, fields_of(table))
     found = Interpolant(table, linear)(**points)
-    return {name: np.abs(found[name] - exact[name]) for name in table_files.fields_of(table)}
+    return {name: np.abs(found[name] - exact[name]) for name in fields_of(table)}
 
 
-def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]:
+def random_points(table: Dataset, count: int, seed: int) -> dict[str, Floats]:
     """Return random points in random cells of a grid; along an axis of one node they all have its
     coordinate.
 
     A cell is drawn with equal probability for each axis, then the place in it evenly in the
     coordinate itself.
 
-    table: the grid, dataset of :func:`grid_build`; also an atlas.
+    table: the grid, dataset of :func:`grid_build`.
     count: number of points, >= 0.
     seed: seed of the generator, >= 0.
     Returns axis -> coordinates, (count,), in the units of the grid.
     """
     random = np.random.default_rng(seed)
     points = {}
-    for name in table_files.axes_of(table):
+    for name in axes_of(table):
         nodes = table[name].values
         if nodes.size == 1:
             points[name] = np.full(count, nodes[0])
@@ -490,7 +570,7 @@ def random_points(table: xr.Dataset, count: int, seed: int) -> dict[str, Floats]
     return points
 
 
-def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]:
+def differences(table: Dataset, roller: Scene | Cylinder) -> dict[str, float]:
     """Return the largest difference of each field between the nodes of a grid and the rows of the
     law.
 
@@ -502,11 +582,9 @@ def differences(table: xr.Dataset, roller: Scene | Cylinder) -> dict[str, float]
     in the rows.  Both are dimensionless.  Where that magnitude is 0, for example for M of elastic
     bodies, the difference itself is taken, in the unit of the field.
     """
-    rows = _evaluate_nodes(
-        roller, {name: table[name].values for name in table_files.axes_of(table)}, "table"
-    )
+    rows = _evaluate_nodes(roller, {name: table[name].values for name in axes_of(table)}, "table")
     found = {}
-    for name in table_files.fields_of(table):
+    for name in fields_of(table):
         size = np.abs(rows[name])
         scale = size if name in RELATIVE_FIELDS else size.max()
         found[name] = float(

@@ -18,38 +18,32 @@ The rows of a law are its polynomials, one for each octave of speed.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from .. import __version__
-from ..contact_mechanics.contact_table import Contacts
-from ..contact_mechanics.coupled_pair import CoupledPair
-from ..contact_mechanics.coupled_tables import measure_errors
-from ..core import FileError, ParameterError, check_integer, check_one_given
-from ..laws import law_table
-from ..laws.cover_rows import solve_at_speed
-from ..laws.law_netcdf import law_as_dataset, law_table_of, parse_axis, parse_law
-from ..laws.law_rows import Rows, evaluate_by_modes
-from ..laws.law_table import LawTable
-from ..laws.row_layout import AXIS_FUNCTIONS, COVER_FUNCTIONS, FUNCTIONS
-from ..materials.checked_netcdf import (
-    AXIS,
-    COUPLED,
-    COVER,
-    KIND,
-    LAW,
-    dataset_content,
-    stated_errors,
+from ..contact_mechanics import Contacts, CoupledPair, measure_errors
+from ..core import Dataset, FileError, ParameterError, check_integer, check_one_given
+from ..laws import (
+    AXIS_FUNCTIONS,
+    COVER_FUNCTIONS,
+    FUNCTIONS,
+    LawTable,
+    Rows,
+    evaluate_by_modes,
+    law_as_dataset,
+    law_table,
+    law_table_of,
+    parse_axis,
+    parse_law,
+    solve_at_speed,
 )
+from ..materials import AXIS, COUPLED, COVER, KIND, LAW, dataset_content, stated_errors
 from ..rollers import Cylinder, Scene
 from . import table_files
 from .grid_build import RELATIVE_FIELDS, differences, errors_at, random_points
 from .table_files import is_law
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- The law of one material or pair, or of every alpha ---
 
@@ -74,7 +68,7 @@ _SEED = 20250701
 
 def law(
     material: Any = None, base: Any = None, *, alpha: tuple[float, float] | None = None
-) -> xr.Dataset:
+) -> Dataset:
     r"""Return the contact law of one material or pair for other programs: polynomials, one for each
     octave of speed.
 
@@ -376,7 +370,7 @@ class Report:
         )
 
 
-def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
+def check_table(table: Dataset, count: int, seed: int) -> list[Check]:
     """Check a table by numbers that were not used to make it, and return a :class:`Check` for each
     difference.
 
@@ -430,7 +424,7 @@ def check_table(table: xr.Dataset, count: int, seed: int) -> list[Check]:
     ]
 
 
-def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[Check]:
+def _check_grid(table: Dataset, count: int, seed: int, source: str) -> list[Check]:
     """Compare a grid with the rows of the law: two checks for each field, of its nodes and of the
     splines between them.
 
@@ -449,14 +443,10 @@ def _check_grid(table: xr.Dataset, count: int, seed: int, source: str) -> list[C
       most half of the largest magnitude of the field at the nodes, unless that is 0.
 
     Raises FileError for what is no grid, and for a grid that is not of a scene with an alpha (of a
-    cylinder, a material, or of version 0.1.0); KeyError for a field without ``spline_error``.
+    cylinder or a material); KeyError for a field without ``spline_error``.
     """
     table_files.check_grid(table, source)
-    if (
-        table.attrs[table_files.KIND] != "grid"
-        or not {"kappa", "mu"} <= table.attrs.keys()
-        or "material" in table.attrs
-    ):
+    if not {"kappa", "mu"} <= table.attrs.keys() or "material" in table.attrs:
         raise FileError(
             source,
             "is not a grid of a scene with an alpha: only such grids can be compared with the law",

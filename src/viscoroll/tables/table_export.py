@@ -8,25 +8,32 @@ from collections.abc import Callable
 from importlib.resources import files
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .. import __version__
-from ..core import PAPER, Floats, ParameterError, as_path, described_error, replace_file, write_text
-from ..laws.law_netcdf import parse_law
-from ..laws.law_table import LawTable
-from ..materials.checked_netcdf import CHECKSUM, dataset_content
+from ..core import (
+    PAPER,
+    Dataset,
+    Floats,
+    ParameterError,
+    as_path,
+    described_error,
+    replace_file,
+    write_text,
+)
+from ..laws import LawTable, parse_law
+from ..materials import CHECKSUM, dataset_content
 from . import table_files
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 #: Attributes of a grid with the parameters of its roller.
 _PARAMETERS = ("alpha", "kappa", "mu", "R", "m", "load")
+#: Attribute of a field of a grid with the largest absolute error of linear interpolation.
+_ERROR = "linear_error"
 
 
-def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
+def export(table: Dataset, path: str | PathLike[str]) -> None:
     """Write a law or a grid for another program, whole or not at all.
 
     Parameters
@@ -42,8 +49,7 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     ------
     ParameterError
         Another suffix; for C a file name that, without its suffix, is no identifier; for Modelica a
-        grid over several alphas or an atlas (a grid of version 0.1.0, over three axes), as its
-        tables have two inputs.
+        grid over several alphas, as its tables have two inputs.
     FileError
         If it is no path or cannot be written there; ``table`` is neither a law nor a grid, is
         incomplete, of another major version of the schema, or a law whose numbers differ from their
@@ -72,7 +78,7 @@ def export(table: xr.Dataset, path: str | PathLike[str]) -> None:
     formats[suffix](table, path)
 
 
-def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
+def _write_netcdf3(table: Dataset, path: Path) -> None:
     """Write a law or a grid in the 64-bit offset format (CDF-2), which every netCDF library since
     2004 reads.
 
@@ -85,7 +91,7 @@ def _write_netcdf3(table: xr.Dataset, path: Path) -> None:
         table.to_netcdf(temporary, engine="scipy", format="NETCDF3_64BIT", encoding=encoding)
 
 
-def _write_csv(table: xr.Dataset, path: Path) -> None:
+def _write_csv(table: Dataset, path: Path) -> None:
     """Write a grid as CSV: a row of names, then one for every node, the first axis slowest.
 
     Columns are the axes, then the fields; a field that does not depend on the creepage is repeated
@@ -100,7 +106,7 @@ def _write_csv(table: xr.Dataset, path: Path) -> None:
         fields.to_dataframe(dim_order=list(table_files.axes_of(table))).to_csv(temporary)
 
 
-def _write_modelica(table: xr.Dataset, path: Path) -> None:
+def _write_modelica(table: Dataset, path: Path) -> None:
     """Write tables of a grid for Modelica: Q over (V, delta) for CombiTable2D, M over V for
     CombiTable1D blocks.
 
@@ -111,8 +117,8 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
     table: dataset of a grid over V and delta with Q and M (else KeyError); an axis alpha must have
     one node.
     path: file to write; it is replaced if it exists.
-    Raises ParameterError for a grid over several alphas, and for an atlas; FileError if the file
-    cannot be written; KeyError as :func:`_modelica_header`.
+    Raises ParameterError for a grid over several alphas; FileError if the file cannot be written;
+    KeyError as :func:`_modelica_header`.
     """
     plane = table.squeeze("alpha") if table.sizes.get("alpha") == 1 else table
     if table_files.axes_of(plane) != ("V", "delta"):
@@ -139,7 +145,7 @@ def _write_modelica(table: xr.Dataset, path: Path) -> None:
     write_text(path, "\n".join([*lines, ""]))
 
 
-def _modelica_header(table: xr.Dataset) -> list[str]:
+def _modelica_header(table: Dataset) -> list[str]:
     """Return the lines that describe a grid and its use in Modelica, without marks of a comment.
 
     table: dataset of the grid.
@@ -158,7 +164,8 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
     for name in ("Q", "M"):
         point = table[name].attrs.get("linear_error_at")
         errors.append(
-            f"error_{name} = {linear_error(table[name]):.3g}" + (f" at {point}" if point else "")
+            f"error_{name} = {table[name].attrs.get(_ERROR, np.nan):.3g}"
+            + (f" at {point}" if point else "")
         )
     return [
         f"viscoroll {__version__}: {table.attrs['title']}",
@@ -178,19 +185,7 @@ def _modelica_header(table: xr.Dataset) -> list[str]:
     ]
 
 
-def linear_error(field: xr.DataArray) -> float:
-    """Return the stated error of linear interpolation in a field, absolute, in its unit.
-
-    field: variable of a grid.  Its attribute "linear_error" is returned; files of version 0.1.0
-        state that error as "interpolation_error".
-    Returns the error; NaN if the field states none, and of an atlas, whose errors are of another
-    interpolation.
-    """
-    spline = field.attrs.get("interpolation_error", np.nan) if "V" in field.dims else np.nan
-    return float(field.attrs.get("linear_error", spline))
-
-
-def _write_matlab(table: xr.Dataset, path: Path) -> None:
+def _write_matlab(table: Dataset, path: Path) -> None:
     """Write a grid as one struct ``viscoroll`` of MATLAB: breakpoints, tables, linear errors,
     dimensions, parameters.
 
@@ -212,7 +207,7 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
     arrays = {name: table[name].values.squeeze() for name in (*table_files.axes_of(table), *names)}
     content: dict[str, Any] = arrays | {
         "dimensions": {name: ", ".join(map(str, table[name].squeeze().dims)) for name in names},
-        "linear_error": {name: linear_error(table[name]) for name in names},
+        "linear_error": {name: table[name].attrs.get(_ERROR, np.nan) for name in names},
         "linear_error_at": {name: table[name].attrs.get("linear_error_at", "") for name in names},
         "about": f"viscoroll {__version__}. {table.attrs['title']}. {PAPER}. Breakpoints and "
         "tables for n-D lookup; "
@@ -227,7 +222,7 @@ def _write_matlab(table: xr.Dataset, path: Path) -> None:
         savemat(temporary, {"viscoroll": content}, do_compression=True)
 
 
-def _write_header(dataset: xr.Dataset, path: Path) -> None:
+def _write_header(dataset: Dataset, path: Path) -> None:
     """Write the numbers of a law and their evaluator as one header of C.
 
     The header contains title, source, T_ref, checksum and material as a comment, the evaluator
@@ -326,7 +321,7 @@ def _initializer(values: Floats) -> str:
     return text.translate(str.maketrans("[]", "{}")).replace("NaN", "NAN")
 
 
-def _write_json(dataset: xr.Dataset, path: Path) -> None:
+def _write_json(dataset: Dataset, path: Path) -> None:
     """Write the variables, as nested lists of numbers, and some attributes of a law as one JSON
     object.
 
@@ -360,7 +355,7 @@ def _write_json(dataset: xr.Dataset, path: Path) -> None:
 
 
 #: Suffix -> function that writes a law or a grid.
-_EITHER: dict[str, Callable[[xr.Dataset, Path], None]] = {
+_EITHER: dict[str, Callable[[Dataset, Path], None]] = {
     ".nc": table_files.save,
     ".cdf": _write_netcdf3,
 }

@@ -1,35 +1,42 @@
-"""Files of laws and grids: schema, save, load.
+"""Files of laws and grids: schema, save, load; and interpolation between the nodes of a grid.
 
-The schema of the file of a grid: variables, dimensions, attributes, and their check.
+The schema of the file of a grid: variables, dimensions, attributes, and their check.  A grid is a
+table of fields of the contact over speed V, creepage delta and perhaps alpha,
+T_epsilon/T_sigma; the fields are described at the head of :mod:`.grid_build`.
 
 Files follow CF-1.11.  ``schema_version`` is "major.minor": a new minor version only adds,
 a new major version changes the meaning of something and is refused by older readers.
-The fields are described at the head of :mod:`.grid_build`.
-
-Files of tables: atomic save, and a load that checks everything it reads.
+Save is atomic, and load checks everything it reads.  :func:`interpolate` uses tensor cubic splines.
 """
 
 from __future__ import annotations
 
 import io
-import shlex
-import sys
-from datetime import UTC, datetime
+from collections.abc import Iterable
 from os import PathLike
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
 from .. import __version__
-from ..core import PAPER, SYMBOLS, FileError, attributes, read_sealed, write_dataset
-from ..laws.law_grid import check_nodes, refuse_filled
+from ..core import (
+    ArrayLike,
+    Dataset,
+    FileError,
+    Floats,
+    OutOfTableError,
+    ParameterError,
+    Values,
+    attributes,
+    broadcast_shape,
+    check_array,
+    check_names,
+    read_sealed,
+    write_dataset,
+)
+from ..laws import check_nodes, fit_spline, friction_limit, pack_spline, refuse_filled
 from ..materials import checked_netcdf
-from ..materials.checked_netcdf import KINDS as LAW_KINDS
-
-if TYPE_CHECKING:
-    import xarray as xr
-
 
 # --- The schema of the file of a grid ---
 
@@ -37,109 +44,29 @@ if TYPE_CHECKING:
 SCHEMA_VERSION = "1.4"
 #: Global attribute with the kind of a file.
 KIND = "viscoroll_table"
-#: Kinds of grids; all but the first are of version 0.1.0.
-KINDS = ("grid", "atlas", "literal", "material")
+#: Kind of the file of a grid.
+GRID = "grid"
 #: Fields over V (and alpha): they do not depend on the creepage.  delta_0 is that of a layer alone.
 PLANE = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "delta_star", "zeta", "delta_0")
 #: Fields over V and delta (and alpha).
 VOLUME = ("beta", "Q")
 #: Fields over V that of a layer are over V and delta: there they depend on the traction.
 OF_TRACTION = ("lam", "epsilon", "M", "M_half_space", "M_cylinder", "zeta")
-#: Fields of a file of kind "atlas".
-_ATLAS_FIELDS = ("beta", "Q_over_mu", "lam", "epsilon", "kappa_M", "kappa_delta_star_over_mu")
-
-#: Attribute ``comment`` of a grid.
-COMMENT = (
-    "Signs, Eqs. (17), (18): the table holds V > 0. For V < 0 look up |V|: lam, epsilon, "
-    "delta_star, delta_0 and beta "
-    "are even in V; M, its two parts and Q(V, delta) are odd. Let d = delta - delta_0(V), where "
-    "delta_0 is 0 in a "
-    "grid without this field, where beta is even in d, Q odd. beta has a kink at |d| = "
-    "delta_star(V), in a grid with delta_0 at other d of either sign, beyond which the whole "
-    "contact slips: beta = 0, |Q| = mu P. epsilon may exceed 1. "
-    "A grid is for plots and for look-up blocks of other programs. Do not use it where the onset "
-    "of full slip decides a result: look-up smooths the kink, and spline_error and "
-    "linear_error of Q and "
-    "beta, which are absolute, occur there. The file of a law (viscoroll tables law) is exact at "
-    "every V, delta, "
-    "kappa and mu, and has a tenth of the size; law.nc of make tables holds every alpha."
-)
 
 
-def axes_of(table: xr.Dataset) -> tuple[str, ...]:
+def axes_of(table: Dataset) -> tuple[str, ...]:
     """Return the names of the axes of a grid, the first of which varies slowest.
 
-    table: dataset of a grid, or of an atlas, the table of version 0.1.0.
-    Returns ("V", "delta") or, if the dataset has that dimension, ("V", "delta", "alpha") of a grid;
-    ("alpha", "kappa_V", "s") of an atlas, where s = |delta|/delta_star.
-    Every kind but "atlas" counts as a grid, and whether the dataset has the axes is not checked.
-    Raises KeyError for a dataset without the attribute :data:`KIND`, "viscoroll_table".
+    table: dataset of a grid.
+    Returns ("V", "delta") or, if the dataset has that dimension, ("V", "delta", "alpha"); whether
+    the dataset has the axes is not checked.
     """
-    if table.attrs[KIND] == "atlas":
-        return ("alpha", "kappa_V", "s")
     return ("V", "delta", *(("alpha",) if "alpha" in table.dims else ()))
 
 
-def fields_of(table: xr.Dataset) -> tuple[str, ...]:
+def fields_of(table: Dataset) -> tuple[str, ...]:
     """Return the names of the fields of a grid ``table``."""
-    return (
-        _ATLAS_FIELDS
-        if table.attrs[KIND] == "atlas"
-        else (*VOLUME, *(name for name in PLANE if name in table))
-    )
-
-
-def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Variable:
-    """Make a variable of a grid, with long_name, units, symbol, range, equation and reference as
-    attributes.
-
-    name: name of the quantity, a key of ``core.symbols.SYMBOLS``.
-    dims: names of the axes of the variable.
-    values: array of its values, over ``dims``.
-    si: whether the values are in SI units, else dimensionless; the range of Q is then that of "mu
-    P" in place of "mu".
-    Returns the variable, float64.
-    Raises KeyError for another name, ValueError of xarray where ``values`` have another number of
-    axes than ``dims``.
-    """
-    import xarray as xr
-
-    symbol = SYMBOLS[name]
-    allowed = symbol.range.replace("mu", "mu P") if si else symbol.range  # of Q
-    about = {
-        "symbol": symbol.latex,
-        "range": allowed,
-        "equation": symbol.equation,
-        "reference": PAPER,
-    }
-    return xr.Variable(dims, np.asarray(values, dtype=np.float64), attributes(name, si) | about)
-
-
-def global_attributes(title: str, grid: str, command: str | None) -> dict[str, str]:
-    """Return the global attributes of a grid that is computed now.
-
-    title: title of the grid.
-    grid: axes of the grid in words.
-    command: command that computed it, for ``history``; None or "": the command line of this
-    process.
-    Returns name -> text: Conventions, title, institution, source, history (time of the call in UTC
-    and the command), references, comment, viscoroll_table ("grid"), schema_version,
-    viscoroll_version and grid.
-    """
-    now = datetime.now(UTC).strftime("%Y-%m-%dT%H:%M:%SZ")
-    return {
-        "Conventions": "CF-1.11",
-        "title": title,
-        "institution": "made by its user with the open-source package viscoroll",
-        "source": f"viscoroll {__version__}: the contact law, Eqs. (6), (8)-(10), (15), (16)",
-        "history": f"{now} {command or shlex.join(sys.orig_argv)}",
-        "references": PAPER,
-        "comment": COMMENT,
-        KIND: "grid",
-        "schema_version": SCHEMA_VERSION,
-        "viscoroll_version": __version__,
-        "grid": grid,
-    }
+    return (*VOLUME, *(name for name in PLANE if name in table))
 
 
 def check_grid(table: Any, path: Any) -> None:
@@ -150,8 +77,7 @@ def check_grid(table: Any, path: Any) -> None:
     of a contact (:func:`.law_grid.check_nodes`); each axis at least one, strictly increasing;
     dimensions
     must be axes of the grid, in their order, and units those that :func:`variable` writes.  beta
-    and Q are required, of the fields over V (:data:`PLANE`) none, of an atlas all fields; other
-    variables are not examined.
+    and Q are required, of the fields over V (:data:`PLANE`) none; other variables are not examined.
 
     Parameters
     ----------
@@ -168,11 +94,11 @@ def check_grid(table: Any, path: Any) -> None:
     if not hasattr(table, "attrs"):
         raise FileError(path, f"needs a dataset, not {table!r:.60}: read a file by vr.tables.load")
     about = table.attrs
-    if str(about.get(KIND)) in LAW_KINDS:
+    if is_law(table):
         raise FileError(
             path, "is a law, not a grid: load it by vr.load_law, and evaluate it by vr.contact"
         )
-    if str(about.get(KIND)) not in KINDS:
+    if str(about.get(KIND)) != GRID:
         raise FileError(
             path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}"
         )
@@ -213,7 +139,7 @@ def check_grid(table: Any, path: Any) -> None:
 #: Largest size of a file; no table is larger.
 _MAX_BYTES = 1 << 31
 #: Attribute of a field with an error of interpolation -> its name in :func:`tables.info`.
-_ERROR_NAMES = {"spline_error": "spline", "linear_error": "linear", "interpolation_error": "stated"}
+_ERROR_NAMES = {"spline_error": "spline", "linear_error": "linear"}
 
 
 def is_law(table: Any) -> bool:
@@ -238,7 +164,7 @@ def check_content(table: Any, path: Any) -> None:
         check_grid(table, path)
 
 
-def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
+def save(table: Dataset, path: str | PathLike[str]) -> None:
     """Write a law or a grid as netCDF-4/HDF5: whole and synced, or not at all.
 
     The file ends with a SHA-256 of its bytes, which other programs do not see.
@@ -276,8 +202,8 @@ def save(table: xr.Dataset, path: str | PathLike[str]) -> None:
     write_dataset(plain, path, encoding, sealed=True)
 
 
-def load(path: str | PathLike[str]) -> xr.Dataset:
-    """Read a law or a grid of the schema 1.x (all versions since 0.1.0) into memory, check it and
+def load(path: str | PathLike[str]) -> Dataset:
+    """Read a law or a grid of the schema 1.x into memory, check it and
     close the file.
 
     Parameters
@@ -335,7 +261,7 @@ def info(path: str | PathLike[str]) -> str:
         Lines to print, joined by newlines: path, kind and size of the file; title; of a law a line
         for each function with its largest error; of a grid a line for each axis with its nodes and
         range, then one for each field with its axes and the absolute errors that it states
-        ("spline", "linear", "stated" in old files); at the end those of the attributes material,
+        ("spline", "linear"); at the end those of the attributes material,
         comment, source, history and checksum that the file has.
 
     Raises
@@ -378,3 +304,252 @@ def info(path: str | PathLike[str]) -> str:
             lines.append(f"  {name:<26}{', '.join(map(str, field.dims)):<18}{errors}")
     keys = ("material", "comment", "source", "history", checked_netcdf.CHECKSUM)
     return "\n".join([*lines, "", *(f"{key}: {about[key]}" for key in keys if key in about)])
+
+
+# --- Interpolation between the nodes of a grid ---
+
+
+class Interpolant:
+    """A table prepared for repeated interpolation; :func:`interpolate` prepares one in each call.
+
+    A call ``interpolant(fields, V=..., delta=...)`` takes names of fields and points, and raises
+    the errors of :func:`interpolate`; with ``linear=False`` it returns the same values.
+
+    Parameters
+    ----------
+    table : a Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
+        The spline of a field is computed at its first use, from the values at that time.
+    linear : whether to interpolate linearly in V, delta and alpha, as look-up blocks do; else by
+        cubic splines in ln V, delta and ln alpha.
+
+    Raises
+    ------
+    FileError
+        If it is not a grid, as the law of a material is none, is incomplete, or is in other units
+        than it was built in.
+    ParameterError
+        A mu, or a load beside it, that is no finite number > 0.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> grid = vr.tables.build(
+    ...     vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1]
+    ... )
+    >>> look_up = vr.tables.Interpolant(grid)
+    >>> bool(look_up(["Q"], V=0.25, delta=0.01).Q > 0.0)
+    True
+    """
+
+    def __init__(self, table: Dataset, linear: bool = False) -> None:
+        """Check a table and choose its axes and bounds; splines are computed at the first use of a
+        field.
+
+        table : the grid, dataset of a file or of ``build``.
+        linear : whether interpolation is linear in V, delta and alpha, else by cubic splines in ln
+            V, delta and ln alpha.
+        Raises FileError if it is not a grid, is incomplete or in other units; ParameterError for
+        its mu and load.
+        """
+        check_grid(table, getattr(table, "encoding", {}).get("source", "interpolate"))
+        self._table = table
+        self._axes = axes_of(table)
+        self._linear = linear
+        self._splines: dict[str, tuple[tuple[str, ...], Any]] = {}
+        # The law has these bounds; a spline may exceed them near the kink at delta_star.
+        limit = friction_limit(table.attrs)
+        self._bounds = {"Q": (-limit, limit), "beta": (0.0, 1.0)}
+
+    def __call__(self, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
+        """Interpolate fields at points.
+
+        fields: a name or names of fields of the table; None: all, which needs a coordinate on every
+            axis; of an empty iterable the Values are empty.
+        points: axis -> coordinates, numbers or arrays that broadcast, in the units of the table.  A
+            coordinate is needed on each axis of the fields, also on one of a single node; others
+            may be given too.
+        Returns the fields as :class:`Values`, each a new array of the broadcast shape of all
+        points, a float where all are numbers.  Q and beta are clipped to the bounds of the law:
+        |Q| <= mu P and 0 <= beta <= 1.
+        Raises ParameterError and OutOfTableError as :func:`interpolate`.
+        """
+        known = fields_of(self._table)
+        names = check_names(
+            "fields", known if fields is None else fields, known, "a field of this table"
+        )
+        coordinates, shape = self._map_points(points, names)
+        results: dict[str, Any] = {}
+        for name in names:
+            dims, values = self._spline(name)
+            if dims:
+                values = values(np.stack([coordinates[dim] for dim in dims], axis=-1))
+            if name in self._bounds:
+                values = np.clip(values, *self._bounds[name])
+            results[name] = np.broadcast_to(values, shape).copy() if shape else float(values)
+        return Values(results, title="Interpolated", si="load" in self._table.attrs)
+
+    def jitted(self, field: str) -> tuple[Any, Any]:
+        """Return a field for numba's jitted functions: a function ``at(spline, V, delta, alpha)``
+        and its spline.
+
+        Parameters
+        ----------
+        field : name of a field of the grid, over V, delta and alpha or some of them.
+
+        Returns
+        -------
+        at : jitted function of the spline and three floats V, delta and alpha, in the units of the
+            table.  It returns a :class:`.spline_law.Value`: ``value`` and its
+            derivatives ``dV``, ``ddelta`` and ``dalpha``.  Q and beta are clipped to the bounds of
+            the law; where that happens the derivatives are 0.  All four are NaN for a coordinate
+            outside of its axis.  The field may not depend on one of the coordinates, or the grid
+            may have a single node on that axis: then any number may be given there, it is ignored,
+            and its derivative is 0.
+        spline : vector of doubles, the first argument of ``at``.
+
+        Raises
+        ------
+        ParameterError
+            An unknown field.
+
+        Examples
+        --------
+        >>> import viscoroll as vr
+        >>> grid = vr.tables.build(
+        ...     vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1]
+        ... )
+        >>> at, Q = vr.tables.Interpolant(grid).jitted("Q")
+        >>> at(Q, 0.25, 0.01, 0.0).ddelta > 0.0
+        True
+
+        Notes
+        -----
+        Values differ from those of this class by rounding, slopes are those of the spline
+        (``tests/tables/test_splines.py``).
+        """
+        from ..kernels.law.spline_law import spline_at
+
+        (name,) = check_names("field", field, fields_of(self._table), "a field of this table")
+        dims, found = self._spline(name)
+        logs = () if self._linear else ("V", "alpha")
+        return spline_at, pack_spline(found, dims, logs, self._bounds.get(name, (-np.inf, np.inf)))
+
+    def _map_points(
+        self, points: dict[str, ArrayLike], names: tuple[str, ...]
+    ) -> tuple[dict[str, Floats], tuple[int, ...]]:
+        """Check the points of a call, and convert them to the coordinates of the splines.
+
+        points: axis -> coordinates that the caller gave, numbers or arrays that broadcast, perhaps
+            with units.
+        names: names of the fields to interpolate, which need the axes that they depend on.
+        Raises ParameterError for axes that are missing or unknown, for values that are no finite
+        numbers, for shapes that do not broadcast and for a unit of another dimension;
+        OutOfTableError for a point outside of an axis, whose ends belong to it.
+        Returns (each axis of ``points`` -> coordinates of the interpolation, read-only, in the
+        broadcast shape; that shape, () of numbers).  Coordinates are ln V, ln alpha, and delta as
+        it is; where the interpolation is linear all are as given.
+        """
+        needed = {str(dim) for name in names for dim in self._table[name].dims}
+        if not needed <= points.keys() <= set(self._axes):
+            wanted = ", ".join(axis for axis in self._axes if axis in needed)
+            allowed = f"axes of this grid ({', '.join(self._axes)}); these fields need {wanted}"
+            raise ParameterError("coordinates", ", ".join(points) or "none", allowed)
+        axes = {name: self._table[name] for name in points}
+        arrays = {
+            name: check_array(name, value, unit=axes[name].attrs.get("units", "1"))
+            for name, value in points.items()
+        }
+        shape = broadcast_shape(**arrays)
+        for name, array in arrays.items():
+            low, high = axes[name].values[[0, -1]]
+            outside = (array < low) | (array > high)
+            if outside.any():
+                raise OutOfTableError(name, float(array[outside].flat[0]), low, high)
+        return {
+            name: np.broadcast_to(self._map_axis(name, array), shape)
+            for name, array in arrays.items()
+        }, shape
+
+    def _map_axis(self, name: str, values: Floats) -> Floats:
+        """Transform values on one axis of the table to the coordinate in which the fields are
+        smooth.
+
+        Splines are fitted and evaluated in that coordinate.
+
+        name: name of the axis: "V", "delta" or "alpha".
+        values: values on the axis, of any shape, > 0 on V and alpha.
+        Returns an array of the same shape.  Where the interpolation is linear, and on delta:
+        ``values`` itself, not a copy.  Else ln(values).
+        """
+        return values if self._linear or name == "delta" else np.log(values)
+
+    def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
+        """Return the spline of a field, computed at its first use and kept in ``_splines``.
+
+        name: name of a field, which the caller has checked (else KeyError).
+        Returns (names of those of its axes that have more than one node, in their order; the spline
+        over these, a function that takes coordinates of :meth:`_map_axis`, (..., axes), and returns
+        values, (...)).  The spline is cubic, with ``_linear`` of degree 1, of lower degree along
+        axes of few nodes (:func:`.law_grid.fit_spline`); it extrapolates, and values are not
+        clipped.  Without such axes the names are () and the second entry is the value of the field,
+        an array without axes.
+        Raises ValueError of scipy where values that were changed after the check are not finite.
+        """
+        if name not in self._splines:
+            field = self._table[name].squeeze()
+            dims = tuple(map(str, field.dims))
+            axes = [self._map_axis(dim, self._table[dim].values) for dim in dims]
+            self._splines[name] = dims, fit_spline(field.values, axes, 1 if self._linear else 3)
+        return self._splines[name]
+
+
+def interpolate(table: Dataset, fields: Iterable[str] | None = None, **points: ArrayLike) -> Values:
+    """Interpolate fields of a grid between its nodes, without extrapolation.
+
+    Parameters
+    ----------
+    table : Dataset of :func:`viscoroll.tables.build` or :func:`viscoroll.tables.load`.
+    fields : a name or names out of the table's fields; default all, which need a coordinate on
+        every axis.
+    **points : coordinates, numbers or arrays that broadcast, in the table's units: ``V``, ``delta``
+        and, where the table has it, ``alpha``.  ``delta`` is needed for beta and Q only.
+
+    Returns
+    -------
+    Values
+        The fields as attributes, in the units of the table, arrays of the broadcast shape of all
+        coordinates; floats if all coordinates are numbers.
+
+    Raises
+    ------
+    OutOfTableError
+        A coordinate outside the axis of the table, naming the range.
+    ParameterError
+        An unknown field, a coordinate that is missing, unknown, NaN, infinite or of a unit of
+        another dimension, shapes that do not broadcast; a mu of ``table``, or a load beside it,
+        that is no finite number > 0.
+    FileError
+        If ``table`` is not a grid, is incomplete, or is in other units than it was built in.
+
+    Examples
+    --------
+    >>> import viscoroll as vr
+    >>> grid = vr.tables.build(
+    ...     vr.presets.PAPER_SECTION_5, [0.1, 0.2, 0.3, 0.4], delta=[-0.1, 0.0, 0.1]
+    ... )
+    >>> found = vr.tables.interpolate(grid, ["M"], V=[0.15, 0.25])
+    >>> found.M.shape
+    (2,)
+
+    Notes
+    -----
+    Tensor not-a-knot cubic spline in ln V, delta and ln alpha, of a lower degree along an axis of
+    fewer than four nodes, clipped to |Q| <= mu P and 0 <= beta <= 1; the largest error at random
+    points is stated in ``spline_error`` of each field, which another point may exceed
+    (``tests/tables/test_grids.py``), and the point in ``spline_error_at``.  The largest errors of
+    beta occur where full slip begins, as beta falls there with a vertical tangent.  Each call
+    builds the splines anew, which takes most of its time; keep an :class:`tables.Interpolant` for
+    repeated calls.  A law (:func:`viscoroll.tables.law`, :func:`viscoroll.contact`) has none of
+    these errors.
+    """
+    return Interpolant(table)(fields, **points)

@@ -9,11 +9,11 @@ bars.
 from __future__ import annotations
 
 import math
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
+from ..checks import Dataset, Figure, NDArray
 from ..errors import ParameterError
 from . import (
     LINES,
@@ -28,11 +28,6 @@ from . import (
     with_unit,
     zero_line,
 )
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
-
 
 # --- Figures of measurements ---
 
@@ -197,7 +192,7 @@ _RESULT_NAMES = {"lost": "share of energy lost", "onset_time": "onset time $t^*$
 _INITIAL_SYMBOLS = {"V0": "$V_0$", "omega0": r"$\omega_0$"}
 
 
-def distributions(data: xr.Dataset) -> Figure:
+def distributions(data: Dataset) -> Figure:
     """Draw a row for each quantity: its quantiles over time on the left, its histogram at the last
     time on the right.
 
@@ -242,7 +237,7 @@ def distributions(data: xr.Dataset) -> Figure:
     return figure
 
 
-def _draw_histogram(axes: Any, data: xr.Dataset, name: str) -> None:
+def _draw_histogram(axes: Any, data: Dataset, name: str) -> None:
     """Draw the histogram of a quantity at the last time.
 
     The tails, a thousandth of the motions at either end, are left out where the axis would be more
@@ -303,7 +298,7 @@ def _even_bars(low: NDArray, high: NDArray, counts: NDArray) -> tuple[NDArray, N
     return edges, np.diff(np.interp(edges, np.ravel([low, high], "F"), below))
 
 
-def sobol_bars(indices: xr.Dataset) -> Figure:
+def sobol_bars(indices: Dataset) -> Figure:
     """Draw first-order and total index of every input with its confidence interval, a panel for
     each quantity.
 
@@ -351,7 +346,7 @@ def sobol_bars(indices: xr.Dataset) -> Figure:
     return figure
 
 
-def _last_indices(indices: xr.Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
+def _last_indices(indices: Dataset, name: str) -> tuple[str, dict[str, NDArray]]:
     """Return the Sobol indices of a quantity at the last time that has them for the first input.
 
     Of a quantity without times they are its indices.

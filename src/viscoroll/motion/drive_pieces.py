@@ -1,4 +1,11 @@
-"""Fit of a callable of time by polynomials: a piece is halved until its fit is good, and joined to
+"""Functions of time that act on motions, as piecewise polynomials: :class:`Piecewise`.
+
+A piece lasts from ``starts`` to ``ends``.  In it x runs from -1 to 1, and the value is the sum of
+terms[n] x^n.  A piece without length does not act; in the last piece, which has no end, the
+function is constant.  All is dimensionless.  T_ref is the unit of time: T_epsilon of a material
+that is an alpha, the ``T_ref`` of any other material.
+
+Fit of a callable of time by polynomials: a piece is halved until its fit is good, and joined to
 the previous one.
 
 A fit is good where it agrees with the callable between its nodes, and at samples spread over the
@@ -11,9 +18,6 @@ motion from rest in the wrong direction.
 
 Halving leaves pieces of 1/2, 1/4, 1/8, ... on either side of a corner; joined they are one to the
 left and one to the right, which meet in it.  A jump is located between two neighbouring doubles.
-
-All is dimensionless.  T_ref is the unit of time: T_epsilon of a material that is an alpha, the
-``T_ref`` of any other material.
 """
 
 from __future__ import annotations
@@ -25,9 +29,18 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.polynomial import chebyshev
 from numpy.polynomial.polynomial import polyval
-from numpy.typing import NDArray
 
-from ..core import Floats, ParameterError, check_array, mark_dimensionless, shape_error
+from ..core import (
+    Feedback,
+    Floats,
+    NDArray,
+    ParameterError,
+    Schedule,
+    check_array,
+    mark_dimensionless,
+    require_time_argument,
+    shape_error,
+)
 from ..kernels.numerics.interpolation import powers_of_chebyshev
 
 #: Terms of a polynomial.
@@ -316,7 +329,7 @@ def fit_callable(
             allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
             raise mark_dimensionless(ParameterError("resolve", resolve, allowed))
         samples = max(math.ceil(end / resolve), SAMPLES)
-    sampled = _Sampled(name, function, end, rtol, low, samples)
+    sampled = _Sampled(name, function, end=end, rtol=rtol, low=low, samples=samples)
     pieces = _merge_corners(_fit_pieces(sampled, end), sampled)
     starts = np.array([piece.start for piece in pieces])
     starts[0] = 0.0  # a jump there leaves one value before it
@@ -431,3 +444,114 @@ def _product(A: NDArray[Any], B: NDArray[Any]) -> Floats:
     """
     product: Floats = np.einsum("ij,jk->ik", A, B)
     return product
+
+
+# --- Numbers, schedules and fits as pieces ---
+
+
+class Piecewise(NamedTuple):
+    """A piecewise polynomial function of time, the same for all motions or one for each of m;
+    dimensionless.
+
+    starts : when pieces start, (1 or m, k), in T_ref, ascending, the first at 0; the last piece has
+    no end.  Pieces may have no length.
+    terms : coefficients of powers of x in [-1, 1], ascending, (1 or m, k, terms); one row where the
+    function is the same for all motions.
+    error : largest absolute difference seen between a callable and this fit; 0 of other functions.
+    corners : number of times at which an integration step must end: the corners of a schedule, the
+    pieces of a fitted callable with that after the last time; 0 of numbers.
+    """
+
+    starts: Floats
+    terms: Floats
+    error: float = 0.0
+    corners: int = 0
+
+    @property
+    def ends(self) -> Floats:
+        """When the pieces end, in the shape of ``starts``."""
+        return ends_of(self.starts)
+
+    def take(self, index: Any) -> Piecewise:
+        """Return the function of some of the motions; what is the same for all motions stays.
+
+        index: index of numpy, a slice or a vector of integers, that selects the motions.
+        """
+        starts, terms = (a[index] if len(a) > 1 else a for a in (self.starts, self.terms))
+        return self._replace(starts=starts, terms=terms)
+
+
+def piecewise(
+    name: str,
+    function: Any,
+    end: float,
+    rtol: float,
+    *,
+    low: float = -np.inf,
+    resolve: float | None = None,
+) -> Piecewise:
+    """Return a function of time that acts on motions as piecewise polynomials, checked.
+
+    A schedule is linear between its times and constant outside; a callable is fitted.
+
+    name: name of the argument, for refusals.
+    function: None (0), a number, an array with one for each motion, a :class:`Schedule`, a callable
+    of t, or a :class:`Feedback` of one of these, whose gains are ignored; dimensionless, times in
+    T_ref, the unit of time (module docstring).
+    end: last time, >= 0, in T_ref; ignored but for a callable.
+    rtol: relative tolerance of the motion; a fit may differ from a callable by a tenth of it, times
+    the largest magnitude so far.  Ignored but for a callable.
+    low: smallest value allowed, in the unit of the values of the function.
+    resolve: largest spacing of the samples of a callable, in T_ref; None: a thousandth of ``end``.
+    Raises ParameterError for what is neither a number, a schedule nor a callable; an array of
+    several dimensions; values that are not finite or below ``low``; a callable that cannot be
+    called with a time alone, or that polynomials do not follow; a ``resolve`` that requires too
+    many samples.  Exceptions of the callable pass.
+    Returns :class:`Piecewise`: of numbers one piece with one term, starts (1, 1) and terms (1 or m,
+    1, 1); of a schedule with k corners up to k + 1 pieces with two terms, since pieces that have no
+    length for any motion are left out; the fit of a callable, which beyond ``end`` keeps its value
+    there.
+    """
+    if isinstance(function, Feedback):
+        function = function.value
+    if callable(function):
+        require_time_argument(name, function)
+        starts, terms, error = fit_callable(
+            name, function, end=end, rtol=rtol, low=low, resolve=resolve
+        )
+        after = np.zeros((1, terms.shape[1]))
+        after[0, 0] = terms[-1].sum()
+        starts = np.append(starts, end)[None]
+        return Piecewise(starts, np.concatenate([terms, after])[None], error, starts.size)
+    if isinstance(function, Schedule):
+        check_array(f"values of {name}", function.values, low=low)
+        return _follow_corners(*np.atleast_2d(function.times, function.values))
+    values = check_array(name, 0.0 if function is None else function, low=low)
+    if values.ndim > 1:
+        allowed = "a number, an array with one for each motion, or a Schedule(times, values)"
+        raise shape_error(name, values.shape, allowed)
+    return Piecewise(np.zeros((1, 1)), values.reshape(-1, 1, 1))
+
+
+def _follow_corners(times: Floats, values: Floats) -> Piecewise:
+    """Return the :class:`Piecewise` of a schedule, linear between its times and constant outside.
+
+    times, values: corners, (1 or m, k) each, times ascending, in T_ref; values dimensionless.
+    """
+    values = np.pad(values, [(0, 0), (1, 1)], mode="edge")
+    terms = np.empty((len(values), times.shape[1] + 1, 2))
+    np.add(values[:, 1:], values[:, :-1], out=terms[..., 0])
+    np.subtract(values[:, 1:], values[:, :-1], out=terms[..., 1])
+    terms *= 0.5
+    terms = np.broadcast_to(terms, (max(len(times), len(terms)), *terms.shape[1:]))
+    starts = np.pad(times, [(0, 0), (1, 0)])
+    kept = (ends_of(starts) > starts).any(axis=0)
+    if not kept.all():
+        starts = starts[:, kept]
+        terms = terms[:, kept]
+    return Piecewise(starts, terms, corners=times.shape[1])
+
+
+def ends_of(starts: Floats) -> Floats:
+    """Return the ends of pieces that follow one another, (m, k), from their starts, (m, k)."""
+    return np.pad(starts[:, 1:], [(0, 0), (0, 1)], constant_values=np.inf)

@@ -1,0 +1,475 @@
+"""Pressure and shear stress along the contact: :func:`stress`; and contacts by method
+"coupled", fields and tractions of states, each from its row (:mod:`.coupled_pair`).
+
+Numbers of equations are those of A. A. Zobova and I. G. Goryacheva, Acta Mechanica (2020),
+doi:10.1007/s00707-020-02643-5.  l0 is the contact length at rest of half-spaces, kappa = R/l0, mu
+the coefficient of friction; lam is the contact length over l0, epsilon its shift ahead of the axis
+over half the length, beta the part of it that sticks, zeta half the transit time in the unit of
+time of the material, alpha the instantaneous over the long-time modulus.
+"""
+
+from __future__ import annotations
+
+import math
+from functools import lru_cache
+from itertools import pairwise
+from typing import Any, Literal, overload
+
+import numpy as np
+
+from ..core import (
+    ConvergenceError,
+    Floats,
+    Numbers,
+    ParameterError,
+    Values,
+    block_reader,
+    broadcast_shape,
+    check_array,
+    check_choice,
+    check_one_given,
+    divide_by_unit,
+    run_blocks,
+    strip_labels,
+)
+from ..laws import CoverModes, pressure, series_record
+from ..materials import total_series
+from .contact_table import DEPTH, FREE_CREEP, complete, evaluate_contact, refuse_overflow
+from .coupled_pair import CoupledPair, CoupledRow, depth
+from .model_warnings import warn_of_contact
+from .parameters import Parameters, Roller, resolve_model
+
+# --- Contacts by method "coupled" ---
+
+#: What each status of the kernels says.
+_REASONS = {
+    1: "no zones of stick and slip satisfy Coulomb's law",
+    2: "the pressure is negative in a part of the contact",
+    3: "no contact length bears the load",
+    4: "a matrix is singular",
+}
+
+
+@lru_cache(maxsize=16)
+def coupled_row(pair: CoupledPair, u: float, mu: float) -> CoupledRow:
+    """Return the row of a pair at u = kappa |V| with friction mu, kept for later calls.
+
+    Raises ConvergenceError where full slip has no solution.
+    """
+    row = CoupledRow(pair, u, mu)
+    refuse_unsolved(row.full_slip_status, np.array([-np.inf, np.inf]), u, mu)
+    return row
+
+
+def refuse_unsolved(status: Any, creeps: Any, u: float, mu: float) -> None:
+    """Raise ConvergenceError for the first state whose status is not 0; else do nothing.
+
+    status: status of the kernels for each state, (n,).
+    creeps: reduced creepages 2 kappa delta, (n,).
+    u, mu: kappa |V| and coefficient of friction of the states, for the message.
+    """
+    for code, creep in zip(np.asarray(status, int), creeps, strict=True):
+        if code:
+            state = f"kappa |V| = {u:g}, mu = {mu:g}, 2 kappa delta = {creep:g}"
+            raise ConvergenceError(f"contact by method 'coupled': {_REASONS[int(code)]} at {state}")
+
+
+class _States:
+    """States as vectors: kappa, mu, V, slip speed omega - V and creepage, and the rows that they
+    have in common.
+    """
+
+    def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:
+        """Broadcast and check the states.
+
+        scene: dimensionless parameters, of which kappa and mu, numbers or arrays, are read.
+        V: speeds, dimensionless, any sign.
+        creep: omega if ``creep_is_omega``, else the creepage delta.
+        Raises ParameterError for kappa |V| that is too large, and shapes that do not broadcast.
+        """
+        arrays = {
+            "kappa": scene.kappa,
+            "mu": scene.mu,
+            "V": V,
+            "omega" if creep_is_omega else "delta": creep,
+        }
+        arrays = {name: np.asarray(value, np.float64) for name, value in arrays.items()}
+        self.shape = broadcast_shape(**arrays)
+        refuse_overflow(arrays["kappa"], arrays["V"])
+        self.kappa, self.mu, self.V, given = (
+            np.broadcast_to(each, self.shape).ravel() for each in arrays.values()
+        )
+        self.sign = np.where(self.V < 0.0, -1.0, 1.0)
+        if creep_is_omega:
+            self.slip = given - self.V
+            with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+                delta = self.slip / np.abs(self.V) * self.sign
+                self.delta = np.where(self.slip == 0.0, 0.0, delta)
+        else:
+            self.slip = given * self.V
+            self.delta = given
+        self.u = self.kappa * np.abs(self.V)
+        with np.errstate(over="ignore"):
+            self.creep = 2.0 * self.kappa * self.delta
+        _, self.row = np.unique(np.array([self.u, self.mu]), axis=1, return_inverse=True)
+
+    def groups(self) -> list[Any]:
+        """Return the indices of the states of each row, a list of arrays."""
+        row = self.row.ravel()
+        return [np.flatnonzero(row == n) for n in range(int(row.max(initial=-1)) + 1)]
+
+
+def evaluate_coupled(
+    scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool, names: tuple[str, ...]
+) -> dict[str, Any]:
+    """Return dimensionless fields of the contact by name, with pressure and shear solved together.
+
+    scene: dimensionless parameters of one material; kappa and mu may be arrays.
+    V, creep, creep_is_omega, names: as in :func:`.contact_table.evaluate_contact`.
+    Returns a dict as that function does.
+    Raises ParameterError for several materials, kappa |V| above 1e300, and the depth of a
+    half-space; ConvergenceError where a state has no solution.
+    """
+    pair = CoupledPair.of_scene(scene)
+    if DEPTH in names and any(math.isinf(body.thickness) for body in pair.bodies):
+        allowed = "left out: a half-space in plane strain has no approach of the bodies"
+        raise ParameterError("fields", repr(DEPTH), allowed)
+    states = _States(scene, V, creep, creep_is_omega)
+    groups = states.groups()
+    computed = tuple(dict.fromkeys(names))
+    out = np.empty((len(computed), states.V.size))
+
+    def work(row: int, _: int) -> None:
+        """Compute the states of a row and write them into their columns of ``out``."""
+        fields = _fields_of_row(pair, states, groups[row], computed)
+        for n, name in enumerate(computed):
+            out[n, groups[row]] = fields[name]
+
+    run_blocks(work, len(groups), 1)
+    return complete(names, computed, out, states.shape)
+
+
+def _fields_of_row(
+    pair: CoupledPair, states: _States, which: Any, names: tuple[str, ...]
+) -> dict[str, Any]:
+    """Return the fields of states that have kappa |V| and mu in common.
+
+    pair: the bodies.
+    states: all states of the call.
+    which: indices of the states of this row, (n,), n >= 1.
+    names: requested fields; depth and delta_0, which take longer, are computed only if requested.
+    Returns name -> values, (n,) or one number for all, dimensionless.
+    Raises ConvergenceError where a state has no solution.
+    """
+    first = which[0]
+    row = coupled_row(pair, float(states.u[first]), float(states.mu[first]))
+    kappa, mu, V, sign, slip, delta, creep = (
+        vars(states)[name][which] for name in ("kappa", "mu", "V", "sign", "slip", "delta", "creep")
+    )
+    found = row.states(creep, apart=True)
+    refuse_unsolved(found.status, creep, row.u, row.mu)
+    half = 0.5 * np.abs(V) / kappa
+    strain = found.work_base + found.work_cylinder
+    low, high = row.onsets()
+    with np.errstate(divide="ignore", over="ignore"):
+        zeta = 0.5 * found.lam / row.u if row.u > 0.0 else np.inf
+    fields: dict[str, Any] = {
+        "lam": found.lam,
+        "length": found.lam,
+        "epsilon": found.epsilon,
+        "beta": found.beta,
+        "zeta": zeta,
+        "delta": delta,
+        "delta_minus": 0.5 * low / kappa,
+        "delta_plus": 0.5 * high / kappa,
+        "delta_star": 0.25 * (high - low) / kappa,
+        "full_slip": (creep <= low) | (creep >= high),
+        "Q": sign * mu * found.Q_over_mu,
+        "grip": 1.0 - np.abs(found.Q_over_mu),
+        "M_half_space": sign * found.kM_base / kappa,
+        "M_cylinder": sign * found.kM_cylinder / kappa,
+        "loss_slip": sign * slip * mu * found.Q_over_mu - half * strain,
+        "loss_half_space": half * (2.0 * found.kM_base + found.work_base),
+        "loss_cylinder": half * (2.0 * found.kM_cylinder + found.work_cylinder),
+    }
+    fields["M"] = fields["C_rr"] = fields["M_half_space"] + fields["M_cylinder"]
+    if FREE_CREEP in names:
+        fields[FREE_CREEP] = 0.5 * row.free_creep() / kappa
+    if DEPTH in names:
+        depths = [depth(pair.bodies, row.u, row.profile(each)) for each in creep.tolist()]
+        fields[DEPTH] = np.array(depths) / kappa
+    return fields
+
+
+def coupled_stress(
+    scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
+) -> Floats:
+    """Return pressure and shear stress on the cylinder along +x.
+
+    scene, V, creep, creep_is_omega: as in :func:`evaluate_coupled`.
+    x: distance ahead of the axis, divided by l0; broadcasts with the states.
+    Returns p and tau divided by E', rows of an array, each of the broadcast shape; 0 outside the
+    contact.
+    Raises as :func:`evaluate_coupled`.
+    """
+    pair = CoupledPair.of_scene(scene)
+    states = _States(scene, V, creep, creep_is_omega)
+    shape = broadcast_shape(x=x, V=np.empty(states.shape))
+    number = np.broadcast_to(np.arange(states.V.size).reshape(states.shape), shape)
+    x = np.broadcast_to(x, shape)
+    out = np.empty((2, *shape))
+    for n in range(states.V.size):
+        row = coupled_row(pair, float(states.u[n]), float(states.mu[n]))
+        found = row.profile(float(states.creep[n]))
+        refuse_unsolved([found.status], [states.creep[n]], row.u, row.mu)
+        place = number == n
+        sign = states.sign[n]
+        y = sign * x[place] - found.shift
+        both = [np.interp(y, found.nodes, each, left=0.0, right=0.0) for each in (found.p, found.q)]
+        out[:, place] = np.array(both) / (4.0 * np.pi * states.kappa[n])
+        out[1, place] *= sign
+    return out
+
+
+# --- Pressure and shear stress along the contact ---
+
+#: Points of a block: some milliseconds of work.
+_BLOCK = 1 << 15
+
+
+@overload
+def stress(
+    roller: Roller,
+    x: Numbers,
+    V: Numbers,
+    *,
+    delta: Numbers,
+    method: Literal["table", "coupled"] = "table",
+) -> Values: ...
+@overload
+def stress(
+    roller: Roller,
+    x: Numbers,
+    V: Numbers,
+    *,
+    omega: Numbers,
+    method: Literal["table", "coupled"] = "table",
+) -> Values: ...
+def stress(
+    roller: Roller,
+    x: Numbers,
+    V: Numbers,
+    *,
+    delta: Numbers | None = None,
+    omega: Numbers | None = None,
+    method: Literal["table", "coupled"] = "table",
+) -> Values:
+    """Compute pressure and shear stress along the contact of a rolling cylinder and its base, Eqs.
+    (11)-(14).
+
+    The equations are those of Zobova and Goryacheva (2020), with the functions of the bodies at
+    hand (docs/theory.md).  The contact is that of steady rolling at a given speed and creepage,
+    whose lengths and slip :func:`contact` gives.
+
+    Parameters
+    ----------
+    roller : a :class:`Scene`, of which alpha or material, kappa and mu are used; or a
+        :class:`Cylinder`, in SI units.
+    x : position divided by l0, of a Cylinder in m, from the point below the axis, positive in the
+        direction of a positive V; any value: the stresses are 0 outside the contact.
+    V : velocity of the axis, any sign; of a Cylinder m/s, of a Scene divided by R/T_ref.  T_ref is
+        the unit of time: T_epsilon of a Scene with ``alpha``, else the time in which the material
+        counts.
+    delta, omega : exactly one: creepage (omega R - V)/V, or angular velocity, any sign; omega of a
+        Cylinder in rad/s, of a Scene multiplied by T_ref.  At V = 0 a delta means the limit V ->
+        0+, an omega other than 0 full slip.  All arguments broadcast.
+    method : "table", or "coupled" (:func:`contact`), with which layers have a shear stress too.
+
+    Returns
+    -------
+    Values
+        ``p``: pressure, >= 0.  ``tau``: shear stress on the cylinder in the direction of +x, of the
+        sign of omega R - V (at V = 0 of delta), 0 for delta = 0; |tau| <= mu p, with equality in
+        the slip zone and, in full slip, in the whole contact.  Both are in Pa of a Cylinder, else
+        divided by E', and 0 outside the contact.  If a body is a layer of finite thickness there is
+        ``p`` alone by method "table": its shear stress is not known.  Both have the broadcast shape
+        of arguments and roller; they are floats if all of these are numbers.
+
+    Raises
+    ------
+    ParameterError
+        NaN or infinite input, kappa |V| above 1e300, both or neither of delta and omega, shapes
+        that do not broadcast, labelled arrays beside plain ones or with other coordinates, a unit
+        of another dimension; what is no scene and no cylinder; a layer too thin for its law, times
+        of a material beyond 1e-100 to 1e100 T_ref.
+
+    Warns
+    -----
+    ModelWarning
+        Of a Cylinder, as :func:`contact`: a contact longer than the radius, or outside of the
+        measured band.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> import viscoroll as vr
+    >>> x = np.linspace(-0.01, 0.01, 201)  # m
+    >>> found = vr.stress(vr.presets.RUBBER_CYLINDER, x, 0.1, delta=0.001)
+    >>> bool(found.p.max() > 0.0)
+    True
+
+    Notes
+    -----
+    The error relative to the peak is below 1e-11 for alpha zeta from 1e-8 to 1e8
+    (``tests/test_stress.py``).  Where V or the creepage are arrays, the state of the contact takes
+    56 bytes for each of their elements, beside the result.
+    """
+    _, scene, scale = resolve_model(roller, "stress")
+    creep_name = check_one_given(delta=delta, omega=omega)
+    check_choice("method", method, "table", "coupled")
+    given, labels = strip_labels(
+        {"x": x, "V": V, creep_name: omega if delta is None else delta}, scale
+    )
+    given = {name: check_array(name, value) for name, value in given.items()}
+    position, speed, creep = given.values()
+    if scale.si:
+        warn_of_contact(roller, speed)
+        # A position that overflows lies outside the contact, a speed that overflows is refused.
+        with np.errstate(over="ignore"):
+            position = divide_by_unit("x", position, scale["length"])
+            speed = divide_by_unit("V", speed, scale["V"])
+            creep = divide_by_unit(creep_name, creep, scale[creep_name])
+    find = coupled_stress if method == "coupled" else _stress_of_law
+    by_omega = creep_name == "omega"
+    stresses = find(scene, x=position, V=speed, creep=creep, creep_is_omega=by_omega)
+    stresses *= scale["p"]  # in place: a copy would double the memory of a large call
+    found = {name: part if part.ndim else part.item() for name, part in zip(("p", "tau"), stresses)}
+    return Values(found, given, si=scale.si, title="Stresses", labels=labels)
+
+
+def _stress_of_law(
+    scene: Parameters, x: Floats, V: Floats, creep: Floats, creep_is_omega: bool
+) -> Floats:
+    """Return pressure and shear stress by the fast law, without a table of the coupled solution.
+
+    scene: dimensionless parameters of one material; kappa and mu may be arrays.
+    x: distance ahead of the axis, divided by l0; broadcasts with the states.
+    V: speeds, dimensionless, any sign.
+    creep: omega if ``creep_is_omega``, else the creepage delta.
+    Returns p and tau divided by E', rows of an array, each of the broadcast shape; of a cover p
+    alone.
+    """
+    from ..kernels.law.modes import Points
+
+    scene = scene.uncoupled
+    lam, epsilon, beta, zeta, delta = evaluate_contact(
+        scene,
+        V,
+        creep=creep,
+        creep_is_omega=creep_is_omega,
+        names=("lam", "epsilon", "beta", "zeta", "delta"),
+    ).values()
+    # For V < 0 positions are mirrored, and tau changes its sign.
+    mirror = np.where(V < 0.0, -1.0, 1.0)
+    alpha = (
+        scene.alpha
+        if scene.material_array is None
+        else np.arange(len(scene.material_array), dtype=np.float64)
+    )
+    arrays = {
+        "x": x,
+        "kappa": scene.kappa,
+        "mu": scene.mu,
+        "lam": lam,
+        "epsilon": epsilon,
+        "beta": beta,
+        "zeta": zeta,
+        "alpha": alpha,
+        "mirror": mirror,
+        "sign": np.sign(delta) * mirror,
+    }
+    arrays = {name: np.asarray(value, dtype=np.float64) for name, value in arrays.items()}
+    shape = broadcast_shape(**arrays)
+    read_x, *readers, read_alpha, read_mirror, read_sign = (
+        block_reader(array, shape) for array in arrays.values()
+    )
+    out = np.empty((2, math.prod(shape)))
+    p, tau = out
+
+    def work(start: int, stop: int) -> None:
+        """Compute p/E' and the signed tau/E' at points ``start`` to ``stop`` - 1 of the flattened
+        broadcast shape, and write them into these elements of ``p`` and ``tau``; of a cover p
+        alone.
+        """
+        mirrored = read_mirror(start, stop) * read_x(start, stop)
+        mirrored.flags.writeable = False  # as all arrays that kernels read (block_reader)
+        points = Points(mirrored, *(read(start, stop) for read in readers))
+        _compute_stresses(
+            scene, read_alpha(start, stop), points=points, p=p[start:stop], tau=tau[start:stop]
+        )
+        if scene.cover is None:  # else tau is not computed
+            tau[start:stop] = read_sign(start, stop) * tau[start:stop] + 0.0
+
+    run_blocks(work, p.size, _BLOCK)
+    return out.reshape(2, *shape)[: 2 if scene.cover is None else 1]
+
+
+def _compute_stresses(
+    scene: Parameters, alpha: Floats, points: Any, p: Floats, tau: Floats
+) -> None:
+    """Compute the stresses at points, material by material, and write them into ``p`` and ``tau``.
+
+    scene: dimensionless parameters of the roller, of which the material alone is read.
+    alpha: alphas, or for an array of materials their indices as floats, (n,) or (1,); for one
+        material not used.  Consecutive points of one material are computed together.
+    points: record :class:`.modes.Points`; its fields (position, kappa, mu, lam,
+        epsilon, beta, zeta) are (n,) or (1,), dimensionless, positions in the frame where V > 0,
+        divided by l0.
+    p, tau: pressure and size of the shear stress divided by E', (n,), written, 0 outside the
+        contact; of a cover tau is not written.
+    """
+    from ..kernels.law.modes import new_memory_weights, stress_loop
+
+    ends: Any = [] if scene.material_array is None else 1 + np.flatnonzero(np.diff(alpha))
+    for first, last in pairwise([0, *ends, p.size]):
+        part = points._make(each[first:last] if each.size > 1 else each for each in points)
+        index = int(alpha[min(first, alpha.size - 1)])  # of one of many materials
+        if scene.cover is not None:
+            p[first:last] = _cover_pressure(scene, index, part)
+            continue
+        material: Any = alpha if scene.series is None else scene.series
+        if scene.material_array is not None:
+            material = total_series(scene.material_array[index])
+        series, alphas = series_record(material)
+        stress_loop(
+            series,
+            alphas,
+            new_memory_weights(series),
+            new_memory_weights(series),
+            part,
+            p[first:last],
+            tau[first:last],
+        )
+
+
+def _cover_pressure(scene: Parameters, index: int, points: Any) -> Floats:
+    """Return p/E' at points on a cover, by one solve of the contact of the layer for each different
+    state.
+
+    scene: dimensionless parameters of a roller with a cover.
+    index: index of the cover, if the scene has an array of covers; else not used.
+    points: record :class:`.modes.Points`, of which position (divided by l0, in the
+        frame where V > 0), kappa, lam, epsilon and zeta (infinite at V = 0) are used, (n,) or (1,).
+    Returns p/E', dimensionless, >= 0 to rounding, 0 outside the contact, a new array (n,), where n
+    is the common length of these fields.
+    """
+    cover: Any = scene.cover if scene.material_array is None else scene.material_array[index]
+    modes = CoverModes(cover)
+    x, *state = np.broadcast_arrays(points.x, points.kappa, points.lam, points.epsilon, points.zeta)
+    states_of_contact, which = np.unique(np.array(state), axis=1, return_inverse=True)
+    found = np.empty(x.size)
+    for n, (kappa, lam, epsilon, zeta) in enumerate(states_of_contact.T.tolist()):
+        place = which.ravel() == n
+        y = 2.0 * x[place] / lam - epsilon
+        found[place] = pressure(modes, zeta, 0.5 * lam, y) / (8.0 * np.pi * kappa * lam)
+    return found

@@ -1,0 +1,34 @@
+"""What other rooms take from this one, a line each, for type checkers, and for ``__init__.py``."""
+
+from .cover_rows import solve_at_speed as solve_at_speed
+from .cover_solve import CoverModes as CoverModes
+from .cover_solve import layer_nodes as layer_nodes
+from .cover_solve import pressure as pressure
+from .law_grid import LawGrid as LawGrid
+from .law_grid import check_nodes as check_nodes
+from .law_grid import fit_spline as fit_spline
+from .law_grid import friction_limit as friction_limit
+from .law_grid import pack_spline as pack_spline
+from .law_grid import refuse_filled as refuse_filled
+from .law_netcdf import bodies_as_toml as bodies_as_toml
+from .law_netcdf import law_as_dataset as law_as_dataset
+from .law_netcdf import law_table_of as law_table_of
+from .law_netcdf import parse_axis as parse_axis
+from .law_netcdf import parse_law as parse_law
+from .law_rows import FIELDS as FIELDS
+from .law_rows import CoupledRows as CoupledRows
+from .law_rows import Rows as Rows
+from .law_rows import evaluate_by_modes as evaluate_by_modes
+from .law_rows import grade as grade
+from .law_rows import series_record as series_record
+from .law_table import LawTable as LawTable
+from .law_table import coupled_table as coupled_table
+from .laws_per_element import count_laws as count_laws
+from .laws_per_element import record_of_alphas as record_of_alphas
+from .laws_per_element import record_of_materials as record_of_materials
+from .laws_per_element import records_of_alphas as records_of_alphas
+from .laws_per_element import sort_by_octave as sort_by_octave
+from .row_layout import AXIS_FUNCTIONS as AXIS_FUNCTIONS
+from .row_layout import COVER_FUNCTIONS as COVER_FUNCTIONS
+from .row_layout import FUNCTIONS as FUNCTIONS
+from .row_layout import interleave_pairs as interleave_pairs
