@@ -19,7 +19,7 @@ COUNTED = (tokenize.NAME, tokenize.NUMBER, tokenize.OP, tokenize.STRING)
 #: Tokens before the first one of a statement: a string that follows them, alone, is a docstring.
 STARTS = (tokenize.ENCODING, tokenize.NEWLINE, tokenize.INDENT, tokenize.DEDENT)
 #: Columns of the second table, and the folders that each of them counts.
-KINDS = {"source": ("src",), "tests": ("tests",), "evidence": ("pipeline", "data")}
+KINDS = {"source": ("src",), "tests": ("tests",), "evidence": ("pipeline",)}
 
 
 def count_tokens(path: Path) -> int:

@@ -1,5 +1,5 @@
-"""Reference motions of data/reference as scenes, starts and drives; check_motions.py there made
-them.
+"""Reference motions of data/reference as scenes, starts and drives; data/README.md says how they
+were made.
 """
 
 from __future__ import annotations
