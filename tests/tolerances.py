@@ -222,7 +222,7 @@ MEMORY_SLACK = 8_000_000
 PROVEN_SUBNORMAL = 4e-323
 
 # --- planted defects (test_mutants.py) ---
-# Share of them that the tests must notice, as pipeline/evidence/mutate/ asks; 52 of the first 54
+# Share of them that the tests must notice, as pipeline/evidence/mutate.py asks; 52 of the first 54
 # were.
 MUTANTS_KILLED = 0.95
 

@@ -8,7 +8,7 @@ from operator import itemgetter
 
 import tolerances as tol
 
-from pipeline.evidence.truth.reference import DRIVEN, FREE
+from pipeline.evidence.prove.cases import DRIVEN, FREE
 from pipeline.stage import read_rows
 
 FREE_MOTIONS = [list(rows) for _, rows in groupby(read_rows(FREE), itemgetter("motion"))]

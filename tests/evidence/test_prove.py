@@ -1,8 +1,8 @@
 """What the proofs are made of; the claims themselves are in tests/test_claims.py."""
 
-from pipeline.evidence.prove.table import TABLE
-from pipeline.evidence.truth.enclosures import INPUTS, contact_enclosure
-from pipeline.evidence.truth.reference import VALUES
+from pipeline.evidence.prove.__main__ import TABLE
+from pipeline.evidence.prove.cases import VALUES
+from pipeline.evidence.truth import INPUTS, contact_enclosure
 from pipeline.stage import read_rows
 
 
