@@ -13,8 +13,7 @@ from closeness import close
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from pipeline.evidence.truth.enclosures import zone_of
-from pipeline.evidence.truth.material import material_of
+from pipeline.evidence.truth import material_of, zone_of
 from viscoroll.contact_mechanics.contact_table import SLOPES_OF_BODIES
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
