@@ -47,7 +47,7 @@ corners: setup ## law and motions at the ends of what the package takes: out/cor
 
 bench: setup peer-tools ## run time against error beside the peers, which it installs (long)
 	$(RUN) -m pipeline.evidence.bench
-	$(RUN) -m pipeline.evidence.bench.figures
+	$(RUN) -m pipeline.evidence.figures
 	$(RUN) -m pipeline.evidence.document
 
 numbers: setup figures benchmark ## measure again what README and docs state, and put it there (about half an hour)
@@ -67,7 +67,7 @@ prove: setup ## law and motions against enclosures and extended precision: data/
 	$(RUN) -m pipeline.evidence.prove
 	$(RUN) -m pipeline.evidence.prove.independent
 	$(RUN) -m pipeline.evidence.prove.unsteady
-	$(RUN) -m pipeline.evidence.prove.figures
+	$(RUN) -m pipeline.evidence.figures
 	$(RUN) -m pipeline.evidence.prove.layer
 	$(RUN) -m pipeline.evidence.prove.formulas
 	$(RUN) -m pipeline.evidence.measure.large

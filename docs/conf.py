@@ -37,7 +37,7 @@ ELSEWHERE = {
     "contributing": "CONTRIBUTING.md",
     "data": "data/README.md",
     "materials": "data/materials/README.md",
-    "peers": "pipeline/evidence/peers/README.md",
+    "peers": "pipeline/evidence/bench/README.md",
     "pipeline": "pipeline/README.md",
 }
 #: The address of the repository stands in [project.urls] of pyproject.toml, once there is one, and

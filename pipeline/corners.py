@@ -3,7 +3,7 @@ out/corners.csv.
 
     python -m pipeline.validate --corners [--config FILE] [-o FOLDER]
 
-The law is held against enclosures in ball arithmetic (pipeline/evidence/truth), motions against
+The law is held against enclosures in ball arithmetic (pipeline/evidence/truth.py), motions against
 their own energy: what friction and rolling take must be what V and omega have lost.  One row a
 quantity: worst, allowed, where; exit code 1 where one is exceeded.
 """
@@ -19,7 +19,7 @@ import numpy as np
 import viscoroll as vr
 
 from . import stage
-from .evidence.prove.claim import Found, Proof
+from .evidence.prove.cases import Found, Proof
 from .evidence.truth import contact_enclosure
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")

@@ -20,7 +20,6 @@ from viscoroll.core.files import write_text
 from viscoroll.presets import PRESETS
 
 from . import stage
-from .figures.captions import SECTIONS
 
 STAGES = {
     "offline": "Tables of the law",
@@ -30,6 +29,8 @@ STAGES = {
     "benchmark": "Time and error",
     "figures": "Figures",
 }
+#: Section of figures -> figure -> caption, in order.
+SECTIONS: dict[str, dict[str, str]] = stage.read_toml(stage.ROOT / "pipeline/captions.toml")
 _STYLE = (
     "body{font:16px/1.45 sans-serif;max-width:62em;margin:2em auto;padding:0 1em;color:#111}"
     "table{border-collapse:collapse;margin:.6em 0}td,th{border:1px solid #bbb;padding:.2em "

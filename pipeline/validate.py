@@ -23,8 +23,7 @@ import xarray as xr
 from numpy.typing import NDArray
 
 import viscoroll as vr
-from pipeline.validation import validate
-from pipeline.validation.direct_motion import roll_direct
+from pipeline.validation import roll_direct, validate
 from viscoroll.contact_mechanics.coupled_pair import CoupledPair
 from viscoroll.contact_mechanics.coupled_tables import measure_errors
 from viscoroll.core.errors import FileError

@@ -16,7 +16,7 @@ from many import MATERIALS, states
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from pipeline.evidence.truth.enclosures import INPUTS, contact_enclosure, slopes
+from pipeline.evidence.truth import INPUTS, contact_enclosure, slopes
 from viscoroll.contact_mechanics.contact_table import FIELDS, SLOPES, SLOPES_OF_BODIES
 from viscoroll.laws import laws_per_element
 

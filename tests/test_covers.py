@@ -17,7 +17,6 @@ from hypothesis import strategies as st
 from refusals import refused
 
 import viscoroll as vr
-from data.reference import layer as elastic_layer
 from pipeline.evidence.prove import layer
 from viscoroll.laws.cover_rows import shear_of, solve_at_speed
 from viscoroll.laws.cover_solve import CoverModes, solve
@@ -154,7 +153,7 @@ def test_an_elastic_cover(nu):
 
     state = found(1.0)
     assert state.M == 0.0
-    assert close(state.lam**2 * elastic_layer.load(2.0 / state.lam, nu), 1.0, rel=tol.COVER_ELASTIC)
+    assert close(state.lam**2 * layer.load(2.0 / state.lam, nu), 1.0, rel=tol.COVER_ELASTIC)
     local = -(0.5 - nu) / (1.0 - nu) / (np.pi * KAPPA)
     assert close(found(1e12, on="base").delta_0, local, rel=tol.COVER_LOCAL, scale=1e-3)
     assert abs(found(1e12, part=0.5, other_nu=nu).delta_0) < tol.COVER_THICK
@@ -378,9 +377,7 @@ def test_pressure_of_a_cover_makes_the_parabola(scene, V):
     kernel = 0.0
     for share, name in ((cover.share, "cylinder"), (1.0 - cover.share, "base")):
         series, nu, thickness = cover.body(name)
-        part = share * (
-            1.0 if thickness is None else elastic_layer.kernel(2.0 * v * thickness / c.lam, nu)
-        )
+        part = share * (1.0 if thickness is None else layer.kernel(2.0 * v * thickness / c.lam, nu))
         b = 1.0 / series.T
         creep = (series.J * b / (b - 1j * (v / c.zeta)[:, None])).sum(axis=1)
         kernel = kernel + part * (1.0 / series.alpha + creep)

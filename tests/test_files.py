@@ -280,8 +280,8 @@ SCRATCH = (
     "pipeline/evidence/matrix.py",
     "pipeline/evidence/measure/ensembles.py",
     "pipeline/evidence/measure/outside.py",
-    "pipeline/evidence/mutate/",
-    "pipeline/evidence/torture/",
+    "pipeline/evidence/mutate.py",
+    "pipeline/evidence/torture.py",
 )
 
 

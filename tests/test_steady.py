@@ -13,8 +13,7 @@ from closeness import close
 from scipy.optimize import brentq
 
 import viscoroll as vr
-from pipeline.evidence.truth.enclosures import zone_of
-from pipeline.evidence.truth.material import material_of
+from pipeline.evidence.truth import material_of, zone_of
 from viscoroll.contact_mechanics.contact_table import SLOPES_OF_BODIES
 
 SCENE = vr.presets.PAPER_SECTION_5_ROUNDED
@@ -382,11 +381,13 @@ def test_eigenvalues_at_the_least_and_largest_numbers():
     is -T_mean/(1 + j) still.
     """
     scene = series_scene(TWO)
-    known = vr.steady(scene, V=1e-6, torque=0.0).eigenvalues[0]
-    for V in (1e-153, 1e-290):
-        found = vr.steady(scene, V=V, torque=0.0)
-        assert found.stable.all()
-        assert close(found.eigenvalues[0].real.max(), known.real.max(), tol.SLOWEST)
+    cover = scene.replace(material=vr.Cover(TWO, nu=0.5, thickness=0.5, on="base"), coupled=False)
+    for each in (scene, cover):
+        known = vr.steady(each, V=1e-8, torque=0.0).eigenvalues[0]
+        for V in (1e-18, 1e-153, 1e-290, -1e-308, 5e-324):
+            found = vr.steady(each, V=V, torque=0.0)
+            assert found.stable.all()
+            assert close(found.eigenvalues[0].real.max(), known.real.max(), tol.SLOWEST)
     for j in (1e-300, 1e300):
         found = vr.steady(scene.replace(j=j), V=1e-30, torque=0.0)
         assert found.stable.all()

@@ -21,7 +21,7 @@ STRESS_ELLIPSE = 1e-15
 STRESS_CARTER = 1e-13
 
 # --- steady states (test_steady.py) ---
-# Slow eigenvalue at rest against that at V = 1e-6 and the limit -T_mean/(1 + j): of the order of V
+# Slow eigenvalue at rest against that at V = 1e-8 and the limit -T_mean/(1 + j): of the order of V
 # and of roundings.
 SLOWEST = 1e-4
 
@@ -222,7 +222,7 @@ MEMORY_SLACK = 8_000_000
 PROVEN_SUBNORMAL = 4e-323
 
 # --- planted defects (test_mutants.py) ---
-# Share of them that the tests must notice, as pipeline/evidence/mutate/ asks; 52 of the first 54
+# Share of them that the tests must notice, as pipeline/evidence/mutate.py asks; 52 of the first 54
 # were.
 MUTANTS_KILLED = 0.95
 
@@ -454,9 +454,8 @@ EXAMPLE_TRAIN = 1e-4
 EXAMPLE_JACOBIAN = 1e-4
 
 # --- a transient solver (evidence/test_transient.py) ---
-#: Rolling moment on cells of 0.04 of half a contact; measured 6.6e-4.
-TRANSIENT_M = 2e-3
-#: Largest error of V over the first speed, against cells of 0.01; measured 4e-3 at cells of 0.04.
+#: Largest error of V over the first speed, cells of 0.02 against 0.01; measured 4e-3 at cells of
+#: 0.04.
 TRANSIENT_ERROR = 6e-3
 
 # --- a layer on something rigid (evidence/test_layer.py) ---

@@ -29,8 +29,7 @@ import viscoroll as vr
 from ..stage import ROOT, said
 from .citation import made
 from .matrix import packed
-from .results import RESULTS
-from .stamps import SHORT, kernels_digest, outdated
+from .results import RESULTS, SHORT, kernels_digest, outdated
 
 #: data that others made: their files need a licence beside them in the sdist
 MATERIALS = "data/materials/"

@@ -8,8 +8,8 @@ import pytest
 import tolerances as tol
 from processes import made
 
-from pipeline.evidence.bench.figures import draw
-from pipeline.evidence.results import Results
+from pipeline.evidence.figures import draw
+from pipeline.evidence.results import RESULTS, Results
 
 
 @pytest.fixture(scope="module")
@@ -52,7 +52,7 @@ def test_motions(results):
     check_rows(work)
     check_rows(own)
     assert {row["group"] for row in work["rows"]} == {"IC1", "IC2", "IC3", "random"}
-    draw(Results(results.parent), results.parent)
+    draw(Results(results.parent, RESULTS), results.parent)
     assert (results.parent / "work-precision.png").stat().st_size > 0
     if work["skipped"]:
         assert set(work["skipped"]) <= {"gsl-adams", "gsl-bdf", "lsoda"}, work["skipped"]

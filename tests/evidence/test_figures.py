@@ -14,7 +14,7 @@ from processes import made, stage_refused
 
 import viscoroll as vr
 from pipeline.figures import FIGURES, GALLERY
-from pipeline.figures.captions import SECTIONS
+from pipeline.report import SECTIONS
 from viscoroll.core.plots import save
 
 pytestmark = pytest.mark.filterwarnings(

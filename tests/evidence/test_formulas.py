@@ -9,8 +9,8 @@ from scipy.integrate import quad
 from scipy.special import j1
 
 import viscoroll as vr
-from pipeline.evidence.peers.rolling_formulas import jonkers, persson
 from pipeline.evidence.prove import formulas
+from pipeline.evidence.prove.formulas import jonkers, persson
 
 R, LOAD = formulas.R, formulas.LOAD
 

@@ -1,11 +1,11 @@
-"""The results of the planted defects (pipeline/evidence/mutate/) are of all of them; stages that
+"""The results of the planted defects (pipeline/evidence/mutate.py) are of all of them; stages that
 want more say so.
 """
 
 import tolerances as tol
 from places import kept
 
-from pipeline.evidence.mutate.mutants import MUTANTS
+from pipeline.evidence.mutate import MUTANTS
 
 
 def test_results_are_of_known_defects():

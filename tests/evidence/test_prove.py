@@ -1,32 +1,17 @@
 """What the proofs are made of; the claims themselves are in tests/test_claims.py."""
 
-import csv
-
-from places import DATA
-
-from data.reference import check_motions, check_values
-from pipeline.evidence.prove.table import TABLE
-
-CHECK_VALUES = DATA / "reference/check_values.csv"
+from pipeline.evidence.prove.__main__ import TABLE
+from pipeline.evidence.prove.cases import VALUES
+from pipeline.evidence.truth import INPUTS, contact_enclosure
+from pipeline.stage import read_rows
 
 
-def test_check_values_are_made_again(tmp_path):
-    """The first states and motions, to the last digit, from the inputs that they hold; driven:
-    ``test_precise.py``.
-    """
-    for make, count, name, lines in (
-        (check_values.make, 40, "check_values.csv", 40),
-        (check_motions.free, 1, "check_motions.csv", 7),
-    ):
-        make(tmp_path, count)
-        again, kept = (
-            [
-                row | {"difference": ""}
-                for row in csv.DictReader((folder / name).read_text().splitlines())
-            ]
-            for folder in (tmp_path, CHECK_VALUES.parent)
-        )
-        assert again == kept[:lines]
+def test_check_values_are_the_doubles_nearest_to_enclosures():
+    """The first states, to the last digit, from the inputs that they hold."""
+    for row in read_rows(VALUES)[:40]:
+        exact = contact_enclosure(*(row[name] for name in INPUTS))
+        found = {name: float(value) for name, value in exact.items() if name in row}
+        assert row == row | found
 
 
 def test_draws_of_a_proof_are_its_own():

@@ -3,8 +3,7 @@
 import pytest
 
 from pipeline.evidence import release
-from pipeline.evidence.results import RESULTS
-from pipeline.evidence.stamps import outdated
+from pipeline.evidence.results import RESULTS, outdated
 
 
 @pytest.fixture(scope="module")

@@ -7,15 +7,15 @@ import shutil
 import pytest
 from places import RESULTS
 
-from pipeline.evidence import stamps
 from pipeline.evidence.document.__main__ import BLOCKS, filled
+from pipeline.evidence.results import KERNELS, kernels_digest, outdated
 
 OTHER = "0123456789abcdef"
 SENTENCE = "Measured with an earlier version of the compiled code, source hash `01234567`.\n"
 
 
 KERNEL = '@njit\ndef law(x):\n    """Doubled."""\n    return 2.0 * x\n'
-digest_of = stamps.kernels_digest.__wrapped__
+digest_of = kernels_digest.__wrapped__
 
 
 @pytest.fixture
@@ -37,12 +37,12 @@ def block(name, folder):
 
 def test_words_outdate_no_result(tmp_path):
     kernels = shutil.copytree(
-        stamps.KERNELS, tmp_path / "kernels", ignore=shutil.ignore_patterns("__pycache__")
+        KERNELS, tmp_path / "kernels", ignore=shutil.ignore_patterns("__pycache__")
     )
     for path in kernels.rglob("*.py"):
         text = re.sub(r'"""(?=\w)', '"""In other words. ', path.read_text())
         path.write_text(f"# a comment\n\n{text}\n\n")
-    assert digest_of(kernels) == stamps.kernels_digest()
+    assert digest_of(kernels) == kernels_digest()
 
 
 @pytest.mark.parametrize(
@@ -62,14 +62,14 @@ def test_what_computes_outdates_it(tmp_path, old, new):
 def test_a_block_says_where_it_is_of_other_kernels(name, results):
     said = block(name, results(OTHER))
     assert said.count("an earlier version") == said.count(SENTENCE) == 1
-    assert said.replace(f"\n{SENTENCE}", "") == block(name, results(stamps.kernels_digest()))
+    assert said.replace(f"\n{SENTENCE}", "") == block(name, results(kernels_digest()))
 
 
 def test_results_of_other_kernels_are_found(results):
-    folder = results(stamps.kernels_digest())
-    assert stamps.outdated(folder) == {}
+    folder = results(kernels_digest())
+    assert outdated(folder) == {}
     (folder / "unstamped.json").write_text("{}")
     mutants = json.loads((folder / "mutants.json").read_text())
     next(iter(mutants.values()))["kernels"] = OTHER
     (folder / "mutants.json").write_text(json.dumps(mutants))
-    assert stamps.outdated(folder) == {"mutants.json": [OTHER], "unstamped.json": ["unknown"]}
+    assert outdated(folder) == {"mutants.json": [OTHER], "unstamped.json": ["unknown"]}

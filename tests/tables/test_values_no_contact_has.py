@@ -12,6 +12,22 @@ from viscoroll import fmu
 MODES = vr.Prony([2.0], [1.0])
 
 
+@pytest.mark.parametrize(
+    "range_", [{"valid_min": 0.015}, {"valid_max": 0.02}, {"valid_range": [0.0, 0.02]}]
+)
+def test_values_outside_of_the_valid_range_that_a_file_declares_are_refused(tmp_path, range_):
+    path = tmp_path / "grid.nc"
+    V = ("V", [0.5, 1.0, 2.0], {"units": "1"})
+    delta = ("delta", [-0.02, 0.0, 0.02], {"units": "1"})
+    Q = (("V", "delta"), np.tile([-0.2, 0.0, 0.2], (3, 1)), {"units": "1"})
+    M = ("V", [0.01, 0.02, 0.03], {"units": "1"} | range_)
+    xr.Dataset({"Q": Q, "M": M}, {"V": V, "delta": delta}, {"mu": 0.2}).to_netcdf(
+        path, engine="h5netcdf"
+    )
+    with pytest.raises(vr.FileError, match=r"at V\[[02]\]: must be .* the valid range"):
+        vr.load_law(path)
+
+
 @pytest.mark.parametrize("filled", [9.96921e36, 1e10, 2.0])
 def test_a_rolling_moment_beyond_load_times_radius_is_refused(tmp_path, filled):
     """The load of no contact acts farther from the axis than R, so that M is at most P R."""

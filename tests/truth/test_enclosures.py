@@ -3,7 +3,7 @@
 import flint
 import numpy as np
 
-from pipeline.evidence.truth.enclosures import contact_enclosure, ratio_k, ratio_r
+from pipeline.evidence.truth import contact_enclosure, ratio_k, ratio_r
 
 # --- enclosures ---
 

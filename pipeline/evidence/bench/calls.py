@@ -15,7 +15,7 @@ from viscoroll.laws.law_table import make_table
 from viscoroll.motion import flow
 
 from ..timing import seconds_of, timed
-from .problem import speed_error
+from .motions import speed_error
 
 PAPER = vr.presets.PAPER_SECTION_5_ROUNDED
 

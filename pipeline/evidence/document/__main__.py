@@ -19,8 +19,7 @@ from viscoroll import ViscorollError
 from viscoroll.core.files import write_text
 
 from ...stage import ROOT, said, told
-from ..results import RESULTS, Results
-from ..stamps import SHORT, kernels_digest, stamps
+from ..results import RESULTS, SHORT, Results, kernels_digest, stamps
 from .blocks import BLOCKS, block
 
 #: Its table of costs follows every change of code: it is filled, but --check does not compare it.

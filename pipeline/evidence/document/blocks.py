@@ -7,8 +7,9 @@ from __future__ import annotations
 import html
 import re
 import statistics
+import string
 import tomllib
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +18,135 @@ import numpy as np
 from viscoroll.core.scale import DIMENSIONS, SYMBOLS, describe_quantity, si_unit
 
 from ..results import Results, rows_of, table
-from . import costs, house, identification
-from .cells import cell, listed, two
+from . import house
+from . import house as costs
+
+# --- tables whose cells are templates: str.format with conversions for numbers ---
+
+
+def two(value: float) -> str:
+    """Two significant digits, plain where that is short."""
+    text = f"{value:.2g}"
+    return f"{float(text):.0f}" if 100 <= float(text) < 1e6 else text
+
+
+def three_digits(value: float) -> str:
+    """Three significant digits."""
+    return f"{float(f'{value:.3g}'):g}"
+
+
+#: two digits, in thousandths, in per cent; three digits, likewise; whole; thousands and millions to
+#: go on with; a power of ten; a vertical line that ends no cell
+CONVERSIONS = {
+    "n": two,
+    "m": lambda value: two(1e3 * value),
+    "c": lambda value: two(100.0 * value),
+    "t": three_digits,
+    "u": lambda value: three_digits(1e3 * value),
+    "h": lambda value: three_digits(100.0 * value),
+    "i": "{:.0f}".format,
+    "k": lambda value: 1e-3 * value,
+    "M": lambda value: 1e-6 * value,
+    "e": lambda value: f"{value:.0e}".replace("e+0", "e"),
+    "p": lambda text: text.replace("|", "\\|"),
+}
+
+
+class Cells(string.Formatter):
+    """``str.format`` with the CONVERSIONS; nothing of None and of empty text."""
+
+    def convert_field(self, value: Any, conversion: str | None) -> Any:
+        if not conversion:
+            return value
+        return "" if value in (None, "") else CONVERSIONS[conversion](value)
+
+    def __call__(self, template: str, values: Mapping[str, Any]) -> str:
+        return self.vformat(template, (), values)
+
+
+cell = Cells()
+
+
+def listed(columns: Mapping[str, str], rows: Iterable[Mapping[str, Any]]) -> str:
+    """A Markdown table: a line for each of ``rows`` by the templates under their headings."""
+    return table(columns, ([cell(template, row) for template in columns.values()] for row in rows))
+
+
+# --- what measurements tell ---
+
+_NEVER = "no influence"
+_OPEN = "unbounded"
+
+
+def _known(row: dict[str, Any], name: str) -> str:
+    """Standard deviation and interval over the truth."""
+    if name not in row["unknowns"]:
+        return "given"
+    if name in row["does_not_act"]:
+        return _NEVER
+    one = row["unknowns"][name]
+    ends = [_OPEN if one[end] is None else f"{1.0 + one[end]:.4g}" for end in ("low", "high")]
+    if name in row["undetermined"]:
+        return _OPEN if ends == [_OPEN, _OPEN] else f"[{', '.join(ends)}]"
+    return f"{100.0 * one['sd']:.2g} % [{', '.join(ends)}]"
+
+
+def _together(row: dict[str, Any]) -> str:
+    """What is determined of those that are not told apart."""
+    if not row["undetermined"]:
+        return "all"
+    texts = []
+    for one in row["products"]:
+        powers = sorted(one["powers"].items(), key=lambda item: -abs(item[1]))
+        named = " ".join(name if power == 1.0 else f"{name}^{power:.2g}" for name, power in powers)
+        near = " (near these values)" if one["near"] else ""
+        texts.append(f"{named}{near}, {50.0 * (one['high'] - one['low']):.2g} %")
+    others = [
+        name for name in row["unknowns"] if name not in (*row["undetermined"], *row["does_not_act"])
+    ]
+    return "; ".join([*texts, *others]) or "nothing"
+
+
+def identify_learn(results: Results, part: str = "learn") -> Iterator[dict[str, str]]:
+    """One row an experiment."""
+    for row in results[f"identification {part}"]["rows"]:
+        known = {name: _known(row, name) for name in ("mu", "E", "E_1", "T_ref", "brake", "drag")}
+        yield known | {"experiment": row["experiment"], "together": _together(row)}
+
+
+def identify_bearing(results: Results) -> Iterator[dict[str, str]]:
+    """The same of a roller in a bearing."""
+    return identify_learn(results, "bearing")
+
+
+def identify_said(results: Results) -> str:
+    """Six reports."""
+    rows = results["identification said"]["rows"]
+    return "\n".join(
+        f"{row['problem'].capitalize()}:\n\n```text\n{row['report']}\n```\n" for row in rows
+    )
+
+
+def identify_times(results: Results) -> Iterator[dict[str, Any]]:
+    """How long it takes, and how near ends of intervals are."""
+    off = max(row["off"] for row in results["identification width"]["rows"])
+    return (row | {"off": off} for row in results["identification time"]["rows"])
+
+
+def identify_coverage(results: Results) -> Iterator[dict[str, Any]]:
+    """How often intervals hold the truth."""
+    for row in results["identification coverage"]["rows"]:
+        yield row | {
+            "shares": ", ".join(
+                f"{name} {100.0 * share:.3g} %" for name, share in row["held"].items()
+            )
+        }
+
+
+IDENTIFY = identify_learn, identify_bearing, identify_said, identify_times, identify_coverage
+
+
+# --- blocks ---
 
 Row = Mapping[str, Any]
 #: what is said of each
@@ -161,7 +289,7 @@ def mutants(results: Results) -> str:
     noticed = "all of them" if killed == len(outcomes) else f"{killed}"
     return (
         "Line coverage cannot be measured in compiled kernels.  Instead "
-        f"[{len(outcomes)} defects](../pipeline/evidence/mutate/mutants.toml) were planted in the "
+        f"[{len(outcomes)} defects](../pipeline/evidence/mutants.toml) were planted in the "
         "kernels, one at a time. "
         f" The test suite detected {noticed} ([results](../data/results/mutants.json)).\n"
     )
@@ -401,7 +529,7 @@ MAKERS: dict[str, Callable[..., Any]] = {
         house.rooms,
         house.commands,
         house.sections,
-        *identification.MAKERS,
+        *IDENTIFY,
     )
 } | {
     "commands_runs": house.commands,

@@ -2,7 +2,19 @@
 viscoelastic cover.
 
 The cover has one relaxation time, and its contact is that of the package (:mod:`.cover` proves it).
-How thick an elastic layer has to be to pass for a half-space stands in data/reference/layer.json.
+How thick an elastic layer has to be to pass for a half-space stands in data/reference/layer.json,
+made by :func:`load`: a rigid cylinder presses an elastic layer of thickness h that is bonded to
+something rigid, plane strain, no friction.  Its surface yields to a pressure p cos(k x) by
+2 (1 - nu^2)/E p/k L(k h), and contact is where the pressure is (I. I. Vorovich, V. M. Aleksandrov
+and V. A. Babeshko, Nonclassical mixed problems of elasticity, 1974).  With lengths in the
+half-width a, the slope of the surface in contact is that of the cylinder,
+
+    integral over s of p(s) (1/(x - s) + r((x - s)/h)/h) = pi x
+    r(y) = integral over u of (L(u) - 1) sin(u y)
+
+with p = sqrt(1 - s^2) phi(s), phi = 1 on a half-space; collocation at Chebyshev's points converges
+exponentially.  At one half-width the load is f(h) times that of Hertz, so that at one load the
+half-widths are as 1/sqrt(f).
 
 python -m pipeline.evidence.prove.layer [-o FILE]: data/results/layer.json, in seconds.
 """
@@ -11,6 +23,7 @@ from __future__ import annotations
 
 import math
 import sys
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -28,6 +41,58 @@ COVER_RATIOS = (0.3, 0.45, 0.5)
 MATERIAL = vr.Prony([10.0], [1.0 / 11.0])
 #: kappa V between which M is largest.
 _SPEEDS = (0.01, 10.0)
+#: Upper end of the integral over u, where L - 1, which falls as exp(-2 u), is below the last digit.
+_LAST = 20.0
+#: Points of the integral over u.
+_NODES = 1000
+#: Points of collocation: seven digits down to a thickness of 0.3 half-widths.
+_POINTS = 31
+
+
+def kernel(u: NDArray[np.float64], nu: float) -> NDArray[np.float64]:
+    """Return L of an elastic layer, by decaying exponentials:
+
+    L(u) = (2 c sinh 2u - 4 u)/(2 c cosh 2u + 4 u^2 + 1 + c^2),   c = 3 - 4 nu,   1 of a half-space
+
+    u: wave number times thickness.
+    nu: Poisson's ratio.
+    """
+    c = 3.0 - 4.0 * nu
+    once = np.exp(-2.0 * u)
+    rest = (4.0 * u * u + 1.0 + c * c) * once
+    result: NDArray[np.float64] = (c * (1.0 - once * once) - 4.0 * u * once) / (
+        c * (1.0 + once * once) + rest
+    )
+    return result
+
+
+def load(h: float, nu: float, points: int = _POINTS) -> float:
+    """Return the load of an elastic layer over that of Hertz at the same half-width.
+
+    h: thickness over the half-width.
+    nu: Poisson's ratio.
+    points: of collocation.
+    """
+    n = points + 1
+    s = np.cos(np.arange(1, n) * np.pi / n)
+    x = np.cos((np.arange(n) + 0.5) * np.pi / n)
+    weights = np.pi / n * (1.0 - s * s)
+    apart = x[:, None] - s
+    regular = _regular(apart / h, nu) / h
+    phi = np.linalg.lstsq(weights * (1.0 / apart + regular), np.pi * x, rcond=None)[0]
+    return float(weights @ phi / (0.5 * np.pi))
+
+
+def _regular(y: NDArray[np.float64], nu: float) -> NDArray[np.float64]:
+    u, weights = _quadrature()
+    part = (kernel(u, nu) - 1.0) * weights
+    return np.array([np.sin(np.multiply.outer(row, u)) @ part for row in y])
+
+
+@lru_cache
+def _quadrature() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    at, weights = np.polynomial.legendre.leggauss(_NODES)
+    return 0.5 * _LAST * (1.0 + at), 0.5 * _LAST * weights
 
 
 def springs(p: vr.Prony, z: float, h: float, nu: float) -> NDArray[np.float64]:

@@ -20,9 +20,8 @@ from numpy.typing import NDArray
 import viscoroll as vr
 
 from ...stage import ROOT, read_rows
-from ..truth.reference import DRIVEN, FREE, PATHS, Case, driven_motion, free_motion
-from . import draws
-from .claim import Found, Proof
+from . import cases
+from .cases import DRIVEN, FREE, PATHS, Case, Found, Proof, driven_motion, free_motion
 
 #: errors over rtol that the documentation states, of all motions and of 99 in 100; steps that no
 #: motion needs
@@ -114,7 +113,7 @@ def condition(case: Case, best: Any) -> float:
 def free(random: np.random.Generator, count: int) -> Found:
     """At each tolerance in turn, divided by rtol: against the tightest."""
     for _, rtol in zip(range(count), cycle(TOLERANCES)):
-        case = draws.free(random)
+        case = cases.free(random)
         m, best = (rolled(case, one, max_steps=10 * STEPS) for one in (rtol, TIGHTEST))
         where = f"rtol = {rtol:g}, {case}"
         yield where, {"given up": float(m is None or best is None)}
@@ -132,7 +131,7 @@ def free(random: np.random.Generator, count: int) -> Found:
 
 def identities(random: np.random.Generator, count: int) -> Found:
     for _ in range(count):
-        case = draws.free(random)
+        case = cases.free(random)
         m = rolled(case, RTOL)
         found = {name: error / RTOL for name, error in balances(case).items()} | {
             "rise": risen_energy(case) / RTOL
@@ -193,7 +192,7 @@ def long_lives(random: np.random.Generator, count: int) -> Found:
     is reached.
     """
     for _ in range(count):
-        case = draws.free(random)
+        case = cases.free(random)
         scene = case.scene
         c = (case.scene.alpha - 1.0) / case.scene.alpha
         slide = abs(case.omega0 - case.V0) / (scene.gamma * scene.mu * (1.0 + 1.0 / scene.j))
@@ -211,7 +210,7 @@ def long_lives(random: np.random.Generator, count: int) -> Found:
 
 def slight(random: np.random.Generator, count: int) -> Found:
     for _ in range(count):
-        case = draws.slight(random)
+        case = cases.slight(random)
         m, best = (rolled(case, rtol, max_steps=10 * STEPS) for rtol in (RTOL, TIGHT))
         yield str(case), {"given up": m is None or best is None}
         if m and best:
@@ -236,7 +235,7 @@ def mapped(random: np.random.Generator, count: int) -> Found:
     map answers.
     """
     for _ in range(count):
-        alpha, kappa, mu = draws.powers(random, (0.0, 4.0), (-0.3, 2.3), (-2.0, 0.5))
+        alpha, kappa, mu = cases.powers(random, (0.0, 4.0), (-0.3, 2.3), (-2.0, 0.5))
         scene = vr.Scene(max(alpha, 1.001), kappa, mu, 1.0, random.uniform(0.1, 2.0))
         starts = random.uniform(-2.0, 2.0, (2, _STARTS))
         t = np.geomspace(1e-3, 5.0, 8) * (1.0 + scene.j) * scene.alpha / (scene.alpha - 1.0)
@@ -418,24 +417,24 @@ PROOFS = [
     _driven(
         "driven_motions",
         "random scenes, starts from rest and not, force and torque that stay, ramp and jump",
-        draws.driven,
+        cases.driven,
     ),
     _driven(
         "braked_motions",
         "such motions under brakes that stay, ramp and jump, a quarter of them at alpha = 1",
-        draws.braked,
+        cases.braked,
     ),
     _driven(
         "fed_back_motions",
         "such motions under force and torque that follow the speeds too, gains of -10 to -0.1",
-        draws.fed_back,
+        cases.fed_back,
     ),
     # at speeds of 1e-19 grip may be spent to rounding
     _driven(
         "prescribed_motions",
         "V or omega prescribed, over 12 decades beside the other speed, alpha to 1e4, kappa "
         "in [1e-3, 1e3], mu in [1e-5, kappa], gamma and j in [0.01, 100]",
-        draws.prescribed,
+        cases.prescribed,
         given_up=0.001,
     ),
     # creep may relax within the rounding of time
@@ -443,7 +442,7 @@ PROOFS = [
         "wild_motions",
         "random scenes with alpha to 1e8, mu from 1e-6 and j from 1e-3 to 1e3, starts, drives as "
         "before",
-        partial(draws.driven, wild=True),
+        partial(cases.driven, wild=True),
         100.0,
         0.02,
     ),

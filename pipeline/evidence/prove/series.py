@@ -1,6 +1,6 @@
 """Materials of many relaxation times and pairs against the matching conditions in balls.
 
-The conditions stand in ``pipeline.evidence.truth.enclosures`` as they were derived, without the
+The conditions stand in ``pipeline.evidence.truth`` as they were derived, without the
 system that the kernels solve; that they are the contact's, boundary elements say (:mod:`states`),
 which know none of them.
 """
@@ -21,10 +21,8 @@ from viscoroll.kernels.law.material_series import FUNCTIONS, new_workspace
 from viscoroll.kernels.law.modes import modes_loop
 from viscoroll.laws.law_rows import modes_record
 
-from ..truth.enclosures import INPUTS, enclosed, slopes, zone_of
-from ..truth.material import Material, material_of
-from .claim import Found, Proof, at
-from .draws import powers
+from ..truth import INPUTS, Material, enclosed, material_of, slopes, zone_of
+from .cases import Found, Proof, at, powers
 from .states import EPSILON, LAM
 
 BITS = 400

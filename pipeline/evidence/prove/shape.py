@@ -18,8 +18,7 @@ from numpy.typing import NDArray
 import viscoroll as vr
 from viscoroll.kernels.law import bessel_ratios
 
-from .claim import Found, Proof
-from .draws import EDGE_ALPHAS, generators
+from .cases import EDGE_ALPHAS, Found, Proof, generators
 
 #: the two ways that contact() takes, and the largest fall allowed: see above
 WAYS = ("different alphas", "one alpha")

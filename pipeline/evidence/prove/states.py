@@ -1,8 +1,11 @@
-"""Contact states against certified enclosures and boundary elements; stress."""
+"""Bessel ratios, contact states and stresses against certified enclosures; states and covers of
+finite thickness against the boundary elements of data/reference/check_elements.json.
+"""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterator
 from functools import partial
 from typing import Any
 
@@ -11,13 +14,98 @@ import numpy as np
 from flint import arb
 
 import viscoroll as vr
-from pipeline.validation.states import random_states
-from pipeline.validation.stresses import closures
+from viscoroll.contact_mechanics.validity import stated_error
+from viscoroll.kernels.law import bessel_ratios
+from viscoroll.kernels.law import bessel_ratios as kernels
 
-from ..truth.enclosures import INPUTS, condition_numbers, contact_enclosure, shape_enclosure
-from ..truth.reference import read_elements
-from .claim import Found, Proof, at
-from .draws import STATES, chosen_alpha, chosen_state, generators, powers
+from ...validation import closures, random_states
+from .. import truth as enclosures
+from ..truth import INPUTS, condition_numbers, contact_enclosure, shape_enclosure
+from .cases import (
+    STATES,
+    Found,
+    Proof,
+    at,
+    chosen_alpha,
+    chosen_state,
+    generators,
+    powers,
+    read_elements,
+)
+
+# --- r, k, i2 and the slopes of r and k, over all positive doubles ---
+
+#: a polynomial or series to a unit, a product and a logarithm
+RATIO_ULP = 4.0
+#: of the larger of the two terms of a Riccati equation; 1 - r carries up to 3 units just below x =
+#: 2
+SLOPE_ULP = 8.0
+_BITS = 120
+
+
+def points(random: np.random.Generator, count: int) -> np.ndarray:
+    """Every bin edge and its neighbours; and at random: half over the tables, half over all binary
+    exponents.
+    """
+    octaves = 2.0 ** np.arange(-31, 8)[:, None]
+    edges = (octaves * (1.0 + np.arange(bessel_ratios.BINS) / bessel_ratios.BINS)).ravel()
+    ends = np.array([5e-324, 1e-320, 2.2250738585072014e-308, 1e-8, 1.7976931348623157e308])
+    common = 10.0 ** random.uniform(-4, 3, count // 2)
+    bits = random.integers(1, np.float64(np.finfo(float).max).view(np.int64), count - count // 2)
+    fixed = [edges, np.nextafter(edges, 0.0), np.nextafter(edges, np.inf), ends]
+    return np.concatenate([*fixed, common, bits.view(np.float64)])
+
+
+def ulps(value: float, exact: Any, *terms: Any) -> float:
+    """|value - exact| in units in the last place of the exact value, or of the largest of some
+    terms.
+    """
+    unit = np.spacing(max(abs(float(each)) for each in (exact, *terms)))
+    return float((abs(arb(value) - exact) / arb(float(unit))).upper())
+
+
+def ratio_errors(x: float) -> Iterator[tuple[str, float]]:
+    """Errors at x: of r, k, i2 in ULP; of r' and k' in ULP of the larger Riccati term."""
+    X = arb(x)
+    (r, rc) = kernels.ratio_r(x)
+    (k, kc) = kernels.ratio_k(x)
+    exact_r = enclosures.ratio_r(X)
+    exact_k = enclosures.ratio_k(X)
+    yield "r", ulps(r, exact_r)
+    yield "k", ulps(k, exact_k)
+    yield "i2", ulps(kernels.ratio_i2(x, r), enclosures.ratio_i2(X))
+    if x >= np.finfo(float).tiny:  # below, k itself has lost its digits, and k/x with it
+        yield (
+            "slope of r",
+            ulps(kernels.slope_r(x, r, rc), 1 - exact_r / X - exact_r**2, exact_r / X),
+        )
+        yield (
+            "slope of k",
+            ulps(kernels.slope_k(x, k, kc), exact_k**2 + exact_k / X - 1, exact_k / X),
+        )
+
+
+def of_ratios(random: np.random.Generator, count: int) -> Found:
+    for x in points(random, count).tolist():
+        # the terms of the slopes, 1/x, cancel to 1/x^2
+        with flint.ctx.workprec(_BITS + 2 * max(math.frexp(x)[1], 0)):
+            yield f"x = {x!r}", dict(ratio_errors(x))
+
+
+_SLOPE = "{}, ULP of the larger term of its Riccati equation"
+RATIO_PROOFS = [
+    Proof(
+        "ratios",
+        "ratio_points",
+        "all positive doubles, of slopes all normal ones",
+        {name: (f"{name}, ULP", RATIO_ULP) for name in ("r", "k", "i2")}
+        | {name: (_SLOPE.format(name), SLOPE_ULP) for name in ("slope of r", "slope of k")},
+        of_ratios,
+    ),
+]
+
+
+# --- contact states and stress ---
 
 FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: relative error where the condition number leaves it, else that many roundings of the inputs
@@ -237,5 +325,121 @@ PROOFS = [
             "hurt": ("share of states in which p, p - q, q or the slip is negative somewhere", 0.0),
         },
         by_elements,
+    ),
+]
+
+
+# --- covers ---
+
+_KAPPA = 10.0
+_MU = 0.5
+#: Friction, and creepage of full slip, far above all others.
+_MUCH = 1e3
+_FAR = 1e6
+
+
+def placed(truth: dict[str, Any]) -> tuple[vr.Scene, Any, str]:
+    """Return the scene of a state of the file, its contact in free rolling, and where it is, in
+    words.
+
+    truth: series, cover, V, half lengths, and what the elements find.
+    """
+    cover = vr.Cover(vr.Prony(**truth["series"]), **truth["cover"])
+    scene = vr.Scene(material=cover, kappa=_KAPPA, mu=_MU, coupled=False)
+    free = vr.contact(scene, truth["V"], delta=0.0, fields="delta_0").delta_0
+    fields = ("lam", "epsilon", "M", "delta_star", "delta_0", "delta_minus", "delta_plus")
+    return (
+        scene,
+        vr.contact(scene, truth["V"], delta=free, fields=fields),
+        at(V=truth["V"], eta=truth["eta"]) + f", {cover!r}",
+    )
+
+
+def cover_states(_: np.random.Generator, count: int) -> Found:
+    """Yield errors of lam, epsilon, M, delta_star and Q.
+
+    count: how many cover_states of the file, the first ones.
+    """
+    for truth in read_elements("covers")[:count]:
+        (scene, state, where) = placed(truth)
+        V = truth["V"]
+        z = truth["z"]
+        # the onsets of the law lie unlike far from free rolling, those without coupling do not
+        shift = 0.5 * (state.delta_plus + state.delta_minus) - state.delta_0
+        share = _MU * V * truth["d"] / state.delta_star
+        delta = state.delta_0 + state.delta_star * share + shift * min(share**2, 1.0)
+        Q = vr.contact(scene, V, delta=delta, fields="Q").Q
+        yield (
+            where,
+            {
+                # of a contact of the elements' half length, which is the law's when it was solved
+                "lam": abs(state.lam / z * np.sqrt(truth["H"]) - 1.0),
+                "epsilon": abs(truth["g"] / z - state.epsilon),
+                "M": abs(V * truth["m"] / state.M - 1.0),
+                "delta_star": abs(_MU * V * truth["star"] / state.delta_star - 1.0),
+                "Q": abs(Q / _MU - truth["Q"]) / stated_error(truth["cover"]["thickness"]),
+            },
+        )
+
+
+def free_creep(_: np.random.Generator, count: int) -> Found:
+    """Yield errors of delta_0 and delta_0* where nu = 1/2: all strain by the pressure comes of the
+    finite thickness.
+
+    count: how many cover_states of the file, the first ones.
+    """
+    for truth in read_elements("free_creep")[:count]:
+        (scene, state, where) = placed(truth)
+        V = truth["V"]
+        # in full slip, with so much friction that the law does not limit delta_0* - delta_0
+        forth, back = (
+            vr.contact(scene.replace(mu=_MUCH), V, delta=each).M_half_space
+            for each in (_FAR, -_FAR)
+        )
+        yield (
+            where,
+            {
+                "free": abs(V * truth["free"] / state.delta_0 - 1.0),
+                "mirrored": abs(V * truth["mirrored"] / (0.5 * (back - forth) / _MUCH) - 1.0),
+            },
+        )
+
+
+_COVER_BOUND = 2e-6
+COVER_PROOFS = [
+    Proof(
+        "covers",
+        "cover_states",
+        "one and three modes, against rigid and elastic bodies, ν 0 to 0.5, h/l0 0.2 to 20, κV "
+        "0.05 to 4",
+        {
+            "lam": ("λ of a cover against boundary elements, relative", _COVER_BOUND),
+            "epsilon": ("ε of a cover against boundary elements", _COVER_BOUND),
+            "M": ("M of a cover against boundary elements, relative", _COVER_BOUND),
+            "delta_star": ("δ* of a cover against boundary elements, relative", _COVER_BOUND),
+            "Q": (
+                "Q of a cover against the solution without coupling, divided by the error that "
+                "validity cover_states",
+                1.0,
+            ),
+        },
+        cover_states,
+    ),
+    Proof(
+        "covers",
+        "cover_states",
+        "one and three modes, ν = 0.5, h/l0 0.2 to 20, κV 0.05 to 4",
+        {
+            "free": (
+                "δ0 of a cover, free rolling with stick, against boundary elements, relative",
+                _COVER_BOUND,
+            ),
+            "mirrored": (
+                "δ0* of a cover, the mirrored strain, against boundary elements, relative",
+                _COVER_BOUND,
+            ),
+        },
+        free_creep,
+        "free creep",
     ),
 ]

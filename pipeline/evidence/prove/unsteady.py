@@ -6,7 +6,7 @@ the law at the same time, less 1, where the law has reached the speed at which t
 0.003 to 1; also over that of ``roll(unsteady=True, rested=...)``, to where that ends.  From rest
 the law begins at the speed that leaving the imprint leaves.
 
-The motions are those of data/reference/unsteady.json, by unsteady.py beside it.
+The motions are those of data/reference/unsteady.json; data/README.md says how they were made.
 
 python -m pipeline.evidence.prove.unsteady [-o FILE]: data/results/transient.json, in seconds.
 """
@@ -24,12 +24,13 @@ from scipy.integrate import cumulative_trapezoid
 from scipy.interpolate import PchipInterpolator
 
 import viscoroll as vr
-from data.reference.unsteady import TARGET, scene_of
 
+from ...stage import ROOT
 from ..results import run
 
 Array = NDArray[np.float64]
 
+REFERENCE = ROOT / "data/reference/unsteady.json"
 LEVELS = (0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0)
 #: of V at the start, what a start from rest has to leave: below, the formula for it is short by a
 #: tenth and more
@@ -80,7 +81,9 @@ def compared(motion: dict[str, Any]) -> dict[str, Any]:
 
     motion: E, tau, u, g and, from either start, times and speeds, as in the file.
     """
-    scene = scene_of((motion["E"], motion["tau"]), motion["g"])
+    # kappa is 1: lengths over R are contact lengths, and speeds are u
+    material = vr.Prony(motion["E"], motion["tau"])
+    scene = vr.Scene(material=material, kappa=1.0, mu=0.2, gamma=1.5 * motion["g"], j=0.5)
     u0 = motion["u"]
     steady = scene.validity(u0).steady
     whole = Laws(scene, u0)
@@ -107,7 +110,7 @@ def compared(motion: dict[str, Any]) -> dict[str, Any]:
 
 def found() -> dict[str, Any]:
     """Return rows of all motions of the file, and the cell of its grid."""
-    content = json.loads(TARGET.read_text(encoding="utf-8"))
+    content = json.loads(REFERENCE.read_text(encoding="utf-8"))
     return {"rows": [compared(motion) for motion in content["motions"]], "h": content["h"]}
 
 

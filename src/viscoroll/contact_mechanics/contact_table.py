@@ -394,8 +394,6 @@ def evaluate_law(
             ((record,), _NO_ORDER) if record else _laws_of_block(material, alpha, parts, direct)
         )
         kappa, mu, V, creep = parts
-        if coupled:
-            V = V + 0.0  # at V = -0.0 a table has the sign of V > 0, as rows have
         given = states.State(kappa=kappa, mu=mu, V=V, creep=creep, creep_is_omega=creep_is_omega)
         request = states.Request(states=given, order=order, to=rows, out=out, first=start)
         scratch = np.empty(states.SCRATCH_SIZE)

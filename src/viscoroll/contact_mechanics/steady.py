@@ -67,6 +67,7 @@ from .steady_states import (
     Field,
     States,
     find_crossings,
+    slopes_at_fixed_omega,
     state_rows,
     states_at,
 )
@@ -350,7 +351,7 @@ def _polish(problem: _ScanProblem, V: Floats, slip: Floats) -> Floats:
     (of_V, of_omega) = gains.sum(axis=0)
     (force_V, force_omega) = gains[0]
     for _ in range(_NEWTON_STEPS if V.size else 0):
-        a, b, one, other, one_omega, other_omega = rows[Field.DQ_DV :]
+        (a, one, other), (b, one_omega, other_omega) = slopes_at_fixed_omega(rows)
         sum_slip = one_omega + other_omega - of_omega
         sum_V = one + other + (one_omega + other_omega) - of_V - of_omega
         rest_slip = b - one_omega + force_omega

@@ -63,10 +63,11 @@ class Field(IntEnum):
     """Index of the row of a quantity in an array of states, (12, n).
 
     From row 6 on the array has the slopes of the law while states are computed, in a frame where V
-    > 0: dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega,
-    dM_half_space/domega, dM_cylinder/domega.  In :class:`States` the same rows have omega, the real
-    parts of the faster and of the slower eigenvalue, the imaginary part of the slower one, and the
-    moments that the bodies would have without traction, by which their losses are found.
+    > 0: dQ/dV at fixed creepage, dQ/ddelta, dM_half_space/dV, dM_cylinder/dV at fixed creepage,
+    dM_half_space/ddelta, dM_cylinder/ddelta, which stay finite for V -> 0.  In :class:`States` the
+    same rows have omega, the real parts of the faster and of the slower eigenvalue, the imaginary
+    part of the slower one, and the moments that the bodies would have without traction, by which
+    their losses are found.
     """
 
     V = 0
@@ -76,28 +77,28 @@ class Field(IntEnum):
     M_CYLINDER = 4
     BETA = 5
     DQ_DV = 6
-    DQ_DOMEGA = 7
+    DQ_DDELTA = 7
     DM_HALF_SPACE = 8
     DM_CYLINDER = 9
     OMEGA = 6
     FAST = 7
     SLOW = 8
     IMAGINARY = 9
-    DM_HALF_SPACE_DOMEGA = 10
-    DM_CYLINDER_DOMEGA = 11
+    DM_HALF_SPACE_DDELTA = 10
+    DM_CYLINDER_DDELTA = 11
     FREE_HALF_SPACE = 10
     FREE_CYLINDER = 11
 
 
 #: number of rows
 _COUNT = len(Field)
-#: slopes over V, each with that over omega: at fixed omega the first lacks (1 + delta) times the
-#: second
-_SLOPES = (
-    (Field.DQ_DV, Field.DQ_DOMEGA),
-    (Field.DM_HALF_SPACE, Field.DM_HALF_SPACE_DOMEGA),
-    (Field.DM_CYLINDER, Field.DM_CYLINDER_DOMEGA),
-)
+#: slopes over V at fixed creepage
+_OVER_V = (Field.DQ_DV, Field.DM_HALF_SPACE, Field.DM_CYLINDER)
+#: slopes over the creepage, in the same order
+_OVER_CREEP = (Field.DQ_DDELTA, Field.DM_HALF_SPACE_DDELTA, Field.DM_CYLINDER_DDELTA)
+#: speed below which slopes are those at it: slopes over omega, which the kernels give, overflow at
+#: 1e-306, and M/V and Q are those of V = 0 to rounding
+_LEAST_SPEED = 1e-290
 
 
 class States(NamedTuple):
@@ -149,9 +150,7 @@ class States(NamedTuple):
         )
         rows[list(signed)] *= sign
         rows[Field.OMEGA] = rows[Field.V] * (1.0 + rows[Field.DELTA])
-        rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(
-            answers[Field.DQ_DV :], loads.gains, loads.j[load]
-        )
+        rows[Field.FAST : Field.FREE_HALF_SPACE] = _eigenvalues(answers, loads.gains, loads.j[load])
         return cls(load, rows)
 
     @classmethod
@@ -246,45 +245,54 @@ class States(NamedTuple):
         return States(self.load[chosen], self.rows[:, chosen])
 
 
-def _eigenvalues(slopes: Floats, gains: Gains, j: Floats) -> Floats:
+def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
     """Return the eigenvalues of small disturbances of (V, omega), per unit of gamma t.
 
-    slopes : dQ/dV at fixed omega, dQ/domega, dM_half_space/dV, dM_cylinder/dV at fixed omega,
-        dM_half_space/domega, dM_cylinder/domega, (6, n), dimensionless, finite.
+    answers : rows of :class:`Field` with the slopes of the law, (12, n), of which V, delta and the
+        slopes are read.
     gains : :class:`Gains`, gains of force and torque on V and omega.
     j : moments of inertia divided by m R^2, (n,).
     Returns rows, (3, n): real part of the faster eigenvalue (the smaller number) and of the slower
     one, imaginary part of the slower (>= 0; the faster has its negative).  Of a complex pair both
     real parts are equal, of real eigenvalues the imaginary part is 0.  The determinant is b
     (M'(V) - gain)/j without a gain on omega, where b = dQ/domega; it is computed without the
-    cancellation of the large slopes of Q.  Where M depends on Q too, as for a cover, M' is that at
-    fixed Q, and Q acts on the axis and on the cylinder with the factors ``on_axis`` and
-    ``on_spin``.  The equation is that of min(j, 1) times an eigenvalue, in units of a power of 2,
-    so that no square overflows; an eigenvalue beyond the doubles is infinite.
+    cancellation of the large slopes of Q at fixed omega.  Where M depends on Q too, as for a cover,
+    M' is that at fixed Q, and Q acts on the axis and on the cylinder with the factors ``on_axis``
+    and ``on_spin``.  The equation is that of min(j, 1) min(V, 1) times an eigenvalue, in units of a
+    power of 2, so that no square overflows; an eigenvalue beyond the doubles is infinite.
     """
-    a, b, d_half_space, d_cylinder, half_space_b, cylinder_b = slopes
+    V, delta = answers[[Field.V, Field.DELTA]]
+    dQ_dV, dQ_ddelta, d_half_space, d_cylinder, half_space_ddelta, cylinder_ddelta = answers[
+        Field.DQ_DV :
+    ]
     unit = np.minimum(j, 1.0)
+    slow = np.minimum(V, 1.0)
     with np.errstate(invalid="ignore", over="ignore", divide="ignore"):
-        divisor = b + (b == 0.0)  # where Q does not depend on omega, neither do the moments
-        on_axis = 1.0 - half_space_b / divisor
-        on_spin = 1.0 + cylinder_b / divisor
-        d_half_space = d_half_space - (1.0 - on_axis) * a
-        d_cylinder = d_cylinder - (on_spin - 1.0) * a
+        # where Q does not depend on omega, neither do the moments
+        slips = dQ_ddelta == 0.0
+        on_axis = 1.0 - half_space_ddelta / (dQ_ddelta + slips)
+        on_spin = 1.0 + cylinder_ddelta / (dQ_ddelta + slips)
+        d_half_space = d_half_space - (1.0 - on_axis) * dQ_dV
+        d_cylinder = d_cylinder - (on_spin - 1.0) * dQ_dV
+        # slopes of Q over omega, and over V at fixed omega, times ``slow``
+        b = dQ_ddelta / np.maximum(V, 1.0)
+        a = slow * dQ_dV - np.where(slips, 0.0, b * (1.0 + delta))
+        axis = on_axis * a + slow * (gains.force_V - d_half_space)
         det = on_spin * d_half_space + on_axis * d_cylinder
         det = b * (det - (on_spin * gains.force_V + on_axis * gains.torque_V))
-        det += gains.torque_omega * (on_axis * a - d_half_space + gains.force_V)
-        det = (det + gains.force_omega * (on_spin * a + d_cylinder - gains.torque_V)) / (j / unit)
-        half = unit * (on_axis * a - d_half_space + gains.force_V)
-        half = 0.5 * (half + (gains.torque_omega - on_spin * b) / (j / unit))
-        power = np.frexp(np.maximum(np.abs(half), np.sqrt(np.abs(det))))[1]
-        spread = np.ldexp(half, -power) ** 2 - np.ldexp(det * unit, -2 * power)
+        det += gains.torque_omega * axis
+        spin = on_spin * a + slow * (d_cylinder - gains.torque_V)
+        det = (det + gains.force_omega * spin) / (j / unit)
+        half = 0.5 * (unit * axis + (slow * gains.torque_omega - on_spin * b) / (j / unit))
+        product = np.sqrt(np.abs(det)) * np.sqrt(slow)
+        power = np.frexp(np.maximum(np.abs(half), product))[1]
+        spread = np.ldexp(half, -power) ** 2
+        spread -= np.ldexp(det * unit, -power) * np.ldexp(slow, -power)
         root = np.ldexp(np.sqrt(np.abs(spread)), power)
         larger = half + np.copysign(root, half)
         other = np.divide(det, larger, out=0.0 * det, where=larger != 0.0)
         real = spread >= 0.0
-        larger = larger / unit
-        half = half / unit
-        root = root / unit
+        larger, half, root = (each / unit / slow for each in (larger, half, root))
         return np.array(
             [
                 np.where(real, np.minimum(larger, other), half),
@@ -300,16 +308,27 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
 
     contacts : the law, at a kappa and a mu.
     V, delta : speeds, > 0, which is not checked, and creepages, (n,), dimensionless.
-    Returns rows of :class:`Field` with slopes, (12, n); row 6 is dQ/dV at fixed omega.  In full
-    slip Q is mu or -mu, and beta and the slopes of Q are 0.
+    Returns rows of :class:`Field` with slopes, (12, n).  In full slip Q is mu or -mu, and beta and
+    the slopes of Q are 0.
     """
     rows = np.empty((_COUNT, V.size))
     rows[Field.V] = V
     rows[Field.DELTA] = delta
     rows[2:] = contacts.fields(V, delta, *_ROWS)
-    for over_V, over_omega in _SLOPES:
-        rows[over_V] -= rows[over_omega] * (1.0 + delta)
+    speed = V
+    if V.min(initial=_LEAST_SPEED) < _LEAST_SPEED:
+        speed = np.maximum(V, _LEAST_SPEED)
+        rows[Field.DQ_DV :] = contacts.fields(speed, delta, *_ROWS[Field.DQ_DV - 2 :])
+    rows[list(_OVER_CREEP)] *= speed
     return rows
+
+
+def slopes_at_fixed_omega(rows: Floats) -> tuple[Floats, Floats]:
+    """Return the slopes of Q, M_half_space and M_cylinder over V at fixed omega, and those over
+    omega, (3, n) each, from rows of :class:`Field` with slopes.
+    """
+    over_omega = rows[list(_OVER_CREEP)] / rows[Field.V]
+    return rows[list(_OVER_V)] - over_omega * (1.0 + rows[Field.DELTA]), over_omega
 
 
 def find_crossings(law: LawTable, gain: float, total: Floats) -> tuple[Integers, Floats, Floats]:
@@ -401,14 +420,14 @@ def states_at(law: LawTable, loads: Loads, load: Integers, sign: Floats, V: Floa
     # one Newton step for delta alone, which is a difference where |Q|/mu is small: the other rows
     # do not change by it
     rows[Field.DELTA] -= np.divide(
-        rows[Field.Q] - Q, V * rows[Field.DQ_DOMEGA], out=0.0 * V, where=part < _CORRECTED_TRACTION
+        rows[Field.Q] - Q, rows[Field.DQ_DDELTA], out=0.0 * V, where=part < _CORRECTED_TRACTION
     )
     rows[Field.Q] = Q
     rows[[Field.M_HALF_SPACE, Field.M_CYLINDER]] = moments
     rows[Field.BETA] = root * less_lam / lam
     if not exists.all():
         missing = (~exists).nonzero()[0]
-        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DOMEGA]], missing] = 0.0
+        rows[[[Field.BETA], [Field.DQ_DV], [Field.DQ_DDELTA]], missing] = 0.0
         rows[Field.DELTA, missing] = np.nan
     return States.of(
         loads, load, sign=sign, answers=rows, free=None if law.cover is None else free[:2]

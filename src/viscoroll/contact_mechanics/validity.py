@@ -334,7 +334,7 @@ _MOST_THETA = (3.0, 2.0, 1.5, 1.25)
 _THICKNESS = (0.2, 0.3, 0.5, 1.0, 2.0, 5.0)
 #: Largest error of Q divided by mu P at those thicknesses, compared with the exact solution without
 #: coupling, for every nu, material, speed and creepage (held by
-#: ``pipeline/evidence/prove/cover.py``).
+#: ``pipeline/evidence/prove/states.py``).
 _ERROR = (0.064, 0.058, 0.046, 0.029, 0.018, 0.011)
 #: Error of Q divided by mu P, beside those, where shear acts back, however little: no more, with
 #: the next, in any scene of ``pipeline/evidence/measure/covers.py``, beside the coupled solution.

@@ -54,7 +54,7 @@ from .cover_solve import (
     solve,
     term_count,
 )
-from .law_rows import NODES, Rows, row_range
+from .law_rows import NODES, SHORT_TERMS, Rows, row_range
 from .row_layout import CoverRows, constant_rows, steady_table
 
 # --- What shear does in the contact of a cover, to first order ---
@@ -341,7 +341,11 @@ def cover_rows(cover: Cover, thickest: float | None = None) -> CoverRows:
         begin=math.ldexp(1.0, last),
         log_terms=_LOG_TERMS if half_space_relaxes else 0,
     )
-    powers = rows.fit_slopes(*np.concatenate([slow[:, :, None], inside, fast], axis=2))
+    fitted = np.concatenate([slow[:, :, None], inside, fast], axis=2)
+    pressure = rows.fit_slopes(*fitted[:, : _FREE.start])
+    powers = np.append(
+        pressure, rows.fit_slopes(*fitted[:, _FREE.start :], terms=SHORT_TERMS), axis=0
+    )
     powers[:, 0, 0] = slow_limit
     share, press = rows.fit_slopes(*_stick_functions(rows, powers, limits))
     table = steady_table([powers[_LAM], powers[_EPSILON], *powers[_MOMENTS], share, press])

@@ -427,7 +427,7 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     """Solve the contact of a given half length, by one linear system of N unknowns, the terms of
     the pressure.
 
-    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).  For thick layers the
+    Boundary elements agree to 2e-6 (``pipeline/evidence/prove/states.py``).  For thick layers the
     contact is that of half-spaces.
     modes: :class:`CoverModes`; with those of :meth:`CoverModes.elastic` the result is that of
         elastic bodies: ``X`` is empty, and the shift is 0 to rounding.

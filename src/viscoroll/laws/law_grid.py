@@ -246,8 +246,9 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
 
 
 def refuse_filled(variable: DataArray, path: Any) -> None:
-    """Raise FileError for a node of a grid that has no value: not finite, or a fill value, declared
-    or customary.
+    """Raise FileError for a node of a grid that has no value: not finite, a fill value, declared or
+    customary, or outside of the range that the attributes ``valid_min``, ``valid_max`` or
+    ``valid_range`` of the CF conventions declare.
 
     variable: variable of a grid, of real numbers, in the unit of the file; of an axis, which users
         choose, customary fill values are numbers as any other.
@@ -259,6 +260,11 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
     _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
     _refuse_nodes(variable, filled, path, "given: this number stands for a missing value")
+    low, high = np.ravel(variable.attrs.get("valid_range", [-np.inf, np.inf])).astype(float)
+    low = max(low, float(variable.attrs.get("valid_min", -np.inf)))
+    high = min(high, float(variable.attrs.get("valid_max", np.inf)))
+    allowed = f"in [{low:g}, {high:g}], the valid range that the file declares"
+    _refuse_nodes(variable, (values < low) | (values > high), path, allowed)
 
 
 def check_nodes(table: Dataset, path: Any) -> None:

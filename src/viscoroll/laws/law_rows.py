@@ -46,6 +46,8 @@ from ..materials import Bodies, Modes, Prony, lock_array
 #: number of powers of a row, and of nodes of an octave; with 24 the law is accurate to rounding
 #: (tests/tables)
 TERMS = 24
+#: those of what shear does on covers (``SHORT_TERMS`` of :mod:`..kernels.numerics.simd`)
+SHORT_TERMS = 16
 #: octaves from that of the slowest rate of creep down to the end of the first row: below it the law
 #: is one polynomial
 _SLOW_OCTAVES = 5
@@ -142,16 +144,18 @@ class Rows:
         powers[..., 0, :] = _multiply(slow, _SLOW_POWERS)
         return powers
 
-    def fit_slopes(self, values: Floats, slopes: Floats) -> Floats:
+    def fit_slopes(self, values: Floats, slopes: Floats, *, terms: int = TERMS) -> Floats:
         """Fit polynomials to slopes at the nodes, integrate them over t, and fit the constant to
         the values in the mean.
 
         values: values of the functions at the nodes ``x``, (..., rows, 24 nodes); not changed.
-        slopes: derivatives of the values with respect to ln x, in the same shape; of these 23
-            Chebyshev coefficients are kept.
-        Returns coefficients of powers of t, (..., rows, 24 powers).
+        slopes: derivatives of the values with respect to ln x, in the same shape; of these
+            ``terms`` - 1 Chebyshev coefficients are kept.
+        terms: number of coefficients, 2 to 24.
+        Returns coefficients of powers of t, (..., rows, 24 powers); from power ``terms`` on they
+        are 0.
         """
-        derivative = self.fit(slopes * self.dlnx_dt, TERMS - 1)
+        derivative = self.fit(slopes * self.dlnx_dt, terms - 1)
         powers = np.zeros_like(derivative)
         powers[..., 1:] = derivative[..., :-1] / np.arange(1, TERMS)
         integral = np.zeros_like(values)

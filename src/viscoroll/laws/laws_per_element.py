@@ -22,7 +22,7 @@ from ..materials import Bodies, Cover, Prony, lock_array
 from .cover_rows import cover_rows
 from .law_rows import refuse_distant_times
 from .law_table import OCTAVES, make_table, tables_of_octave
-from .row_layout import AxisRows, allocate_rows, pack_axis, pack_materials
+from .row_layout import AxisRows, align_vector, allocate_rows, pack_axis, pack_materials
 
 #: laws of an octave of thickness, at Chebyshev nodes; of a rubber with three modes the error then
 #: is 1e-12
@@ -302,7 +302,7 @@ def _record_of_covers(covers: Cover, index: Integers) -> Any:
         marks=marks,
         cover_index=index,
         state_count=index.size,
-        cover_rows=np.zeros(max(record.cover_rows.size for record in records)),
+        cover_rows=align_vector(np.zeros(max(record.cover_rows.size for record in records))),
         cover_count=len(weights),
         weights=np.ascontiguousarray(weights),
         law_count=weights.shape[1],

@@ -31,7 +31,7 @@ import numpy as np
 
 from ..core import Floats, Integers
 from ..materials import Block, lock_array
-from .law_rows import TERMS, Rows, modes_record, row_range
+from .law_rows import SHORT_TERMS, TERMS, Rows, modes_record, row_range
 
 #: functions of a table in their order: the first five depend on u = kappa |V|, the others on v =
 #: 1/F(eta)
@@ -370,21 +370,30 @@ def _pack_cover(cover: CoverRows) -> Floats:
     (:mod:`.cover_law`).
 
     cover: law of the cover, as :class:`CoverRows`.
-    Returns one vector of 18 + 144 rows numbers: the head of :mod:`.cover_law`, limits
-    for u -> infinity; then for each row the 24 coefficients of f of both bodies, of g of both, and
-    of both slopes, each pair interleaved.
+    Returns one vector of 24 + 96 rows numbers, aligned: the head of :mod:`.cover_law`, limits
+    for u -> infinity, the part of the cylinder and zeros; then for each row the 16 coefficients of
+    f and g of both bodies together, of f and g of the cylinder, and of both slopes, each pair
+    interleaved.
     """
+    from ..kernels.law.cover_law import COVER_FRONT_SIZE, CYLINDER_PART
+
     limits, slopes = cover.limits[: 2 * _LIMITED].reshape(2, _LIMITED)
     L, lam, L_slope, lam_slope = *limits[:2], *slopes[:2]
     share = lam / L, 2.0 * (lam_slope * L - lam * L_slope) / L**3
+    _, free_base, free, excess_base, excess, *tilts = cover.creep
+    part = float(not free_base.any()) if not (free_base.any() and free.any()) else -1.0
     front = [
         *np.stack([limits, slopes], axis=1)[1:].ravel(),
         *share,
         cover.limits[-3],
         2.0 * sum(cover.limits[-2:]) / L,
+        part,
+        *np.zeros(COVER_FRONT_SIZE - CYLINDER_PART - 1),
     ]
-    pairs = (interleave_pairs(*cover.creep[n : n + 2]) for n in (1, 3, 5))
-    return np.append(front, np.concatenate([*pairs], axis=1))
+    total = free_base + free, excess_base + excess
+    short = [function[:, :SHORT_TERMS] for function in (*total, free, excess, *tilts)]
+    pairs = (interleave_pairs(*short[n : n + 2]) for n in (0, 2, 4))
+    return align_vector(np.append(front, np.concatenate([*pairs], axis=1)))
 
 
 class AxisRows(NamedTuple):

@@ -341,7 +341,7 @@ class Cover(Bodies):
     Notes
     -----
     Without traction lam, epsilon, M and delta_star solve the normal and the full-slip problem of
-    the layers to 1e-11; boundary elements agree to 2e-6 (``pipeline/evidence/prove/cover.py``).
+    the layers to 1e-11; boundary elements agree to 2e-6 (``pipeline/evidence/prove/states.py``).
     Beside a half-space that relaxes too, epsilon and M are good to 1e-7 where kappa |V| is 16 to
     1e8 times the fastest rate (``tests/test_covers.py``).  Shear acts back to first order
     (docs/theory_covers.md), with coefficients to 1e-8 of delta_star/mu where nu = 1/2, else to

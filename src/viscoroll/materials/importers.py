@@ -32,6 +32,9 @@ from ..core import (
 from .bodies import Bodies
 from .prony import Prony
 
+#: Poisson's ratio below which bulk terms are doubted: glass, the least of the glassy solids that
+#: people import, has 0.2; K in MPa beside G in Pa gives less, down to -1
+_LEAST_POISSON = 0.2
 #: keywords that every constructor passes to :class:`Material`
 _MATERIAL_KEYWORDS = ("name", "density", "thickness", "measured", "temperature")
 
@@ -402,7 +405,7 @@ class FromPrograms:
             if not np.array_equal(K * G_inf, G * K_inf):
                 prony = plane_strain(G_inf, G, K_inf=K_inf, K=K, tau=tau)
                 early = _poisson(G_inf + math.fsum(G), K_inf + math.fsum(K))
-            _warn_of_negative(nu, early)
+            _warn_of_poisson(nu, early)
         check_names("keyword", more, _MATERIAL_KEYWORDS, "a keyword of this function")
         return cls(E=E, nu=nu, prony=prony, nu_instant=early, **more)  # type: ignore[call-arg]
 
@@ -422,16 +425,17 @@ def _poisson(G: float, K: float) -> float:
     return (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)
 
 
-def _warn_of_negative(late: float, early: float | None) -> None:
-    """Warn where bulk terms make Poisson's ratio negative, at long times or at t = 0: their unit
-    may be another.
+def _warn_of_poisson(late: float, early: float | None) -> None:
+    """Warn where bulk terms make Poisson's ratio smaller than that of any rubber or plastic, at
+    long times or at t = 0: their unit may be another.
 
     late, early: Poisson's ratio of long times and of t = 0; None: that of long times.
     """
     lowest = late if early is None else min(late, early)
-    if lowest < 0.0:
+    if lowest < _LEAST_POISSON:
         text = (
-            f"bulk and shear moduli give Poisson's ratio {lowest:.3g} < 0: give both in one unit, "
+            f"bulk and shear moduli give Poisson's ratio {lowest:.3g}, where rubber and plastics "
+            f"have {_LEAST_POISSON:g} and more: give both in one unit, "
             "and as moduli or as fractions like the program from which they are"
         )
         warn_of_model(text)

@@ -273,7 +273,7 @@ def _law_constants(table: LawTable, name: str) -> str:
     name: name of the law, an identifier of C, with which the names of the constants begin.
     Returns the source text.
     """
-    from ..kernels.law.cover_law import COVER_FRONT_SIZE
+    from ..kernels.law.cover_law import CYLINDER_PART
 
     front = table.record.rows[:8]
     arrays = {f"{name}_coefficients": table.coefficients}
@@ -281,7 +281,7 @@ def _law_constants(table: LawTable, name: str) -> str:
     of_cover = ["0", "{0.0}"]
     if table.cover is not None:
         arrays[f"{name}_creep"] = np.moveaxis(table.cover.creep, 0, -1)
-        of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:COVER_FRONT_SIZE])]
+        of_cover = [f"{name}_creep", _initializer(table.record.cover_rows[:CYLINDER_PART])]
     constants = "".join(
         f"static const double {array}[{len(rows)}][VR_TERMS][{rows.shape[-1]}] = "
         f"{_initializer(rows)};\n"

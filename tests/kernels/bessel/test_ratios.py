@@ -8,9 +8,9 @@ import flint
 import numpy as np
 import tolerances as tol
 
-from pipeline.evidence.prove.ratios import ulps
-from pipeline.evidence.truth import enclosures
-from pipeline.evidence.truth.ratios import table
+from pipeline.evidence import truth
+from pipeline.evidence.prove.states import ulps
+from pipeline.evidence.truth import ratio_table
 from viscoroll.kernels.law import bessel_ratios
 from viscoroll.kernels.law.bessel_ratios import TABLE, ratio_i2, ratio_k, ratio_r
 from viscoroll.kernels.numerics.intrinsics import septic
@@ -44,8 +44,7 @@ def test_within_two_ulp_of_enclosures():
         (k, k_complement) = ratio_k(x)
         with flint.ctx.workprec(1200 if x > 1e20 else 160):
             exact_r, exact_k, exact_i2 = (
-                of(flint.arb(x))
-                for of in (enclosures.ratio_r, enclosures.ratio_k, enclosures.ratio_i2)
+                of(flint.arb(x)) for of in (truth.ratio_r, truth.ratio_k, truth.ratio_i2)
             )
             for value, exact in ((r, exact_r), (k, exact_k), (ratio_i2(x, r), exact_i2)):
                 assert ulps(value, exact) <= tol.RATIO_ULP, (x, value)
@@ -59,7 +58,7 @@ def test_within_two_ulp_of_enclosures():
 def test_every_coefficient_is_the_rounded_fit():
     """All of them, bit for bit: a change of one, however small and of whatever order, shows."""
     assert TABLE.shape == (bessel_ratios.TABLE_SIZE,)
-    assert np.array_equal(TABLE, table())
+    assert np.array_equal(TABLE, ratio_table())
 
 
 def test_polynomials_are_summed_with_one_rounding_a_term():

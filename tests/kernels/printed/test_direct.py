@@ -7,9 +7,9 @@ import numpy as np
 import tolerances as tol
 
 import viscoroll as vr
-from pipeline.evidence.prove.ratios import points, ulps
-from pipeline.evidence.truth import enclosures
-from pipeline.validation.states import random_state_checks
+from pipeline.evidence import truth
+from pipeline.evidence.prove.states import points, ulps
+from pipeline.validation import random_state_checks
 from viscoroll.kernels.law.printed_law import (
     NOT_CONVERGED,
     direct_contact_length,
@@ -30,7 +30,7 @@ CREEPS = np.array([1e-9, 1e-6, 1e-3, 0.05, 0.3, 0.7, 0.95, 0.999, 1.0 - 1e-6, 1.
 def test_bessel_ratios():
     seams = [0.9999999999999999, 1.0, 24.999999999999996, 25.0]
     with flint.ctx.workprec(160):
-        for ratio, exact in ((ratio_i, enclosures.ratio_r), (ratio_k0k1, enclosures.ratio_k)):
+        for ratio, exact in ((ratio_i, truth.ratio_r), (ratio_k0k1, truth.ratio_k)):
             for x in [*seams, *points(np.random.default_rng(20), 400)[-400:].tolist()]:
                 assert ulps(ratio(x), exact(flint.arb(x))) <= tol.BESSEL_ULP, x
 

@@ -10,8 +10,7 @@ import tolerances as tol
 from closeness import close
 
 import viscoroll as vr
-from pipeline.evidence.truth.enclosures import zone_of
-from pipeline.evidence.truth.material import Material, material_of
+from pipeline.evidence.truth import Material, material_of, zone_of
 
 #: about the largest |N|, over S_J
 LARGEST = 0.05

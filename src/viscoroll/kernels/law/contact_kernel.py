@@ -41,14 +41,17 @@ from ..numerics.jit import inline_kernel, kernel
 from .cover_law import (
     MomentChange,
     PairOverSpeed,
+    Pairs,
     asymmetry_at,
+    creep_of_state,
+    cylinder_at,
     length_change,
     moment_change,
     pairs_at,
     shear_reaction,
-    sliding_creep,
     slope_over_speed,
     slopes_of_cover,
+    total_at,
 )
 from .law_functions import (
     H_over_F2,
@@ -102,10 +105,10 @@ _DT_DX = np.uint64(2 * TOGETHER)
 _ASYMMETRY = np.uint64(16 * TOGETHER)
 #: Place in the scratch of :func:`contact_loop` of M of a cover without traction.
 _M_WITHOUT = np.uint64(17 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of f_b of a cover; f_c follows.
-_FREE = np.uint64(18 * TOGETHER)
-#: Place in the scratch of :func:`contact_loop` of g_b of a cover; g_c follows.
-_EXCESS = np.uint64(20 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of f of a cover (:mod:`.cover_law`); g follows.
+_TOTAL = np.uint64(18 * TOGETHER)
+#: Place in the scratch of :func:`contact_loop` of f_c of a cover; g_c follows.
+_CYLINDER = np.uint64(20 * TOGETHER)
 #: Place in the scratch of :func:`contact_loop` of the factor by which M_half_space of a cover falls
 #: with Q; that of M_cylinder follows.
 _FACTOR = np.uint64(22 * TOGETHER)
@@ -269,9 +272,9 @@ def signed_creep(L, free_creep, asymmetry, state, law):
     gives inf or -inf; NaN where the creepage is NaN, or ``free_creep`` of a cover.
     """
     slip, delta = slip_and_creepage(state)
-    slip, delta = sliding_creep(slip, delta, L, free_creep, asymmetry, state, law.cover_rows)
     full_slip = abs(delta) >= 0.5 * state.mu / state.kappa * L
-    return np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
+    D = np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
+    return creep_of_state(D, delta, L, free_creep, asymmetry, state, law.cover_rows)
 
 
 @inline_kernel
@@ -650,11 +653,13 @@ def _write_pairs(c, position, functions, cover_rows, scratch, request):
         scratch[_FREE_CREEP + c] = 0.0
     else:
         u = scratch[_U + c]
-        free, excess = pairs_at(position, u, cover_rows)
-        scratch[_FREE + c] = free.first
-        scratch[_FREE + _T + c] = free.second
-        scratch[_EXCESS + c] = excess.first
-        scratch[_EXCESS + _T + c] = excess.second
+        total = total_at(position, u, cover_rows)
+        scratch[_TOTAL + c] = total.first
+        scratch[_TOTAL + _T + c] = total.second
+        if _asks_for_moments(request):
+            cylinder = cylinder_at(total, position, u, cover_rows)
+            scratch[_CYLINDER + c] = cylinder.first
+            scratch[_CYLINDER + _T + c] = cylinder.second
         if request.to.M >= 0:
             state = _state(c, scratch, request)
             factor = moment_factor(position, u, functions.scale, state)
@@ -662,33 +667,37 @@ def _write_pairs(c, position, functions, cover_rows, scratch, request):
 
 
 @inline_kernel
-def _write_cover(begin, end, cover_rows, scratch, request):
+def _write_cover(c, cover_rows, scratch, request):
     """Store what the pairs of :func:`_write_pairs` mean: 2 kappa delta_0, the asymmetry, and the
     factors of Q in M.
 
-    It is a stage of its own, without polynomials, which becomes vector instructions.
-    begin, end : int, columns of the scratch.
+    No polynomial is evaluated here, so that a loop over states becomes vector instructions.
+    c : column of the scratch.
     cover_rows : as of :func:`_write_pairs`; of half-spaces nothing is written.
     scratch, request : as of :func:`_write_other_fields`.
     Returns nothing.
     """
     if cover_rows is not None:
-        to = request.to
-        moments = max(to.M, to.M_half_space, to.M_cylinder) >= 0
-        for k in range(begin, end):
-            c = np.uint64(k)
-            free = _values(scratch[_FREE + c], scratch[_FREE + _T + c])
-            pairs = free, _values(scratch[_EXCESS + c], scratch[_EXCESS + _T + c])
-            mu = scratch[_MU + c]
-            L = scratch[_L + c]
-            scratch[_FREE_CREEP + c] = free.first + free.second
-            scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
-            if moments:
-                reaction = shear_reaction(pairs, scratch[_KAPPA + c], mu, L, 0.0, cover_rows)
-                scratch[_FACTOR + c] = reaction.half_space
-                scratch[_FACTOR + _T + c] = reaction.cylinder
-                scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess
-                scratch[_FACTOR_EXCESS + _T + c] = reaction.cylinder_excess
+        total = _values(scratch[_TOTAL + c], scratch[_TOTAL + _T + c])
+        cylinder = _values(scratch[_CYLINDER + c], scratch[_CYLINDER + _T + c])
+        pairs = Pairs(total, cylinder)
+        mu = scratch[_MU + c]
+        L = scratch[_L + c]
+        scratch[_FREE_CREEP + c] = total.first
+        scratch[_ASYMMETRY + c] = asymmetry_at(pairs, mu, L, 0.0, 0.0, cover_rows).value
+        if _asks_for_moments(request):
+            reaction = shear_reaction(pairs, scratch[_KAPPA + c], mu, L, 0.0, cover_rows)
+            scratch[_FACTOR + c] = reaction.half_space
+            scratch[_FACTOR + _T + c] = reaction.cylinder
+            scratch[_FACTOR_EXCESS + c] = reaction.half_space_excess
+            scratch[_FACTOR_EXCESS + _T + c] = reaction.cylinder_excess
+
+
+@inline_kernel
+def _asks_for_moments(request):
+    """Return whether M, or that of a body, is requested of a :class:`Request`, a bool."""
+    to = request.to
+    return max(to.M, to.M_half_space, to.M_cylinder) >= 0
 
 
 @inline_kernel
@@ -795,9 +804,9 @@ def contact_loop(laws, request, scratch, count):
                     scratch,
                     request,
                 )
-            _write_cover(begin, end, laws[0].cover_rows, scratch, request)
             for k in range(begin, end):
                 c = np.uint64(k)
+                _write_cover(c, laws[0].cover_rows, scratch, request)
                 L = scratch[_L + c]
                 D = signed_creep(
                     L,

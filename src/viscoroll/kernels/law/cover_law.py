@@ -5,8 +5,10 @@ rolling moment.
 
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0,
 and numba compiles nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE`
-numbers, the limits of fast rolling, and then for each row of the law three pairs of functions of
-u = kappa |V| (:mod:`simd`).  The limits hold beyond the last row of the law.
+numbers, the limits of fast rolling and which body has a layer, and then for each row of the law
+three pairs of functions of u = kappa |V| (:mod:`simd`).  The limits hold beyond the last row of the
+law.  Of the functions below the first pair has the sums over both bodies, f = f_b + f_c and
+g = g_b + g_c, the second pair f_c and g_c, which are read only where each body has a layer.
 
 With the traction Q, |Q| <= mu, and delta_f = (f_b + f_c)/(2 kappa), the creepage of free rolling
 with stick,
@@ -52,7 +54,7 @@ import numpy as np
 
 from ..numerics.intrinsics import floats_at, integers_at, record_at, record_type
 from ..numerics.jit import inline_kernel, kernel
-from ..numerics.simd import TERMS, evaluate_pair
+from ..numerics.simd import SHORT_TERMS, evaluate_short_pair
 from .law_record import (
     H_OVER_F2,
     MAKER_MARKS,
@@ -89,14 +91,17 @@ ETA_OVER_F_LIMIT = 14
 EPSILON_LIMIT = 16
 #: Index in the head: 2 M u^2/(V L) as u -> infinity, of both bodies together.
 MOMENT_LIMIT = 17
-#: Numbers of the head.
-COVER_FRONT_SIZE = 18
+#: Index in the head, after the limits: part of f and g that the cylinder has: 0.0 where the base
+#: alone has a layer, 1.0 where the cylinder alone has one, -1.0 where each body has one.
+CYLINDER_PART = 18
+#: Numbers of the head, of which the last five are 0: rows begin at a line of the cache, 8 numbers.
+COVER_FRONT_SIZE = 24
 #: Numbers of a pair of functions in a row.
-_PAIR_SIZE = 2 * TERMS
-#: Offset in a row of f_b and f_c, interleaved.
-FREE = 0
-#: Offset in a row of g_b and g_c, interleaved.
-EXCESS = _PAIR_SIZE
+_PAIR_SIZE = 2 * SHORT_TERMS
+#: Offset in a row of f and g, interleaved.
+TOTAL = 0
+#: Offset in a row of f_c and g_c, interleaved.
+CYLINDER = _PAIR_SIZE
 #: Offset in a row of lam_Q and epsilon_Q, interleaved.
 TILT = 2 * _PAIR_SIZE
 #: Numbers of a row.
@@ -188,32 +193,17 @@ class PairOverSpeed(NamedTuple):
 
 
 @inline_kernel
-def _pair_at(offset, limit, position, u, cover_rows):
+def _pair_at(offset, position, cover_rows):
     """Return two functions of a cover at one speed, with their derivatives over u, as
     :class:`PairOverSpeed`.
 
-    offset : int, offset of the pair in a row: FREE, EXCESS or TILT.
-    limit : int, index in the head of the limit of the first function for u -> infinity; its
-        coefficient of 1/u and the two numbers of the second function follow.
-    position : :class:`.law_functions.RowPosition` of u in the rows of the law; beyond the last row
-        a function is its limit and a term in 1/u.
-    u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
+    offset : int, offset of the pair in a row: TOTAL, CYLINDER or TILT.
+    position : :class:`.law_functions.RowPosition` of u in the rows of the law, not beyond the last.
     cover_rows : vector of the numbers that only a cover has, as in the module; not None.
     """
-    if position.row < 0:
-        first_change = cover_rows[limit + 1] / u
-        second_change = cover_rows[limit + 3] / u
-        return PairOverSpeed(
-            first=cover_rows[limit] + first_change,
-            second=cover_rows[limit + 2] + second_change,
-            first_slope=-first_change / u,
-            second_slope=-second_change / u,
-            first_curvature=2.0 * first_change / (u * u),
-            second_curvature=2.0 * second_change / (u * u),
-        )
     start = COVER_FRONT_SIZE + COVER_ROW_SIZE * position.row + offset
-    first, second, first_slope, second_slope, first_curvature, second_curvature = evaluate_pair(
-        cover_rows, start, position.t
+    first, second, first_slope, second_slope, first_curvature, second_curvature = (
+        evaluate_short_pair(cover_rows, start, position.t)
     )
     slope = position.dt_dx
     curvature = slope * slope
@@ -224,6 +214,40 @@ def _pair_at(offset, limit, position, u, cover_rows):
         second_slope=second_slope * slope,
         first_curvature=first_curvature * curvature,
         second_curvature=second_curvature * curvature,
+    )
+
+
+@inline_kernel
+def _limits_at(first, second, u, cover_rows):
+    """Return two functions beyond the last row of the law, each a limit and a term in 1/u, as
+    :class:`PairOverSpeed`.
+
+    first, second : int, indices in the head of their limits for u -> infinity.
+    u : float, kappa |V|, dimensionless, > 0.
+    cover_rows : vector of the numbers that only a cover has, as in the module; not None.
+    """
+    first_change = cover_rows[first + 1] / u
+    second_change = cover_rows[second + 1] / u
+    return PairOverSpeed(
+        first=cover_rows[first] + first_change,
+        second=cover_rows[second] + second_change,
+        first_slope=-first_change / u,
+        second_slope=-second_change / u,
+        first_curvature=2.0 * first_change / (u * u),
+        second_curvature=2.0 * second_change / (u * u),
+    )
+
+
+@inline_kernel
+def _weighted_sum(a, weight, b):
+    """Return a + weight b of two :class:`PairOverSpeed`; ``weight``: float."""
+    return PairOverSpeed(
+        first=a.first + weight * b.first,
+        second=a.second + weight * b.second,
+        first_slope=a.first_slope + weight * b.first_slope,
+        second_slope=a.second_slope + weight * b.second_slope,
+        first_curvature=a.first_curvature + weight * b.first_curvature,
+        second_curvature=a.second_curvature + weight * b.second_curvature,
     )
 
 
@@ -246,12 +270,8 @@ def free_creep_at(position, u, cover_rows):
 @inline_kernel
 def free_creep_of(pairs):
     """Return what :func:`free_creep_at` does, from the ``pairs`` of :func:`pairs_at`."""
-    free = pairs[0]
-    return (
-        free.first + free.second,
-        free.first_slope + free.second_slope,
-        free.first_curvature + free.second_curvature,
-    )
+    total = pairs.total
+    return total.first, total.first_slope, total.first_curvature
 
 
 class OverSpeed(NamedTuple):
@@ -263,17 +283,23 @@ class OverSpeed(NamedTuple):
 
 
 @inline_kernel
-def _relative_excess(excess, mu, L, dL, ddL):
-    """Return r = 2 (g_b + g_c)/(mu L), as :class:`OverSpeed`.
+def _inverse_width(mu, L):
+    """Return 1/(mu L), a float: that of 2 kappa delta_star."""
+    return 1.0 / (mu * L)
 
-    excess : :class:`PairOverSpeed` of g_b and g_c.
+
+@inline_kernel
+def _relative_excess(total, mu, L, dL, ddL):
+    """Return r = 2 g/(mu L), as :class:`OverSpeed`.
+
+    total : :class:`PairOverSpeed` of f and g.
     mu : float, coefficient of friction, > 0.
     L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u, dimensionless.
     """
-    bound = 2.0 / (mu * L)
-    value = bound * (excess.first + excess.second)
-    slope = bound * (excess.first_slope + excess.second_slope) - value * dL / L
-    curvature = bound * (excess.first_curvature + excess.second_curvature)
+    bound = 2.0 * _inverse_width(mu, L)
+    value = bound * total.second
+    slope = bound * total.second_slope - value * dL / L
+    curvature = bound * total.second_curvature
     return OverSpeed(value, slope, curvature - (2.0 * slope * dL + value * ddL) / L)
 
 
@@ -288,7 +314,7 @@ def asymmetry_at(pairs, mu, L, dL, ddL, cover_rows):
     """
     if cover_rows is None:
         return OverSpeed(0.0, 0.0, 0.0)
-    r = _relative_excess(pairs[1], mu, L, dL, ddL)
+    r = _relative_excess(pairs.total, mu, L, dL, ddL)
     square = 4.0 * r.value * r.value
     power = square * square * square
     share = 1.0 / (1.0 + power)
@@ -301,10 +327,19 @@ def asymmetry_at(pairs, mu, L, dL, ddL, cover_rows):
     )
 
 
+class Pairs(NamedTuple):
+    """Functions of a cover at one speed, each a :class:`PairOverSpeed`.
+
+    total : f and g of both bodies together.  cylinder : f_c and g_c.
+    """
+
+    total: PairOverSpeed
+    cylinder: PairOverSpeed
+
+
 @inline_kernel
 def pairs_at(position, u, cover_rows):
-    """Return (f_b and f_c; g_b and g_c) of a cover at one speed, two :class:`PairOverSpeed`;
-    zeros of half-spaces.
+    """Return the :class:`Pairs` of a cover at one speed; zeros of half-spaces.
 
     position : :class:`.law_functions.RowPosition` of u in the rows of the law.
     u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
@@ -313,9 +348,35 @@ def pairs_at(position, u, cover_rows):
     """
     if cover_rows is None:
         zero = PairOverSpeed(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-        return zero, zero
-    free = _pair_at(FREE, FREE_HALF_SPACE_LIMIT, position, u, cover_rows)
-    return free, _pair_at(EXCESS, EXCESS_HALF_SPACE_LIMIT, position, u, cover_rows)
+        return Pairs(zero, zero)
+    total = total_at(position, u, cover_rows)
+    return Pairs(total, cylinder_at(total, position, u, cover_rows))
+
+
+@inline_kernel
+def total_at(position, u, cover_rows):
+    """Return f and g of both bodies together, as :class:`PairOverSpeed`; arguments as of
+    :func:`pairs_at`, ``cover_rows`` not None.
+    """
+    if position.row < 0:
+        base = _limits_at(FREE_HALF_SPACE_LIMIT, EXCESS_HALF_SPACE_LIMIT, u, cover_rows)
+        cylinder = _limits_at(FREE_CYLINDER_LIMIT, EXCESS_CYLINDER_LIMIT, u, cover_rows)
+        return _weighted_sum(base, 1.0, cylinder)
+    return _pair_at(TOTAL, position, cover_rows)
+
+
+@inline_kernel
+def cylinder_at(total, position, u, cover_rows):
+    """Return f_c and g_c as :class:`PairOverSpeed`; ``total``: of :func:`total_at`; other arguments
+    as of :func:`pairs_at`, ``cover_rows`` not None.
+    """
+    part = cover_rows[CYLINDER_PART]  # interpolated over the thickness it has rounding
+    if part > -0.5:
+        zero = PairOverSpeed(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+        return _weighted_sum(zero, 1.0 if part > 0.5 else 0.0, total)
+    if position.row < 0:
+        return _limits_at(FREE_CYLINDER_LIMIT, EXCESS_CYLINDER_LIMIT, u, cover_rows)
+    return _pair_at(CYLINDER, position, cover_rows)
 
 
 @inline_kernel
@@ -397,8 +458,7 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
     """Return how shear acts back on the rolling moments at one speed, as :class:`Reaction`, by the
     module's equations.
 
-    The excess g = g_b + g_c is limited by g/(1 + (g/s)^4)^(1/4) with s = mu L/2, both parts in
-    proportion.
+    The excess g is limited by g/(1 + (g/s)^4)^(1/4) with s = mu L/2, both parts in proportion.
 
     pairs : of :func:`pairs_at` at that speed.
     kappa : float, slenderness R/l0, dimensionless, > 0.
@@ -418,27 +478,28 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
             half_space_excess_slope=0.0,
             cylinder_excess_slope=0.0,
         )
-    free, excess = pairs
+    total, cylinder = pairs
+    base = _weighted_sum(total, -1.0, cylinder)
     on_base = 0.5 / kappa
-    on_cylinder = 1.0 / (2.0 * kappa + free.first + free.second)
-    on_cylinder_slope = -on_cylinder * on_cylinder * (free.first_slope + free.second_slope)
-    ratio = _relative_excess(excess, mu, L, dL, 0.0)
+    on_cylinder = 1.0 / (2.0 * kappa + total.first)
+    on_cylinder_slope = -on_cylinder * on_cylinder * total.first_slope
+    ratio = _relative_excess(total, mu, L, dL, 0.0)
     cube = ratio.value * ratio.value * ratio.value
     rest = 1.0 / (1.0 + cube * ratio.value)
     limiter = np.sqrt(np.sqrt(rest))
     limiter_slope = -limiter * rest * cube * ratio.slope
-    excess_slope = limiter * excess.second_slope + limiter_slope * excess.second
+    excess_slope = limiter * cylinder.second_slope + limiter_slope * cylinder.second
     return Reaction(
-        half_space=on_base * free.first,
-        cylinder=on_cylinder * free.second,
-        half_space_excess=on_base * limiter * excess.first,
-        cylinder_excess=on_cylinder * limiter * excess.second,
-        half_space_slope=on_base * free.first_slope,
-        cylinder_slope=on_cylinder * free.second_slope + on_cylinder_slope * free.second,
+        half_space=on_base * base.first,
+        cylinder=on_cylinder * cylinder.first,
+        half_space_excess=on_base * limiter * base.second,
+        cylinder_excess=on_cylinder * limiter * cylinder.second,
+        half_space_slope=on_base * base.first_slope,
+        cylinder_slope=on_cylinder * cylinder.first_slope + on_cylinder_slope * cylinder.first,
         half_space_excess_slope=on_base
-        * (limiter * excess.first_slope + limiter_slope * excess.first),
+        * (limiter * base.second_slope + limiter_slope * base.second),
         cylinder_excess_slope=on_cylinder * excess_slope
-        + on_cylinder_slope * limiter * excess.second,
+        + on_cylinder_slope * limiter * cylinder.second,
     )
 
 
@@ -491,16 +552,18 @@ def length_change(Q, position, u, cover_rows):
     """
     if cover_rows is None:
         return 0.0, 0.0
-    tilt = _pair_at(TILT, LAM_SLOPE_LIMIT, position, u, cover_rows)
+    if position.row < 0:
+        tilt = _limits_at(LAM_SLOPE_LIMIT, EPSILON_SLOPE_LIMIT, u, cover_rows)
+    else:
+        tilt = _pair_at(TILT, position, cover_rows)
     return Q * tilt.first, Q * tilt.second
 
 
 @inline_kernel
-def sliding_creep(slip, delta, L, free_creep, asymmetry, state, cover_rows):
-    """Return slip and creepage that cause the traction: for a cover d delta_star in place of delta.
+def creep_of_state(D, delta, L, free_creep, asymmetry, state, cover_rows):
+    """Return L |d| of a state on a cover with the sign of the traction, and infinite in full slip.
 
-    slip : float, a number with the sign of omega - V, of :func:`.law_record.slip_and_creepage`;
-        not read for a cover.
+    D : float, the same of half-spaces, which is the result if ``cover_rows`` is None.
     delta : float, creepage (omega - V)/V, dimensionless; infinite at V = 0 if omega is given and
     not 0.
     L, free_creep, asymmetry : floats, 2 kappa delta_star/mu, 2 kappa delta_0, with delta_0 the
@@ -509,15 +572,14 @@ def sliding_creep(slip, delta, L, free_creep, asymmetry, state, cover_rows):
     alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
     half-spaces.
-    Returns (a float with the sign of the traction, d delta_star), dimensionless.  Of a cover the
-    first is d delta_star with the sign of V, where V = 0.0 and -0.0 count as V > 0; of half-spaces
-    the two are ``slip`` and ``delta`` as given.
+    Returns a float, dimensionless; V = 0.0 and -0.0 count as V > 0.
     """
     if cover_rows is None:
-        return slip, delta
-    star = 0.5 * state.mu / state.kappa * L
-    own = star * reduced_creep((delta - 0.5 * free_creep / state.kappa) / star, asymmetry)
-    return -own if state.V < 0.0 else own, own
+        return D
+    # 0 exactly where the creepage is that of free rolling, as a field gives it
+    beyond = delta - 0.5 * free_creep / state.kappa
+    d = reduced_creep(2.0 * state.kappa * _inverse_width(state.mu, L) * beyond, asymmetry)
+    return np.copysign(np.inf if abs(d) >= 1.0 else L * abs(d), -d if state.V < 0.0 else d)
 
 
 @inline_kernel

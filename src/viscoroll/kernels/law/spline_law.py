@@ -11,9 +11,9 @@ which the field does not depend has no interval, and one basis spline, which is 
 The law of a table (:mod:`.coupled_splines`) at states: many at a time, and as a C function like
 :mod:`.law_callables`.
 
-Loads are odd in (V, omega), so that the table is read at |V|; V = 0 counts as V > 0.  In full slip
-Q does not depend on the creep.  Symbols are those of :mod:`.coupled_splines`; all is dimensionless
-but what is said to be in units of a caller.
+Loads are odd in (V, omega), so that the table is read at |V|; V = 0.0 and V = -0.0 count as V > 0.
+In full slip Q does not depend on the creep.  Symbols are those of :mod:`.coupled_splines`; all is
+dimensionless but what is said to be in units of a caller.
 """
 
 from typing import Any, NamedTuple
@@ -289,7 +289,8 @@ def _place(V, D, kappa, table):
     speed = locate_speed(u, table)
     state = place_of(D, u, speed, table)
     place = locate_creep(state.w, state.sigma, table)
-    return TablePlace(np.copysign(1.0, V), u, speed, state, cell_at(speed, place, table))
+    sign = -1.0 if V < 0.0 else 1.0  # V = -0.0 counts as V > 0, as for laws of rows
+    return TablePlace(sign, u, speed, state, cell_at(speed, place, table))
 
 
 @inline_kernel

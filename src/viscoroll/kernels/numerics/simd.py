@@ -264,6 +264,9 @@ def make_load(count):
 
 #: Coefficients of a polynomial: over an octave 24 leave the rounding of doubles.
 TERMS = 24
+#: Coefficients of what shear does on covers: their values have errors of 1e-10 by the solve, which
+#: more coefficients would only amplify in slopes.
+SHORT_TERMS = 16
 #: Vectors of one function.
 _ONE = TERMS // LANES
 
@@ -347,6 +350,7 @@ def _lower_secants(context, builder, signature, arguments):
 
 
 _pair_sums = _make_sums(2 * _ONE, 3)
+_short_pair_sums = _make_sums(2 * SHORT_TERMS // LANES, 3)
 _one_sums = _make_sums(_ONE, 2)
 _one_secants = make_intrinsic(
     _lower_secants, types.UniTuple(FOUR, 4), None, types.int64, types.float64, types.float64
@@ -364,9 +368,27 @@ def evaluate_pair(table, start, t):
     Returns (a, b, a', b', a'', b''), floats in the units of the coefficients; the compiler leaves
     out what a caller does not read.
     """
+    return _join_pair(_pair_sums(table, start, t * t), t)
+
+
+@inline_kernel
+def evaluate_short_pair(table, start, t):
+    """Return what :func:`evaluate_pair` does, of functions with SHORT_TERMS coefficients each."""
+    return _join_pair(_short_pair_sums(table, start, t * t), t)
+
+
+@inline_kernel
+def _join_pair(sums, t):
+    """Return two functions with their first and second derivatives in t, as
+    :func:`evaluate_pair` does.
+
+    sums : three vectors (even part, odd part of the first function; both of the second) at t^2: of
+        values and of two derivatives over t^2.
+    t : float, argument, dimensionless.
+    """
     twice = 2.0 * t
     square = t * t
-    value, first_derivative, second_derivative = _pair_sums(table, start, square)
+    value, first_derivative, second_derivative = sums
     # each function is E + t O, with polynomials E and O of t^2
     a_even, a_odd, b_even, b_odd = unpack(value)
     a_even_1, a_odd_1, b_even_1, b_odd_1 = unpack(first_derivative)

@@ -5,28 +5,168 @@ the Bessel functions and the error bounds of Arb (python-flint).  A root is a ba
 the enclosed function, which rises strictly, lies certainly below and certainly above.  Digits
 that cancel show as a wide ball, and the whole is done again with more.
 
-Of several relaxation times (:mod:`material`, rates without a radius) by the matching conditions as
-they stand, Goryacheva's way; the kernels solve another system.  Inside the contact the pressure is
-that of Hertz and one exponential a relaxation mode, of amplitude X_i; each creep mode's memory must
-be continuous at the front edge:
+Of several relaxation times (:class:`Material`, rates without a radius) by the matching conditions
+as they stand, Goryacheva's way; the kernels solve another system.  Inside the contact the pressure
+is that of Hertz and one exponential a relaxation mode, of amplitude X_i; each creep mode's memory
+must be continuous at the front edge:
 
     sum_i X_i a_i (1 + r_i k_j)/(a_i - b_j) = 1/b_j     r_i = I1/I0(a_i z)     k_j = K0/K1(b_j z)
 
 ``tests/truth/test_enclosures.py`` puts the balls into the equations as printed.
+
+    python -m pipeline.evidence.truth [-o FILE]
+
+fits the Bessel ratios -> src/viscoroll/kernels/law/ratios.npy (kept in git): r = I1/I0, k = K0/K1
+and i2 = I2/I0 with 60 digits at the Chebyshev points of every bin, interpolated there, and rounded
+to double once, as monomials about the centre of the bin.
+
+Nothing here is installed with the package: python-flint comes with ``viscoroll[dev]``.
 """
 
 from __future__ import annotations
 
+import argparse
+import math
 from collections.abc import Callable
 from contextlib import suppress
+from functools import lru_cache
+from itertools import pairwise
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import flint
+import numpy as np
 from flint import acb, arb
+from tqdm import tqdm
 
+from viscoroll import Bodies, Prony
 from viscoroll.core.errors import ConvergenceError
+from viscoroll.core.files import replace_file
+from viscoroll.kernels.law import bessel_ratios
 
-from .material import Material, material_of
+# --- materials of any number of relaxation times: both forms, midpoints without a radius ---
+
+#: by which conversions carry more than is asked, and a zero is no nearer to a pole, over their
+#: distance
+_MORE_BITS = 200
+_NEAREST = 280
+
+
+class Material(NamedTuple):
+    """Rates of relaxation and of creep, ascending, strengths of creep, and what of these is the
+    half-space's.
+    """
+
+    a: list[Any]
+    b: list[Any]
+    J: list[Any]
+    weights: list[Any]
+
+    @classmethod
+    def of_rates(cls, a: list[Any], b: list[Any], weights: list[Any] | None = None) -> Material:
+        """J_j = prod_i (a_i - b_j)/prod_{i != j} (b_i - b_j)/(alpha b_j), signs dropped, alpha =
+        prod a/b.
+        """
+        J = []
+        alpha = math.prod((own / at for own, at in zip(a, b, strict=True)), start=arb(1))
+        for j, rate in enumerate(b):
+            top = math.prod(abs(at - rate) for at in a)
+            J.append(
+                top
+                / math.prod(
+                    (abs(at - rate) for i, at in enumerate(b) if i != j), start=rate * alpha
+                )
+            )
+        return cls(a, b, J, weights or [arb(0.5)] * len(b))
+
+
+def material_of(given: Any) -> Material:
+    """Of a stiffness ratio alpha (a float or a ball; times over T_epsilon), a series, or a pair
+    that shares no time.
+
+    At the working precision.
+    """
+    if isinstance(given, (Prony, Bodies)):
+        return _converted(given, flint.ctx.prec)
+    alpha = arb(given)
+    return (
+        Material([], [], [], [])
+        if alpha == 1
+        else Material([alpha], [arb(1)], [(alpha - 1) / alpha], [arb(0.5)])
+    )
+
+
+@lru_cache(maxsize=64)
+def _converted(given: Prony | Bodies, bits: int) -> Material:
+    with flint.ctx.workprec(bits + _MORE_BITS):
+        if isinstance(given, Prony):
+            return Material.of_rates(*_of_series(given))
+        share = arb(float(given.share))
+        bodies = (share, given.cylinder, arb(0)), (1 - share, given.base, arb(1))
+        if given.cylinder == given.base:
+            like = material_of(given.cylinder)
+            return like._replace(weights=[1 - share] * len(like.b))
+        modes = []
+        rest = arb(0)
+        for part, body, which in bodies:
+            own = material_of(body)
+            rest += part * (1 - sum(own.J))
+            modes += [
+                (rate, part * J, which) for rate, J in zip(own.b, own.J, strict=True) if part > 0
+            ]
+        b, J, weights = (
+            list(column)
+            for column in zip(*sorted(modes, key=lambda mode: float(mode[0])), strict=True)
+        )
+        return Material(_relaxing(b, J, rest), b, J, weights)
+
+
+def _of_series(given: Prony) -> tuple[list[Any], list[Any]]:
+    """Rates of relaxation and of creep."""
+
+    def numbers(times: Any, strengths: Any) -> tuple[list[Any], list[Any]]:
+        modes = sorted(zip(times.tolist(), strengths.tolist(), strict=True), reverse=True)
+        return [1 / arb(time) for time, _ in modes], [arb(strength) for _, strength in modes]
+
+    if given.by_creep:
+        b, J = numbers(given.T, given.J)
+        return _relaxing(b, J, 1 - sum(J)), b
+    a, E = numbers(given.tau, given.E)
+    return a, _zeros([arb(0), *a], [arb(1), *E], arb(0))
+
+
+def _relaxing(b: list[Any], J: list[Any], rest: Any) -> list[Any]:
+    """Rates of relaxation from creep, ``rest`` 1/alpha."""
+    return _zeros(b, [strength * rate for strength, rate in zip(J, b, strict=True)], rest)
+
+
+def _zeros(poles: list[Any], weights: list[Any], constant: Any) -> list[Any]:
+    """Zeros of constant + sum w/(pole - s), right of each pole; of the last one where the constant
+    is not 0.
+    """
+
+    def rising(s: Any) -> Any:
+        return constant + sum(
+            weight / (pole - s) for weight, pole in zip(weights, poles, strict=True)
+        )
+
+    ends = [*poles, poles[-1] + 2 * sum(weights) / constant] if constant > 0 else poles
+    return [_zero(rising, low.mid(), high.mid()) for low, high in pairwise(ends)]
+
+
+def _zero(rising: Any, low: Any, high: Any) -> Any:
+    half = ((high - low) / 2).mid()
+    from_low = rising(low + half) >= 0
+    near = half * arb(2) ** -_NEAREST
+    far = half
+    while far - near > far * arb(2) ** (8 - flint.ctx.prec):
+        middle = (near * far).sqrt().mid()
+        beyond = rising(low + middle) > 0 if from_low else rising(high - middle) < 0
+        near, far = (near, middle) if beyond else (middle, far)
+    return (low + near if from_low else high - near).mid()
+
+
+# --- the contact law ---
 
 INPUTS = ("alpha", "kappa", "mu", "V", "delta")
 _MOST_BITS = 1 << 14
@@ -302,3 +442,69 @@ def _root(of: Material, function: Callable[[Material, Any], Any], y: Any, guess:
         if function(of, low) < y and function(of, high) > y:
             return low.union(high)
     return None
+
+
+# --- the table of the Bessel ratios ---
+
+TARGET = Path(__file__).parents[2] / "src/viscoroll/kernels/law/ratios.npy"
+NODES = bessel_ratios.COEFFICIENTS + 1
+
+#: 60 digits: the highest orders are 1e-26 of the values
+BITS = 200
+EVALUATE = {
+    "r(x)/x": lambda x: ratio_r(x) / x,
+    "x (1 - r(x))": lambda x: x * (1 - ratio_r(x)),
+    "k(z)/z": lambda z: ratio_k(z) / z,
+    "z (1 - k(z))": lambda z: z * (1 - ratio_k(z)),
+    "i2(x)/x^2": lambda x: ratio_i2(x) / x**2,
+}
+
+
+def chebyshev_fit(values: list[arb], half_width: arb) -> list[arb]:
+    """Monomial coefficients in t of the truncated Chebyshev series on |t| <= half_width."""
+    angles = [(2 * i + 1) * arb.pi() / (2 * len(values)) for i in range(len(values))]
+    whole = flint.arb_poly([0])
+    t = flint.arb_poly([0, 1 / half_width])
+    polynomials = [flint.arb_poly([1]), t]
+    for n in range(bessel_ratios.COEFFICIENTS):
+        coefficient = sum(v * (n * a).cos() for v, a in zip(values, angles, strict=True)) / len(
+            values
+        )
+        whole += polynomials[n] * (coefficient * (1 + (n > 0)))
+        polynomials.append(2 * t * polynomials[-1] - polynomials[-2])
+    return whole.coeffs()
+
+
+def ratio_table() -> list[float]:
+    """Coefficients of every bin of every segment, in ratio_table order."""
+    found: list[float] = []
+    with flint.ctx.workprec(BITS):
+        half_width = arb(1) / (2 * bessel_ratios.BINS)
+        points = [half_width * ((2 * i + 1) * arb.pi() / (2 * NODES)).cos() for i in range(NODES)]
+        octaves = [
+            (each.function, n)
+            for each in bessel_ratios.SEGMENTS
+            for n in range(each.low, each.high)
+        ]
+        for function, octave in tqdm(octaves, "octaves", leave=False):
+            for index in range(bessel_ratios.BINS):
+                centre = 1 + (2 * index + 1) * half_width
+                values = [
+                    EVALUATE[function](((centre + t) * arb(2) ** octave).mid()) for t in points
+                ]
+                found += map(float, chebyshev_fit(values, half_width))
+    return found
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
+    )
+    parser.add_argument("-o", "--output", type=Path, default=TARGET)
+    output = parser.parse_args().output
+    with replace_file(output) as temporary:
+        np.save(temporary, np.array(ratio_table()))
+
+
+if __name__ == "__main__":
+    main()

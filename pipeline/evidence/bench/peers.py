@@ -1,12 +1,11 @@
-"""LSODA, compiled, on Eq. (22) in (V, omega), free or driven, with the contact law and its own
-saturation: no events.
-
-What a user would do with the law and a good general integrator.  By numbalsoda (C++), called from
-compiled code; there is no such peer where that is not installed.
+"""What a user would call instead: LSODA on the law, and the paper's own method on the GNU
+Scientific Library (paper_method.c).
 """
 
 from __future__ import annotations
 
+import shutil
+import subprocess
 from functools import cache
 from importlib.util import find_spec, module_from_spec, spec_from_file_location
 from pathlib import Path
@@ -22,13 +21,15 @@ from viscoroll.kernels.law.law_record import Law, State
 from viscoroll.kernels.numerics.intrinsics import floats_at, integers_at
 from viscoroll.laws.law_table import law_table
 
+# --- LSODA, compiled, on Eq. (22) in (V, omega), free or driven, without events ---
+
 #: share of rtol that the absolute tolerance is
 ATOL_SHARE = 1e-3
 #: between two outputs
 _MOST_STEPS = 20_000
 
 
-def missing() -> str | None:
+def lsoda_missing() -> str | None:
     """Why it cannot run here, or None."""
     return None if find_spec("numbalsoda") else "numbalsoda is not installed (make peer-tools)"
 
@@ -87,15 +88,91 @@ def _law(alpha: float) -> Law:
     return law_table(alpha).record
 
 
-def given(scene: vr.Scene, force: float, torque: float) -> NDArray:
+def lsoda_given(scene: vr.Scene, force: float, torque: float) -> NDArray:
     """What the rates ask of a scene and its drive."""
     law = _law(float(scene.alpha))
     rows = [each for part in (law.rows, law.marks) for each in (part.ctypes.data, part.size)]
     return np.array([scene.kappa, scene.mu, scene.gamma, scene.j, force, torque, *rows])
 
 
-def roll(scenes: NDArray, starts: NDArray, t: NDArray, rtol: float) -> NDArray:
+def lsoda_roll(scenes: NDArray, starts: NDArray, t: NDArray, rtol: float) -> NDArray:
     """V and omega at ``t``, which begins with 0, of each motion, or NaN."""
     found = np.full((len(starts), t.size, 2), np.nan)
     _compiled()(scenes, starts, t, rtol, ATOL_SHARE * rtol, found)
     return found
+
+
+# --- the paper's method ---
+
+SOURCE = Path(__file__).with_name("paper_method.c")
+
+
+def paper_missing() -> str | None:
+    """Why the program cannot be built here, or None."""
+    for tool in ("cc", "pkg-config"):
+        if shutil.which(tool) is None:
+            return f"{tool} is not installed"
+    if subprocess.run(["pkg-config", "--exists", "gsl"], check=False).returncode:
+        return "the GNU Scientific Library is not installed (Debian: libgsl-dev)"
+    return None
+
+
+@cache
+def paper_program(folder: Path) -> Path:
+    """The program, compiled into ``folder``.
+
+    Raises
+    ------
+    subprocess.CalledProcessError
+        If it does not compile.
+    """
+    program = folder / "paper_method"
+    flags = subprocess.run(
+        ["pkg-config", "--cflags", "--libs", "gsl"], check=True, capture_output=True, text=True
+    )
+    command = [
+        "cc",
+        "-O2",
+        "-march=native",
+        str(SOURCE),
+        *flags.stdout.split(),
+        "-lm",
+        "-o",
+        str(program),
+    ]
+    subprocess.run(command, check=True)
+    return program
+
+
+def paper_roll(
+    program: Path,
+    method: str,
+    parameters: NDArray,
+    starts: NDArray,
+    t: NDArray,
+    rtol: float,
+    most_evaluations: int,
+) -> tuple[NDArray, NDArray, float]:
+    """Roll motions: (V, omega) of shape (n, times), seconds of all; NaN where it gave up.
+
+    Parameters
+    ----------
+    method : "adams" or "bdf".
+    parameters : alpha, kappa, mu, gamma, j, a row a motion.
+    starts : (n, 2), V and omega at t = 0.
+    """
+    head = f"{method} {rtol!r} {1e-3 * rtol!r} {most_evaluations} {len(starts)} {t.size}"
+    rows = np.column_stack([parameters, starts])
+    lines = [
+        head,
+        " ".join(map(repr, t.tolist())),
+        *(" ".join(map(repr, row)) for row in rows.tolist()),
+    ]
+    result = subprocess.run(
+        [program], input="\n".join(lines), capture_output=True, text=True, check=True
+    )
+    table = result.stdout.splitlines()
+    motions = [table[i : i + t.size + 1] for i in range(0, len(table), t.size + 1)]
+    heads = np.array([motion[0].split() for motion in motions], dtype=float)
+    speeds = np.array([[line.split() for line in motion[1:]] for motion in motions], dtype=float)
+    return speeds[:, :, 0], speeds[:, :, 1], float(heads[:, 2].sum())

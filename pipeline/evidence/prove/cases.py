@@ -1,19 +1,174 @@
-"""Random states, scenes and motions, over the whole domain and along its edges, which proofs are
-about.
+"""What proofs are made of: claims on errors against a truth; random states, scenes and motions,
+over the whole domain and along its edges; reference motions of data/reference, of which
+data/README.md says how they were made.
 """
 
 from __future__ import annotations
 
-from typing import Any
+import json
+from collections.abc import Callable, Iterable
+from types import SimpleNamespace
+from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb
 from scipy.special import i0e, i1e, k0e, k1e
+from tqdm import tqdm
 
 import viscoroll as vr
 
-from ..truth.enclosures import contact_enclosure
-from ..truth.reference import Case
+from ... import stage
+from ..truth import contact_enclosure
+
+# --- a proof: what is drawn, errors against a truth, and the claims on these ---
+
+#: (where it was, errors of it or of many, by name), one after the other
+Found = Iterable[tuple[str, dict[Any, Any]]]
+
+
+class Proof(NamedTuple):
+    """One row a claim.
+
+    part : of the file, which --only renews.
+    size : how many are drawn, a name in [prove] of the sizes.
+    domain : what is drawn.
+    claims : name of an error -> (sentence, bound); one that begins with "share" is held by the
+    mean.
+    found : (random numbers, size) -> errors; names of which nothing is claimed are left out.
+    name : tells proofs of one part and size apart.
+    """
+
+    part: str
+    size: str
+    domain: str
+    claims: dict[Any, tuple[str, float]]
+    found: Callable[[np.random.Generator, Any], Found]
+    name: str = ""
+
+    def key(self) -> str:
+        """Return part, size and name: the name of this proof among all."""
+        return f"{self.part} {self.size} {self.name}"
+
+    def random(self, seed: int) -> np.random.Generator:
+        """Return the random numbers of this proof.
+
+        They follow from its own key, not from its place among the proofs, so that a new proof
+        changes no other's draws.
+
+        seed: of all proofs, [prove].seed of the sizes.
+        """
+        return np.random.default_rng([seed, *self.key().encode()])
+
+    def rows(self, seed: int, size: Any) -> list[dict[str, Any]]:
+        """Return a row for each claim: claim, domain, bound, points, worst, mean, and where the
+        worst was.
+
+        A NaN counts as infinite, an error below 0, within what was allowed for, as 0.
+
+        seed: of all proofs.
+        size: how many states or motions are drawn.
+        """
+        kept = {name: [0, 0.0, -1.0, ""] for name in self.claims}  # points, sum, worst, where
+        progress = tqdm(self.found(self.random(seed), size), self.part, delay=1.0, leave=False)
+        for where, errors in progress:
+            for name in self.claims.keys() & errors.keys():
+                each = np.atleast_1d(np.asarray(errors[name], float)).ravel()
+                each = np.where(np.isnan(each), np.inf, np.maximum(each, 0.0))
+                row = kept[name]
+                worst = float(each.max(initial=0.0))
+                row[0] += each.size
+                row[1] += float(each.sum())
+                row[2:] = (worst, where) if worst > row[2] else row[2:]
+        rows = []
+        for name, (points, total, worst, where) in kept.items():
+            (claim, bound) = self.claims[name]
+            mean = total / max(points, 1)
+            found = {
+                "points": points,
+                "worst": mean if claim.startswith("share") else max(worst, 0.0),
+            }
+            rows.append(
+                {
+                    "claim": claim,
+                    "domain": self.domain,
+                    "bound": bound,
+                    "mean": mean,
+                    "where": where,
+                }
+                | found
+            )
+        return [row for row in rows if row["points"]]
+
+
+def at(**values: float) -> str:
+    """Where an error was found, to the last digit."""
+    return ", ".join(f"{name} = {value!r}" for name, value in values.items())
+
+
+# --- reference values as scenes, starts and drives ---
+
+FOLDER = stage.ROOT / "data/reference"
+VALUES, FREE, DRIVEN = (
+    FOLDER / name for name in ("check_values.csv", "check_motions.csv", "check_driven.json")
+)
+PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
+SPEEDS = ("V", "omega")
+OUTPUTS = ("V", "omega", "x", "angle")
+PATHS = ("x", "angle", "work_force", "work_torque", "brake_loss", "slip_loss")
+
+
+class Case(NamedTuple):
+    """A motion: scene, start, output times, and the keywords of its drive."""
+
+    scene: vr.Scene
+    V0: float | None
+    omega0: float | None
+    t: Any
+    drive: dict[str, Any]
+
+    def __str__(self) -> str:
+        return (
+            f"{self.scene!r:.200}, V0 = {self.V0!r}, omega0 = {self.omega0!r}, end = "
+            f"{float(self.t[-1])!r}"
+        )
+
+
+def free_motion(rows: list[dict[str, Any]]) -> tuple[Case, Any]:
+    """The motion that rows of check_motions.csv describe, and its values."""
+    first = rows[0]
+    t = np.array([row["t"] for row in rows])
+    values = {name: np.array([row[name] for row in rows]) for name in OUTPUTS}
+    scene = vr.Scene(*(first[name] for name in PARAMETERS))
+    return Case(scene, first["V0"], first["omega0"], t, {}), SimpleNamespace(
+        **values, onset_time=first["onset_time"]
+    )
+
+
+def driven_motion(row: dict[str, Any]) -> Case:
+    """The motion that a row of check_driven.json describes."""
+    given = {"alpha": None} | row["scene"]
+    bodies = {
+        name: vr.Prony(**given.pop(name))
+        for name in ("prony", "cylinder", "half_space")
+        if name in given
+    }
+    if bodies:
+        given["material"] = bodies.get("prony") or vr.Bodies(*bodies.values(), given.pop("share"))
+    drive = {
+        name: value
+        if not isinstance(value, dict)
+        else (vr.Schedule if "times" in value else vr.Feedback)(**value)
+        for name, value in row["drive"].items()
+    }
+    return Case(vr.Scene(**given), row["V0"], row["omega0"], np.array(row["t"]), drive)
+
+
+def read_elements(name: str) -> list[dict[str, Any]]:
+    """Return the states of check_elements.json of one kind: "bodies", "covers" or "free_creep"."""
+    return json.loads((FOLDER / "check_elements.json").read_text(encoding="utf-8"))[name]
+
+
+# --- random states, scenes and motions ---
 
 #: alphas at the end of the domain and next to it
 EDGE_ALPHAS = (1.0, float(np.nextafter(1.0, 2.0)), 1.0 + 1e-15, 1.0 + 1e-8, 1.0001, 1e6)

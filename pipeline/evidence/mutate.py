@@ -26,15 +26,40 @@ from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from viscoroll.core.files import write_text
 
-from ...stage import ROOT, said
-from ..stamps import kernels_digest
-from .mutants import MUTANTS, Mutant
+from ..stage import ROOT, read_toml, said
+from .results import kernels_digest
+
+
+class Mutant(NamedTuple):
+    """``old`` occurs once in the kernel ``file`` and becomes ``new``; for a table, ``old`` is the
+    coefficient's number.
+
+    ``tests`` : files of tests, or tests of one, with spaces between.
+    """
+
+    file: str
+    old: str
+    new: str
+    tests: str
+
+
+def read_mutants() -> list[Mutant]:
+    """Return all mutants of the file, its names of tests replaced by their paths."""
+    content = read_toml(Path(__file__).with_name("mutants.toml"))
+    rows = (row for group in content["mutants"].values() for row in group)
+    return [
+        Mutant(file, old, new, content["tests"].get(tests, tests)) for file, old, new, tests in rows
+    ]
+
+
+MUTANTS = read_mutants()
+
 
 RESULTS = ROOT / "data/results/mutants.json"
 KERNELS = "src/viscoroll/kernels"

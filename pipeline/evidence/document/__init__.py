@@ -1,1 +1,0 @@
-"""Results in words: the marked blocks of README.md and docs/."""

@@ -1,1 +1,0 @@
-"""Errors, times and memory that the text states."""

@@ -1,1 +1,0 @@
-"""Defects planted in the kernels, and whether the tests notice."""

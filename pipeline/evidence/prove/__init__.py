@@ -1,1 +1,0 @@
-"""Law and motions against enclosures, extended precision, and what others computed."""

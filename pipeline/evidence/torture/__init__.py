@@ -1,1 +1,0 @@
-"""Files and caches that are killed, flipped, cut, starved and fuzzed."""
