@@ -392,7 +392,7 @@ class Cylinder(Methods):
         """
         law = self.material
         if not isinstance(law, LawTable):
-            sls: dict[str, Any] = {name: getattr(self, name) for name in _SLS}
+            sls = {name: getattr(self, name) for name in _SLS}
             return Pair(Material.sls(**sls) if law is None else law, self.base, self.plane)
         if law.pair is None:
             raise described_error(

@@ -19,7 +19,7 @@ import numpy as np
 
 from ..core import SI, Floats, check_number
 from ..laws.law_table import law_table
-from ..materials import Cover, Material, Measured, Pair
+from ..materials import Cover, Measured, Pair
 from .assumptions import (
     LEAST_KAPPA,
     MISFIT_LIMIT,
@@ -64,7 +64,7 @@ def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
     data, and is undecided without such.
     """
     strains = _strains(data, V, length, load)
-    value: Any = np.max(np.broadcast_arrays(*strains.values()), axis=0)
+    value = np.max(np.broadcast_arrays(*strains.values()), axis=0)
     sentence = f"the strain of the contact is up to {100.0 * largest(value):.2g} %"
     known = {
         name: record.strain for name, record in data.records.items() if record.strain is not None
@@ -75,7 +75,7 @@ def assess_strain(data: Any, V: Any, length: Any, load: Any) -> Assumption:
             value,
             f"{sentence}; that of the data is not known: give the Material measured.strain",
         )
-    holds: Any = True
+    holds = True
     for name, strain in known.items():
         own = strains[name] / strain
         holds = holds & (own <= STRAIN_RATIO) & ((own >= 1.0 / STRAIN_RATIO) | (V == 0.0))
@@ -256,7 +256,7 @@ class BodyData:
         0.01, and empty without a pair.
         """
         pair = self.pair
-        bodies: dict[str, tuple[Material, float]] = {}
+        bodies = {}
         if pair is not None and pair.like:
             bodies = {"the material": (pair.half_space, 1.0)}
         elif pair is not None:

@@ -216,7 +216,7 @@ class Equilibria(Values):
         dims, coords = dataset_axes(
             self._labels, np.shape(self.count), (*fields, "count", "equilibrium")
         )
-        data: dict[str, Any] = {}
+        data = {}
         for name, each in fields.items():
             array = np.asarray(each)
             numbers = array.astype(np.int8) if array.dtype == bool else array
@@ -461,7 +461,7 @@ def pack_result(
     more = np.array([M_half_space + M_cylinder, grip, force, torque, *free, fast, slow, imaginary])
     rows = np.concatenate([states.rows[: Field.FAST], more])
     rows = pad(rows, number, count, loads.shape)
-    found: dict[str, Any] = dict(zip(_FIELDS, rows, strict=False))
+    found = dict(zip(_FIELDS, rows, strict=False))
     if scale.si:
         for name in found.keys() & DIMENSIONS.keys():
             unit = scale[name]

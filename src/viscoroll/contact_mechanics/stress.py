@@ -173,7 +173,7 @@ def _fields_of_row(
     low, high = row.onsets()
     with np.errstate(divide="ignore", over="ignore"):
         zeta = 0.5 * found.lam / row.u if row.u > 0.0 else np.inf
-    fields: dict[str, Any] = {
+    fields = {
         "lam": found.lam,
         "length": found.lam,
         "epsilon": found.epsilon,

@@ -213,7 +213,7 @@ class Steadiness(Assumption):
         >>> steady.worst_of_parts(np.array([1, 2])).value.shape
         (2,)
         """
-        chosen: Any = self._replace(holds=self.holds[last], value=self.value[last])
+        chosen = self._replace(holds=self.holds[last], value=self.value[last])
         chosen.free = self.free
         chosen.motion_share = self.motion_share
         return chosen
@@ -529,7 +529,7 @@ def validity(
     if spin is not None:
         with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
             delta = np.where(spin == speed, 0.0, (spin - speed) / speed)
-        full: Any = np.abs(delta) >= scene.mu * np.asarray(lengths.reach)
+        full = np.abs(delta) >= scene.mu * np.asarray(lengths.reach)
         if scene.cover is not None:
             full = evaluate_contact(
                 law, speed, creep=spin, creep_is_omega=True, names=("full_slip",)

@@ -175,9 +175,7 @@ def run_blocks(
         If ``threads`` is not a whole number >= 1; without it, and for two elements and more, if
         ``$VISCOROLL_THREADS`` is not.
     """
-    edges: Iterable[tuple[int, int]] = (
-        (start, min(start + block, count)) for start in range(0, count, block)
-    )
+    edges = ((start, min(start + block, count)) for start in range(0, count, block))
     workers = blocks = -(-count // block)
     if blocks > 1 or threads is not None:
         workers = min(thread_count(threads), blocks)

@@ -407,7 +407,7 @@ class Values(Result):
         """Return the attributes of the result or argument ``name``, as in
         :func:`.scale.attributes`; a unit that the call gave for it takes the place of its own.
         """
-        found: dict[str, Any] = dict(attributes(name, self._si))
+        found = dict(attributes(name, self._si))
         return found | {"units": self._units[name]} if name in self._units else found
 
 

@@ -23,6 +23,12 @@ from typing import Any, NamedTuple, Protocol, TypeAlias
 # --- Units of each quantity ---
 
 
+def _rows(table: str) -> list[list[str]]:
+    """Return the rows of a ``table`` beside this module, without its head."""
+    with (files(__package__) / table).open(encoding="utf-8") as file:
+        return [*csv.reader(file)][1:]
+
+
 class Dimension(NamedTuple):
     """A dimension, and the quantities that have it.
 
@@ -39,64 +45,13 @@ class Dimension(NamedTuple):
     names: str
 
 
-_TABLE = (
-    Dimension(
-        "T",
-        "s",
-        ", divided by T_epsilon",
-        "t t0 onset_time rest_time rested zeta resolve T_epsilon T_sigma T_ref",
-    ),
-    Dimension("R", "m", ", divided by R", "R thickness x"),
-    Dimension("l0", "m", ", divided by l0", "length depth"),
-    Dimension("m", "kg m-1", ", divided by m", "m"),
-    Dimension("m/R2", "kg m-3", ", divided by m/R^2", "density"),
-    Dimension("R/T", "m s-1", ", divided by R/T_epsilon", "V V0 rest speed"),
-    Dimension("R/T2", "m s-2", ", divided by R/T_epsilon^2", "g"),
-    Dimension("rad", "rad", ", radians", "angle slope"),
-    Dimension("rad/T", "rad s-1", ", multiplied by T_epsilon", "omega omega0"),
-    Dimension("E_prime", "Pa", ", divided by E'", "E E0 G G0 G_inf bulk p tau"),
-    Dimension("P", "N m-1", ", divided by the load P", "load force Q dQ_ddelta"),
-    Dimension(
-        "P R", "N m m-1", ", divided by P R", "torque brake M M_half_space M_cylinder dM_ddelta"
-    ),
-    Dimension(
-        "P T",
-        "N s m-1",
-        ", divided by P T_epsilon",
-        "dM_dV dM_half_space_dV dM_cylinder_dV dQ_domega",
-    ),
-    Dimension("P T/R", "N s m-2", ", divided by P T_epsilon/R", "dQ_dV"),
-    Dimension("P T2", "N s2 m-1", ", divided by P T_epsilon^2", "N"),
-    Dimension(
-        "P R T",
-        "N m s m-1",
-        ", divided by P R T_epsilon",
-        "drag dM_domega dM_half_space_domega dM_cylinder_domega",
-    ),
-    Dimension(
-        "P R/T",
-        "W m-1",
-        ", divided by P R/T_epsilon",
-        "loss loss_slip loss_half_space loss_cylinder",
-    ),
-    Dimension("P T/m R", "s-1", ", divided by gamma/T_epsilon", "rate_fast rate_slow"),
-    Dimension(
-        "m R2/T2",
-        "J m-1",
-        ", divided by m (R/T_epsilon)^2",
-        "work_force work_torque brake_loss slip_loss rolling_loss heat given_off",
-    ),
-    Dimension(
-        "theta", "degC", "", "temperature T0 ambient base_temperature base_ambient start allowed"
-    ),
-    Dimension("delta theta", "K", "", "C2"),
-    Dimension("heat", "W m-1 K-1", "", "conductance base_conductance conductivity"),
-    Dimension("stored heat", "J m-1 K-1", "", "capacity"),
-    Dimension("heat of a surface", "W m-2 K-1", "", "film"),
-    Dimension("molar energy", "J mol-1", "", "energy"),
-)
-#: Quantity -> its dimension.  A quantity that is not here is a ratio.
-DIMENSIONS = {name: dimension for dimension in _TABLE for name in dimension.names.split()}
+#: Quantity -> its dimension, from the rows of dimensions.csv.  A quantity that is not here is a
+#: ratio.
+DIMENSIONS = {
+    name: dimension
+    for dimension in (Dimension(*row) for row in _rows("dimensions.csv"))
+    for name in dimension.names.split()
+}
 
 
 def dimension_powers(dimension: str) -> dict[str, int]:
@@ -224,7 +179,7 @@ MEASURED = "measured_V"
 class Symbol(NamedTuple):
     """A quantity.
 
-    latex : symbol.
+    latex : symbol, "" of a quantity without one, whose range and equation are "" too.
     long_name : meaning.
     range : allowed values.
     equation : its place in the paper, "" without one.
@@ -236,36 +191,9 @@ class Symbol(NamedTuple):
     equation: str
 
 
-#: Name in code -> symbol; the rows of symbols.csv.
-with (files(__package__) / "symbols.csv").open(encoding="utf-8") as _file:
-    SYMBOLS = {name: Symbol(*cells) for name, *cells in [*csv.reader(_file)][1:]}
-
-
-#: Name in code -> meaning, of quantities without a symbol.
-_MEANINGS = {
-    "full_slip": "1 in full slip, else 0",
-    "stable": "1 if small disturbances decay, else 0",
-    "rest_time": "time at which the rest threshold was crossed",
-    "loss": "power lost in rolling and slip",
-    "loss_slip": "power lost: slip",
-    "loss_half_space": "power lost: half-space",
-    "loss_cylinder": "power lost: cylinder",
-    "length": "contact length",
-    "thickness": "thickness of the layer",
-    "temperature": "temperature of the material",
-    "base_temperature": "temperature of the base",
-    "ambient": "temperature of the surroundings",
-    "heat": "heat that the losses gave the body since t = 0",
-    "given_off": "heat that the body gave off since t = 0",
-    "conductance": "heat given off per kelvin and length of the cylinder",
-    "capacity": "heat stored per kelvin and length of the cylinder",
-    "measured": "1 where the material was measured at the rates of the contact, else 0",
-    "V0": "initial velocity of the axis",
-    "omega0": "initial angular velocity",
-    "count": "number of equilibria",
-    "coefficient": "all losses divided by load and distance",
-    "efficiency": "output power divided by input power",
-}
+_WORDS = {name: Symbol(*cells) for name, *cells in _rows("symbols.csv")}
+#: Name in code -> symbol; the rows of symbols.csv that have one.
+SYMBOLS = {name: symbol for name, symbol in _WORDS.items() if symbol.latex}
 
 
 def attributes(name: str, si: bool = False) -> dict[str, str]:
@@ -294,15 +222,15 @@ def describe_quantity(name: str, si: bool = False) -> str:
         divided, as ", divided by R", of an angular velocity with ", multiplied by T_epsilon", of an
         angle with ", radians".  A ratio, and a temperature, has no such ending in either case.
     """
-    if name in SYMBOLS:
-        text = SYMBOLS[name].long_name
+    if name in _WORDS:
+        text = _WORDS[name].long_name
         if si and name == "delta":
             text = text.replace("omega", "omega R")
     elif name.startswith("d") and "_d" in name:
         dependent, _, variable = name[1:].partition("_d")
         text = f"partial derivative of {dependent} with respect to {variable}"
     else:
-        text = _MEANINGS.get(name, "")
+        text = ""
     if not text or name not in DIMENSIONS:
         return text
     dimension = DIMENSIONS[name]

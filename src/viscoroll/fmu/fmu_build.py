@@ -485,7 +485,7 @@ def _start_values(
     Raises ParameterError for a Cylinder with arrays, whose message has the first such name.
     """
     starts = {variable.name: variable.start for variable in variables if variable.start is not None}
-    values: dict[str, Any] = {"T_ref": table.T_ref}
+    values = {"T_ref": table.T_ref}
     if table.pair is not None:
         values["E_prime"] = table.pair.E_prime
         if l0:

@@ -529,7 +529,7 @@ def warming(
     warn_of_contact(roller, V_t * rows["a_T"])
     values = {name: rows[name] for name in ("temperature", "V", "C_rr", "M", "loss")}
     values |= {"heat": heat, "given_off": off}
-    about: dict[str, Any] = {"t": times} | {
+    about = {"t": times} | {
         name: np.asarray(plain[name])[..., np.newaxis]
         for name in ("ambient", "conductance")
         if np.ndim(plain[name])

@@ -447,7 +447,7 @@ def _pack(
     count = np.bincount(state, minlength=states.load.size)
     table = np.array([*(rows[name] for name in Temperatures._rows), zeros.stable, inside])[:, order]
     *fields, stable, measured = pad(table, state, count, states.shape)
-    found: dict[str, Any] = dict(zip(Temperatures._rows, fields, strict=True))
+    found = dict(zip(Temperatures._rows, fields, strict=True))
     found |= {"stable": stable == 1.0, "measured": measured == 1.0}
     found["count"] = count.reshape(states.shape) if states.shape else int(count[0])
     if labels is not None:

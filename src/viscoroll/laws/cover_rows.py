@@ -447,9 +447,9 @@ def _find_length(
     states), at least two solves.
     Raises ParameterError where it has not ended after 40 solves.
     """
-    lengths: list[float] = []
-    errors: list[float] = []
-    states: list[CoverState] = []
+    lengths = []
+    errors = []
+    states = []
     for _ in range(_MOST_STEPS):
         z = math.exp(y)
         states.append(solve(modes, z, z * u, orders))

@@ -457,11 +457,11 @@ def solve(modes: CoverModes, z: float, half: float, orders: int | None = None) -
     right = Phi @ X0
     right[0] += z
     matrix = np.eye(N) + S[1:] + Phi @ (Xi @ c)
-    q: Any = np.linalg.solve(matrix, right)
+    q = np.linalg.solve(matrix, right)
     excess = sigma * (c @ q)
     # T_mean - sum X + s_0 without cancellation
     shares = t * (edge * (Q @ (root * (x[:, 0] - x[:, 1:] @ excess))) + excess)
-    shift: Any = shares.sum() + S[0] @ q
+    shift = shares.sum() + S[0] @ q
     # transform of the pressure divided by pi z, times v: its even and odd terms
     mq = np.arange(1, N + 1) * q
     odd = mq[::2] @ A[1::2]

@@ -213,7 +213,7 @@ class Bodies(OneOrMany):
         if self._same:
             return np.broadcast_to(1.0 - np.asarray(self.share)[..., np.newaxis], J.shape).copy()
         own = self._creep[2][..., : J.shape[-1]]
-        weights: Floats = np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
+        weights = np.divide(own, J, out=np.zeros(J.shape), where=J > 0.0)
         return weights
 
     def blocks(self, which: Integers) -> Iterator[Block]:
@@ -562,9 +562,7 @@ class Cover(Bodies):
         >>> vr.Cover(1.0, nu=0.3, thickness=0.5).of_thickness([0.2, 0.4]).thickness
         array([0.2, 0.4])
         """
-        more: dict[str, Any] = {
-            name: getattr(self, name) for name in ("on", "part", "other_nu", "other")
-        }
+        more = {name: getattr(self, name) for name in ("on", "part", "other_nu", "other")}
         if self.other_thickness is not None:
             ratio = np.ravel(self.other_thickness)[0] / np.ravel(self.thickness)[0]
             more["other_thickness"] = ratio * np.asarray(thickness)

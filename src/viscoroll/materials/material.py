@@ -509,7 +509,7 @@ class Material(FromPrograms):
         longest and the shortest are shown, in this order, to three digits.
         """
         times = self.prony.tau * self.T_ref
-        values: list[tuple[str, Any, str]] = [
+        values = [
             ("E", self.E, "Pa, of long times"),
             ("instantaneous", self.instant, "Pa"),
             ("nu", self.nu, ""),

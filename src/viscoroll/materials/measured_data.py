@@ -487,7 +487,7 @@ def shifts_of_toml(text: str) -> dict[str, Any]:
     """Return ``shift`` and ``vertical_shift``, as parameters of a material, of lines as
     :func:`shifts_as_toml` has.
     """
-    found: dict[str, Any] = tomllib.loads(text)
+    found = tomllib.loads(text)
     for name, kind in (("wlf", WLF), ("arrhenius", Arrhenius)):
         if name in found:
             found["shift"] = kind(**found.pop(name))

@@ -442,7 +442,7 @@ def _product(A: NDArray[Any], B: NDArray[Any]) -> Floats:
     """Return the product of two matrices; its bits do not depend on numpy's library of linear
     algebra.
     """
-    product: Floats = np.einsum("ij,jk->ik", A, B)
+    product = np.einsum("ij,jk->ik", A, B)
     return product
 
 

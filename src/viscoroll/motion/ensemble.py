@@ -537,7 +537,7 @@ def _in_units(batch: Batch, solution: Solution) -> dict[str, Any]:
     found = solution.motions
     scale = batch.problem.roller.scale
     shape = (batch.immobile.size,)
-    rows: dict[str, Any] = dict(zip(batch.rows, found.out, strict=True))
+    rows = dict(zip(batch.rows, found.out, strict=True))
     times = {
         "onset_time": found.onset,
         "rest_time": found.rest,

@@ -82,9 +82,7 @@ class FlowMap:
         moment of inertia divided by m R^2; 0 for elastic bodies.
         """
         material, _, _, j = self.parameters
-        T_mean: float = (
-            material.T_mean if isinstance(material, Prony) else (material - 1.0) / material
-        )
+        T_mean = material.T_mean if isinstance(material, Prony) else (material - 1.0) / material
         return T_mean / (1.0 + j)
 
     def stated_error(self, *, path: bool, loss: bool) -> float:

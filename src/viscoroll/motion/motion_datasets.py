@@ -204,7 +204,7 @@ def _dataset(
     """
     si = result.scale.si
     acts = result.drive.acts or "motion" in dims
-    data: dict[str, Any] = {}
+    data = {}
     for name in ROWS if acts else STATES:
         if (values := result[name]) is not None:
             if name == "regime":

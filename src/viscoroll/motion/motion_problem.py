@@ -445,7 +445,7 @@ def integrate_motions(
     arrays = [
         broadcast_vector(np.asarray(a, float), np.shape(a)) for a in (kappa, mu, gamma, j, *starts)
     ]
-    blocks: dict[int, tuple[Floats, Floats]] = {}
+    blocks = {}
 
     def work(start: int, stop: int) -> None:
         parts = (array[start:stop] if array.size > 1 else array for array in arrays)

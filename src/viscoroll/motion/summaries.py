@@ -508,7 +508,7 @@ def _variables(
     counted, mean, spread, low, high = moments
     below, above = edges_of(bins)
     in_bins = f"{name}_bin"
-    parts: dict[str, tuple[tuple[str, ...], NDArray, str]] = {
+    parts = {
         "counted": (times, counted.astype(np.int64), "motions that have a value"),
         "mean": (times, mean, "mean"),
         "std": (times, np.sqrt(spread / np.maximum(counted, 1)), "standard deviation"),
@@ -527,7 +527,7 @@ def _variables(
         "bin_low": ((in_bins,), below, "lower edge of a bin"),
         "bin_high": ((in_bins,), above, "upper edge of a bin"),
     }
-    data: dict[str, Any] = {}
+    data = {}
     for part, (dims, values, title) in parts.items():
         units = "1" if part in ("counted", "histogram") else about["units"]
         attributes = {"long_name": f"{title} of: {about['long_name']}", "units": units}

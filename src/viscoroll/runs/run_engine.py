@@ -21,7 +21,6 @@ from concurrent.futures import (
     FIRST_COMPLETED,
     CancelledError,
     Executor,
-    Future,
     ThreadPoolExecutor,
     wait,
 )
@@ -185,7 +184,7 @@ def _evaluate_missing(
     Raises what the evaluation of a block raises; blocks that are not running yet are then
     cancelled, as they are if the caller stops the iteration.
     """
-    running: set[Future[int]] = set()
+    running = set()
     checked = 0  # motions before the block at hand
     try:
         for block in store.missing():
@@ -302,7 +301,7 @@ def _progress_bar(run: Run, progress: bool | Literal["lines"]) -> Iterator[Calla
     """
     from tqdm import tqdm
 
-    lines: dict[str, Any] = {}
+    lines = {}
     if progress == "lines":
         line = "viscoroll: {n_fmt} of {total_fmt} motions, {percentage:.0f} %, {remaining} left\n"
         lines = {"delay": LINE_EVERY, "mininterval": LINE_EVERY, "bar_format": line}

@@ -482,7 +482,7 @@ def _append_motions(store: Path, path: Path) -> None:
         target.attrs.update(dict(source.attrs))
         target.dimensions = {"motion": arrays["status"].shape[0], "t": arrays["t"].shape[0]}
         for name, array in arrays.items():
-            attrs: dict[str, Any] = dict(array.attrs)
+            attrs = dict(array.attrs)
             dims = attrs.pop("_ARRAY_DIMENSIONS")
             variable = target.create_variable(
                 name,

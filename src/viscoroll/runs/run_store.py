@@ -535,7 +535,7 @@ def _motion_files(
     """
     import xarray as xr
 
-    variables: dict[str, Any] = {
+    variables = {
         name: (("motion", "t")[: values.ndim], values, attributes(name, run.si))
         for name, values in columns.items()
     }

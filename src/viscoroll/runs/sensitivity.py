@@ -9,7 +9,6 @@ scrambled Sobol sequence; scipy.stats.sobol_indices, which has them too, fails f
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import Any
 
 import msgspec
 import numpy as np
@@ -132,8 +131,8 @@ def sobol_indices(
     outcomes, status = _outcomes(
         run, _points(len(names), base, run.settings.seed), threads, progress
     )
-    refused: list[str] = []
-    data: dict[str, Any] = {}
+    refused = []
+    data = {}
     for name, values in outcomes.items():
         over = ("t",) * QUANTITIES[name].over_time
         noise = (

@@ -151,7 +151,7 @@ class Inputs:
 
             normal = [ndtri(rows[name]) for name in self.correlated]
             # a sum in a fixed order, so that bits do not depend on the number of points
-            mixed: Any = sum(
+            mixed = sum(
                 part[:, np.newaxis] * row for part, row in zip(self.mixing.T, normal, strict=True)
             )
             rows |= dict(zip(self.correlated, np.clip(ndtr(mixed), SMALLEST, LARGEST), strict=True))

@@ -157,7 +157,7 @@ def creep_nodes(
     """
     if check_integer("count", count, 5, MAX_NODES) % 2 == 0:
         raise ParameterError("count", count, "odd: the nodes are symmetric about 0")
-    roller: Any = roller_of(what, alpha)
+    roller = roller_of(what, alpha)
     speeds = increasing("V", V, unit=roller.scale, above=0.0)
     roller = roller if alpha is None else roller.replace(alpha=increasing("alpha", alpha, low=1.0))
     speeds = speeds if alpha is None else speeds[:, np.newaxis]

@@ -205,7 +205,7 @@ def _write_matlab(table: Dataset, path: Path) -> None:
 
     names = table_files.fields_of(table)
     arrays = {name: table[name].values.squeeze() for name in (*table_files.axes_of(table), *names)}
-    content: dict[str, Any] = arrays | {
+    content = arrays | {
         "dimensions": {name: ", ".join(map(str, table[name].squeeze().dims)) for name in names},
         "linear_error": {name: table[name].attrs.get(_ERROR, np.nan) for name in names},
         "linear_error_at": {name: table[name].attrs.get("linear_error_at", "") for name in names},

@@ -378,7 +378,7 @@ class Interpolant:
             "fields", known if fields is None else fields, known, "a field of this table"
         )
         coordinates, shape = self._map_points(points, names)
-        results: dict[str, Any] = {}
+        results = {}
         for name in names:
             dims, values = self._spline(name)
             if dims:

@@ -387,7 +387,7 @@ def equilibria(data: Dataset) -> Figure:
     x, V, stable = (
         data[name].broadcast_like(data["V"]).values.ravel() for name in (load, "V", "stable")
     )
-    style: dict[str, Any] = {
+    style = {
         "color": LINES[1]["color"],
         "marker": "o",
         "linestyle": "",
@@ -507,7 +507,7 @@ def _shown_fields(data: Dataset) -> list[str]:
 
 def _finite(values: DataArray) -> NDArray[Any]:
     """Return the finite ``values``, 0 if there is none."""
-    found: NDArray[Any] = values.values[np.isfinite(values.values)]
+    found = values.values[np.isfinite(values.values)]
     return found if found.size else np.zeros(1)
 
 
