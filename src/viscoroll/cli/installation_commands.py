@@ -57,7 +57,7 @@ def samples(arguments: Namespace) -> None:
 
 @command("warmup")
 def warm_up(arguments: Namespace) -> None:
-    """Compile all kernels into the cache by small calls, with a progress bar on standard error.
+    """Compile all kernels into the cache by small calls, with a progress bar on a terminal.
 
     A line with the number of calls, the folder of the cache and the time in s is printed at the
     end.  Kernels that the cache has are loaded only.  A cache that cannot be written causes a
@@ -74,7 +74,7 @@ def warm_up(arguments: Namespace) -> None:
     cache_folder.announced = True  # the bar takes the place of the notice
     start = time.perf_counter()
     calls = _calls()
-    bar = tqdm(calls.items(), leave=False)
+    bar = tqdm(calls.items(), leave=False, disable=None)  # drawn on a terminal alone
     for name, call in bar:
         bar.set_description(name)
         call()
