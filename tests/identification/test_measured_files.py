@@ -80,6 +80,7 @@ def test_columns_that_are_left_aside_are_told(here):
         ("Geschwindigkeit (m/min);Kraft [kN/m]", "resistance", "F", 2e3),
         ("Zeit/s;Drehzahl [U/min]", "coastdown", "omega", math.pi / 15.0),
         ("temps [ms];vitesse [m/s]", "coastdown", "t", 7.2e-3),
+        ("t [s];omega [rev/s]", "coastdown", "omega", 4.0 * math.pi),
         ("Tiempo [s];Velocidad angular [rad/s]", "coastdown", "omega", 2.0),
         ("時間(s);速度(m/s)", "coastdown", "V", 2.0),
     ],
@@ -94,6 +95,7 @@ def test_words_say_what_a_column_is(here, headings, kind, name, value):
     [
         ("t [s],omega [1/min]", "of turns or of radians"),
         ("t [s],Drehzahl [1/s]", "of turns or of radians"),
+        ("t [s],rpm", "of turns or of radians"),
         ("time [s],velocity [m/s],speed [km/h]", "both say V: name the one of V in columns ="),
         ("t [s],u [m/s]", r"no column V or omega or x, but 'u \[m/s\]': if one of them is V, name"),
     ],

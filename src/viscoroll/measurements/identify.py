@@ -546,18 +546,22 @@ def _said(table: Table, names: set[str]) -> dict[str, str]:
 
 
 def _refuse_unclear_turns(table: Table, index: int | None, unit: str) -> None:
-    """Raise FileError for an angular velocity in 1/min or such: of turns, or of radians.
+    """Raise FileError for an angular velocity in 1/min or such: of turns, or of radians; and for
+    turns without a unit.
 
     table, index : :class:`.text_table.Table` and column; an angular one in 1/s is in rad/s.
     unit : unit that the user gives, "" for that of the file.
     """
     heading = table.headings[index or 0]
-    said = {each.name for each in meanings(heading, table.units[index or 0])}
-    units = [unit] if unit else [each.unit for each in readings(heading, table.units[index or 0])]
+    turns = "rotational speed" in {each.name for each in meanings(heading, table.units[index or 0])}
+    stated = {each.unit for each in readings(heading, table.units[index or 0])}
+    units = ({unit} if unit else stated).difference(NO_UNIT)
+    doubtful = "no unit" if turns and not units else ""
     for each in units:
-        if each in NO_UNIT or CYCLES.search(each):
-            continue
         with suppress(ParameterError):
-            if conversion(each, "rad/s")[0] != 1.0 or (not unit and "rotational speed" in said):
-                problem = f"column {heading!r} is in {each}, of turns or of radians"
-                raise FileError(table.path, f'{problem}: give units = {{ omega = "rpm" }}, or such')
+            factor, _ = conversion(each, "rad/s")
+            if not CYCLES.search(each) and (factor != 1.0 or (turns and not unit)):
+                doubtful = f"the unit {each}"
+    if doubtful:
+        problem = f"column {heading!r} has {doubtful}, and may be of turns or of radians"
+        raise FileError(table.path, f'{problem}: give units = {{ omega = "rpm" }}, or such')
