@@ -432,11 +432,6 @@ REFUSED = [
             "unknown key 'sigmma' | did you mean 'sigma' | line 23": ("sigma", "sigmma"),
             "V is in km | of the dimension of m s-1": ("speed [m/s]", "speed [km]"),
             "has no column 'moment' | force [N]": ("moment [N m/m]", "force [N]"),
-            "drum.csv: has no column M or F, but 'moment [N m/m]': if one of them is M, name "
-            "it in columns = { M = ... }; to plan a test": (
-                'columns = { V = "speed", M = "moment" }',
-                'columns = { V = "speed" }',
-            ),
             "[data.columns] unknown key 'Q' | V, M, F": (
                 'M = "moment"',
                 'M = "moment", Q = "moment"',

@@ -1,10 +1,13 @@
 """Measurements from a TOML file and its CSV files, and ``viscoroll identify``."""
 
 import json
+import math
 from pathlib import Path
 
 import pytest
+import tolerances as tol
 from calls import data
+from closeness import close
 from experiments import FILE, measurements
 
 import viscoroll as vr
@@ -68,3 +71,35 @@ def here(tmp_path, monkeypatch):
 def test_columns_that_are_left_aside_are_told(here):
     with pytest.warns(vr.ModelWarning, match=r"drum.csv: unused columns: 'T \[°C\]'"):
         data("V [m/s],M [N m/m],T [°C]\n0.1,0.2,20\n0.2,0.3,20\n")
+
+
+@pytest.mark.parametrize(
+    ("headings", "kind", "name", "value"),
+    [
+        ("Speed [km/h];Rolling torque [N m/m]", "resistance", "V", 7.2 / 3.6),
+        ("Geschwindigkeit (m/min);Kraft [kN/m]", "resistance", "F", 2e3),
+        ("Zeit/s;Drehzahl [U/min]", "coastdown", "omega", math.pi / 15.0),
+        ("temps [ms];vitesse [m/s]", "coastdown", "t", 7.2e-3),
+        ("t [s];omega [rev/s]", "coastdown", "omega", 4.0 * math.pi),
+        ("Tiempo [s];Velocidad angular [rad/s]", "coastdown", "omega", 2.0),
+        ("時間(s);速度(m/s)", "coastdown", "V", 2.0),
+    ],
+)
+def test_words_say_what_a_column_is(here, headings, kind, name, value):
+    record = data(f"{headings}\n7,2;2,0\n8,1;2,5\n", kind)
+    assert close(getattr(record, name)[0], value, tol.UNIT_CONVERTED)
+
+
+@pytest.mark.parametrize(
+    ("headings", "words"),
+    [
+        ("t [s],omega [1/min]", "of turns or of radians"),
+        ("t [s],Drehzahl [1/s]", "of turns or of radians"),
+        ("t [s],rpm", "of turns or of radians"),
+        ("time [s],velocity [m/s],speed [km/h]", "both say V: name the one of V in columns ="),
+        ("t [s],u [m/s]", r"no column V or omega or x, but 'u \[m/s\]': if one of them is V, name"),
+    ],
+)
+def test_what_a_column_may_be_is_asked(here, headings, words):
+    with pytest.raises(vr.FileError, match=words):
+        data("\n".join([headings, *["0,2,3"[: 2 * headings.count(",") + 1]] * 2]), "coastdown")

@@ -13,32 +13,28 @@ MODES = vr.Prony([2.0], [1.0])
 
 
 @pytest.mark.parametrize(
-    "range_", [{"valid_min": 0.015}, {"valid_max": 0.02}, {"valid_range": [0.0, 0.02]}]
+    ("filled", "attributes", "allowed"),
+    [
+        (9.96921e36, {}, r"in \[0, 1\]"),
+        (1e10, {}, r"in \[0, 1\]"),
+        (2.0, {}, r"in \[0, 1\]"),
+        (0.5, {"valid_max": 0.4}, r"within its valid range \[-inf, 0\.4\]"),
+        (0.0, {"valid_min": 0.001}, r"within its valid range \[0\.001, inf\]"),
+        (0.5, {"valid_range": [0.0, 0.4]}, r"within its valid range \[0, 0\.4\]"),
+    ],
 )
-def test_values_outside_of_the_valid_range_that_a_file_declares_are_refused(tmp_path, range_):
+def test_a_rolling_moment_of_no_contact_is_refused(tmp_path, filled, attributes, allowed):
+    """The load of no contact acts farther from the axis than R, so that M is at most P R; what the
+    file declares as invalid is missing.
+    """
     path = tmp_path / "grid.nc"
     V = ("V", [0.5, 1.0, 2.0], {"units": "1"})
     delta = ("delta", [-0.02, 0.0, 0.02], {"units": "1"})
     Q = (("V", "delta"), np.tile([-0.2, 0.0, 0.2], (3, 1)), {"units": "1"})
-    M = ("V", [0.01, 0.02, 0.03], {"units": "1"} | range_)
-    xr.Dataset({"Q": Q, "M": M}, {"V": V, "delta": delta}, {"mu": 0.2}).to_netcdf(
-        path, engine="h5netcdf"
-    )
-    with pytest.raises(vr.FileError, match=r"at V\[[02]\]: must be .* the valid range"):
-        vr.load_law(path)
-
-
-@pytest.mark.parametrize("filled", [9.96921e36, 1e10, 2.0])
-def test_a_rolling_moment_beyond_load_times_radius_is_refused(tmp_path, filled):
-    """The load of no contact acts farther from the axis than R, so that M is at most P R."""
-    path = tmp_path / "grid.nc"
-    V = ("V", [0.5, 1.0, 2.0], {"units": "1"})
-    delta = ("delta", [-0.02, 0.0, 0.02], {"units": "1"})
-    Q = (("V", "delta"), np.tile([-0.2, 0.0, 0.2], (3, 1)), {"units": "1"})
-    M = ("V", [0.01, filled, 0.03], {"units": "1"})
+    M = ("V", [0.01, filled, 0.03], {"units": "1"} | attributes)
     grid = xr.Dataset({"Q": Q, "M": M}, {"V": V, "delta": delta}, {"mu": 0.2})
     grid.to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(vr.FileError, match=r"at V\[1\]: must be in \[0, 1\]"):
+    with pytest.raises(vr.FileError, match=rf"at V\[1\]: must be {allowed}"):
         vr.load_law(path)
 
 
