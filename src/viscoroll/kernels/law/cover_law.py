@@ -6,8 +6,8 @@ rolling moment.
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0,
 and numba compiles nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE`
 numbers, the limits of fast rolling and which body has a layer, and then for each row of the law
-three pairs of functions of u = kappa |V| (:mod:`simd`).  The limits hold beyond the last row of the
-law.  Of the functions below the first pair has the sums over both bodies, f = f_b + f_c and
+three pairs of functions of u = kappa |V| (:mod:`.simd`).  The limits hold beyond the last row of
+the law.  Of the functions below the first pair has the sums over both bodies, f = f_b + f_c and
 g = g_b + g_c, the second pair f_c and g_c, which are read only where each body has a layer.
 
 With the traction Q, |Q| <= mu, and delta_f = (f_b + f_c)/(2 kappa), the creepage of free rolling

@@ -11,7 +11,7 @@ as long as the drive is constant.  In full slip V has equilibria of its own, whi
 or linear in time.  Steps could not follow either for
 long: the rounding of P, times the length of a step, exceeds the tolerance.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =

@@ -10,9 +10,9 @@ records.
 
 The nodes of a step are stored by rows of ROW_LENGTH numbers in ``Workspace.nodes``: row ROW_X holds
 x at node i in ``nodes[ROW_X + i]``; node 0 is the left end of the step.  In the names of rows and
-matrices D stands for the second unknown, omega or d (:mod:`records`).
+matrices D stands for the second unknown, omega or d (:mod:`.records`).
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - v: position on a step, 0 at its left end and 2 at its right end.

@@ -13,7 +13,7 @@ The left side less the right side decreases with d where mu <= 2 kappa: for |d| 
 root, or slip is full from the start.  Where mu > 2 kappa it decreases only from d = -2 kappa/mu on,
 where omega' = 0, and under a force close to the limit of friction the departure is not unique.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - L = 2 kappa delta_star/mu and delta_0, the creepage of free rolling, in the limit V -> 0: 1 and 0
   for half-spaces.

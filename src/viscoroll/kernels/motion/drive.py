@@ -1,10 +1,10 @@
 """The drive at a time: force, torque, brake and prescribed speed, polynomials on each segment.
 
-A segment is a row of numbers (COL_* of :mod:`records`): its start, the scale of its time and the
+A segment is a row of numbers (COL_* of :mod:`.records`): its start, the scale of its time and the
 coefficients of five polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the
 segment.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega

@@ -9,7 +9,7 @@ held by its brake.
 Many motions, each with its own start and, where given, its own scene and drive: the entry from
 Python.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
@@ -472,8 +472,8 @@ def integrate_motion(V0, omega0, record):
     values.
     Returns (status, number of trial steps, number of regime changes, t of the onset of stick, t of
     coming to rest): the status is COMPLETED (0), CAME_TO_REST (1), STEP_LIMIT (2), STEP_TOO_SMALL
-    (3), NOT_UNIQUE (4) or ADDED_MASS_EXHAUSTED (5) of :mod:`records`, an int as the number of trial
-    steps; all others are floats.  Reversals of direction are no regime changes; the times are
+    (3), NOT_UNIQUE (4) or ADDED_MASS_EXHAUSTED (5) of :mod:`.records`, an int as the number of
+    trial steps; all others are floats.  Reversals of direction are no regime changes; the times are
     dimensionless, tau/gamma, NaN where the event does not occur.  The onset is the first time at
     which a stick zone forms in full slip; a start or a departure from rest in partial slip is none.
     Coming to rest is that below the rest threshold, NaN without one.
@@ -509,7 +509,7 @@ class Drives(NamedTuple):
     """Drives of many motions.
 
     segments : (m, k, columns) over t, m = 1 for all motions or one for each; columns as COL_* of
-        :mod:`records`, with times and slopes in t, not in tau
+        :mod:`.records`, with times and slopes in t, not in tau
     gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains`
     prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
     """
@@ -540,7 +540,7 @@ def _drive_of_motion(drives, gamma, i, segments):
     drives: Drives, over t; one for all motions, or one for each.
     gamma: float, tau = gamma t, dimensionless, above 0.
     i: int, index of the motion.
-    segments: (k, columns), written: k segments over tau, columns as COL_* of :mod:`records`, k and
+    segments: (k, columns), written: k segments over tau, columns as COL_* of :mod:`.records`, k and
     columns as in ``drives.segments``.
     Returns the Gains of the motion, those of the last one given if there are fewer; they are not
     converted.

@@ -1,7 +1,7 @@
 """Events: their functions, whose zeros end a regime, and their location on the dense output of a
 step.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
   delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.

@@ -9,9 +9,9 @@ number.
 
 Terms of this file:
 
-- Flow: record of the flow map of one scene: ``table``, the vector of all its tables, of layout.SIZE
-  numbers; kappa, mu, j; ``first``, the exponent from which kappa V at onset is tabulated;
-  ``slow_rate``.
+- Flow: record of the flow map of one scene: ``table``, the vector of all its tables, of
+  flow_layout.SIZE numbers; kappa, mu, j; ``first``, the exponent from which kappa V at onset is
+  tabulated; ``slow_rate``.
 - Times are tau = gamma t.  Distances and angles are integrals over tau: gamma times x and gamma
   times the angle.
 - Level: SPEEDS (0): V and delta or omega alone; PATH (1): distance and angle too; LOSS (2): slip
@@ -313,8 +313,8 @@ def read_asymptote(family, v, level, flow):
     slip: its asymptote.
 
     family : PLUS if omega > V at the onset, MINUS if omega < V, with V > 0.
-    v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES); it is not
-    checked.
+    v : float, kappa V at the onset, from 2^first to below 2^(first + flow_layout.OCTAVES); it is
+    not checked.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene; ``table`` and ``first`` are read.
 
@@ -360,7 +360,7 @@ def locate_in_layer(family, v, u, flow):
     """Return the position of a motion in the table of the boundary layer.
 
     family : PLUS or MINUS.
-    v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES).
+    v : float, kappa V at the onset, from 2^first to below 2^(first + flow_layout.OCTAVES).
     u : float, layer coordinate, from 2^LAYER_LOW to below 2^LAYER_HIGH.
     flow : Flow, of the scene; ``first`` is read.
 

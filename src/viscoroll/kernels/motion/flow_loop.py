@@ -332,11 +332,11 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
 
-    Returns (:class:`StickOnset` at a time tau <= 0; its :class:`Asymptote`; whether the map covers
-    the motion, without which the other two have no meaning).  Distance, angle and slip loss of the
-    onset are minus those from there to the start, not mirrored; below level PATH all are 0, below
-    LOSS the loss.  A start on the slow manifold has its onset at practically tau = 0 and no
-    boundary layer.
+    Returns (:class:`StickOnset` at a time tau <= 0; its :class:`.records.Asymptote`; whether the
+    map covers the motion, without which the other two have no meaning).  Distance, angle and slip
+    loss of the onset are minus those from there to the start, not mirrored; below level PATH all
+    are 0, below LOSS the loss.  A start on the slow manifold has its onset at practically tau = 0
+    and no boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
@@ -433,7 +433,7 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     tau_out : output times tau = gamma t, ascending, (times,).
     until : float, last time tau; an output at that time is written.
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
-    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    asymptote : :class:`.records.Asymptote`: the motion on the slow manifold that it approaches.
     level : SPEEDS, PATH or LOSS: quantities beyond it are those of ``stick`` at all times, which
         have no meaning then.
     flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
@@ -491,7 +491,7 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     at : int, first column to write; nothing is written if it is the number of columns.
     tau_out : output times tau = gamma t, ascending, (times,), at least one.
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
-    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    asymptote : :class:`.records.Asymptote`: the motion on the slow manifold that it approaches.
     request : :class:`.records.Request`: level; rest, the value of max(|V|, |omega|) below which a
         motion is at rest, 0 for none; rest_slow_log, the slow logarithm at that value.
     flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.

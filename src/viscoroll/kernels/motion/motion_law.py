@@ -16,7 +16,7 @@ The contact law at a state of a motion: rolling moments, creepage, slip, added m
 Everything is read off rows of the law (:mod:`.law_functions`) at u = kappa |V|; nothing here
 depends on the drive.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
   delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
@@ -77,8 +77,8 @@ def _evaluate_N(u, law):
     evaluated.
 
     u : float, kappa |V|, dimensionless, >= 0, finite.
-    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.  Read are
-        ``N_rows``, e0 and the number of rows in ``marks``, and alpha in ``rows``.
+    law : :class:`.law_record.Law` of the material, with polynomials of N; those of a cover are NaN.
+         Read are ``N_rows``, e0 and the number of rows in ``marks``, and alpha in ``rows``.
 
     Returns (row, N, integral, slope).  row: int, index of the row from 0, or the number of rows
     where u lies beyond the last one and N has its fast limit (alpha - 1)/(16 alpha u^2).  N: float,
@@ -104,7 +104,7 @@ def _evaluate_added_mass(law, V, kappa, gamma):
     The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4 there), at
     infinity.
 
-    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.
+    law : :class:`.law_record.Law` of the material, with polynomials of N; those of a cover are NaN.
     V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
@@ -132,8 +132,8 @@ def added_mass(law, V, kappa, gamma):
     nothing else.  The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4
     there), at infinity.
 
-    law : :class:`Law` of the material: polynomials of each octave; ``N_rows`` is empty for steady
-        rolling, where nothing else is read.
+    law : :class:`.law_record.Law` of the material: polynomials of each octave; ``N_rows`` is empty
+        for steady rolling, where nothing else is read.
     V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
@@ -153,7 +153,8 @@ def added_mass(law, V, kappa, gamma):
 def unsteady_loop(law, kappa, V, out):
     """Write N of n states into an array.
 
-    law : :class:`Law` that has N (``N_rows`` is not empty); marks, rows and ``N_rows`` are read.
+    law : :class:`.law_record.Law` that has N (``N_rows`` is not empty); marks, rows and ``N_rows``
+        are read.
     kappa, V : slenderness, > 0, and speed, of either sign, finite, dimensionless, of length 1 or n.
     out : (n,) floats, written: N in units of P T_epsilon^2.  Of a cover it is NaN in the rows of
         the law, and without meaning beyond the last row.  Returns nothing.
@@ -379,8 +380,8 @@ def rest_limits(scene, sigma=1.0):
     half-spaces.
 
     L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.  Departure from rest
-    and exponential decay are decided with these limits; :func:`.evaluate.limits_at_rest` gives them
-    for a law.
+    and exponential decay are decided with these limits; :func:`.law_functions.limits_at_rest` gives
+    them for a law.
 
     scene: Scene, of which kappa and ``law`` are read, and mu of a table.
     sigma: float, side of d, 1.0 or -1.0, on which L of a table depends; its delta_0 is the creepage

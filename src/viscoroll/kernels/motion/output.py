@@ -4,7 +4,7 @@ angle, energies).
 Row of outputs: V 0, omega 1, x 2, angle 3, delta 4, regime 5, force 6, torque 7, work of force 8
 and of torque 9, losses in the brake 10, in slip 11, in rolling 12.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =

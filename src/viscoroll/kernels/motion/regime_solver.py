@@ -1,7 +1,7 @@
 """Integration within one regime, step after step, to an event or to the end of a segment of the
 drive.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =

@@ -29,7 +29,7 @@ V: p' does not depend on Q, and on d only by feedback.  dp/dd = inverse_mass V k
 Newton's matrix splits into one of p and one of d (:mod:`step`).  Where friction is so strong that
 dp/dV may vanish, p is V.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
   delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.

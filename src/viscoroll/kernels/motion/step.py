@@ -19,7 +19,7 @@ F = h dV'/dd, as omega does by feedback: with S the second matrix,
 
     [D - h diag(dV'/dV) + diag(F) S^-1 diag(c)] dV = h V' - D V + F S^-1 (h b - V (D d))
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =

@@ -8,7 +8,7 @@ interpolant.
 
 Step lengths: the first step of a regime, the next step after an accepted or rejected one.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
