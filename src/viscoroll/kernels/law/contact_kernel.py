@@ -1,9 +1,10 @@
 """States of the contact from the rows of their law: no root, no iteration, and nothing that is not
 requested.
 
-With D = 2 kappa |delta|/mu and w = L - D, |Q|/mu = 1 - w^2 (H/F^2)(2 u/w), where 1 = L^2 (H/F^2)(2
-u/L) is close to it at small creepage.  There their difference is exact with the mean slope S of
-H/F^2 between v1 = 2 u/L and v2 = 2 u/w:
+The traction is |Q|/mu = 1 - w^2 (H/F^2)(2 u/w) with w = L - D (letters below;
+docs/internals_law.md, Rows).  At small creepage it is a small difference, as 1 = L^2 (H/F^2)(2
+u/L).  With v1 = 2 u/L, v2 = 2 u/w, v2 - v1 = v2 D/L and the mean slope S of H/F^2 between them, 1 =
+L^2 [(H/F^2)(v2) - S v2 D/L], so that nothing cancels in
 
     |Q|/mu = D [(2 L - D) (H/F^2)(v2) - v2 L S]
 
@@ -24,14 +25,15 @@ Terms of this file:
   that of free rolling, and from the asymmetry c of the onsets of full slip (:mod:`.cover_law`).
   D < L in partial slip, and infinite stands for full slip.
 - v = 2 u/(L - D) = 1/F(eta), with eta half the transit time of the stick zone; H and F are
-  functions of the material (:mod:`.law`), of which only H/F^2 and eta/F occur, as functions of v.
-  A NaN of u or v where L and D are finite has no meaning and is not checked.
+  functions of the material (:mod:`.law_functions`), of which only H/F^2 and eta/F occur, as
+  functions of v. A NaN of u or v where L and D are finite has no meaning and is not checked.
 - State: kappa, mu, V, and ``creep``, which is delta, or omega where ``creep_is_omega``.
 - Request: states, and the quantities of them that are written into rows of ``out``.
 - Block: up to TOGETHER = 64 states that are evaluated together.  Column c: place of a state in its
   block.
 - Scratch: for each number of a state (kappa, mu, V and so on) TOGETHER doubles in a row, of which
-  that at c belongs to the state in column c.
+  that at c belongs to the state in column c.  Its indices are unsigned, as numba would test signed
+  ones for negative numbers.
 """
 
 import numpy as np
@@ -210,7 +212,7 @@ def stick_fraction(position, v, lam, L, D, law):
     in full slip (L <= D), and where L or D is NaN.
     """
     w = L - D
-    if not w > 0.0:
+    if not w > 0.0:  # full slip, or NaN
         return 0.0
     return min(eta_over_F(position, v, law) * w / lam, 1.0) if D > 0.0 else 1.0
 
@@ -233,18 +235,19 @@ def traction_slopes(u, L, dL, D, law):
     from D = L/16 on the plain formula holds at u = 0 too, unless a difference would lose digits.
     """
     w = L - D
-    if not w > 0.0:
+    if not w > 0.0:  # full slip, or NaN
         return 0.0, 0.0
     v = 2.0 * u / w
     position = locate_row(v, law)
     value, slope = H_over_F2(position, v, law)
-    w_slope = value - 0.5 * v * slope
+    w_slope = value - 0.5 * v * slope  # A
     if D < SMALL_CREEP * L or _cancels(1.0 - w * w * value, D, L):
         x = D / w
         v1 = 2.0 * u / L
         _, _, secant, slope_secant = H_over_F2_secants(position, locate_row(v1, law), v, x, law)
-        # with f = H/F^2 and A = f - v f'/2, dL/du = -f'/A at v1, and the two terms below are close
-        step = v1 * x
+        # With f = H/F^2: from L^2 f(2 u/L) = 1 follows dL/du = -f'/A at v1, so that A dL + f' of
+        # the plain formula is a difference of values at v and v1, which is formed by mean slopes.
+        step = v1 * x  # v - v1
         slope_1 = slope - slope_secant * step
         A_1 = value - secant * step - 0.5 * v1 * slope_1
         over_u = step * (
@@ -273,6 +276,7 @@ def signed_creep(L, free_creep, asymmetry, state, law):
     gives inf or -inf; NaN where the creepage is NaN, or ``free_creep`` of a cover.
     """
     slip, delta = slip_and_creepage(state)
+    # D of half-spaces, which that of a cover replaces.
     full_slip = abs(delta) >= 0.5 * state.mu / state.kappa * L
     D = np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
     return creep_of_state(D, delta, L, free_creep, asymmetry, state, law.cover_rows)
@@ -321,11 +325,12 @@ def Q_slopes(u, L, dL, D, state, law):
     over_u, over_D = slopes_of_cover(
         over_u, over_D, D, locate_row(u, law), u, L, dL, state, law.cover_rows
     )
+    # Q = +-mu |Q|/mu with D = 2 kappa |delta|/mu and u = kappa |V|; delta = omega/V - 1 at fixed V.
     over_delta = 2.0 * state.kappa * over_D
     over_omega = over_delta / abs(state.V)
     over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
     over_V = slope_over_speed(over_V, over_delta, free_creep_and_slopes(u, law)[1], law.cover_rows)
-    if state.creep_is_omega:
+    if state.creep_is_omega:  # d delta/dV = -omega/V^2 = -(1 + delta)/V at fixed omega
         over_V -= over_omega * (1.0 + slip_and_creepage(state)[1])
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
 
@@ -342,7 +347,7 @@ def traction_on_moments(pairs, functions, Q, state, cover_rows):
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces: all changes are 0.
     """
-    if cover_rows is None:  # a sum with -0.0 keeps the sign of a zero
+    if cover_rows is None:  # -0.0, as a sum with it keeps the sign of a zero
         return MomentChange(
             half_space=-0.0,
             cylinder=-0.0,
@@ -486,6 +491,7 @@ def _write_other_fields(n, c, law, scratch, request):
     write_field(to.delta, slip_and_creepage(state)[1], n, request)
     write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
     if max(to.delta_minus, to.delta_plus) >= 0:
+        # delta_0, delta_star and c: the onsets are delta_0 + delta_star (c -+ 1).
         middle = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
         star = 0.5 * state.mu / state.kappa * L
         shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
@@ -513,6 +519,7 @@ def _write_other_fields(n, c, law, scratch, request):
         slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
         of_M = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dM_half_space_dV, to.dM_cylinder_dV)
         of_M = max(of_M, to.dM_half_space_domega, to.dM_cylinder_domega)
+        # M of a cover depends on Q, so that its slopes need those of Q.
         slopes_of_Q = slopes_of_Q or (_is_cover(law.cover_rows) and of_M >= 0)
         _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
 
@@ -675,7 +682,8 @@ def _write_cover(c, cover_rows, scratch, request):
     factors of Q in M.
 
     No polynomial is evaluated here, so that a loop over states becomes vector instructions.
-    c : column of the scratch.
+
+    c : unsigned int, column of the scratch.
     cover_rows : as of :func:`_write_pairs`; of half-spaces nothing is written.
     scratch, request : as of :func:`_write_other_fields`.
     Returns nothing.
@@ -761,7 +769,7 @@ def contact_loop(laws, request, scratch, count):
         is not requested), ``out``, (quantities, columns), of which column ``first`` + n is written
         for state n.  The quantities are lam, zeta, epsilon, delta_star, delta, full_slip, beta,
         grip, Q, M, dQ_dV, dQ_ddelta, dQ_domega, dM_dV, M_half_space, M_cylinder, dM_half_space_dV,
-        dM_cylinder_dV and delta_0.
+        dM_cylinder_dV, delta_0 and the others of :data:`.law_record.Fields`.
     scratch : (SCRATCH_SIZE,) doubles, overwritten.
     count : int, number of states, >= 0; with an ``order`` its first ``count`` entries are
         evaluated, else the states 0 to ``count`` - 1.
@@ -776,7 +784,7 @@ def contact_loop(laws, request, scratch, count):
     instructions, and what is requested is tested once for a block.
     """
     to = request.to
-    others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)
+    others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)  # whether more than Q and M is asked
     for first in range(0, count, TOGETHER):
         size = min(TOGETHER, count - first)
         for k in range(size):
@@ -787,6 +795,8 @@ def contact_loop(laws, request, scratch, count):
             scratch[_V + c] = state.V
             scratch[_CREEP + c] = state.creep
             scratch[_U + c] = state.kappa * abs(state.V)
+        # One law serves all states of a block; of many materials as many states as there are laws
+        # are evaluated together.
         together = size if laws[0].selector == 0 else len(laws)
         for begin in range(0, size, together):
             end = min(begin + together, size)

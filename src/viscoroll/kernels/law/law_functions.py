@@ -42,8 +42,8 @@ Terms of this file:
 - D = 2 kappa |delta|/mu: creepage, of a cover less that of free rolling; D < L in partial slip.
 - zeta, eta: half the transit time of the contact and of its stick zone, divided by the unit of time
   of the law, which is T_epsilon of one relaxation time and T_ref of a series.  F(z) = z + g(z) and
-  H(z) = z^2 + 2 z h(z) with functions g and h of the material (:mod:`.law`): Eq. (10) is F(eta) =
-  (L - D)/(2 u), and v = 1/F(eta), >= 0.
+  H(z) = z^2 + 2 z h(z) with functions g and h of the material (:mod:`.law_functions`): Eq. (10) is
+  F(eta) = (L - D)/(2 u), and v = 1/F(eta), >= 0.
 - Fast limit: the expansion of the functions for large u or v, used beyond the last row.  Its
   numbers in the head of the
   rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).  A

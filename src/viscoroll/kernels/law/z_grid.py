@@ -19,8 +19,9 @@ Terms of this file:
 
 - z: half the transit time of the contact or of its stick zone, in the unit of time of the material.
 - u = kappa |V|, dimensionless speed, and v = 1/F(eta) of a stick zone with the half transit time
-  eta (:mod:`.law`).  Functions of u: L = 2 kappa delta_star/mu, M/V and its parts, lam (length of
-  the contact divided by l0), epsilon (shift in half contact lengths); of v: H/F^2 and eta/F.
+  eta (:mod:`.law_functions`).  Functions of u: L = 2 kappa delta_star/mu, M/V and its parts, lam
+  (length of the contact divided by l0), epsilon (shift in half contact lengths); of v: H/F^2 and
+  eta/F.
 - Row 0, the slow row, spans 0 <= u, v < 2^e0 with t = u 2^-e0 or v 2^-e0; row n > 0 is the octave
   that ends at 2^(e0 + n), with t in [-1, 1).
 - Head: numbers of the law as a whole, in front of its rows, and likewise in front of the marks of
