@@ -148,8 +148,8 @@ def heat_loop(law, request, number, out, is_stable):
     A pair is found where |f| has a minimum at a node near which a parabola reaches 0 and f has the
     other sign at the extremum; zeros at which f only touches 0 are not found.
 
-    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the
-    head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of M/V or, beyond the
+    last row, the head are read.
     request : :class:`HeatRequest`.
     number, out, is_stable : (m,) each, ints, floats, bools, of which the first are written: index
         of the state, rise, K, and whether f falls there; ordered by state, and of a state by rise

@@ -42,8 +42,8 @@ Terms of this file:
 - D = 2 kappa |delta|/mu: creepage, of a cover less that of free rolling; D < L in partial slip.
 - zeta, eta: half the transit time of the contact and of its stick zone, divided by the unit of time
   of the law, which is T_epsilon of one relaxation time and T_ref of a series.  F(z) = z + g(z) and
-  H(z) = z^2 + 2 z h(z) with functions g and h of the material (:mod:`.law`): Eq. (10) is F(eta) =
-  (L - D)/(2 u), and v = 1/F(eta), >= 0.
+  H(z) = z^2 + 2 z h(z) with functions g and h of the material (:mod:`.law_functions`): Eq. (10) is
+  F(eta) = (L - D)/(2 u), and v = 1/F(eta), >= 0.
 - Fast limit: the expansion of the functions for large u or v, used beyond the last row.  Its
   numbers in the head of the
   rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).  A
@@ -143,8 +143,8 @@ def locate_row(x, law):
     """Return the :class:`RowPosition` of u or v in the rows of a law.
 
     x : float, u or v, dimensionless, >= 0.
-    law : :class:`Law`, with its material selected, of whose ``marks`` e0 and the number of rows are
-    read.
+    law : :class:`.law_record.Law`, with its material selected, of whose ``marks`` e0 and the number
+    of rows are read.
     Returns the position; its row is :data:`FAST_LIMIT` = -1 beyond the last row, also for infinity.
     A NaN has t NaN, in row 0 or in FAST_LIMIT by its sign bit.
     """
@@ -171,7 +171,7 @@ def _fast_terms(u, body, law):
     u : float, kappa |V|, dimensionless, > 0 and finite.
     body : int, index in the head of the rows: FAST_TOTAL for both bodies, FAST_HALF_SPACE or
         FAST_CYLINDER for one.  W of it is at this index, C at the next one.
-    law : :class:`Law` of the material, of which the head of ``rows`` is read.
+    law : :class:`.law_record.Law` of the material, of which the head of ``rows`` is read.
 
     Returns (z, shift, part), floats, dimensionless: z = lam_fast/(2 u), which is zeta in the limit;
     shift = (alpha z/2) (C - W ln z); part = alpha z W/8.  With W and C of both bodies shift is
@@ -192,8 +192,8 @@ def length_and_moment(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is read for ``d_um`` alone.
-    law : :class:`Law` of the material, of which the polynomials of L and M/V or, beyond the last
-        row, the head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of L and M/V or, beyond
+        the last row, the head are read.
 
     Returns floats.  ``m`` is M/V itself in the rows, with ``scale`` 1; beyond the last row it is
     M/V divided by z = lam_fast/(2 u), with ``scale`` z.  ``d_um``, d(u M/V)/du, is not divided by
@@ -231,7 +231,8 @@ def moment_factor(position, u, scale, state):
     u : float, kappa |V|, dimensionless, >= 0; not read in the rows.
     scale : float, ``scale`` of the :class:`LengthAndMoment` at u: 1, or z in the fast limit; not
     read in the rows.
-    state : :class:`State`, of which V (with its sign) and, beyond the last row, kappa are read.
+    state : :class:`.law_record.State`, of which V (with its sign) and, beyond the last row, kappa
+        are read.
     Returns a float with the sign of V, dimensionless: V itself in the rows, 0 at V = 0.
     """
     return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
@@ -243,8 +244,8 @@ def lam_and_epsilon(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is not read.
-    law : :class:`Law` of the material, of which the polynomials of lam and epsilon or, beyond the
-        last row, the head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of lam and epsilon or,
+        beyond the last row, the head are read.
     Returns (lam, epsilon), floats, dimensionless: length divided by l0, from 1 down to alpha^(-1/2)
     for half-spaces; shift in half contact lengths, 0 at u = 0 and for elastic half-spaces, and -> 0
     for u -> infinity.
@@ -262,8 +263,8 @@ def body_moments(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite.
-    law : :class:`Law` of the material, not one of the axis of alpha (:mod:`.alpha_axis`), which has
-        no rows of these
+    law : :class:`.law_record.Law` of the material, not one of the axis of alpha
+        (:mod:`.alpha_axis`), which has no rows of these
         parts: there each is half of M/V.
 
     Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), floats,
@@ -297,7 +298,7 @@ def free_creep_and_slopes(u, law):
     It is :func:`.cover_law.free_creep_at` for callers that have not located u.
 
     u : float, kappa |V|, dimensionless, >= 0.
-    law : :class:`Law` of the material, of which marks and ``cover_rows`` are read.
+    law : :class:`.law_record.Law` of the material, of which marks and ``cover_rows`` are read.
     Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; 0.0
     each of half-spaces, at no cost.
     """
@@ -311,7 +312,8 @@ def limits_at_rest(kappa, law):
     The departure from rest and the exponential decay of a motion are decided with them.
 
     kappa : float, slenderness R/l0, dimensionless, > 0; not read for half-spaces.
-    law : :class:`Law` of the material, of which, if it is a cover, L and delta_0 in row 0 are read.
+    law : :class:`.law_record.Law` of the material, of which, if it is a cover, L and delta_0 in row
+        0 are read.
     Returns (L, delta_0), floats, dimensionless: L > 0, delta_0 of either sign; for half-spaces
     (1.0, -0.0), of which a compiler leaves the second out of sums.
     """
@@ -331,7 +333,8 @@ def _half_space_eta_over_F(y, law):
     slope over y.
 
     y : float, F(eta) = 1/v, dimensionless, >= 0.
-    law : :class:`Law` of the material, of whose head alpha, W and C of both bodies are read.
+    law : :class:`.law_record.Law` of the material, of whose head alpha, W and C of both bodies are
+        read.
 
     Returns (eta/F, -d(eta/F)/dy), floats, dimensionless.  At y = 0 the first is 1; the second
     is -alpha W/2 there, which is a placeholder, as the slope is infinite for W > 0.  Its users
@@ -353,8 +356,8 @@ def eta_over_F(position, v, law):
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material, of which the polynomials of eta/F or, beyond the last row,
-        the head and ``cover_rows`` are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of eta/F or, beyond the
+        last row, the head and ``cover_rows`` are read.
     Returns a float, dimensionless: for half-spaces it is in (0, 1], and 1 at v = 0 and at infinity;
     for a cover it is lam/L of the speed at which v = 2 u/L.
     """
@@ -369,8 +372,8 @@ def H_over_F2(position, v, law):
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 or, beyond the last row,
-    the head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 or, beyond the
+    last row, the head are read.
 
     The traction is |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta -
     delta_0|)/mu.
@@ -398,8 +401,8 @@ def H_over_F2_secants(position, near, v, x, law):
     v : float, 1/F(eta), dimensionless, >= 0.
     x : float, ratio of v to the other argument, less 1, dimensionless, in [0, 1]; 0 gives the
     slopes at v.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 or, beyond the last row,
-    the head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 or, beyond the
+    last row, the head are read.
 
     Returns (value, slope, mean slope of the value, mean slope of the slope), floats, all over v,
     dimensionless.  At x = 0, where both ends are v, the mean slopes are the slope and the second
@@ -434,7 +437,8 @@ def _fast_secants(v, x, law):
     v : float, 1/F(eta), dimensionless, > 0, which may be infinite.
     x : float, ratio of v to the other argument, less 1, dimensionless, >= 0; 0 gives the slopes at
     v.
-    law : :class:`Law` of the material, of whose head alpha, W and C of both bodies are read.
+    law : :class:`.law_record.Law` of the material, of whose head alpha, W and C of both bodies are
+        read.
     Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), floats, over v, dimensionless; at x =
     0 they are the slope and the second derivative at v; both are 0 for elastic bodies and at v =
     infinity.
@@ -488,8 +492,8 @@ def _find_crossing(load, n, curve, law):
     checked.
     n : int, index of the lower node, from 0 to the number of nodes - 2.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
-    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the
-    head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of M/V or, beyond the
+    last row, the head are read.
     Returns u = kappa V, a float, > 0, dimensionless, from u of node n to that of node n + 1.  Where
     the load equals an extremum at the node n + 1 to rounding (EXTREMUM_RTOL), it is that node;
     where it equals one at the node n to rounding, it is that node to about the square root of
@@ -538,8 +542,8 @@ def _find_crossing(load, n, curve, law):
 def crossing_loop(law, curve, load, node, out, start, stop):
     """Find u = kappa V where kappa (M(V) - gain V) equals each load.
 
-    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the
-    head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of M/V or, beyond the
+    last row, the head are read.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
     load : values of kappa (M - gain V), (n,), dimensionless, each between the values at its two
     nodes; not checked.

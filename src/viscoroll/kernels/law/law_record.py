@@ -8,7 +8,7 @@ columns have names.
 ``rows`` holds one head, as long as a row, and then the rows.  A row has :data:`ROW_SIZE` numbers in
 :data:`PARTS_PER_ROW` parts of :data:`PART_SIZE`; the constants from :data:`LENGTH_MOMENT` to
 :data:`ETA_OVER_F` are offsets in a row.  Two functions whose powers are interleaved
-(:mod:`simd`) take two neighbouring parts.
+(:mod:`.simd`) take two neighbouring parts.
 
 ``marks`` holds one head, as long as a row has parts, and then for every part of every row the
 version of the material that it was made for: the number of the selection of a material, which

@@ -130,9 +130,9 @@ def _write_ratio_jets(z, series, work):
 
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series; at
         infinity values are 1 and derivatives over s are NaN.
-    series : :class:`Series`, of which the rates a and b are read.
-    work : :class:`Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2`` are written, four
-        numbers a mode, as of :func:`_jet`.  Returns nothing.
+    series : :class:`.material_series.Series`, of which the rates a and b are read.
+    work : :class:`.material_series.Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2``
+        are written, four numbers a mode, as of :func:`_jet`.  Returns nothing.
     """
     for i in range(series.a.size):
         a = series.a[i]
@@ -168,8 +168,8 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
 
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series;
         infinite for V = 0.
-    series : :class:`Series` of at least one mode, with ascending rates a and b, which are read, and
-        the strengths e.
+    series : :class:`.material_series.Series` of at least one mode, with ascending rates a and b,
+        which are read, and the strengths e.
     of_g, of_h, of_y : jets of g, h and sum X_i i2_i at z (:mod:`.material_series`), vectors of
         four: value, d/dz, d/ds, d2/dz ds; not read where a limit is returned.
 
@@ -214,9 +214,9 @@ def set_alpha_of_state(n, alpha, series):
     n : int, index of the state, from 0 to the number of states - 1; not checked.
     alpha : instantaneous divided by long-time stiffness, >= 1, (1,) for all states or (states,);
         empty: the series is complete and nothing is written.
-    series : :class:`Series` of one mode with b = 1 and Q = 1, of which a[0] = alpha and e[0] =
-        t[0] = sqrt((alpha - 1)/alpha) are written; any series if ``alpha`` is empty.  Returns
-        nothing.
+    series : :class:`.material_series.Series` of one mode with b = 1 and Q = 1, of which a[0] =
+        alpha and e[0] = t[0] = sqrt((alpha - 1)/alpha) are written; any series if ``alpha`` is
+        empty.  Returns nothing.
     """
     if alpha.size > 0:
         one_alpha = element(alpha, n)
@@ -228,11 +228,11 @@ def set_alpha_of_state(n, alpha, series):
 def modes_loop(series, alpha, work, z, out):
     """Evaluate the functions of a series, their slopes and N at many z.
 
-    series : :class:`Series` of at least one mode: rates and strengths; of one mode, and
-        overwritten, if ``alpha`` is not empty.
+    series : :class:`.material_series.Series` of at least one mode: rates and strengths; of one
+        mode, and overwritten, if ``alpha`` is not empty.
     alpha : instantaneous divided by long-time stiffness, >= 1, of a series of one mode, (1,) for
         all z or (n,); empty: the series is complete.
-    work : the :class:`Workspace` of the series, scratch.
+    work : the :class:`.material_series.Workspace` of the series, scratch.
     z : values of zeta > 0, (n,), in the unit of time of the series.  Where z is infinite, values
         and N are the limits at rest, and slopes are NaN.
     out : (9, n), written.  Rows 0 to 3: g/z, h/z, m of the half-space, m of the cylinder (m = M/V,
@@ -333,8 +333,9 @@ def _memory_integral(u, w, a, r_complement):
 
 
 def new_memory_weights(series) -> MemoryWeights:
-    """Return :class:`MemoryWeights` for ``series``, a :class:`Series`, whose number of modes is
-    read; they belong to no z yet: z is NaN, and the other arrays are not initialized.
+    """Return :class:`MemoryWeights` for ``series``, a :class:`.material_series.Series`, whose
+    number of modes is read; they belong to no z yet: z is NaN, and the other arrays are not
+    initialized.
     """
     n = series.a.size
     return MemoryWeights(np.empty(n), np.empty(n), np.full(1, np.nan), new_workspace(n))
@@ -348,7 +349,7 @@ def unit_shape(u, w, z, series, weights):
         u + w = 2.  One of them is <= 0 outside the contact.
     z : float, half transit time of the contact, or of the stick zone, > 0, in the unit of time of
         the series; inf is the elastic limit V = 0.
-    series : :class:`Series`: rates and strengths of the modes; it may have none.
+    series : :class:`.material_series.Series`: rates and strengths of the modes; it may have none.
     weights : :class:`MemoryWeights`, the strengths of the modes at z.  If they belong to another z,
         they are computed and written here; a caller that changes ``series`` has to set their z to
         NaN.
@@ -382,8 +383,8 @@ def unit_shape(u, w, z, series, weights):
 def stress_loop(series, alpha, whole, stick, points, p, tau):
     """Compute pressure and shear stress at n points of the contact.
 
-    series : :class:`Series`: rates and strengths of the modes; of one mode, and overwritten, if
-        ``alpha`` is not empty.
+    series : :class:`.material_series.Series`: rates and strengths of the modes; of one mode, and
+        overwritten, if ``alpha`` is not empty.
     alpha : instantaneous divided by long-time stiffness, >= 1, of a series of one mode, (1,) or
         (n,); empty: the series is complete.
     whole, stick : :class:`MemoryWeights` of the series for the contact and for the stick zone,

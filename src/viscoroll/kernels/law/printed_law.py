@@ -16,15 +16,15 @@ number.
 The contact law as the paper prints it: Eqs. (6), (8)-(10), (15), (16) and two Brent-Dekker
 roots.
 
-Independent of :mod:`.law` in the Bessel ratios, in the algebra and in the root finder: the
-baseline that the explicit law is timed against and checked against.  The one liberty taken is that
-Eqs. (6) and (10) are divided by I0 K1, so that only r = I1/I0 and k = K0/K1 occur and nothing
+Independent of :mod:`.law_functions` in the Bessel ratios, in the algebra and in the root finder:
+the baseline that the explicit law is timed against and checked against.  The one liberty taken is
+that Eqs. (6) and (10) are divided by I0 K1, so that only r = I1/I0 and k = K0/K1 occur and nothing
 overflows.
 
 The printed forms lose digits in corners where the explicit ones do not.  Differences from
-:mod:`.law`, measured over alpha = T_epsilon/T_sigma in [1, 1e4], kappa V in [1e-3, 1e3], s =
-delta/delta_star in [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15, Q
-1.1e-13 mu, M 2e-13/kappa; the docstrings say where relative digits go.
+:mod:`.law_functions`, measured over alpha = T_epsilon/T_sigma in [1, 1e4], kappa V in [1e-3, 1e3],
+s = delta/delta_star in [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15,
+Q 1.1e-13 mu, M 2e-13/kappa; the docstrings say where relative digits go.
 
 Letters: kappa = R/l0, mu the coefficient of friction, alpha = T_epsilon/T_sigma; lam, length of the
 contact over l0, epsilon, its shift in half contact lengths; zeta = lam/(2 kappa V), half the

@@ -3,7 +3,7 @@
 At the nodes z = 2^(n/10) the formulas of the modes (:mod:`material_series`) give lam and eta/F =
 z/(z + g), and with them a point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The
 polynomial
-in ln u or ln v through the 36 points around an octave (:mod:`simd`) is evaluated at
+in ln u or ln v through the 36 points around an octave (:mod:`.simd`) is evaluated at
 the nodes of that octave.  The polynomial of the slow row goes through points at Chebyshev nodes of
 1/z and is one in t.  No root is solved for and no slope is needed.  A row depends on its material
 alone, not on the rows that were made before.
@@ -19,8 +19,9 @@ Terms of this file:
 
 - z: half the transit time of the contact or of its stick zone, in the unit of time of the material.
 - u = kappa |V|, dimensionless speed, and v = 1/F(eta) of a stick zone with the half transit time
-  eta (:mod:`.law`).  Functions of u: L = 2 kappa delta_star/mu, M/V and its parts, lam (length of
-  the contact divided by l0), epsilon (shift in half contact lengths); of v: H/F^2 and eta/F.
+  eta (:mod:`.law_functions`).  Functions of u: L = 2 kappa delta_star/mu, M/V and its parts, lam
+  (length of the contact divided by l0), epsilon (shift in half contact lengths); of v: H/F^2 and
+  eta/F.
 - Row 0, the slow row, spans 0 <= u, v < 2^e0 with t = u 2^-e0 or v 2^-e0; row n > 0 is the octave
   that ends at 2^(e0 + n), with t in [-1, 1).
 - Head: numbers of the law as a whole, in front of its rows, and likewise in front of the marks of
@@ -174,7 +175,7 @@ class Grid(NamedTuple):
     """The grid of the selected material, and the rows that are made from it.
 
     rows : vector of the law with its head, up to the part that is made and one more, written.
-    scratch : vector of :mod:`simd`.
+    scratch : vector of :mod:`.simd`.
     functions : (node_count, 12), values at the nodes in the order of _L to _LN_ETA_OVER_F; the last
         36 nodes are the points of the slow row.
     node_count : int.
@@ -217,7 +218,7 @@ def grid_size(count: int, alpha: float) -> int:
 
 
 def work_size(nodes: int) -> int:
-    """Return the number of doubles of the scratch of a grid: that of :mod:`simd`,
+    """Return the number of doubles of the scratch of a grid: that of :mod:`.simd`,
     then twelve functions at each node; an int.
 
     nodes : int, number of nodes, as of :func:`grid_size`.
