@@ -297,21 +297,3 @@ def test_what_it_does_not_have_is_refused(more, words):
     scene = scene_of(ONE)
     with pytest.raises(vr.ParameterError, match=words):
         scene.contact(0.1, delta=0.0, **({"method": "coupled"} | more))
-
-
-def test_losses_in_slip_of_free_rolling_on_a_table_are_not_below_zero():
-    """They are differences of much larger powers there."""
-    layer = vr.Cover(vr.Prony([10.0], [1.0 / 11.0]), nu=0.5, thickness=0.5, on="base")
-    scene = vr.Scene(material=layer, kappa=4.0, mu=0.3)
-    state = vr.steady(scene, V=np.geomspace(1e-3, 1e3, 40), torque=0.0)
-    loss = state.loss
-    power = state.force * state.V
-    assert (loss.slip >= -tol.BALANCE_OF_STEADY * power).all()
-    assert (loss.half_space >= 0.0).all()
-    assert close(loss.slip + loss.half_space + loss.cylinder, power, tol.BALANCE_OF_STEADY)
-
-
-def test_a_table_at_minus_zero_speed_is_that_of_zero():
-    layer = vr.Cover(vr.Prony([2.0, 6.0], [1.0, 0.01]), nu=0.5, thickness=0.5, on="base")
-    scene = vr.Scene(material=layer, kappa=10.0, mu=0.3)
-    assert scene.contact(-0.0, omega=1e-3).Q == scene.contact(0.0, omega=1e-3).Q == 0.3

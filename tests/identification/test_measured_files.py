@@ -11,26 +11,11 @@ import viscoroll as vr
 from viscoroll import cli
 from viscoroll.measurements.identify import read_measurements
 
-EXAMPLE = vr.datasets.path("measured.toml")
-
 
 @pytest.fixture
 def folder(tmp_path):
     measurements(tmp_path)
     return tmp_path
-
-
-def test_the_example_is_what_it_says():
-    """The fit of these data is that of docs/identify.md (tests/docs/test_readme.py)."""
-    given = read_measurements(EXAMPLE)
-    rubber = vr.Material(2e6, 0.49, vr.Prony([5.0], [1.0]), 2e-3)
-    assert given["cylinder"] == vr.Cylinder(R=0.1, m=35.5, mu=0.4, material=rubber)
-    assert given["unknown"].keys() == {"mu", "E", "E_1", "T_ref", "brake", "drag"}
-    drum, throw = given["data"]
-    assert (drum.name, throw.name) == ("drum", "launch")
-    assert drum.M.size == 40
-    assert throw.V.size == 200
-    assert (throw.V0, throw.omega0) == (None, 0.0)
 
 
 def test_the_program_reports(folder, capsys):

@@ -121,6 +121,17 @@ def test_steady_rolling_is_where_motions_end_and_rest_stays(scene):
     assert scene.roll(V0=0.0, omega0=0.0, t=[0.0, 1.0], torque=0.1).V[-1] > 0.0
 
 
+def test_losses_in_slip_of_free_rolling_are_not_below_zero(scene):
+    """They are differences of much larger powers there; and V = -0.0 is 0."""
+    state = vr.steady(scene, V=np.geomspace(1e-3, 1e3, 40), torque=0.0)
+    loss = state.loss
+    power = state.force * state.V
+    assert (loss.slip >= -tol.BALANCE_OF_STEADY * power).all()
+    assert (loss.half_space >= 0.0).all()
+    assert close(loss.slip + loss.half_space + loss.cylinder, power, tol.BALANCE_OF_STEADY)
+    assert scene.contact([-0.0, 0.0], omega=1e-3).Q.tolist() == [0.3, 0.3]
+
+
 def test_grids_of_other_programs_roll(tmp_path):
     rows = vr.Scene(material=ONE, kappa=4.0, mu=0.3, gamma=1.0)
     V = vr.tables.spread(1e-4, 10.0, 200, "log")

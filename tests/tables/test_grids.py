@@ -96,17 +96,6 @@ def test_nodes_are_the_contact(name, table):
         assert np.array_equal(table[field].values, nodes), field
 
 
-def test_what_it_says(name, table):
-    for variable in table.variables.values():
-        assert all(variable.attrs[key] for key in ("long_name", "units", "symbol", "reference"))
-    assert (table.Q.attrs["units"], table.V.attrs["units"]) == (
-        ("N m-1", "m s-1") if isinstance(WHAT[name], vr.Cylinder) else ("1", "1")
-    )
-    assert table.attrs["history"].endswith("made by a test")
-    assert ("material" in table.attrs) == (name in ("cylinder", "cover", "law"))
-    assert ("alpha" in table.attrs) == (name in ("scene", "law"))
-
-
 def test_stated_errors_are_those_of_other_points(name, table):
     random = np.random.default_rng(5)
     count = 20_000
@@ -286,6 +275,7 @@ WRONG = [
         "Q = 9.969209968386869e+36 at V[7], delta[5]: must be given",
     ),
     ("M", np.s_[3], lambda M: -M, "at V[3]: must be in [0, "),
+    ("M", np.s_[1], lambda M: 1e10, "at V[1]: must be in [0, "),
     ("M", np.s_[3], lambda M: np.nan, "M = nan at V[3]: must be finite"),
     ("Q", np.s_[4], lambda Q: -Q, "V[4], delta[0]: must be of the same sign as delta"),
     ("Q", np.s_[6, 32], lambda Q: 1.001 * Q, "V[6], delta[32]: must be within +-mu P"),

@@ -8,7 +8,6 @@ import shutil
 import subprocess
 from dataclasses import fields
 
-import h5py
 import numpy as np
 import pytest
 import tolerances as tol
@@ -113,28 +112,6 @@ def test_wrong_numbers_are_found(function):
     failed = [check.name for check in check_table(law, 3000, 0) if not check.passed]
     assert len(failed) == 1
     assert failed[0].endswith(f": {function}")
-
-
-def test_attributes_are_complete(saved):
-    law = vr.tables.load(saved)
-    assert all(variable.attrs["long_name"] for variable in law.variables.values())
-    for key in (
-        "Conventions",
-        "title",
-        "summary",
-        "comment",
-        "references",
-        "source",
-        "history",
-        "license",
-    ):
-        assert law.attrs[key], key
-    with h5py.File(saved) as file:  # netCDF's C library reads text of one kind only
-        assert np.issubdtype(file.attrs["law_schema"].dtype, np.integer)
-    told = vr.tables.info(saved)
-    assert all(
-        words in told for words in ('name = "a \\"rubber\\""', "largest error", "sha256_of_numbers")
-    )
 
 
 # --- wherever a material stands ---

@@ -4,26 +4,11 @@ from contextlib import suppress
 
 import numpy as np
 import pytest
-import xarray as xr
 
 import viscoroll as vr
 from viscoroll import fmu
 
 MODES = vr.Prony([2.0], [1.0])
-
-
-@pytest.mark.parametrize("filled", [9.96921e36, 1e10, 2.0])
-def test_a_rolling_moment_beyond_load_times_radius_is_refused(tmp_path, filled):
-    """The load of no contact acts farther from the axis than R, so that M is at most P R."""
-    path = tmp_path / "grid.nc"
-    V = ("V", [0.5, 1.0, 2.0], {"units": "1"})
-    delta = ("delta", [-0.02, 0.0, 0.02], {"units": "1"})
-    Q = (("V", "delta"), np.tile([-0.2, 0.0, 0.2], (3, 1)), {"units": "1"})
-    M = ("V", [0.01, filled, 0.03], {"units": "1"})
-    grid = xr.Dataset({"Q": Q, "M": M}, {"V": V, "delta": delta}, {"mu": 0.2})
-    grid.to_netcdf(path, engine="h5netcdf")
-    with pytest.raises(vr.FileError, match=r"at V\[1\]: must be in \[0, 1\]"):
-        vr.load_law(path)
 
 
 def test_an_fmu_of_a_cover_says_that_it_has_the_fast_law(tmp_path):
