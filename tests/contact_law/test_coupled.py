@@ -100,15 +100,6 @@ def coupled_names():
     return "lam", "Q", "M", "M_cylinder", "beta"
 
 
-def test_a_thick_layer_is_a_half_space():
-    thick = coupled(scene_of(BELT.of_thickness(1e6)), 0.1, delta=0.02)
-    plain = coupled(
-        scene_of(vr.Bodies(vr.Prony.elastic(), ONE, 0.0, poisson=(0.5, 0.5))), 0.1, delta=0.02
-    )
-    assert close(thick.Q, plain.Q, tol.COUPLED_HALF_SPACE, scale=MU)
-    assert close(thick.M, plain.M, tol.COUPLED_HALF_SPACE, scale=1.0)
-
-
 def test_sides_and_directions():
     belt, lining = (
         coupled(scene_of(cover), 0.1, delta=sign * CREEPS)

@@ -40,28 +40,21 @@ def starts(count, seed, scene, top=2.0):
     return V0, omega0
 
 
-def any_scene(seed):
-    rng = np.random.default_rng(seed)
-    alpha, kappa, mu = np.exp(rng.uniform(np.log([1.001, 0.5, 0.05]), np.log([1e4, 200.0, 3.0])))
-    return vr.Scene(alpha, kappa, mu, 1.0, rng.uniform(0.1, 2.0))
-
-
 PAPER = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0)
 THREE = vr.Prony([2.0, 6.0, 1.0], [1.0, 0.1, 0.01])
 RUBBER = vr.Scene(material=THREE, kappa=20.0, mu=0.3, gamma=1.0)
-#: scene, highest speed, and whether a map that serves it to a billionth is sure
+#: scene, highest speed; any scenes are those of claims (prove/motion.py, mapped)
 SCENES = {
-    "paper": (SCENE, 2.0, True),
-    "kappa 29": (PAPER.replace(kappa=29.1), 2.0, True),
-    "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0, True),
-    "alpha 2": (PAPER.replace(alpha=2.0), 2.0, True),
-    "j 1": (PAPER.replace(j=1.0), 2.0, True),
-    "j 1.5": (PAPER.replace(j=1.5), 2.0, True),
-    "rubber": (RUBBER, 2.0, True),
-    "pair": (RUBBER.replace(material=vr.Bodies(THREE, THREE, 0.5)), 2.0, True),
-    "slow": (PAPER, 1e-4, True),
-    "fast": (PAPER, 2000.0, True),
-    **{f"any {n}": (any_scene(n), 2.0, False) for n in range(10)},
+    "paper": (SCENE, 2.0),
+    "kappa 29": (PAPER.replace(kappa=29.1), 2.0),
+    "alpha 1000": (PAPER.replace(alpha=1000.0), 2.0),
+    "alpha 2": (PAPER.replace(alpha=2.0), 2.0),
+    "j 1": (PAPER.replace(j=1.0), 2.0),
+    "j 1.5": (PAPER.replace(j=1.5), 2.0),
+    "rubber": (RUBBER, 2.0),
+    "pair": (RUBBER.replace(material=vr.Bodies(THREE, THREE, 0.5)), 2.0),
+    "slow": (PAPER, 1e-4),
+    "fast": (PAPER, 2000.0),
 }
 
 
@@ -70,27 +63,22 @@ def test_as_the_integrator_to_its_stated_error(name):
     """Speeds, way, losses, onset, regimes, against rtol 1e-12; what has no entry in the map is
     integrated.
     """
-    scene, top, sure = SCENES[name]
+    scene, top = SCENES[name]
     V0, omega0 = starts(60, 2, scene, top)
     t = np.concatenate([np.geomspace(1e-7, 1e-1, 7), [1.0, 10.0, 200.0]]) * decay_time(scene)
     mapped = vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-4, fields=FIELDS)
     rolled = vr.ensemble(scene, V0, omega0, t, method="integrate", rtol=1e-12, fields=FIELDS)
     assert (mapped.status == MotionStatus.DONE).all()
     assert np.array_equal(mapped.switches, rolled.switches)
-    assert np.array_equal(np.isnan(mapped.onset_time), np.isnan(rolled.onset_time))
-    if sure:
-        assert close(
-            mapped.onset_time, rolled.onset_time, tol.FLOW_ONSET, scale=6e-3 * decay_time(scene)
-        )
+    earliest = 6e-3 * decay_time(scene)
+    assert close(mapped.onset_time, rolled.onset_time, tol.FLOW_ONSET, scale=earliest)
     by = mapped.flow
     assert np.array_equal(mapped.regime[by], rolled.regime[by])
-    assert not sure or by.mean() > 0.9
-    if not by.any():
-        return
+    assert by.mean() > 0.9
     built = flow.flow_map(scene, max(np.abs(V0).max(), np.abs(omega0).max()))
     stated = dict(zip(("speed", "path", "loss"), built.errors, strict=True))
     allowed = {"speed": tol.FLOW_SPEED, "path": tol.FLOW_PATH, "loss": tol.FLOW_LOSS}
-    assert not sure or all(stated[kind] < allowed[kind] for kind in stated), stated
+    assert all(stated[kind] < allowed[kind] for kind in stated), stated
     speed = np.maximum(np.abs(rolled.V), np.abs(rolled.omega))
     moved = np.maximum.accumulate(np.maximum(np.abs(rolled.x), np.abs(rolled.angle)), axis=1)
     # what is left to rest is at most V times the decay time

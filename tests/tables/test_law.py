@@ -4,10 +4,9 @@ told.
 
 import ctypes
 import json
-import shutil
-import subprocess
 from dataclasses import fields
 
+import c_code
 import numpy as np
 import pytest
 import tolerances as tol
@@ -178,17 +177,11 @@ void edge(double kappa, double mu, double V, double slip, double *out) {
 """
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
+@c_code.needs_cc
 def test_the_header_beside_full_slip_at_the_largest_speeds(tmp_path):
     material = vr.Prony([2.0, 6.0], [1.0, 0.01])
     vr.tables.export(vr.tables.law(material), tmp_path / "rubber.h")
-    (tmp_path / "edge.c").write_text(C_EDGE)
-    subprocess.run(
-        ["cc", "-std=c99", "-O2", "-shared", "-fPIC", "edge.c", "-lm", "-o", "edge.so"],
-        cwd=tmp_path,
-        check=True,
-    )
-    edge = ctypes.CDLL(str(tmp_path / "edge.so")).edge
+    edge = c_code.compiled(tmp_path, "edge", C_EDGE).edge
     out = np.empty(3)
     for V in (1e293, 1e296, 1e298):
         star = float(
