@@ -343,31 +343,31 @@ def test_steps_that_are_none_are_refused_in_words(built, version):
 
 #: call -> modes in which version 2 allows it; version 3 allows "get" in every mode
 ALLOWED = {
-    "begin": {"instantiated"},
-    "exitInitializationMode": {"initialization"},
-    "enterEventMode": {"continuous"},
-    "enterContinuousTimeMode": {"event"},
-    "discrete": {"event"},
-    "completedIntegratorStep": {"continuous"},
-    "setTime": {"event", "continuous"},
-    "states": {"continuous"},
-    "step": {"step"},
-    "terminate": {"event", "continuous", "step"},
-    "reset": {"instantiated", "initialization", "event", "continuous", "step", "terminated"},
-    "get": {"initialization", "event", "continuous", "step", "terminated"},
-    "slopes": {"initialization", "event", "continuous", "step", "terminated"},
-    "drive_force": {"instantiated", "initialization", "event", "continuous", "step"},
-    "mu": {"instantiated", "initialization", "event", "step"},
-    "v0": {"instantiated", "initialization"},
+    "begin": "instantiated",
+    "exitInitializationMode": "initialization",
+    "enterEventMode": "continuous",
+    "enterContinuousTimeMode": "event",
+    "discrete": "event",
+    "completedIntegratorStep": "continuous",
+    "setTime": "event continuous",
+    "states": "continuous",
+    "step": "step",
+    "terminate": "event continuous step",
+    "reset": "instantiated initialization event continuous step terminated",
+    "get": "initialization event continuous step terminated",
+    "slopes": "initialization event continuous step terminated",
+    "drive_force": "instantiated initialization event continuous step",
+    "mu": "instantiated initialization event step",
+    "v0": "instantiated initialization",
 }
 #: mode -> calls that lead to it
 WAYS = {
-    "instantiated": (),
-    "initialization": ("begin",),
-    "event": ("begin", "exitInitializationMode"),
-    "continuous": ("begin", "exitInitializationMode", "enterContinuousTimeMode"),
-    "step": ("begin", "exitInitializationMode"),
-    "terminated": ("begin", "exitInitializationMode", "terminate"),
+    "instantiated": "",
+    "initialization": "begin",
+    "event": "begin exitInitializationMode",
+    "continuous": "begin exitInitializationMode enterContinuousTimeMode",
+    "step": "begin exitInitializationMode",
+    "terminated": "begin exitInitializationMode terminate",
 }
 
 
@@ -418,10 +418,10 @@ def test_what_a_mode_allows(built, kind, mode, version):
     with opened(built("alike", "Roller", version), kind, ready=False, v0=1.0) as one:
         for name, modes in ALLOWED.items():
             one.fmu.reset()
-            for way in WAYS[mode]:
+            for way in WAYS[mode].split():
                 call_of(one, way)()
             call = call_of(one, name)
-            if mode in modes or (name == "get" and version == 3):
+            if mode in modes.split() or (name == "get" and version == 3):
                 call()
             elif call is not None:
                 with pytest.raises(fmpy.fmi1.FMICallException):

@@ -59,13 +59,11 @@ def test_as_at_the_tightest_tolerance(row):
             ("omega", scale),
             ("x", np.maximum.accumulate(np.abs(best.x))),
         ):
-            assert close(
-                getattr(m, name), getattr(best, name), bound, scale=size, what=(name, rtol)
-            )
+            assert close(m[name], best[name], bound, scale=size, what=(name, rtol))
     other = {name: mirrored(name, each) for name, each in drive.items()}
     start = [None if one is None else -one for one in row["start"]]
     back = vr.roll(scene, *start, row["t"], rtol=rtol, **other)
     for field in ("V", "omega", "x", "angle", *(("force", "torque") if drive else ())):
-        assert np.array_equal(getattr(m, field), -getattr(back, field), equal_nan=True), field
+        assert np.array_equal(m[field], -back[field], equal_nan=True), field
     moves = np.abs(m.V) > 0.0
     assert np.array_equal(m.delta[moves], back.delta[moves])

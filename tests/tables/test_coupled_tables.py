@@ -149,6 +149,17 @@ def test_grids_of_other_programs_roll(tmp_path):
             vr.ensemble(grid, [1.0, V0], [1.0, V0], [0.0, 5.0], torque=torque, fields=["x"])
     with pytest.raises(vr.ParameterError, match="lam"):
         grid.contact(0.1, delta=0.0, fields="lam")
+    assert "beta" not in grid.contact(0.1, delta=0.0).as_dict()
+    with pytest.raises(vr.ParameterError, match=r"kappa = 12\.0: must be 4, for which the grid"):
+        grid.replace(kappa=12.0)
+
+
+def test_free_motions_too_slow_for_a_table_are_refused(scene):
+    """Below 1e-11 the slip is lost in rounding: speeds were wrong; the fast law rolls there."""
+    with pytest.raises(vr.ParameterError, match="must be 0, or at least 1e-11"):
+        scene.roll(1e-20, 0.0, 1.0)
+    fast = scene.replace(material=BELT, coupled=False)
+    assert 0.0 < fast.roll(1e-200, 0.0, 1.0).V[0] < 1e-200
 
 
 def test_unlike_half_spaces_have_a_table():
