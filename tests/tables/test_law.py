@@ -32,7 +32,7 @@ GIVEN = {
     "creep": (vr.Prony.creep([0.3, 0.6], [1.0, 1e-2]),),
     "bodies": (vr.Bodies(vr.Prony([10.0], [1.0]), SERIES, 0.3, (0.3, 0.45)),),
     "like bodies": (vr.Bodies(SERIES, SERIES),),
-    "cover": (vr.Cover(SERIES, nu=0.45, thickness=2.0, part=0.8, other_nu=0.3),),
+    "cover": (vr.Cover(11.0, nu=0.45, thickness=2.0, part=0.8, other_nu=0.3),),
     "material": (RUBBER,),
     "on steel": (RUBBER, STEEL),
     "on a rigid base": (RUBBER, vr.Material.rigid()),
