@@ -33,6 +33,14 @@ def test_a_faint_push_the_other_way(share):
     assert close(m.V[1:], plain.V[1:], 100.0 * share + BOUND * 1e-10)
 
 
+def locks_and_holds(m, times, V, omega, bound, rtol=1e-8):
+    """The brake locks, then holds, at these times; speeds are those of the closed form."""
+    assert [s.regime for s in m.switches] == ["locked", "held"]
+    assert close([s.t for s in m.switches], times, BOUND * rtol)
+    assert close(m.V, V, bound, scale=1.0)
+    assert close(m.omega, omega, bound, scale=1.0)
+
+
 @pytest.mark.parametrize("early", [0.02, 0.1, 0.3])
 def test_a_brake_locks_just_before_v_is_zero(early):
     """Sliding at V > 0 > omega: omega comes to 0 first, and only then do V and with it the slip
@@ -50,11 +58,8 @@ def test_a_brake_locks_just_before_v_is_zero(early):
     m = vr.roll(
         ELASTIC, 1.0, -stop, t, rtol=rtol, brake=0.3, force=vr.Schedule([0.0, 10.0], [0.0, -0.1])
     )
-    assert [s.regime for s in m.switches] == ["locked", "held"]
-    assert close([s.t for s in m.switches], [stop, end], BOUND * rtol)
-    bound = BOUND * rtol * stop
-    assert close(m.V, np.where(t < end, 1.0 - 0.2 * t - 0.005 * t**2, 0.0), bound, scale=1.0)
-    assert close(m.omega, np.minimum(t - stop, 0.0), bound, scale=1.0)
+    V = np.where(t < end, 1.0 - 0.2 * t - 0.005 * t**2, 0.0)
+    locks_and_holds(m, [stop, end], V, np.minimum(t - stop, 0.0), BOUND * rtol * stop)
 
 
 @pytest.mark.parametrize("pull", [-0.001, 0.001])
@@ -91,12 +96,8 @@ def test_a_brake_that_begins_at_0():
     stop = (
         np.sqrt(0.34) - 0.2
     ) / 0.3  # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
-    assert [s.regime for s in m.switches] == ["locked", "held"]
-    assert close([s.t for s in m.switches], [stop, 5.0], BOUND * rtol)
-    assert close(m.V, np.maximum(1.0 - 0.2 * t, 0.0), BOUND * rtol, scale=1.0)
-    assert close(
-        m.omega, np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0), BOUND * rtol, scale=1.0
-    )
+    omega = np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0)
+    locks_and_holds(m, [stop, 5.0], np.maximum(1.0 - 0.2 * t, 0.0), omega, BOUND * rtol)
 
 
 @pytest.mark.parametrize("most", [0.0859, 0.0333, 0.1])

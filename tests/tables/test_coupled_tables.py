@@ -145,6 +145,7 @@ def test_grids_of_other_programs_roll(tmp_path):
         grid.replace(kappa=12.0)
 
 
+@pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_free_motions_too_slow_for_a_table_are_refused(scene):
     """Below 1e-11 the slip is lost in rounding: speeds were wrong; the fast law rolls there."""
     with pytest.raises(vr.ParameterError, match="must be 0, or at least 1e-11"):
