@@ -437,10 +437,6 @@ SI_ENSEMBLE = 1e-9
 # largest value: other units of time round otherwise, and may step otherwise; measured 1.4e-10.
 RUN_SI = 1e-8
 
-# --- driven motions (motion/test_drive.py) ---
-#: The general method against that of free motions, both at 1e-10.
-DRIVE_FREE = 3e-9
-
 # --- examples of the bound law (docs/test_examples.py) ---
 #: V and omega by SciPy's Radau at rtol 1e-8 against roll; measured 3.7e-10.
 EXAMPLE_RADAU = 5e-9
@@ -624,8 +620,6 @@ COVER_NAMES = 1e-5
 COVER_REST_LEVER = 5e-3
 #: Onsets of full slip beside those of the coupled solution, over delta_star: the error of the law.
 COVER_ONSETS = 0.08
-#: Printed digits of 2 kappa delta_0* of an elastic cover, of boundary elements.
-COVER_PRINTED = 1e-6
 #: 2 kappa delta_0* at u = 1e-7 and 1e7 beside elastic covers, first order in u and 1/u; for nu <
 #: 1/2 with a logarithm.
 COVER_ENDS = 1e-5
@@ -692,9 +686,6 @@ TABLE_ENERGY = 1e-6
 #: losses of a motion fall by less where friction touches 0, over all losses: 3e-10, the error of
 #: motions between their steps
 TABLE_LOSS = 1e-9
-#: Power of a motion's states by the table and by the solver, over the losses; seen 4.7e-6 on the
-#: belt, 2.3e-5 on a compressible lining.
-TABLE_POWER = 1e-4
 #: The header of C of a table beside its kernels: rounding of the place in creep.
 TABLE_HEADER = 1e-11
 #: Creepage of free rolling of an elastic cover, h/l0 = 0.5, nu = 0.5, times 2 kappa: 0.165 of

@@ -2,7 +2,6 @@
 
 import json
 import math
-from pathlib import Path
 
 import pytest
 import tolerances as tol
@@ -14,8 +13,6 @@ import viscoroll as vr
 from viscoroll import cli
 from viscoroll.measurements.identify import read_measurements
 
-EXAMPLE = vr.datasets.path("measured.toml")
-
 
 @pytest.fixture
 def folder(tmp_path):
@@ -23,36 +20,18 @@ def folder(tmp_path):
     return tmp_path
 
 
-def test_the_example_is_what_it_says():
-    """The fit of these data is that of docs/identify.md (tests/docs/test_readme.py)."""
-    given = read_measurements(EXAMPLE)
-    rubber = vr.Material(2e6, 0.49, vr.Prony([5.0], [1.0]), 2e-3)
-    assert given["cylinder"] == vr.Cylinder(R=0.1, m=35.5, mu=0.4, material=rubber)
-    assert given["unknown"].keys() == {"mu", "E", "E_1", "T_ref", "brake", "drag"}
-    drum, throw = given["data"]
-    assert (drum.name, throw.name) == ("drum", "launch")
-    assert drum.M.size == 40
-    assert throw.V.size == 200
-    assert (throw.V0, throw.omega0) == (None, 0.0)
-
-
 def test_the_program_reports(folder, capsys):
-    out = [str(folder / name) for name in ("fit.json", "fit.png", "fit.nc", "fit.JSON", "fit.NC")]
-    given = ["identify", str(folder / "data.toml"), "--starts", "1"]
-    assert cli.main([*given, "-o", out[0], "--plot", out[1]]) == 0
-    report = capsys.readouterr().out
-    assert report.startswith("2 unknowns, 40 points; chi2 ")
+    """The case of the suffix does not matter."""
+    given = ["identify", str(folder / "data.toml"), "--starts", "1", "-o"]
+    assert cli.main([*given, str(folder / "fit.json"), "--plot", str(folder / "fit.png")]) == 0
+    assert capsys.readouterr().out.startswith("2 unknowns, 40 points; chi2 ")
     found = json.loads((folder / "fit.json").read_text())
     assert found["unknowns"]["T_ref"]["interval"][0] < 1e-3
     assert found["does_not_act"] == []
     assert (folder / "fit.png").exists()
-    assert cli.main([*given, "-o", out[2]]) == 0
-    assert (folder / "fit.nc").exists()
-    for name, same in zip(
-        out[3:], (out[0], out[2]), strict=True
-    ):  # the case of the suffix does not matter
-        assert cli.main([*given, "-o", name]) == 0
-        assert Path(name).read_bytes()[:4] == Path(same).read_bytes()[:4]
+    for name, head in (("again.JSON", b"{"), ("fit.NC", b"\x89HDF")):
+        assert cli.main([*given, str(folder / name)]) == 0
+        assert (folder / name).read_bytes().startswith(head)
 
 
 def test_a_files_temperature_is_where_its_shift_is_one(folder):
