@@ -186,34 +186,6 @@ def test_any_company_and_any_threads(name, monkeypatch, own_maps):
         assert_same(of(name), whole)
 
 
-def test_a_field_alone_and_single_states():
-    V = np.array([0.3, -2.0, 1e-4, 0.0])
-    delta = np.array([0.01, -0.005, 1.0, 1e-3])
-    whole = vr.contact(SCENE, V, delta=delta, slopes=True)
-    for name, values in whole.as_dict().items():
-        assert np.array_equal(
-            getattr(vr.contact(SCENE, V, delta=delta, fields=name), name), values
-        ), name
-        one = [
-            getattr(vr.contact(SCENE, V[i], delta=delta[i], slopes=True), name)
-            for i in range(V.size)
-        ]
-        assert np.array_equal(one, values), name
-
-
-def test_a_grid_is_as_the_grid_written_out():
-    """Across the edges of blocks."""
-    V = np.linspace(-1.0, 2.0, 301)
-    delta = np.linspace(-0.04, 0.04, 333)
-    axes = vr.contact(SCENE, V[:, None], delta=delta).as_dict()
-    assert_same(
-        axes,
-        vr.contact(
-            SCENE, np.repeat(V[:, None], 333, axis=1), delta=np.tile(delta, (301, 1))
-        ).as_dict(),
-    )
-
-
 @pytest.fixture(scope="module")
 def expected(maps_of_this_file):
     return everything()

@@ -15,7 +15,6 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-import experiments
 import numpy as np
 import pandas as pd
 import pint
@@ -592,26 +591,3 @@ def test_quantities_of_other_libraries():
     lengths = np.array([10.0, 20.0]).view(WithUnit)
     assert close(CYLINDER.replace(R=lengths).R, [0.1, 0.2], tolerances.UNIT_CONVERTED)
     refused(lambda: CYLINDER.replace(m=lengths), "m is in cm", "in kg m-1")
-
-
-@pytest.mark.parametrize(
-    "made", [Decimal, Fraction, int, np.float32, lambda value: np.array([value], object)]
-)
-def test_magnitudes_of_any_kind(made):
-    """Converted in double precision, whatever they are kept in."""
-    assert close(
-        CYLINDER.replace(R=UNITS.Quantity(made(5), "mm")).R, 0.005, tolerances.UNIT_CONVERTED
-    )
-
-
-def test_ranges_of_unknowns_carry_units():
-    data = experiments.resistance(seed=3)
-    plain, found = (
-        vr.identify(experiments.roller(), {"E": ends}, data, starts=1).values["E"]
-        for ends in ((3e5, 3e7), UNITS.Quantity([0.3, 30.0], "MPa"))
-    )
-    assert close(found, plain, tolerances.UNIT_CONVERTED)
-    refused(
-        lambda: vr.identify(experiments.roller(), {"E": UNITS.Quantity([1.0, 2.0], "m")}, data),
-        "E is in meter",
-    )

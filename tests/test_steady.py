@@ -79,18 +79,6 @@ def test_speeds_against_extended_precision():
                 ), short
 
 
-def test_creep_has_its_traction():
-    """From slight creep to friction all but spent, relative."""
-    torque = 0.2 + 0.5 * vr.contact(series_scene(TWO), 0.3, delta=0.0, fields="M").M
-    for part in (1e-12, 1e-6, 1e-3, 0.3, 0.9, 1.0 - 1e-6, 1.0 - 1e-10):
-        scene = series_scene(TWO, mu=0.2 / part)
-        s = vr.steady(scene, V=0.3, torque=torque)
-        state = vr.contact(scene, 0.3, delta=s.delta, fields=("Q", "beta"))
-        assert close(s.Q, 0.2, tol.STEADY)
-        assert close(state.Q, s.Q, tol.STEADY)
-        assert close(state.beta, s.beta, tol.STEADY / s.grip)
-
-
 # --- several modes, two bodies ---
 
 
@@ -183,17 +171,6 @@ def test_eigenvalues_are_those_of_the_slopes_of_the_contact_law():
             assert not np.any([trace.imag, det.imag])
             assert np.array_equal(s.stable, (s.eigenvalues.real < 0.0).all(axis=-1))
             assert gains.any() or np.array_equal(c.dM_dV < 0.0, ~s.stable)
-
-
-def test_focus_where_friction_is_all_but_spent():
-    """Complex eigenvalues: |Q| -> mu, j < 1."""
-    hump = vr.resistance_extrema(SCENE)
-    f = 0.5 * hump.M[0]
-    s = vr.steady(SCENE.replace(mu=0.5 * f * (1.0 + 1e-8), j=0.1), force=f)
-    assert close(s.grip[0], 1e-8, 1e-6)
-    first, second = s.eigenvalues[0]
-    assert first.conjugate() == second != first
-    assert s.stable.tolist() == [True, False]
 
 
 # --- against motions ---
@@ -316,17 +293,6 @@ def brute_of_cover(scene, force, torque, V):
     return int((within[1:] & within[:-1] & (off[1:] * off[:-1] < 0.0)).sum())
 
 
-def test_opposite_gains_on_omega():
-    """fw = -qw: V as without, and up to three slips at each, those of full slip included."""
-    s = vr.steady(SCENE, force=vr.Feedback(0.05, omega=-0.3), torque=vr.Feedback(0.0, omega=0.3))
-    bare = vr.steady(SCENE, force=0.05)
-    assert set(np.round(s.V, 12)) == set(np.round(bare.V, 12))
-    assert s.count == 4
-    assert (np.sort(s.grip)[:3] == 0.0).all()
-    for off in residuals(SCENE, s):
-        assert (np.abs(off) <= tol.STEADY_SCAN).all()
-
-
 def test_edge_of_grip():
     """|torque - force| < 2 mu for like bodies; there the stick zone closes."""
     for short in (1e-3, 1e-9):
@@ -360,21 +326,6 @@ def test_losses_are_what_the_loads_put_in():
 
 
 # --- arrays ---
-
-
-def test_many_loads_are_single_calls_bit_for_bit():
-    scene = series_scene(TEN)
-    f = np.random.default_rng(5).uniform(-0.011, 0.011, 20_000)
-    s = vr.steady(scene, force=f)
-    assert s.V.shape == (20_000, s.count.max())
-    assert vr.steady(scene, force=f[:0]).V.shape == (0, 0)
-    assert (np.isfinite(s.V).sum(axis=1) == s.count).all()
-    for n in range(0, f.size, 997):
-        one = vr.steady(scene, force=f[n])
-        held = slice(0, s.count[n])
-        assert one.count == s.count[n]
-        for name in ("V", "omega", "delta", "Q", "M", "beta", "grip", "eigenvalues", "stable"):
-            np.testing.assert_array_equal(getattr(one, name), getattr(s, name)[n][held])
 
 
 def test_eigenvalues_at_the_least_and_largest_numbers():

@@ -24,13 +24,6 @@ def test_the_packages_of_this_tree_pass(packages):
     assert all(name in measured for name in outdated(RESULTS))
 
 
-def test_numbers_of_other_kernels_are_told(packages, tmp_path, monkeypatch):
-    monkeypatch.setattr(release, "RESULTS", tmp_path)
-    assert problems("measured numbers", packages) == ""
-    (tmp_path / "law.json").write_text('{"machine": {"kernels": "0123456789abcdef"}}')
-    assert "law.json (01234567)" in problems("measured numbers", packages)
-
-
 def test_planted_faults_are_told(packages):
     texts = packages.texts | {"CITATION.cff": "version: 0.0.1\n", "data/materials/README.md": ""}
     wrong = packages._replace(

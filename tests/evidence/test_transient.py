@@ -8,30 +8,8 @@ import tolerances as tol
 from closeness import close
 from places import kept
 
-import viscoroll as vr
-from data.reference.unsteady import MOTIONS, Contact, grid, record, scene_of, solve
+from data.reference.unsteady import MOTIONS, record, scene_of, solve
 from pipeline.evidence.prove.unsteady import compared
-
-CELLS = grid(0.04)
-
-
-@pytest.mark.parametrize("motion", [MOTIONS[0], MOTIONS[11], MOTIONS[15]])
-def test_run_in_it_is_the_steady_contact(motion):
-    """Of one, two and four relaxation times."""
-    scene = scene_of(motion[0], motion[2])
-    u = motion[1]
-    series = scene.material
-    c = vr.contact(scene, u, delta=0.0)
-    contact = Contact((series.J, series.T, series.alpha), CELLS, 10.0, u, c.lam)
-    low, high, *_ = contact.where
-    assert close(contact.kM, c.M, tol.TRANSIENT_M)
-    assert close(0.5 * (high - low) * CELLS.h, c.lam, CELLS.h, scale=1.0)
-
-
-def test_at_rest_it_is_hertz():
-    contact = Contact((np.ones(1) / 2.0, np.ones(1), 2.0), CELLS, 10.0)
-    assert close(contact.kM, 0.0, 1e-12, scale=1.0)
-    assert close(contact.p, np.sqrt(np.maximum(1.0 - contact.x**2, 0.0)), CELLS.h, scale=1.0)
 
 
 @pytest.mark.parametrize(

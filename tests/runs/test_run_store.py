@@ -82,12 +82,6 @@ def copied(store, target):
     return target
 
 
-def test_one_thread_gives_the_same_files(run_file, tmp_path, whole):
-    run_ensemble(read_run(run_file), tmp_path / "one.zarr", threads=1)
-    assert content(tmp_path / "one.zarr") == content(whole)
-    assert verify(whole).ok
-
-
 def test_damaged_motions_are_not_exported(tmp_path, whole):
     store = copied(whole, tmp_path / "store.zarr")
     data = bytearray((store / "motions/V/7.0").read_bytes())
@@ -242,15 +236,6 @@ def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, word
     run_file.write_text(text.replace("n = 1200", now))
     refused_file(lambda: run_ensemble(read_run(run_file), store), words, "give another folder")
     assert content(store) == was
-
-
-def test_a_sobol_sequence_grows_to_powers_of_two(run_file, tmp_path):
-    for store, counts in (("grown", (256, 1024)), ("scratch", (1024,))):
-        for n in counts:
-            text = RUN.replace("n = 1200", f"n = {n}").replace("block = 100", "block = 256")
-            run_file.write_text(text + 'design = "sobol"\n')
-            run_ensemble(read_run(run_file), tmp_path / store, threads=2)
-    assert content(tmp_path / "grown") == content(tmp_path / "scratch")
 
 
 def test_a_killed_run_goes_on(run_file, tmp_path, whole):

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from refusals import refused
 
 import viscoroll as vr
 
@@ -87,11 +86,6 @@ def spun(body, u):
     )
 
 
-def towed(body, u):
-    speeds = vr.Schedule(TIMES[::4] / u.t, np.array([0.01, 0.03, -0.01]) / u.V)
-    return body.roll(None, 0.0, TIMES / u.t, V=speeds, torque=0.5 / u.torque)
-
-
 SPEEDS = np.array([-0.2, 0.05, 0.3])
 SPINS = np.array([-1.99, 0.5, 3.1])
 STATE = (
@@ -140,7 +134,6 @@ CALLS = {
     ),
     "driven": (everything_acts, DRIVEN),
     "spun": (spun, DRIVEN),
-    "towed": (towed, DRIVEN),
     "from rest": (
         lambda body, u: body.roll(
             1.0 / u.V, 10.0 / u.omega, TIMES / u.t, unsteady=True, rested=60.0 / u.t
@@ -175,32 +168,6 @@ def test_the_dimensionless_call_in_other_units(name):
         pairs = ([getattr(e, "t", e) for e in getattr(m, events)] for m in (found, bare))
         times, exact = map(np.array, pairs)
         assert not times.size or close(times, exact * unit["t"], rel)
-
-
-def test_functions_are_the_methods():
-    """Of scene and cylinder, with one signature; what is neither is refused by name."""
-    for name in (
-        "contact",
-        "stress",
-        "steady",
-        "resistance_extrema",
-        "law",
-        "roll",
-        "ensemble",
-        "validity",
-    ):
-        function = getattr(vr, name)
-        assert function is getattr(vr.Scene, name) is getattr(vr.Cylinder, name)
-        arguments = {
-            "stress": 2,
-            "steady": 0,
-            "resistance_extrema": 0,
-            "law": 0,
-            "roll": 3,
-            "ensemble": 3,
-        }.get(name, 1)
-        said = refused(lambda function=function, n=arguments: function("a roller", *[0.1] * n))
-        assert said == f"{name} takes a Scene or a Cylinder, not 'a roller'"
 
 
 # --- many cylinders ---

@@ -78,19 +78,6 @@ def test_data_over_the_band_determine_M(growth, thickness):
     assert error[4] > tol.MEASURED_BEYOND
 
 
-@pytest.mark.parametrize("worker", [False, True])
-def test_a_word_once_a_material_and_none_in_workers(monkeypatch, worker):
-    monkeypatch.setattr(model_warnings, "_warned_records", set())
-    monkeypatch.setattr(model_warnings, "is_worker", lambda: worker)
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("always")
-        for _ in range(2):
-            BELT.contact(10.0, delta=0.0)
-    assert [(each.category, each.filename) for each in found] == [(vr.ModelWarning, __file__)] * (
-        not worker
-    )
-
-
 @pytest.mark.parametrize(
     "call",
     [
@@ -113,10 +100,6 @@ def test_every_call_warns_of_large_contacts(call):
     said = [each for each in found if "kappa = R/l0 is below 1" in str(each.message)]
     assert len(said) == 1, [str(each.message) for each in found]
     assert (said[0].category, said[0].filename) == (vr.ModelWarning, __file__)
-
-
-def test_a_law_with_and_without_data_has_the_same_numbers():
-    assert BELT.law()(0.1, 1.0) == BELT.replace(base=replace(RUBBER, measured=None)).law()(0.1, 1.0)
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
