@@ -74,4 +74,4 @@ def test_three_values_do_not_go_with_two_cylinders(call):
     for argument in arguments_of(call):
         if argument.name != "t" and not np.ndim(argument.value):
             many = argument._replace(function=partial(argument.function.func, two))
-            refused(partial(many, np.full(3, argument.value)), "must be")
+            refused(partial(many, np.full(3, argument.value)))

@@ -27,7 +27,6 @@ from refusals import each, refused
 from scipy import stats
 
 import viscoroll as vr
-from viscoroll import fmu
 from viscoroll.laws.law_netcdf import law_table_of
 from viscoroll.presets import PAPER_CYLINDER
 from viscoroll.sampling import sample
@@ -60,11 +59,6 @@ CONTACT = each(
         "method = 'direct' | one relaxation time": {"roller": RUBBER_ROLLER, "method": "direct"},
         "delta and omega are both given: give one of the two": {"omega": 1.1},
         "V is a table: must be a column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
-        "times = 1e-120 to": {"roller": PAIRS.replace(material=vr.Prony([1.0], [1e-120]))},
-        "fields = 'N' | left out for a cover: N of a layer of finite thickness is not available": {
-            "roller": COVERED,
-            "fields": "N",
-        },
         "thickness/l0 = 0.04: must be at least 0.0625 where covers differ": {
             "roller": THIN.replace(material=vr.Cover(11.0, nu=0.0, thickness=[0.04, 0.1]))
         },
@@ -76,11 +70,6 @@ CONTACT = each(
 ROLLS = each(
     vr.roll,
     {
-        "V0 = 1e+200: must be at most 1e+100": {"V0": 1e200},
-        "max(|V0|, |omega0|) = 5e-324: must be 0, or at least 1e-300": {
-            "V0": 5e-324,
-            "omega0": 0.0,
-        },
         "t = 0.002, 0.001 at rows 0, 1: must be in ascending order": {"t": [2e-3, 1e-3]},
         "resolve = 1e-09: must be at least 2e-06: 500000 samples up to t = 1": {
             "torque": math.sin,
@@ -131,12 +120,7 @@ DRIVES = each(
     },
 ) + each(
     vr.Feedback,
-    {
-        "V has shape (1, 2): must be a number, or an array (n,) with one for each motion": {
-            "value": 0.0,
-            "V": [[1.0, 2.0]],
-        },
-    },
+    {},
 )
 IN_SI = each(
     PAPER_CYLINDER.roll,
@@ -152,7 +136,6 @@ STEADY = each(
     vr.steady,
     {
         "V is given without force, torque or slope: give one of them too": {"V": 0.1},
-        "V, force and torque are all given | two of them": {"V": 0.1, "force": 0.0, "torque": 0.0},
         "torque is a Feedback: must be a number or an array where V is given": {
             "V": 0.1,
             "torque": vr.Feedback(0.0, V=1.0),
@@ -160,8 +143,6 @@ STEADY = each(
         "torque is a Feedback of a Schedule or function: must be constant in time": {
             "torque": vr.Feedback(math.sin, V=-1.0)
         },
-        "kappa (force + torque) | 1e-120": {"force": 1e-200},
-        "gain on V = 1e+20": {"torque": vr.Feedback(0.1, V=1e20)},
         "index": {"slope": FRAME["V"], "torque": FRAME["delta"].iloc[::-1]},
         "slope is in percent: must be in rad": {"roller": ROLLER, "slope": unit("percent", 5.0)},
     },
@@ -171,7 +152,6 @@ SCENES = each(
     vr.Scene,
     {
         "give alpha or material": {"alpha": None},
-        "mu/kappa =": {"mu": 1e-200, "kappa": 1e150},
         "material = 2.0 | Prony": {"alpha": None, "material": 2.0},
     },
     alpha=2.0,
@@ -218,17 +198,11 @@ LAWS = each(
     {
         "material": MANY_SCENES,
         "m has shape (2,): must be one number": TWO_MASSES,
-        "2.0": 2.0,
     },
 )
 GRIDS = each(
     vr.tables.build,
     {
-        "what = 11.0: must be a Scene, a Cylinder or a law of half-spaces": {"what": 11.0},
-        "what has shape (2,): must be one scene or cylinder whose parameters are numbers": {
-            "what": PAPER.replace(mu=[0.1, 0.2])
-        },
-        "kappa |V|": {"V": [1e300]},
         "at most": {"V": np.arange(1.0, 10000.0), "delta": np.arange(10000.0)},
     },
     what=PAPER,
@@ -243,11 +217,6 @@ NODES = each(
     what=PAPER,
     V=[0.1, 1.0],
     count=11,
-) + each(
-    vr.tables.spread,
-    {
-        "high = 5.0: must be > low = 5": (5.0, 5.0, 3),
-    },
 )
 OTHERS = each(
     None,
@@ -258,10 +227,6 @@ OTHERS = each(
         "within the motion": lambda: vr.roll(PAPER, 1.5, 0.5, 3e-3).at(3.1e-3),
         "quantiles = 0.5: must be a list of numbers": lambda: vr.ensemble(**FREE).summary(
             quantiles=0.5
-        ),
-        "omega = 1e+308: must be smaller in magnitude": lambda: vr.law(PAPER_CYLINDER)(1.0, 1e308),
-        "mu has shape (2,): must be one number: an FMU contains one cylinder": lambda: fmu.build(
-            ROLLER.replace(mu=[0.2, 0.3]), "a.fmu"
         ),
     },
 )

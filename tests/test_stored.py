@@ -1,7 +1,5 @@
 """Flow maps on disk: the numbers that were made, or made anew."""
 
-import os
-
 import numpy as np
 import pytest
 
@@ -71,15 +69,3 @@ def test_a_damaged_map_is_built_again(folder, damage):
     with pytest.warns(RuntimeWarning, match=r"flow map is damaged \(.+\) and is built again"):
         assert not kept(2.0)
     assert kept(2.0)
-
-
-def test_those_used_last_are_kept(folder, monkeypatch):
-    monkeypatch.setattr(flow, "KEPT", 2)
-    for number in (2.0, 3.0):
-        kept(number)
-        os.utime(place(number)[1], (0.0, number))  # long ago
-    assert kept(2.0)  # used again
-    kept(4.0)
-    assert len(list(folder.iterdir())) == 2
-    assert kept(2.0)
-    assert not kept(3.0)

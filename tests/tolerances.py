@@ -175,12 +175,7 @@ VALIDATION_WRONG = 1e-4
 #: Numbers read back from a drawn line: as computed, but for the factor of the axis.
 FIGURE = 1e-12
 
-# --- the benchmark at smoke sizes (test_bench.py) ---
-#: Motions of this package at rtol 1e-6: MOTION_RTOL times that; measured 1.4e-6.
-BENCH_OWN = 3e-5
-#: Those of the peers at loose tolerances, 1e-4 or 1e-3, relative to speeds down to 1e-8: only that
-#: they solve the same problem; measured 0.07.
-BENCH_PEER = 0.2
+# --- the benchmark that is kept (test_bench.py) ---
 #: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
 BENCH_REFERENCE = 1e-9
 #: A number in six digits, and what depends on such a one.

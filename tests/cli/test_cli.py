@@ -239,27 +239,6 @@ def test_a_cylinder_of_a_file_is_in_si(run, here):
     )
 
 
-def test_result_files_and_scenes_are_drawn(run, here):
-    for name, text in (
-        ("a.toml", ROLLER + RUBBER),
-        ("m.toml", RUBBER),
-        ("run.toml", UNCERTAIN),
-    ):
-        (here / name).write_text(text)
-    vr.presets.RUBBER_CYLINDER.material.to_netcdf("rubber.nc")
-    motions = vr.presets.RUBBER_CYLINDER.ensemble([0.5, 1.0, 1.5], 0.0, [0.1, 0.2]).to_xarray()
-    motions.to_netcdf("e.nc", engine="h5netcdf")
-    for command in (
-        "roll PAPER --V0 1.5 --omega0 0.5 --t 0:3e-3:7 -o m.nc",
-        "sensitivity run.toml -n 16 -o s.nc",
-        "contact PAPER --V 0.1:1:5 --delta -0.01:0.01:3 -o c.nc",
-    ):
-        run(*command.replace("PAPER", *PRESET).split())
-    for name in ("m.nc", "c.nc", "s.nc", "e.nc", "rubber.nc", "a.toml", "m.toml"):
-        run("plot", name, "-o", f"{name}.png")
-        assert (here / f"{name}.png").read_bytes()[1:4] == b"PNG"
-
-
 def test_a_warning_is_one_line(capsys):
     with warnings.catch_warnings():
         warnings.simplefilter("default")

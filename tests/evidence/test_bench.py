@@ -1,4 +1,4 @@
-"""The benchmark that is kept: complete, and its errors are what the pages say."""
+"""The benchmark that is kept: every method is there, and errors are what the pages say."""
 
 import pytest
 import tolerances as tol
@@ -8,18 +8,16 @@ PARTS = kept("bench.json")["parts"]
 
 
 @pytest.mark.parametrize("part", ["work-precision", "own-parameters", "driven"])
-def test_errors_of_every_method(part):
-    result = PARTS[part]
-    assert {row["method"] for row in result["rows"]} == set(result["methods"])
-    for row in result["rows"]:
-        own = row["method"] in ("table", "flow")
-        assert 0.0 <= row["p99"] <= row["max"] < (tol.BENCH_OWN if own else tol.BENCH_PEER)
-        assert (row["failed"], row["us"] > 0.0) == (0, True)
-    assert all(group["max"] < tol.BENCH_REFERENCE for group in result["reference"].values())
+def test_errors_of_motions(part):
+    rows = PARTS[part]["rows"]
+    assert {row["method"] for row in rows} == set(PARTS[part]["methods"])
+    for row in rows:
+        if row["method"] in ("table", "flow"):
+            assert row["failed"] == 0
+            assert row["p99"] <= tol.MOTION_RTOL * row["rtol"]
+    assert all(group["max"] < tol.BENCH_REFERENCE for group in PARTS[part]["reference"].values())
 
 
-def test_a_full_cache_compiles_nothing():
-    assert PARTS["fixed-scene"]["error"]["all_times"] < PARTS["fixed-scene"]["stated_error"]
-    empty, full = PARTS["first-calls"]["rows"]
-    assert full["cpu_s"] < empty["cpu_s"]
-    assert full["files"] == empty["files"]
+def test_the_stated_error_of_a_map_bounds_it():
+    fixed = PARTS["fixed-scene"]
+    assert fixed["error"]["all_times"] < fixed["stated_error"] < tol.FLOW_SPEED

@@ -1,6 +1,4 @@
-"""The site as a reader meets it: built without a warning, and open in a real browser, which reaches
-nothing else.
-"""
+"""The site: built without a warning, with every public name and every picture."""
 
 import importlib.util
 import os
@@ -27,7 +25,6 @@ NEEDED = (
     "sphinx_gallery",
 )
 BUILD = "-W --keep-going -n -E -q -b html docs docs/_build/html"
-BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 FEWEST_GALLERY_PAGES = 12
 
 

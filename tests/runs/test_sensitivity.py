@@ -2,19 +2,16 @@
 documentation.
 """
 
-import csv
 import re
 
 import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 from closeness import close
 from run_files import run_of
 from scipy import stats
 
 import viscoroll as vr
-from viscoroll.cli import main
 from viscoroll.runs.sensitivity import sobol_indices
 
 pytestmark = pytest.mark.filterwarnings(
@@ -154,27 +151,6 @@ def test_what_some_motions_lack_is_refused_and_said():
 
 
 # --- figure and command ---
-
-
-def test_command(here, capsys):
-    run_of(ONSET)
-    assert main(["sensitivity", "run.toml", "-n", "50", "-o", "s.nc"]) == 0
-    out, err = capsys.readouterr()
-    assert err == ""
-    assert "64 base points (50, rounded up to a power of two), 256 motions, seed 0" in out
-    assert re.search(r"no indices for onset_time: \d+ of 256 motions have no value", out)
-    assert re.search(r"V +0.00012 +omega0 +[01]\.\d+", out).start() < out.index(" mu ")
-    with xr.open_dataset("s.nc", engine="h5netcdf") as stored:
-        assert stored.attrs["run_file"] == ONSET
-        assert {"seed", "source", "versions"} <= stored.attrs.keys()
-        expected = sobol_indices(run_of(ONSET), 50)
-        assert np.array_equal(
-            stored["V_S1"].sel(input="mu"), expected["V_S1"].sel(input="mu"), equal_nan=True
-        )
-    assert main(["sensitivity", "run.toml", "-n", "50", "-o", "s.csv"]) == 0
-    with open("s.csv", newline="") as file:
-        row = next(csv.DictReader(file))
-    assert float(row["ST"]) == expected["V_ST"].sel(t=float(row["t"]), input=row["input"])
 
 
 def test_a_product_has_total_above_first():

@@ -1,13 +1,10 @@
 """The validation finds what is right and what is wrong; its integrator; the stage around it."""
 
-import numpy as np
 import pytest
 import tolerances as tol
 
 import viscoroll as vr
 from pipeline.validation import stresses, validate
-from pipeline.validation.motions import motion_checks
-from pipeline.validation.states import random_state_checks
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
@@ -55,24 +52,3 @@ def test_wrong_stress_is_found(monkeypatch):
     assert not any(
         check.passed for check in stresses.stress_checks(3, 0) if check.name == "stress: load"
     )
-
-
-@pytest.mark.parametrize("module", ["states", "motions"])
-def test_wrong_scene_is_found(monkeypatch, module):
-    """The table method at a slightly other kappa."""
-    from pipeline.validation import motions, states
-
-    def other(scene):
-        return scene.replace(kappa=np.asarray(scene.kappa) * (1.0 + tol.VALIDATION_WRONG))
-
-    if module == "states":
-        right = vr.contact
-        monkeypatch.setattr(
-            states,
-            "contact",
-            lambda scene, *a, **o: right(scene if "method" in o else other(scene), *a, **o),
-        )
-        assert not all(check.passed for check in random_state_checks(100, 0))
-    else:
-        monkeypatch.setattr(motions, "roll", lambda scene, *a, **o: vr.roll(other(scene), *a, **o))
-        assert not any(check.passed for check in motion_checks(10))
