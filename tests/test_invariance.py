@@ -1,4 +1,4 @@
-"""What changes no bit: company, order, threads, kinds of arrays."""
+"""What changes no bit: company, order, threads."""
 
 from concurrent.futures import ThreadPoolExecutor
 from functools import partial

@@ -102,29 +102,6 @@ def test_no_relaxation_time_bounds_it():
     assert close(speeds[1], speeds[0], 0.1)
 
 
-def test_each_of_many_is_as_alone():
-    """Speeds, gammas, alphas, a material each, some of them elastic."""
-    V = np.array([3.0, 0.3, 30.0])
-    gamma = np.array([10.0, 500.0, 2.0])
-    series = vr.Prony(np.array([[1.0, 2.0], [3.0, 0.5], [0.0, 0.0]]), [1.0, 1e-2])
-    pairs = vr.Bodies(series, DMA, np.array([0.2, 0.5, 0.5]))
-    laws = [
-        {"alpha": np.array([1.0, 11.0, 2.0])},
-        {"alpha": 11.0},
-        {"material": series},
-        {"material": pairs},
-    ]
-    for given in laws:
-        found = vr.Scene(kappa=20.0, mu=0.3, gamma=gamma, **given).validity(V)
-        for n in range(3):
-            own = {name: value if np.isscalar(value) else value[n] for name, value in given.items()}
-            one = vr.Scene(kappa=20.0, mu=0.3, gamma=gamma[n], **own).validity(V[n])
-            assert close(found.steady.value[n], one.steady.value, tol.STEADINESS, scale=1e-9)
-            for name in ("one_percent", "ten_percent", "start"):
-                some, alone = ([*getattr(each.steady, name)] for each in (found, one))
-                assert close([each[n] for each in some], alone, tol.STEADINESS)
-
-
 # --- warnings of roll and ensemble ---
 
 

@@ -56,9 +56,9 @@ def validate(
 
     Notes
     -----
-    Each check states the error that it allows; that none passes where the law, the stresses, a
-    table
-    or a scene is wrong is tested in ``tests/validation/test_validation.py``.
+    Each check states the error that it allows; that none passes where the stresses or a table
+    are wrong is tested in ``tests/validation/test_validation.py`` and
+    ``tests/tables/test_grids.py``.
     """
     from tqdm import tqdm
 

@@ -127,13 +127,6 @@ def test_intervals_err_on_the_wide_side():
     assert held >= 19
 
 
-def test_same_bits_for_any_threads():
-    one, two = (sobol_indices(run_of(ONSET), 64, threads=threads) for threads in (1, 2))
-    assert one.identical(two)
-    other = sobol_indices(run_of(ONSET.replace("n = 1\n", "n = 1\nseed = 4\n")), 64)
-    assert not one["V_S1"].identical(other["V_S1"])
-
-
 # --- what has no indices ---
 
 

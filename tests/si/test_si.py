@@ -199,6 +199,7 @@ def test_each_of_many_is_as_alone(name):
         0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags), fields=fields[:-1]
     )
     state = many.contact(0.5, delta=0.01)
+    unsteady = many.validity(0.5).steady
     s = many.steady(slope=1e-3) if name != "times" else None  # of one alpha
     for n in range(3):
         one = roller.replace(**{key: values[n] for key, values in each.items()})
@@ -210,6 +211,9 @@ def test_each_of_many_is_as_alone(name):
         for field in ("M", "Q", "length", "beta"):
             exact = getattr(one.contact(0.5, delta=0.01), field)
             assert close(getattr(state, field)[n], exact, tol.SI_MOTION, what=field)
+        alone = one.validity(0.5).steady
+        assert close(unsteady.value[n], alone.value, tol.STEADINESS, scale=1e-9)
+        assert close(unsteady.ten_percent.speed[n], alone.ten_percent.speed, tol.STEADINESS)
         assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, tol.SI_MOTION)
     again = roller.replace(**{key: values.copy() for key, values in each.items()})
     assert (many, hash(many)) == (again, hash(again))
