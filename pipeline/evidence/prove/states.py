@@ -343,7 +343,7 @@ def placed(truth: Row) -> tuple[vr.Scene, Any, str]:
 def cover_states(_, count):
     """Yield errors of lam, epsilon, M, delta_star and Q.
 
-    count: how many cover_states of the file, the first ones.
+    count: how many states of the file, the first ones.
     """
     for truth in read_elements("covers")[:count]:
         (scene, state, where) = placed(truth)
@@ -371,7 +371,7 @@ def free_creep(_, count):
     """Yield errors of delta_0 and delta_0* where nu = 1/2: all strain by the pressure comes of the
     finite thickness.
 
-    count: how many cover_states of the file, the first ones.
+    count: how many states of the file, the first ones.
     """
     for truth in read_elements("free_creep")[:count]:
         (scene, state, where) = placed(truth)
@@ -404,7 +404,7 @@ COVER_PROOFS = [
             "delta_star": ("δ* of a cover against boundary elements, relative", _COVER_BOUND),
             "Q": (
                 "Q of a cover against the solution without coupling, divided by the error that "
-                "validity cover_states",
+                "validity states",
                 1.0,
             ),
         },

@@ -171,6 +171,8 @@ class Parameters(Roller):
     material: Prony | Bodies | LawTable | None = None
     coupled: bool | None = None
     _law: ClassVar[LawTable | None] = None
+    #: the law as it was given: that of a grid is made for one kappa
+    _given_law: ClassVar[LawGrid | LawTable | None] = None
     _made: ClassVar[LawTable | None] = None
     shape: ClassVar[tuple[int, ...]] = ()
     scale: ClassVar[Scale] = DIMENSIONLESS  # type: ignore[misc]
@@ -191,6 +193,8 @@ class Parameters(Roller):
         check_one_given(alpha=values["alpha"], material=material)
         if self.coupled is not None:
             check_bool("coupled", self.coupled)
+        if isinstance(material, LawGrid | LawTable):
+            vars(self)["_given_law"] = material
         if isinstance(material, LawGrid):
             material = material.table(check_number("kappa", values["kappa"], above=0.0))
         if isinstance(material, LawTable):
@@ -295,8 +299,8 @@ class Parameters(Roller):
         material: dict[str, Any] = {}
         if changes.keys() & {"alpha", "material"}:
             material = {"alpha": None, "material": None}
-        elif self._law is not None or self.material is not None:
-            material = {"alpha": None, "material": self._law or self.material}
+        elif self._given_law is not None or self.material is not None:
+            material = {"alpha": None, "material": self._given_law or self.material}
         return replace(self, **(material | changes))
 
     @property

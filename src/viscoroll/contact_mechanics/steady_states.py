@@ -292,7 +292,9 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         larger = half + np.copysign(root, half)
         other = np.divide(det, larger, out=0.0 * det, where=larger != 0.0)
         real = spread >= 0.0
-        larger, half, root = (each / unit / slow for each in (larger, half, root))
+        larger = larger / unit / slow
+        half = half / unit / slow
+        root = root / unit / slow
         return np.array(
             [
                 np.where(real, np.minimum(larger, other), half),
@@ -316,7 +318,7 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     rows[Field.DELTA] = delta
     rows[2:] = contacts.fields(V, delta, *_ROWS)
     speed = V
-    if V.min(initial=_LEAST_SPEED) < _LEAST_SPEED:
+    if np.count_nonzero(V < _LEAST_SPEED):
         speed = np.maximum(V, _LEAST_SPEED)
         rows[Field.DQ_DV :] = contacts.fields(speed, delta, *_ROWS[Field.DQ_DV - 2 :])
     rows[list(_OVER_CREEP)] *= speed
