@@ -282,6 +282,8 @@ def _lower_reference(context, builder, signature, arguments):
 def _lower_value(context, builder, signature, arguments):
     """Return instructions that load a record from its reference; a record that is a value already
     stays.
+
+    context, builder, signature, arguments : of numba's lowering of (record or reference).
     """
     kind = signature.args[0]
     return (

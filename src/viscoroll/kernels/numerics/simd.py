@@ -172,6 +172,12 @@ def _return_vectors(context, builder, kind, vectors):
 
 
 def _fma4(context, builder, signature, arguments):
+    """Make the instructions of :func:`fma4`: a b + c of each vector of the arguments, of which a
+    single vector stands for all of a tuple.
+
+    context, builder, signature, arguments : of numba's lowering of (a, b, c), vectors or tuples.
+    Returns a value of LLVM, a vector or a tuple of vectors.
+    """
     kind = signature.return_type
     columns = (
         _vectors_of(builder, own, x, getattr(kind, "count", 1))
