@@ -1,19 +1,13 @@
 """Records that kernels take and return, and the codes in their results; without numba.
 
-Records of the solver of motions, the codes in its results and the columns of a segment of the
-drive; without numba.
+They are those of the solver of motions, with the columns of a segment of the drive; of the flow
+map's kernels; and of what a bound law returns, to Python and to jitted code alike.
 
-Times are tau = gamma t, dimensionless.  Speeds are V T_epsilon/R and omega T_epsilon, forces are
-divided by the load P, torques by P R, as in the equations of motion of V and omega, Eq. (22) of the
-paper.  `omega_or_d` is the second
-unknown: omega in full slip, d = delta/delta_star in partial slip.
-
-Records of the flow map's kernels.
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-What a bound law returns, to Python and to jitted code alike.
+All quantities are dimensionless (docs/symbols.md) unless a record says otherwise; an argument of
+which no shape is stated is a number.  Times are tau = gamma t.  Speeds are V T_epsilon/R and omega
+T_epsilon, forces are divided by the load P, torques by P R, as in the equations of motion of V and
+omega, Eq. (22) of the paper.  ``omega_or_d`` is the second unknown: omega in full slip, d =
+delta/delta_star in partial slip.
 """
 
 from __future__ import annotations
@@ -257,7 +251,7 @@ class Batch(NamedTuple):
     law : of one material for all, or of each motion in turn (:mod:`.law_record`)
     moments_differ : as in ``Scene``, the same for all
     kappa, mu, gamma, j : as in ``Scene``
-    V0, omega0 : initial speeds
+    V0, omega0 : initial speeds, in units of R/T_epsilon and 1/T_epsilon
     """
 
     law: Any
@@ -344,10 +338,10 @@ class Motions(NamedTuple):
 
 
 class Request(NamedTuple):
-    """Requested outputs of a motion.
+    """Requested outputs of a motion that is looked up in a flow map.
 
-    level : SPEEDS, PATH or LOSS.
-    rest : rest threshold, 0 for none.
+    level : SPEEDS, PATH or LOSS of :mod:`.flow_lookup`.
+    rest : rest threshold, the value of max(|V|, |omega|) below which it is at rest, 0 for none.
     rest_slow_log : slow logarithm at that threshold.
     """
 
@@ -361,7 +355,8 @@ class FullSlipStart(NamedTuple):
 
     frame : +1, or -1 if mirrored.
     w : V - j omega.
-    T, X : integrals of the table of full slip at V.
+    T, X : time tau, and distance times gamma, of sliding between rest and V
+        (:func:`.flow_lookup.full_slip_integrals`).
     """
 
     frame: Any
@@ -409,9 +404,13 @@ class Asymptote(NamedTuple):
 
 
 class Output(NamedTuple):
-    """One output state in the frame of the caller; distance x and angle are multiplied by gamma.
+    """One output state in the frame of the caller, dimensionless.
 
-    regime is a code of :mod:`.records`, loss the slip loss since the start.
+    V, omega : speeds.
+    x, angle : distance and angle since the start, both multiplied by gamma.
+    delta : creepage.
+    regime : code of the regime, FULL_SLIP, PARTIAL_SLIP or AT_REST.
+    loss : slip loss since the start, divided by m (R/T_epsilon)^2.
     """
 
     V: Any
@@ -425,7 +424,7 @@ class Output(NamedTuple):
 
 # --- What a bound law returns, to Python and to jitted code alike ---
 
-#: numbers, or arrays
+#: Numbers, or arrays.
 T = TypeVar("T")
 
 

@@ -99,13 +99,16 @@ def _make_sum(lengths):
         varies cost more than they save.
 
     Returns the kernel, an intrinsic of numba, which takes (axis, first, s, c, rows, to) and returns
-    nothing.  axis,
-    first : vector of coefficients, and int, index in it where those of the part begin; of each
-    block the group of the highest degree first, of each group the coefficients of s^0 to s^3, eight
-    numbers each.  s : tuple of the four floats s, T_4(s), T_8(s) and T_12(s).  c : float, factor of
-    the second function of a pair, (alpha - 1)/alpha, which multiplies the numbers at the indices 2,
-    3, 6 and 7 of each block; 1 of a single function.  rows, to : vector that is written, and int,
-    index of the first number written, BLOCK_SIZE for each block.
+    nothing:
+
+    - axis, first: vector of coefficients, and int, index in it where those of the part begin; of
+      each block the group of the highest degree first, of each group the coefficients of s^0 to
+      s^3, eight numbers each.
+    - s: tuple of the four floats s, T_4(s), T_8(s) and T_12(s).
+    - c: float, factor of the second function of a pair, (alpha - 1)/alpha, which multiplies the
+      numbers at the indices 2, 3, 6 and 7 of each block; 1 of a single function.
+    - rows, to: vector that is written, and int, index of the first number written, BLOCK_SIZE for
+      each block.
     """
 
     def lower(context, builder, signature, arguments):

@@ -216,8 +216,8 @@ def grid_size(count: int, alpha: float) -> int:
 
 
 def work_size(nodes: int) -> int:
-    """Return the number of doubles of the scratch of a grid: that of :mod:`.simd`,
-    then twelve functions at each node; an int.
+    """Return the number of doubles of the scratch of a grid: that of :mod:`.simd`, then twelve
+    functions at each node; an int.
 
     nodes : int, number of nodes, as of :func:`grid_size`.
     """

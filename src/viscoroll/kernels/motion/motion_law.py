@@ -18,7 +18,8 @@ Terms of this file, dimensionless (fields of the records in :mod:`.records`):
   delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
   under a brake; whether the brake holds omega at 0.
-- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
+- Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion; a tuple,
+  or a reference of which :func:`.intrinsics.by_value` loads the law as a tuple.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
   holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
   Radau nodes.
@@ -260,7 +261,9 @@ def _change_of(Q, pairs, L, dL, scene):
 def _change_of_cover(Q, pairs, L, dL, scene, cover_rows):
     """Return what :func:`_change_of` does.
 
-    cover_rows: those of the law, None of half-spaces.
+    Q, pairs, L, dL, scene: as of :func:`_change_of`.
+    cover_rows: those of the law, None of half-spaces, by whose type numba compiles one of the two
+    branches.
     """
     if cover_rows is None:
         return MomentChange(
@@ -516,6 +519,10 @@ def _width(V, sigma, scene):
 
     Its derivatives are 0 of a law of rows, where they are not evaluated, and those of the table of
     a law with one.
+
+    V: float, dimensionless.
+    sigma: float, side of d, 1.0 or -1.0, on which L of a table depends.
+    scene: Scene, of which ``law``, kappa and mu are read.
     """
     u = scene.kappa * abs(V)
     law = by_value(scene.law)

@@ -257,15 +257,16 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
                 return event, refine_event(event, v, regime, work), step, error, dense_step
             v *= _BEYOND_EARLY_EVENT
         if first_event == NO_EVENT:
-            # An earlier trial crossed the event, this shorter one ends before it: the function is
-            # extrapolated.  If it has no zero near, the step counts as one without an event, with
-            # its own error, and the next step meets the event.
+            # An earlier trial crossed the event, or the step was aimed at V = 0, and this one ends
+            # before it: the function is extrapolated.  If it has no zero near, the step counts as
+            # one without an event, with its own error, and a later step meets the event.
             v = locate_zero(event, 0, nodes)
             if v >= NOT_FOUND:
                 return NO_EVENT, 2.0, step, error, dense_step
         h = min(step.h * 0.5 * v, upper)
         # An inaccurate step is shortened only while ``upper`` is the rest of the segment, so that
-        # one shorter trial follows; the other two conditions leave no different length to try.
+        # one shorter trial follows (two, of a step as long as that rest); the other two conditions
+        # leave no different length to try.
         if not (error <= 1.0 or upper == remaining) or not 0.0 < h < np.inf or h == step.h:
             break
         upper = step.h if first_event != NO_EVENT else upper

@@ -1,8 +1,7 @@
-"""The folder of compiled code, and the line that tells the user of a compilation; without numba.
+"""The folder of every cache, with files in it that nobody else can have written, and the line that
+tells the user of a compilation; without numba.
 
-The folder of every cache, and files in it that nobody else can have written.
-
-Its files are run (:mod:`jit`) or trusted (``motion/flow.py``), and a checksum that a file
+Files of a cache are run (:mod:`.jit`) or trusted (``motion/flow.py``), and a checksum that a file
 carries itself does not say who wrote it.  So a file is used only if it and every folder above it
 belong to this user or to the system, and nobody else may write to them.
 
@@ -10,7 +9,7 @@ The folder is ``$VISCOROLL_CACHE_DIR``, else ``$XDG_CACHE_HOME/viscoroll``, else
 ``~/.cache/viscoroll``, else, of a user without a home directory, a folder of this user in
 ``$TMPDIR`` or ``/tmp``.
 
-One line on standard error for the user who waits while kernels are compiled.
+The line is one on standard error, for the user who waits while kernels are compiled.
 """
 
 import errno

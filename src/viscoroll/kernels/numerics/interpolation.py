@@ -138,6 +138,7 @@ def radau(n: int, side: int) -> list[Decimal]:
     side : the end that is a node, int, -1 or 1.
     Returns n Decimals, ascending, rounded to 36 digits after the point.
     """
+    # P_(n-1) + P_n of Legendre vanishes at -1 and at the other nodes of the rule with that end.
     inner = _zeros(leg2poly(_unit_series(n - 1, 1, 1)), [(k - 0.25) / n for k in range(1, n)])
     return sorted([Decimal(side), *(-side * x for x in inner)])
 
@@ -152,6 +153,7 @@ def gauss(n: int) -> tuple[_Floats, _Floats]:
     """
     legendre = leg2poly(_unit_series(n, 1))
     nodes = np.array(_zeros(legendre, [(k - 0.25) / (n + 0.5) for k in range(1, n + 1)]))
+    # On [-1, 1] a weight is 2/((1 - x^2) P_n'(x)^2); half of it on [0, 1].
     weights = 1 / ((1 - nodes * nodes) * polyval(nodes, polyder(legendre)) ** 2)
     return to_doubles((1 + nodes) / 2), to_doubles(weights)
 
@@ -176,6 +178,8 @@ def to_chebyshev(n: int) -> _Floats:
     n : number of nodes and terms, an int > 1, by position only.
     Returns doubles, (n, n), [term, node], the term of T_0 first.
     """
+    # At these nodes x_k the sum of f(x_k) T_m(x_k), times 2/n, is the coefficient of T_m, twice
+    # that for m = 0.
     x = np.array(chebyshev(n))
     terms = [1 + 0 * x, x]
     for _ in range(n - 2):
@@ -233,7 +237,7 @@ def _zeros(polynomial: NDArray, half_turns: Iterable[float]) -> list[Decimal]:
     with localcontext(Context(prec=_DIGITS_OF_SEARCH)):
         for _ in range(_NEWTON_STEPS):
             x = x - polyval(x, polynomial) / polyval(x, slope)
-    return sorted(round(zero, _DIGITS_OF_ZEROS) + 0 for zero in x)
+    return sorted(round(zero, _DIGITS_OF_ZEROS) + 0 for zero in x)  # + 0 turns -0 into 0
 
 
 def _values(polynomials: NDArray, points: Iterable[Decimal]) -> _Floats:

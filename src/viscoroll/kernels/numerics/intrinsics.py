@@ -1,7 +1,4 @@
-"""Functions that become single instructions, or are passed by address.
-
-Instructions of LLVM that kernels call like functions: a fused product and sum, bits of a double,
-calls by address.
+"""Functions of kernels that become single instructions of LLVM, or are passed by address.
 
 **Fused product and sum.**  LLVM could fuse products and sums by itself (``fastmath={"contract"}``).
 Its choice depends on the functions that it sees, and so on whether they were compiled in the same
@@ -9,24 +6,21 @@ process or came from the cache: the last bits of a result would follow the histo
 only polynomials, where most of the time is spent, call :func:`fma`.
 
 **Calls by address.**  A kernel that is called by its address is compiled once, by itself, and not
-again with each caller. Such a kernel takes a number and a record that contains addresses of arrays,
-and returns nothing.
+again with each caller.  Such a kernel takes a number and a record that contains addresses of
+arrays, and returns nothing.
 
-Records by reference: calls pass the address of a record, one number, where numba passes every
-field of a tuple.
+**Records by reference.**  Calls pass the address of a record, one number, where numba passes every
+field of a tuple.  A field is loaded when it is read; a record in a record is passed by reference
+too.  The record exists as long as the kernel that made the reference runs.  Its arrays belong to
+the caller of that kernel.
 
-A field is loaded when it is read; a record in a record is passed by reference too.  The record
-exists as long as the kernel that made the reference runs.  Its arrays belong to the caller of that
-kernel.
-
-Assignments to arrays, element by element: numba's own would prepare for shapes that differ, and
+**Assignments to arrays**, element by element: numba's own would prepare for shapes that differ, and
 compile longer.
 
-Bins of a positive float: an octave [2^n, 2^(n+1)) is cut into 2^bits of them by the leading bits
-of its mantissa.
-
-No logarithm is taken: the number of the bin is read off the bits of the float.  In a bin functions
-are polynomials of the offset t of the mantissa from the centre of the bin.
+**Bins of a positive float.**  An octave [2^n, 2^(n+1)) is cut into 2^bits of them by the leading
+bits of its mantissa.  No logarithm is taken: the number of the bin is read off the bits of the
+float.  In a bin functions are polynomials of the offset t of the mantissa from the centre of the
+bin.
 """
 
 from collections.abc import Callable
@@ -288,6 +282,8 @@ def _lower_reference(context, builder, signature, arguments):
 def _lower_value(context, builder, signature, arguments):
     """Return instructions that load a record from its reference; a record that is a value already
     stays.
+
+    context, builder, signature, arguments : of numba's lowering of (record or reference).
     """
     kind = signature.args[0]
     return (
@@ -370,6 +366,8 @@ def bin_offset(x, bits):
     Returns a float in [-2^-(bits + 1), 2^-(bits + 1)); mantissas are in [1, 2).
     """
     word = float_to_bits(x)
+    # The centre has the leading bits of the mantissa, and then a half bin; both numbers get the
+    # exponent of 1.
     half_bin = 1 << (51 - bits)
     centre = bits_to_float((word & (_MANTISSA - (2 * half_bin - 1))) | (_ONE + half_bin))
     return bits_to_float((word & _MANTISSA) | _ONE) - centre

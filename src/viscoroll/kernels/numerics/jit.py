@@ -1,16 +1,15 @@
 """The decorator of all kernels, and the disk cache of their machine code.
 
-A disk cache of machine code that cannot go stale.
+:func:`kernel` is numba's compilation, deferred (:mod:`.deferred_compilation`) and cached on disk
+(:class:`DiskCache`) so that stored code cannot go stale.
 
 numba's own cache stamps a function with the file it is defined in and does not notice a change in a
 function it calls from another module.  Here the cache folder is named after a hash of *all* kernel
-sources, their coefficient table and the versions of numba and llvmlite.  It holds one file for each
-function, signature and choice of numba's settings, which begins with a SHA-256 of what follows.
-Anything unreadable, or that others may have written (:mod:`cache_folder`), is compiled again and
-replaced: it is never trusted and never ends the process.
-
-One decorator, :func:`kernel`: numba compilation, deferred (:mod:`deferred_compilation`) and cached
-on disk (:mod:`jit`).
+sources, their coefficient table and the versions of numba and llvmlite (:func:`sources_digest`).
+It holds one file for each function, signature and choice of numba's settings, which begins with a
+SHA-256 of what follows.  Anything unreadable, or that others may have written
+(:mod:`.cache_folder`), is compiled again and replaced: it is never trusted and never ends the
+process.
 """
 
 import hashlib

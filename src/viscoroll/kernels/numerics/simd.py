@@ -1,33 +1,25 @@
 """Vectors of four doubles, and polynomials that are evaluated and fitted by them.
 
-Vectors of four doubles for kernels: one instruction of the processor adds, multiplies or divides
-all four.
+**Vectors.**  One instruction of the processor adds, multiplies or divides all four numbers of a
+vector.  ``+ - * /`` work on two vectors, and on a vector and a number.  Each of the four results is
+rounded as it would be alone; :func:`fma4` rounds product and sum together.  A function that takes a
+``builder``, of LLVM, runs while numba compiles a kernel: it emits its instructions at the position
+of the builder and returns values of LLVM.
 
-``+ - * /`` work on two vectors, and on a vector and a number.  Each of the four results is rounded
-as it would be alone; :func:`fma4` rounds product and sum together.
+**Polynomials of 24 coefficients.**  One function is stored as its coefficients in their order: six
+vectors, which are the coefficients of four polynomials in t^4, one in each lane: lane n has the
+coefficients n, n + 4, n + 8 ..., and is multiplied by t^n.  A pair of functions a and b is stored
+as a0 a1 b0 b1, a2 a3 b2 b3, ...: twelve vectors, polynomials in t^2 of the even and odd
+coefficients.  So a polynomial over an octave costs no more than one over an eighth of the octave
+with half as many coefficients.  The kernels that evaluate them take ``table``, a vector; ``start``,
+where the coefficients begin in it; and the argument ``t``, in [-1, 1] on the row of the table;
+outside the polynomial is extrapolated.  A NaN of t gives NaNs.
 
-A function that takes a ``builder``, of LLVM, runs while numba compiles a kernel: it emits its
-instructions at the position of the builder and returns values of LLVM.
-
-Polynomials of 24 coefficients, evaluated by vectors of four numbers.
-
-One function is stored as its coefficients in their order: six vectors, which are the coefficients
-of four polynomials in t^4, one in each lane: lane n has the coefficients n, n + 4, n + 8 ..., and
-is multiplied by t^n.  A pair of functions a and b is stored as a0 a1 b0 b1, a2 a3 b2 b3, ...:
-twelve vectors, polynomials in t^2 of the even and odd coefficients.  So a polynomial over an octave
-costs no more than one over an eighth of the octave with half as many coefficients.
-
-All kernels take ``table``, a vector; ``start``, where the coefficients begin in it; and the
-argument ``t``, in [-1, 1] on the row of the table; outside the polynomial is extrapolated.  A NaN
-of t gives NaNs.
-
-Newton's polynomial through scattered points, evaluated at the 24 nodes of a row and turned into
-powers of t.
-
-All of it works on one vector ``scratch``: the arguments of :data:`POINT_COUNT` points; for each of
-up to two functions their values, and after them the leading divided differences; values at the
-nodes; Chebyshev coefficients.  In front of arguments and values four numbers are kept free, so that
-vectors may reach below the first point.
+**Newton's polynomial** through scattered points is evaluated at the 24 nodes of a row and turned
+into powers of t.  All of it works on one vector ``scratch``: the arguments of :data:`POINT_COUNT`
+points; for each of up to two functions their values, and after them the leading divided
+differences; values at the nodes; Chebyshev coefficients.  In front of arguments and values four
+numbers are kept free, so that vectors may reach below the first point.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
@@ -180,6 +172,12 @@ def _return_vectors(context, builder, kind, vectors):
 
 
 def _fma4(context, builder, signature, arguments):
+    """Make the instructions of :func:`fma4`: a b + c of each vector of the arguments, of which a
+    single vector stands for all of a tuple.
+
+    context, builder, signature, arguments : of numba's lowering of (a, b, c), vectors or tuples.
+    Returns a value of LLVM, a vector or a tuple of vectors.
+    """
     kind = signature.return_type
     columns = (
         _vectors_of(builder, own, x, getattr(kind, "count", 1))
@@ -389,7 +387,9 @@ def _join_pair(sums, t):
     twice = 2.0 * t
     square = t * t
     value, first_derivative, second_derivative = sums
-    # each function is E + t O, with polynomials E and O of t^2
+    # Each function is E + t O, with polynomials E and O of t^2.  With ' over t^2 its derivatives in
+    # t are O + 2 t (E' + t O') and 2 [E' + t O' + 2 t (O' + t E'' + t^2 O'')]; a_1 and b_1 are E' +
+    # t O'.
     a_even, a_odd, b_even, b_odd = unpack(value)
     a_even_1, a_odd_1, b_even_1, b_odd_1 = unpack(first_derivative)
     a_even_2, a_odd_2, b_even_2, b_odd_2 = unpack(second_derivative)
@@ -433,6 +433,8 @@ def evaluate_single(table, start, t):
     Returns (value, slope), floats in the unit of the coefficients.
     """
     square = t * t
+    # The derivative of a + b t + c t^2 + d t^3 with a, b, c, d functions of t^4: their own slopes
+    # are multiplied by 4 t^3.
     value, first_derivative = _one_sums(table, start, square * square)
     _, b, c, d = unpack(value)
     slope = fma(
@@ -535,6 +537,8 @@ def divided_differences(count, scratch):
         overwritten.  Returns nothing.
     """
     for order in range(POINT_COUNT):
+        # From the last four points down to those that contain number ``order``: difference k of an
+        # order is (d_k - d_(k - 1))/(x_k - x_(k - order)) with those of the order before.
         first = POINT_COUNT - LANES
         while order > 0 and first > order - LANES:
             x = ARGUMENTS + first
@@ -611,12 +615,12 @@ def to_powers(slow, limit, scratch):
         coefficients, the constant first, are written in their place.  Chebyshev coefficients are
         left after them.  Returns nothing.
     """
-    if not slow:
+    if not slow:  # The value at a middle node is the reference value.
         limit = scratch[NODE_VALUES + TERMS // 2]
         for k in range(TERMS):
             scratch[NODE_VALUES + k] -= limit
     sum_of_rows(_TO_CHEBYSHEV, 0, TERMS, NODE_VALUES, _COEFFICIENTS, scratch)
-    if slow:
+    if slow:  # Coefficients that are rounding are set to 0.
         largest = limit
         for k in range(TERMS):
             largest = max(largest, abs(scratch[_COEFFICIENTS + k]))
