@@ -1,6 +1,7 @@
 """What other rooms take from this one, a line each, for type checkers, and for ``__init__.py``."""
 
 from .blocks import block_reader as block_reader
+from .blocks import broadcast_rows as broadcast_rows
 from .blocks import broadcast_vector as broadcast_vector
 from .blocks import cancel_with as cancel_with
 from .blocks import run_blocks as run_blocks

@@ -270,10 +270,11 @@ def check_number(
     return float(array)
 
 
-def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
+def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     """Return the common shape of arrays, by numpy's rule of broadcasting.
 
-    arrays: arrays of numpy by the name that an error states; those without axes fit every shape.
+    arrays: arrays of numpy and numbers by the name that an error states; what has no axes fits
+        every shape.
     Returns the shape, a tuple of ints; () if no array has axes, or none is given.
 
     Raises
@@ -281,11 +282,11 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
     ParameterError
         If they do not broadcast; the message lists the shapes.
     """
-    shapes = {array.shape for array in arrays.values()} - {()}
+    shapes = {*map(np.shape, arrays.values())} - {()}
     try:
         return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
-        found = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        found = ", ".join(f"{name} {np.shape(a)}" for name, a in arrays.items() if np.ndim(a))
         allowed = "equal, or broadcast as in numpy"
         raise ParameterError(
             "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"
@@ -306,7 +307,7 @@ def divide_by_unit(name: str, values: NDArray, unit: Any) -> Any:
     try:
         return values / unit
     except ValueError:
-        broadcast_shape(**{name: np.asarray(values), "cylinders": np.asarray(unit)})
+        broadcast_shape(**{name: values, "cylinders": unit})
         raise
 
 
