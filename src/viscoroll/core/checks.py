@@ -1,7 +1,6 @@
 """Checks of arguments, and the types of arrays that they give.
 
-Types of arrays and results, and of the numbers that callers may give, for type checkers: no
-library is imported for them.
+Types of arrays, and of the numbers that callers may give, for type checkers.
 
 Checks of numbers that callers give: they become float64 in the unit of the argument, or raise
 ParameterError.
@@ -33,10 +32,6 @@ Integers: TypeAlias = NDArray[np.int64]
 Booleans: TypeAlias = NDArray[np.bool_]
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from pandas import DataFrame
-    from xarray import DataArray, Dataset
-
     Reals: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 
     class SupportsArray(Protocol):
@@ -53,7 +48,7 @@ if TYPE_CHECKING:
         | Sequence[Sequence[float]]
     )
 else:
-    Numbers = DataArray = DataFrame = Dataset = Figure = Any
+    Numbers = Any
 
 
 # --- Checks of numbers that callers give ---
