@@ -8,8 +8,6 @@ the package, its own module, the configuration, and the stages before it.  With 
 and those that they need.  Exit codes are those of the stages; the first that fails is the last.
 """
 
-from __future__ import annotations
-
 import json
 import runpy
 import sys
@@ -19,7 +17,7 @@ from pathlib import Path
 from . import stage
 
 #: stage -> those whose files it reads
-NEEDS: dict[str, tuple[str, ...]] = {
+NEEDS = {
     "offline": (),
     "runtime": ("offline",),
     "ensemble": (),
@@ -53,7 +51,7 @@ def needed(names: Iterable[str]) -> set[str]:
     return {each for name in names for each in (name, *needed(NEEDS[name]))}
 
 
-def main() -> int:
+def main():
     options = stage.parser(__doc__)
     options.add_argument(
         "--tables", type=Path, default=stage.ROOT / "data/tables", help="default data/tables"

@@ -10,8 +10,6 @@ equations in SciPy's integrators, and for random starts ``vr.ensemble`` at a tig
 and error of every table stand beside.  Peers of other houses stand in pipeline/evidence/bench.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Callable, Iterator
 from functools import partial
@@ -45,6 +43,7 @@ from viscoroll.roller_toml import read_roller
 
 from . import stage
 from .runtime import least_seconds
+from .stage import Row
 from .validate import loaded
 
 # --- the integrator, RODAS3, on any law that compiled code may call; the law by root solves ---
@@ -262,12 +261,12 @@ def ways(
 ) -> Iterator[tuple[Law, float, Callable[[], NDArray]]]:
     """(Law, tolerance, what gives V and omega of all motions, (2, starts, times))."""
 
-    def integrated(law: Law, rtol: float) -> NDArray:
+    def integrated(law, rtol):
         out = np.empty((2, V0.size, t.size))
         motions(law.call, scene.gamma, scene.j, scene.mu / scene.kappa, V0, omega0, t, rtol, out)
         return out
 
-    def rolled(rtol: float) -> NDArray:
+    def rolled(rtol):
         found = [
             vr.roll(scene, *start, t, rtol=rtol)
             for start in zip(V0.tolist(), omega0.tolist(), strict=True)
@@ -281,7 +280,7 @@ def ways(
         yield Law("vr.roll", None, settings.rtol), rtol, partial(rolled, rtol)
 
 
-def coupled_rows(settings: Coupled, seed: int) -> Iterator[dict[str, Any]]:
+def coupled_rows(settings: Coupled, seed: int) -> Iterator[Row]:
     """Tables of the coupled solution: time of making one and of Q and M of a state, and errors."""
     scene = read_roller(stage.ROOT / settings.roller).scene()
     random = np.random.default_rng(seed)
@@ -301,7 +300,7 @@ def coupled_rows(settings: Coupled, seed: int) -> Iterator[dict[str, Any]]:
         } | {name: law.coupled.errors[name] for name in ("Q_over_mu", "M_half_space", "epsilon")}
 
 
-def draw(rows: list[dict[str, Any]], path: Path) -> None:
+def draw(rows: list[Row], path: Path) -> None:
     """Time against error of motions, and size against error of the tables."""
     figure, (left, right) = new_figure(
         "Time and error of motions; size and error of the tables", 1, 2, 4.0
@@ -322,7 +321,7 @@ def draw(rows: list[dict[str, Any]], path: Path) -> None:
     save(figure, path)
 
 
-def work(settings: Benchmark, out: Path) -> stage.Outcome:
+def work(settings, out):
     scene = vr.presets.PAPER_SECTION_5
     direct = loaded(out / "direct.nc")
     direct = direct.isel(t=np.arange(direct.t.size - 1, 0, -TIMES)[::-1])
@@ -334,7 +333,7 @@ def work(settings: Benchmark, out: Path) -> stage.Outcome:
     V0, omega0 = np.concatenate([np.transpose([*vr.presets.PAPER_STARTS.values()]), starts], axis=1)
     first = np.maximum(abs(V0), abs(omega0))
     paper = len(vr.presets.PAPER_STARTS)
-    rows: list[dict[str, Any]] = []
+    rows = []
     for law, rtol, way in ways(scene, settings, V0, omega0, direct.t.values):
         found, seconds = least_seconds(way, rtol != law.rtol[0])
         errors = np.abs(found - truth).max(axis=(0, 2)) / first

@@ -8,10 +8,7 @@ their own energy: what friction and rolling take must be what V and omega have l
 quantity: worst, allowed, where; exit code 1 where one is exceeded.
 """
 
-from __future__ import annotations
-
 from itertools import chain, product
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -19,10 +16,9 @@ import numpy as np
 import viscoroll as vr
 
 from . import stage
-from .evidence.prove.cases import Found, Proof
+from .evidence.prove.cases import Proof
 from .evidence.truth import contact_enclosure
-
-FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
+from .validation import FIELDS
 
 
 class Corners(msgspec.Struct, forbid_unknown_fields=True):
@@ -42,7 +38,7 @@ class Corners(msgspec.Struct, forbid_unknown_fields=True):
     rtol: list[float]
 
 
-def of_states(given: Corners) -> Found:
+def of_states(given):
     """Errors of every state: of epsilon over 1 where it is less, of beta over 1, of Q over mu, else
     relative.
     """
@@ -60,7 +56,7 @@ def of_states(given: Corners) -> Found:
             yield f"alpha {alpha:g}, kappa {kappa:g}, mu {mu:g}, V {V:g}, delta {delta:g}", errors
 
 
-def of_motions(given: Corners) -> Found:
+def of_motions(given):
     """Imbalance of energy over the tolerance of every motion; infinite where one does not end
     well.
     """
@@ -74,9 +70,7 @@ def of_motions(given: Corners) -> Found:
         found = vr.ensemble(scene, [V0], [omega0], t, rtol=rtol, fields=fields)
         energy = 0.5 * (V0 * V0 + j * omega0 * omega0)
         left = 0.5 * (found.V**2 + j * found.omega**2) + found.slip_loss + found.rolling_loss
-        error = (
-            float(np.max(np.abs(left - energy)) / energy / rtol) if found.status[0] <= 1 else np.inf
-        )
+        error = np.max(np.abs(left - energy)) / energy / rtol if found.status[0] <= 1 else np.inf
         where = (
             f"alpha {alpha:g}, kappa {kappa:g}, mu {mu:g}, gamma {gamma:g}, j {j:g}, from "
             f"({V0:g}, {omega0:g})"
@@ -84,7 +78,7 @@ def of_motions(given: Corners) -> Found:
         yield f"{where}, rtol {rtol:g}, {found.messages()}", {"energy of motions, over rtol": error}
 
 
-def work(settings: Corners, out: Path) -> stage.Outcome:
+def work(settings, out):
     claims = {name: (name, allowed) for name, allowed in settings.allowed.items()}
     proof = Proof(
         "corners", "", "", claims, lambda *_: chain(of_states(settings), of_motions(settings))

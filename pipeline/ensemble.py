@@ -3,11 +3,8 @@
 python -m pipeline.ensemble [--config FILE] [-o FOLDER]
 """
 
-from __future__ import annotations
-
 import sys
 import time
-from pathlib import Path
 
 import msgspec
 import numpy as np
@@ -38,7 +35,7 @@ class Ensemble(msgspec.Struct, forbid_unknown_fields=True):
     kept: int
 
 
-def work(settings: Ensemble, out: Path) -> stage.Outcome:
+def work(settings, out):
     if not 1 <= settings.kept <= settings.motions:
         raise ParameterError(
             "kept", settings.kept, f"in [1, {settings.motions}], the number of motions"
@@ -77,7 +74,7 @@ def work(settings: Ensemble, out: Path) -> stage.Outcome:
     path = out / "ensemble.nc"
     write_dataset(dataset, path)
     microseconds = 1e6 * seconds / settings.motions
-    headline: dict[str, float | int | str] = {
+    headline = {
         "preset": settings.preset,
         "motions": settings.motions,
         f"time on {thread_count()} threads, s": seconds,

@@ -3,19 +3,15 @@
 
 python -m pipeline.figures [--config FILE] [-o FOLDER]
 
-:data:`FIGURES` has them by name; captions.toml has what the page of all results says of each, in
-order.  A picture of the gallery is the code of its page: it is run here as a reader runs it.
+:data:`FIGURES` has them by name; report_captions.toml has what the page of all results says of
+each, in order.  A picture of the gallery is the code of its page: it is run here as a reader runs
+it.
 """
-
-from __future__ import annotations
 
 import runpy
 import sys
 import warnings
-from collections.abc import Callable
 from functools import partial
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
 
 import matplotlib as mpl
 import matplotlib.pyplot as plt
@@ -34,10 +30,6 @@ from viscoroll.presets import PAPER_FIGURES_2_3, PAPER_SECTION_5, PAPER_STARTS, 
 
 from . import stage
 from .validate import loaded
-
-if TYPE_CHECKING:
-    import xarray as xr
-    from matplotlib.figure import Figure
 
 # --- titles and labels ---
 
@@ -80,11 +72,11 @@ _ARROW = {
     "linewidth": 1.3,
     "mutation_scale": 14,
 }
-_TEXT: dict[str, Any] = {"textcoords": "offset points", "fontsize": "large"}
+_TEXT = {"textcoords": "offset points", "fontsize": "large"}
 _SPAN = {"arrowstyle": "<|-|>", "color": "black", "shrinkA": 0, "shrinkB": 0, "linewidth": 0.8}
 
 
-def geometry() -> Figure:
+def geometry():
     """Above: the cylinder on the half-space; below: its contact with lam, epsilon, beta, pressure
     and shear.
     """
@@ -100,14 +92,12 @@ def geometry() -> Figure:
     return figure
 
 
-def _arrow(
-    axes: Any, start: tuple[float, float], end: tuple[float, float], text: str = "", **style: Any
-) -> None:
+def _arrow(axes, start, end, text="", **style):
     axes.annotate("", end, start, arrowprops=_ARROW, **style)
     axes.annotate(text, end, (5, 3), **_TEXT, **style)
 
 
-def _body(axes: Any) -> None:
+def _body(axes):
     """Circle, half-space, the speeds and the loads."""
     from matplotlib.patches import Circle
 
@@ -142,7 +132,7 @@ def _body(axes: Any) -> None:
     axes.set_axis_off()
 
 
-def _enlarged(axes: Any, scene: Scene, V: float, delta: float) -> None:
+def _enlarged(axes, scene, V, delta):
     """Pressure, its share mu, and shear, over x/l0, with the lengths that the law speaks of."""
     c = contact(scene, V, delta=delta)
     rear = 0.5 * c.lam * (c.epsilon - 1.0)
@@ -202,7 +192,7 @@ _GRID_ALPHAS = (1.5, 11.0, 81.5)
 _LEVELS = np.linspace(-0.2, 0.2, 17)
 
 
-def figure_2() -> Figure:
+def figure_2():
     """Critical creepage delta_star as a function of V, one line an alpha."""
     scene = PAPER_FIGURES_2_3
     V = np.linspace(0.0, _MOST_SPEED, 401)
@@ -220,7 +210,7 @@ def figure_2() -> Figure:
     return figure
 
 
-def figure_3() -> Figure:
+def figure_3():
     """(a) traction Q over delta at some speeds; (b) moment M over V at some alphas."""
     scene = PAPER_FIGURES_2_3
     title = (
@@ -252,7 +242,7 @@ def figure_3() -> Figure:
     return figure
 
 
-def grid(table: xr.Dataset) -> Figure:
+def grid(table):
     """Q over V and delta as ``make tables`` wrote it, at three alphas: the surface whose slices are
     Fig. 3a.
     """
@@ -273,7 +263,7 @@ def grid(table: xr.Dataset) -> Figure:
     return figure
 
 
-def rubber_roller() -> Figure:
+def rubber_roller():
     """A rubber roller in SI units, launched without rotation."""
     return RUBBER_CYLINDER.roll(2.0, 0.0, np.linspace(0.0, 0.4, 401)).plot()
 
@@ -287,7 +277,7 @@ _NAMED = ("alpha", "kappa", "mu", "gamma")
 _UNIT = 1e4
 
 
-def figure_7() -> Figure:
+def figure_7():
     """Shear stress and mu p along the contact at four times of the paper's first motion."""
     scene = PAPER_SECTION_5
     start = PAPER_STARTS["IC1"]
@@ -333,9 +323,9 @@ def figure_7() -> Figure:
 GALLERY = stage.ROOT / "docs/examples/gallery"
 
 
-def of_page(page: str, name: str = "figure") -> Figure:
+def of_page(page, name="figure"):
     """The figure that a page of the gallery gives this name."""
-    figure: Figure = runpy.run_path(str(GALLERY / f"{page}.py"))[name]
+    figure = runpy.run_path(str(GALLERY / f"{page}.py"))[name]
     return figure
 
 
@@ -354,7 +344,7 @@ PAGES = {
     "broad-stresses": "contact/d_broad_rubber stresses",
     "load-speed": "heat/c_load_speed",
 }
-FIGURES: dict[str, Callable[..., Figure]] = {
+FIGURES = {
     "rubber-roller": rubber_roller,
     "grid": grid,
     "geometry": geometry,
@@ -371,9 +361,9 @@ class Figures(msgspec.Struct, forbid_unknown_fields=True):
     grid: str
 
 
-def work(settings: Figures, out: Path) -> stage.Outcome:
+def work(settings, out):
     files_of = {"ensemble": out / "ensemble.nc", "grid": stage.ROOT / settings.grid}
-    shown: dict[str, tuple[Any, ...]] = {name: (loaded(path),) for name, path in files_of.items()}
+    shown = {name: (loaded(path),) for name, path in files_of.items()}
     folder = stage.make_folder(out / "figures")
     files = []
     for name, drawn in tqdm(FIGURES.items(), desc="figures", delay=1.0, leave=False):

@@ -8,8 +8,6 @@ Exit code 1 where an error that is measured while a file is made exceeds the one
 configuration allows.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable

@@ -3,8 +3,6 @@
 python -m pipeline.report [--config FILE] [-o FOLDER]
 """
 
-from __future__ import annotations
-
 import base64
 import json
 import os
@@ -12,6 +10,7 @@ import sys
 from collections.abc import Iterable
 from html import escape
 from pathlib import Path
+from string import Template
 from typing import Any
 
 import viscoroll as vr
@@ -20,6 +19,7 @@ from viscoroll.core.files import write_text
 from viscoroll.presets import PRESETS
 
 from . import stage
+from .stage import Row
 
 STAGES = {
     "offline": "Tables of the law",
@@ -30,19 +30,12 @@ STAGES = {
     "figures": "Figures",
 }
 #: Section of figures -> figure -> caption, in order.
-SECTIONS: dict[str, dict[str, str]] = stage.read_toml(stage.ROOT / "pipeline/captions.toml")
-_STYLE = (
-    "body{font:16px/1.45 sans-serif;max-width:62em;margin:2em auto;padding:0 1em;color:#111}"
-    "table{border-collapse:collapse;margin:.6em 0}td,th{border:1px solid #bbb;padding:.2em "
-    ".6em;text-align:left}"
-    "td.n{text-align:right;font-variant-numeric:tabular-nums}img{max-width:100%;border:1px solid "
-    "#ddd}"
-    "figure{margin:1.5em "
-    "0}pre{overflow-x:auto;background:#f4f4f4;padding:.8em;font-size:12px}.bad{font-weight:bold}"
-)
+SECTIONS = stage.read_toml(stage.ROOT / "pipeline/report_captions.toml")
+#: The page, with what the stages left at $names.
+PAGE = stage.ROOT / "pipeline/report.html"
 
 
-def records(out: Path) -> dict[str, dict[str, Any]]:
+def records(out: Path) -> dict[str, Row]:
     """What the stages left under <out>/stages.
 
     Raises
@@ -78,7 +71,7 @@ def link(path: Path, out: Path) -> str:
     return f'<a href="{escape(target)}">{escape(path.name)}</a>'
 
 
-def links(out: Path, record: dict[str, Any]) -> str:
+def links(out: Path, record: Row) -> str:
     """What a stage left."""
     return f"<p>{', '.join(link(out / file, out) for file in record['files'])}</p>"
 
@@ -90,7 +83,7 @@ def picture(path: Path, out: Path, caption: str) -> str:
     return f"<figure>{image}<figcaption>{escape(caption)} {link(path, out)}</figcaption></figure>"
 
 
-def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
+def pictures(out: Path, found: dict[str, Row]) -> list[str]:
     """The sections of figures, each with its numbers."""
     drawn = {Path(file).stem: out / file for file in found["figures"]["files"]}
     numbers = {
@@ -113,71 +106,29 @@ def pictures(out: Path, found: dict[str, dict[str, Any]]) -> list[str]:
     return parts + [picture(path, out, name) for name, path in drawn.items()]
 
 
-def introduced(found: dict[str, dict[str, Any]]) -> str:
-    """Introduce the page: the rollers that it shows, and the stages that made it."""
-    name = str(found["ensemble"]["headline"]["preset"])
-    return (
-        "<p>A viscoelastic cylinder rolls and slides on a half-space of its material: first a "
-        "rubber roller in SI "
-        f"units, then the example of Sect. 5 of the paper, dimensionless (preset {escape(name)}: "
-        f"{escape(str(PRESETS[name]))}).</p>"
-        "<p>Five stages made this page.  <b>Offline</b> writes the law of each material to a file, "
-        "and Q, M and other "
-        "quantities on a grid of V, δ and α.  <b>Runtime</b> integrates Eq. (22) with the law "
-        "file.  <b>Ensemble</b> "
-        "integrates motions with random initial speeds.  <b>Validate</b> compares tables and "
-        "motions with numerical "
-        "roots of the printed equations.  <b>Benchmark</b> measures time and error.</p>"
-    )
-
-
-def page(out: Path, found: dict[str, dict[str, Any]]) -> str:
+def page(out: Path, found: dict[str, Row]) -> str:
     """The whole page: the physics first, then tables and checks, seconds last."""
-    failed = found["validate"]["failed"]
     times = stage.read_rows(out / "benchmark.csv")
-    verdict = (
-        '<span class="bad">a stated tolerance is exceeded</span>'
-        if failed
-        else "every check passed"
+    name = str(found["ensemble"]["headline"]["preset"])
+    failed = '<span class="bad">a stated tolerance is exceeded</span>'
+    about_benchmark = "Left: time, error of motions.  Right: size, error of tables."
+    return Template(PAGE.read_text(encoding="utf-8")).substitute(
+        preset=f"{escape(name)}: {escape(str(PRESETS[name]))}",
+        pictures="\n".join(pictures(out, found)),
+        tables=grid(found["offline"]["headline"].items()) + "\n" + links(out, found["offline"]),
+        validate=STAGES["validate"],
+        verdict=failed if found["validate"]["failed"] else "every check passed",
+        checks=grid(found["validate"]["headline"].items()) + "\n" + links(out, found["validate"]),
+        report=escape((out / "validation.txt").read_text(encoding="utf-8")),
+        benchmark=STAGES["benchmark"],
+        times=grid([times[0], *(row.values() for row in times)]),
+        drawn=picture(out / "figures/benchmark.png", out, about_benchmark),
+        version=escape(vr.__version__),
+        seconds=grid((STAGES[name], record["seconds"]) for name, record in found.items()),
     )
-    parts = [
-        "<!DOCTYPE html>",
-        '<html lang="en"><head><meta charset="utf-8"><title>viscoroll</title>',
-        f"<style>{_STYLE}</style></head><body>",
-        "<h1>A viscoelastic cylinder, rolling and sliding</h1>",
-        introduced(found),
-        *pictures(out, found),
-        "<h2>Tables</h2>",
-        grid(found["offline"]["headline"].items()),
-        links(out, found["offline"]),
-        f"<h2>{STAGES['validate']}</h2>",
-        f"<p>{verdict}.</p>",
-        grid(found["validate"]["headline"].items()),
-        links(out, found["validate"]),
-        f"<pre>{escape((out / 'validation.txt').read_text(encoding='utf-8'))}</pre>",
-        f"<h2>{STAGES['benchmark']}</h2><p>One compiled integrator computes the motions of the "
-        "paper and random ones, "
-        "with the law from splines on grids of n by n nodes, from the law file, and from numerical "
-        "roots at every "
-        "call.  The last rows are those of vr.roll.  The reference values are motions with "
-        "numerical roots of the "
-        "printed equations.  An error is the largest one of V and ω, divided by the initial speed. "
-        " The last columns "
-        "have the size of each table, and its largest error of Q, divided by the load.</p>",
-        grid([times[0], *(row.values() for row in times)]),
-        picture(
-            out / "figures/benchmark.png",
-            out,
-            "Left: time, error of motions.  Right: size, error of tables.",
-        ),
-        f"<h2>Duration of the stages</h2><p>viscoroll {escape(vr.__version__)}, seconds:</p>",
-        grid((STAGES[name], record["seconds"]) for name, record in found.items()),
-        "</body></html>",
-    ]
-    return "\n".join(part for part in parts if part) + "\n"
 
 
-def work(config: Path, out: Path) -> stage.Outcome:
+def work(config, out):
     del config  # nothing of it
     write_text(out / "index.html", page(out, records(out)))
     return stage.Outcome([out / "index.html"])

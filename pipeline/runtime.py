@@ -6,8 +6,6 @@ contact along with it.
 No equation of the contact is solved here: ``vr.roll`` looks the law up in what the file holds.
 """
 
-from __future__ import annotations
-
 import sys
 import time
 from collections.abc import Callable
@@ -25,13 +23,12 @@ from viscoroll.core.files import write_dataset
 from viscoroll.core.scale import attributes
 
 from . import stage
+from .validation import FIELDS
 
 #: (V0, omega0) -> V and omega at the times of a stage
 Way = Callable[[float, float], tuple[NDArray, NDArray]]
 #: A call of so many seconds is timed once: it repeats what it times some hundred times by itself.
 ENOUGH = 0.05
-#: of the contact along a motion
-CONTACT = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 
 
 class Runtime(msgspec.Struct, forbid_unknown_fields=True):
@@ -55,7 +52,7 @@ def least_seconds(call: Callable[[], Any], compiled: bool) -> tuple[Any, float]:
     """
     if not compiled:
         call()
-    seconds: list[float] = []
+    seconds = []
     while not seconds or (len(seconds) < 3 and min(seconds) < ENOUGH):
         began = time.perf_counter()
         found = call()
@@ -89,25 +86,23 @@ def motions(way: Way, t: NDArray, law: str) -> xr.Dataset:
 def by_roll(scene: vr.Scene, t: NDArray, rtol: float) -> Way:
     """Motions of a scene, whose material may be a file."""
 
-    def way(V0: float, omega0: float) -> tuple[NDArray, NDArray]:
+    def way(V0, omega0):
         found = vr.roll(scene, V0, omega0, t, rtol=rtol)
         return found.V, found.omega
 
     return way
 
 
-def work(settings: Runtime, out: Path) -> stage.Outcome:
+def work(settings, out):
     scene = vr.presets.PAPER_SECTION_5.replace(material=vr.load_law(stage.ROOT / settings.law))
     t = settings.t
     dataset = motions(by_roll(scene, t, settings.rtol), t, f"the file {Path(settings.law).name}")
-    along = vr.contact(scene, dataset.V.values, omega=dataset.omega.values, fields=CONTACT)
-    for name in CONTACT:
+    along = vr.contact(scene, dataset.V.values, omega=dataset.omega.values, fields=FIELDS)
+    for name in FIELDS:
         dataset[name] = (("ic", "t"), getattr(along, name), attributes(name))
     path = out / "runtime.nc"
     write_dataset(dataset, path, stage.plain_encoding(dataset))
-    headline: dict[str, float | int | str] = {
-        f"{dataset.law}: seconds, IC1-IC3": float(dataset.seconds.sum())
-    }
+    headline = {f"{dataset.law}: seconds, IC1-IC3": float(dataset.seconds.sum())}
     for name, start in vr.presets.PAPER_STARTS.items():
         motion = vr.roll(scene, *start, t)
         if np.isfinite(onset := motion.onset_time):

@@ -5,8 +5,6 @@ A stage is a function work(settings, out) -> Outcome.  :func:`run` calls it and 
 <out>/stages/<name>.json: seconds, files and headline numbers, which pipeline/report.py reads.
 """
 
-from __future__ import annotations
-
 import argparse
 import csv
 import io
@@ -19,7 +17,7 @@ import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import Any, TypeVar
 
 import msgspec
 
@@ -27,12 +25,12 @@ from viscoroll import ViscorollError
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_text
 
-if TYPE_CHECKING:
-    import xarray as xr
-
 ROOT = Path(__file__).parents[1]
 CONFIG = ROOT / "pipeline/config.toml"
 T = TypeVar("T", bound=msgspec.Struct)
+#: Values by the name of their column, and a section of a configuration, by key.
+Row = dict[str, Any]
+Sizes = dict[str, Any]
 
 
 @dataclass
@@ -44,7 +42,7 @@ class Outcome:
     failed: bool = False
 
 
-def read_toml(path: Path) -> dict[str, Any]:
+def read_toml(path: Path) -> Row:
     """Content of a TOML file.
 
     Raises
@@ -93,7 +91,7 @@ def make_folder(path: Path) -> Path:
     return path
 
 
-def plain_encoding(dataset: xr.Dataset) -> dict[str, Any]:
+def plain_encoding(dataset) -> Row:
     """For ``write_dataset``, of a dataset that holds strings: those take neither compression nor
     checksums.
     """
@@ -157,7 +155,7 @@ def run(
         )
     arguments = options.parse_args()
 
-    def timed() -> int:
+    def timed():
         settings = read_section(arguments.config, name, kind) if kind else arguments.config
         out = make_folder(arguments.output)
         start = time.perf_counter()
@@ -168,10 +166,10 @@ def run(
     return told(name, timed)
 
 
-def read_rows(path: Path) -> list[dict[str, Any]]:
+def read_rows(path: Path) -> list[Row]:
     """Rows of a CSV file, numbers where there are any."""
 
-    def value(text: str) -> Any:
+    def value(text):
         try:
             return float(text)
         except ValueError:
@@ -196,6 +194,6 @@ def shown(path: Path) -> str:
     return str(path.relative_to(here)) if path.is_relative_to(here) else str(path)
 
 
-def readable(value: Any) -> str:
+def readable(value) -> str:
     """A number with three significant digits, nothing for NaN, anything else as it is."""
     return ("" if value != value else f"{value:.3g}") if isinstance(value, float) else str(value)

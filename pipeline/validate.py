@@ -9,8 +9,6 @@ a quantity: found, allowed, verdict; exit code 1 where one is exceeded.  --corne
 of what the package takes instead (pipeline/corners.py).
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from dataclasses import replace
@@ -92,7 +90,7 @@ def coupled_checks(settings: Coupled | None, seed: int) -> list[Check]:
 def direct(t: NDArray) -> xr.Dataset:
     """The paper's motions from root solves."""
 
-    def way(V0: float, omega0: float) -> tuple[NDArray, NDArray]:
+    def way(V0, omega0):
         found = roll_direct(vr.presets.PAPER_SECTION_5, V0, omega0, t)
         return found.V, found.omega
 
@@ -117,7 +115,7 @@ def errors(found: xr.Dataset, truth: xr.Dataset) -> dict[str, float]:
     )
 
 
-def work(settings: Validate, out: Path) -> stage.Outcome:
+def work(settings, out):
     sizes = msgspec.structs.asdict(settings)
     allowed = sizes.pop("runtime")
     names = sizes.pop("tables")
@@ -145,7 +143,7 @@ def work(settings: Validate, out: Path) -> stage.Outcome:
         for t in tables
         if is_law(t)
     }
-    headline: dict[str, float | int | str] = {
+    headline = {
         text: max(check.measured for check in report.checks if re.fullmatch(which, check.name))
         for text, which in said.items()
     }

@@ -5,12 +5,10 @@ Read in this order: states and stresses (contact law), an integrator of its own 
 that it is for; rows of files are those of ``viscoroll tables validate``.
 """
 
-from __future__ import annotations
-
-from collections.abc import Callable
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
+import xarray as xr
 from numpy.typing import NDArray
 from scipy.integrate import solve_ivp
 from tqdm import tqdm
@@ -22,9 +20,6 @@ from viscoroll.motion.roll import roll
 from viscoroll.presets import PAPER_SECTION_5, PAPER_SECTION_5_ROUNDED, PAPER_STARTS
 from viscoroll.rollers import Scene
 from viscoroll.tables.law_dataset import Check, Report, check_table
-
-if TYPE_CHECKING:
-    import xarray as xr
 
 # --- method "table" against method "direct": random states, the paper's motions ---
 
@@ -56,7 +51,7 @@ def random_states(count: int, seed: int) -> tuple[Scene, NDArray, NDArray]:
     """
     rng = np.random.default_rng(seed)
 
-    def log_uniform(low: float, high: float) -> NDArray:
+    def log_uniform(low, high):
         return np.exp(rng.uniform(np.log(low), np.log(high), count))
 
     alpha = np.where(rng.random(count) < _SHARE_ELASTIC, 1.0, log_uniform(1.0, 1e4))
@@ -73,7 +68,7 @@ def differences(table: Values, direct: Values, scene: Scene) -> dict[str, float]
     """Largest difference of each of :data:`FIELDS` between two methods, in the units of
     :data:`ALLOWED`.
     """
-    units: dict[str, Any] = {
+    units = {
         "lam": table.lam,
         "epsilon": np.maximum(table.epsilon, 1.0),
         "delta_star": table.delta_star,
@@ -82,12 +77,12 @@ def differences(table: Values, direct: Values, scene: Scene) -> dict[str, float]
         "M": 1.0 / np.asarray(scene.kappa),
     }
     return {
-        name: float(np.max(np.abs(getattr(table, name) - getattr(direct, name)) / unit))
+        name: np.max(np.abs(getattr(table, name) - getattr(direct, name)) / unit)
         for name, unit in units.items()
     }
 
 
-def _checks(where: str, worst: dict[str, float], sample: str) -> list[Check]:
+def _checks(where, worst, sample):
     return [
         Check(f"{where}: {name}", worst[name], allowed, f"{unit}; table against direct, {sample}")
         for name, (allowed, unit) in ALLOWED.items()
@@ -113,9 +108,7 @@ def along_motion_checks(times: int) -> list[Check]:
             found = differences(
                 motion.contact(FIELDS), motion.contact(FIELDS, method="direct"), scene
             )
-            worst = {
-                name: float(np.maximum(worst[name], found[name])) for name in FIELDS
-            }  # a NaN stays
+            worst = {name: np.maximum(worst[name], found[name]) for name in FIELDS}  # a NaN stays
     return _checks("along IC1-IC3", worst, f"{times} times a motion")
 
 
@@ -178,7 +171,7 @@ def stress_checks(count: int, seed: int) -> list[Check]:
         # np.max: the max of Python may lose a NaN
         Check(
             f"stress: {name}",
-            float(np.max([abs(one[name]) for one in found])),
+            np.max([abs(one[name]) for one in found]),
             CLOSURE_ALLOWED,
             f"divided by the load; {text}, {count} states",
         )
@@ -202,12 +195,12 @@ class DirectMotion(NamedTuple):
     none).
     """
 
-    V: NDArray[np.float64]
-    omega: NDArray[np.float64]
+    V: NDArray
+    omega: NDArray
     onset_time: float
 
 
-def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) -> DirectMotion:
+def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray) -> DirectMotion:
     """Motion from (V0, omega0) != (0, 0) at ascending times ``t``, on root solves of the printed
     equations.
 
@@ -249,13 +242,13 @@ def roll_direct(scene: Scene, V0: float, omega0: float, t: NDArray[np.float64]) 
     raise ConvergenceError(f"direct motion: more than {_MOST_PHASES} changes of regime")
 
 
-def _law(scene: Scene, V: float, delta: float) -> tuple[float, float, float]:
+def _law(scene, V, delta):
     """(Q, M, delta_star), as printed."""
     found = contact(scene, V, delta=delta, fields=("Q", "M", "delta_star"), method="direct")
     return float(found.Q), float(found.M), float(found.delta_star)
 
 
-def _limit(scene: Scene, V: float) -> float:
+def _limit(scene, V):
     """The slip |omega - V| at which stick ends."""
     return _law(scene, V, 0.0)[2] * abs(V)
 
@@ -341,7 +334,7 @@ def motion_checks(times: int) -> list[Check]:
     return [check for name, case in cases.items() for check in _compare(name, *case, times)]
 
 
-def _compare(name: str, scene: Scene, V0: float, omega0: float, times: int) -> list[Check]:
+def _compare(name, scene, V0, omega0, times):
     end = roll(scene, V0, omega0, np.array([1.0]), rtol=RTOL, rest=_LEAST_SPEED).rest_time
     motion = roll(scene, V0, omega0, np.linspace(0.0, end, times), rtol=RTOL)
     direct = roll_direct(scene, V0, omega0, motion.t)
@@ -370,8 +363,6 @@ def _compare(name: str, scene: Scene, V0: float, omega0: float, times: int) -> l
 
 
 # --- all of it ---
-
-__all__ = ["Check", "Report", "validate"]
 
 
 def validate(
@@ -415,7 +406,7 @@ def validate(
     table
     or a scene is wrong is tested in ``tests/validation/test_validation.py``.
     """
-    parts: list[Callable[[], list[Check]]] = [
+    parts = [
         lambda: random_state_checks(states, seed),
         lambda: along_motion_checks(times),
         lambda: stress_checks(stress_states, seed),

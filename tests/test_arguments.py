@@ -10,7 +10,7 @@ from functools import partial
 import numpy as np
 import pytest
 from refusals import refused
-from test_quantities import CALLS, arguments_of, parameters
+from test_quantities import CALLS, CYLINDER, arguments_of, parameters
 
 from viscoroll.core.scale import SYMBOLS
 
@@ -65,3 +65,13 @@ def test_what_an_argument_cannot_be(call):
         kind = str(parameter.annotation).partition("[")[0].partition(" |")[0]
         for bad in KINDS.get(kind, ()):
             refused(partial(function, **given | {name: bad}), name, "must be")
+
+
+@pytest.mark.parametrize("call", [call for call in CALLS if call.endswith("of a Cylinder")])
+def test_three_values_do_not_go_with_two_cylinders(call):
+    """But times, which are those of all."""
+    two = CYLINDER.replace(R=[1.0, 2.0])
+    for argument in arguments_of(call):
+        if argument.name != "t" and not np.ndim(argument.value):
+            many = argument._replace(function=partial(argument.function.func, two))
+            refused(partial(many, np.full(3, argument.value)))

@@ -2,7 +2,6 @@
 
 import threading
 
-import numpy as np
 import pytest
 from refusals import refused
 
@@ -31,18 +30,3 @@ def test_blocks_after_an_error_are_not_begun():
     with pytest.raises(ValueError, match="block 10"):
         run_blocks(work, 100_000, 1, threads=2)
     assert len(begun) < 1000
-
-
-def test_blocks_cover_the_work_once(monkeypatch):
-    for threads in (1, 3):
-        seen = np.zeros(1001, dtype=int)
-
-        def work(start, stop, seen=seen):
-            seen[start:stop] += 1
-
-        run_blocks(work, 1001, 64, threads=threads)
-        assert np.all(seen == 1)
-    run_blocks(lambda start, stop: pytest.fail("no work"), 0, 64)
-    monkeypatch.setenv("VISCOROLL_THREADS", "3")
-    assert thread_count() == 3
-    assert thread_count(1) == 1

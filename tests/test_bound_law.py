@@ -122,32 +122,6 @@ def test_a_law_lasts_as_long_as_somebody_holds_a_part_of_it():
     assert others[0](0.3, 0.3001) != expected
 
 
-def test_a_law_around_a_jitted_function_stays_there():
-    def made():
-        law = vr.law(vr.Scene(alpha=7.0, kappa=50.0, mu=0.2)).jitted
-        return numba.njit(lambda V, omega: law(V, omega=omega).Q), law(0.3, 0.3001).Q
-
-    function, expected = made()
-    assert function(0.3, 0.3001) == expected
-
-
-def test_jitted_code_takes_a_tuple_of_laws():
-    scenes = [
-        vr.Scene(kappa=50.0, mu=0.2, **MATERIALS[name])
-        for name in ("alpha", "series", "on an elastic base")
-    ]
-    laws = tuple(vr.law(scene).jitted for scene in scenes)
-
-    @numba.njit
-    def total(laws, V):
-        moment = 0.0
-        for law in laws:
-            moment += law(V, V).M
-        return moment
-
-    assert total(laws, 0.3) == total.py_func(laws, 0.3)
-
-
 @pytest.mark.filterwarnings(
     "ignore::numba.core.errors.NumbaWarning"
 )  # numba says that it cannot cache the function
@@ -169,13 +143,6 @@ def test_jitted_code_with_a_law_inside_is_not_cached(tmp_path):
     assert not second["traction"].stats.cache_hits
     assert len(second["slip"].stats.cache_hits) == 1
     assert {path.name.split("-")[0] for path in tmp_path.rglob("*.nb[ci]")} == {"user.slip"}
-
-
-def test_jitted_refuses_what_it_cannot_take(law):
-    with pytest.raises(numba.TypingError):
-        called(law.jitted, "fast", 1.0)
-    with pytest.raises(numba.TypingError):
-        numba.njit(lambda law: law(1.0))(law.jitted)
 
 
 def test_a_pickled_law_binds_anew(law):

@@ -36,10 +36,3 @@ def test_what_is_not_allowed_is_refused(found, exact, rel, scale):
 )
 def test_what_is_allowed_passes(found, exact, rel, scale):
     assert close(found, exact, rel, scale=scale)
-
-
-def test_the_worst_place_is_told():
-    with pytest.raises(
-        AssertionError, match=r"V .*3\.5\) at \(2,\), not np\.float64\(3\.0\).*2 of 3 beyond"
-    ):
-        close([1.1, 2.0, 3.5], [1.0, 2.0, 3.0], 1e-3, what="V")

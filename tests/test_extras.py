@@ -13,7 +13,6 @@ import pytest
 from places import ROOT
 
 import viscoroll as vr
-from viscoroll.core.errors import import_extra
 from viscoroll.runs import export_netcdf, open_run, read_run, run_ensemble
 
 RUN = """
@@ -79,13 +78,6 @@ def test_cluster_and_parquet_are_extras_too(bare, run_file, tmp_path, monkeypatc
     )
     with pytest.raises(vr.MissingDependencyError, match=r"viscoroll\[parquet\]"):
         read_run(run_file)
-
-
-def test_what_an_extra_itself_misses_is_not_the_extra(tmp_path, monkeypatch):
-    (tmp_path / "broken_extra.py").write_text("import not_there_at_all")
-    monkeypatch.syspath_prepend(tmp_path)
-    with pytest.raises(ModuleNotFoundError, match="not_there_at_all"):
-        import_extra("broken_extra", "runs")
 
 
 # --- systems that are not POSIX ---

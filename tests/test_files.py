@@ -1,6 +1,5 @@
 """Files that are whole or not there, whatever stands in the way; and the seal behind them."""
 
-import ast
 import os
 import stat
 import subprocess
@@ -11,7 +10,6 @@ import numpy as np
 import pytest
 import xarray as xr
 from ordinary_user import as_ordinary_user, let_in
-from places import ROOT
 from refusals import refused
 
 import viscoroll as vr
@@ -137,20 +135,6 @@ def test_a_full_disk(tmp_path):
     assert done.stdout == f"{path}: cannot be written (File too large)\n" * 15
 
 
-def test_samples_are_copied_and_a_file_of_the_user_stays(tmp_path):
-    copies = vr.datasets.copy_files(tmp_path / "a/b")
-    written = [copy.stat().st_mtime_ns for copy in copies]
-    assert vr.datasets.copy_files(tmp_path / "a/b") == copies
-    assert [copy.stat().st_mtime_ns for copy in copies] == written
-    assert all(copy.read_bytes() == vr.datasets.path(copy.name).read_bytes() for copy in copies)
-    (tmp_path / "own").mkdir()
-    (tmp_path / "own/rubber.toml").write_text("mine")
-    refused(
-        lambda: vr.datasets.copy_files(tmp_path / "own"), "rubber.toml: exists", error=vr.FileError
-    )
-    assert [file.read_text() for file in (tmp_path / "own").iterdir()] == ["mine"]
-
-
 def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path):
     path = tmp_path / "file"
     path.write_text("as it was")
@@ -158,20 +142,6 @@ def test_an_error_on_the_way_leaves_all_as_it_was(tmp_path):
         temporary.write_text("half") + "no number"
     assert path.read_text() == "as it was"
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_all_is_on_disk_before_the_name_is(tmp_path, monkeypatch):
-    """File synced, renamed, folder synced; in this order."""
-    done = []
-    sync = os.fsync
-    replace = os.replace
-    monkeypatch.setattr(
-        os, "fsync", lambda fd: done.append(os.readlink(f"/proc/self/fd/{fd}")) or sync(fd)
-    )
-    monkeypatch.setattr(os, "replace", lambda a, b: done.append("rename") or replace(a, b))
-    files.write_text(tmp_path / "file", "new")
-    assert done[0].startswith(f"{tmp_path}/.")
-    assert done[1:] == ["rename", str(tmp_path)]
 
 
 # --- the seal ---
@@ -246,88 +216,3 @@ def test_damage_is_told(form, tmp_path):
 
 
 # --- every writer is one of these ---
-
-RAW = {
-    "open",
-    "write_text",
-    "write_bytes",
-    "savefig",
-    "to_netcdf",
-    "save",
-    "savez",
-    "savez_compressed",
-    "savemat",
-    "savetxt",
-    "to_csv",
-    "to_parquet",
-    "netcdf_file",
-    "File",
-    "copyfile",
-}
-#: composed in memory and written by ``write_bytes``, to a path that ``replace_file`` gave, or to a
-#: temporary folder
-KNOWN = {
-    "files.py: fix_texts(dataset).to_netcdf",
-    "files.py: np.savez",
-    "run_results.py: h5netcdf.File",
-    "run_results.py: path.open",
-    "cache_folder.py: temporary.write_bytes",
-    "fmu_build.py: (folder / name).write_text",
-    "arguments.py: frame.to_csv",
-}
-#: stages that write to scratch folders of their own
-SCRATCH = (
-    "pipeline/evidence/matrix.py",
-    "pipeline/evidence/measure/ensembles.py",
-    "pipeline/evidence/measure/outside.py",
-    "pipeline/evidence/mutate.py",
-    "pipeline/evidence/torture.py",
-)
-
-
-def calls(node):
-    """Calls outside the body of ``with replace_file(...)``."""
-    if isinstance(node, ast.With) and any(
-        "replace_file(" in ast.unparse(item) for item in node.items
-    ):
-        return []
-    found = [node] if isinstance(node, ast.Call) else []
-    return found + [call for child in ast.iter_child_nodes(node) for call in calls(child)]
-
-
-def writes(call):
-    """Whether a call may write a file by other means than those of ``files.py``."""
-    owner, _, name = ast.unparse(call.func).rpartition(".")
-    if name in ("open", "File"):  # with a mode such as "w", "ab" or "r+"
-        words = {
-            node.value for node in ast.walk(call) if isinstance(node, ast.Constant) and node.value
-        }
-        return any(
-            set(word) <= set("rwaxb+t") and set(word) & set("wax+")
-            for word in words
-            if isinstance(word, str)
-        )
-    return name in RAW and owner not in {
-        "",
-        "files",
-        "material",
-        "stored",
-        "tables",
-        "vr.tables",
-        "figures",
-    }
-
-
-def test_every_file_is_written_whole_or_not_at_all():
-    """Whatever writes in the package and the pipeline does so inside ``replace_file``, but for what
-    is known.
-    """
-    found = {
-        f"{path.name}: {ast.unparse(call.func)}"
-        for folder in ("src/viscoroll", "pipeline")
-        for path in (ROOT / folder).rglob("*.py")
-        if not path.relative_to(ROOT).as_posix().startswith(SCRATCH)
-        for call in calls(ast.parse(path.read_text()))
-        if writes(call)
-    }
-    assert found == KNOWN

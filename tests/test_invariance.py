@@ -1,7 +1,7 @@
-"""What changes no bit: company, order, threads, kinds of arrays."""
+"""What changes no bit: company, order, threads."""
 
 from concurrent.futures import ThreadPoolExecutor
-from functools import cache, partial
+from functools import partial
 from threading import Barrier
 
 import numpy as np
@@ -139,11 +139,6 @@ def of(name, part=slice(None)):
     }
 
 
-@cache
-def a_grid():
-    return vr.tables.build(**GRID)
-
-
 def everything():
     """All calls, a single motion and a table, as named arrays."""
     found = {f"{name}: {field}": value for name in CALLS for field, value in of(name).items()}
@@ -186,34 +181,6 @@ def test_any_company_and_any_threads(name, monkeypatch, own_maps):
         assert_same(of(name), whole)
 
 
-def test_a_field_alone_and_single_states():
-    V = np.array([0.3, -2.0, 1e-4, 0.0])
-    delta = np.array([0.01, -0.005, 1.0, 1e-3])
-    whole = vr.contact(SCENE, V, delta=delta, slopes=True)
-    for name, values in whole.as_dict().items():
-        assert np.array_equal(
-            getattr(vr.contact(SCENE, V, delta=delta, fields=name), name), values
-        ), name
-        one = [
-            getattr(vr.contact(SCENE, V[i], delta=delta[i], slopes=True), name)
-            for i in range(V.size)
-        ]
-        assert np.array_equal(one, values), name
-
-
-def test_a_grid_is_as_the_grid_written_out():
-    """Across the edges of blocks."""
-    V = np.linspace(-1.0, 2.0, 301)
-    delta = np.linspace(-0.04, 0.04, 333)
-    axes = vr.contact(SCENE, V[:, None], delta=delta).as_dict()
-    assert_same(
-        axes,
-        vr.contact(
-            SCENE, np.repeat(V[:, None], 333, axis=1), delta=np.tile(delta, (301, 1))
-        ).as_dict(),
-    )
-
-
 @pytest.fixture(scope="module")
 def expected(maps_of_this_file):
     return everything()
@@ -242,36 +209,3 @@ def test_numpy_set_to_raise(expected, own_maps):
     with np.errstate(all="raise"):
         found = everything()
     assert_same(found, expected)
-
-
-KINDS = {
-    "big-endian": lambda a: a.astype(">f8"),
-    "backward": lambda a: a[::-1].copy()[::-1],
-    "column of a matrix": lambda a: np.column_stack([a, a])[:, 1],
-    "float32": lambda a: a.astype(np.float32),
-    "int16": lambda a: a.astype(">i2"),
-    "list": lambda a: a.tolist(),
-}
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_arrays_of_any_kind(kind):
-    """The bits of the plain float64 array of the same values; whole numbers, so that every kind
-    holds them.
-    """
-    make = KINDS[kind]
-    V0, omega0, t, x = map(
-        np.array, ([2.0, 0.0, -1.0], [1.0, 1.0, 3.0], [0.0, 1.0, 2.0], [0.0, 1.0])
-    )
-    scenes = [
-        vr.Scene(f(np.array([11.0, 2.0, 1.0])), 3, f(np.array([1.0, 2.0, 1.0])), 2, 1)
-        for f in (np.array, make)
-    ]
-    calls = (
-        lambda scene, f: vr.ensemble(scene, f(V0), f(omega0), f(t)).V,
-        lambda scene, f: vr.ensemble(SCENE, f(V0), f(omega0), f(t), method="flow").x,
-        lambda scene, f: vr.stress(SCENE, f(x), 1, omega=f(omega0[:2])).tau,
-        lambda scene, f: vr.contact(scene, f(V0), omega=f(omega0)).Q,
-        lambda _, f: vr.tables.interpolate(a_grid(), V=f(V0[:1]), delta=0, alpha=f(V0[:1])).lam,
-    )
-    assert all(np.array_equal(call(scenes[0], np.array), call(scenes[1], make)) for call in calls)

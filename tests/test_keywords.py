@@ -51,20 +51,6 @@ def test_every_misspelt_argument_of_public_calls_is_told():
             call(**{name + "_": None})
 
 
-@pytest.mark.parametrize(
-    ("call", "meant"),
-    [
-        (lambda roller: roller.roll(1.0, 10.0, 1.0, toque=3.0), "torque"),
-        (lambda roller: roller.replace(laod=3.0), "load"),
-        (lambda roller: roller.contact(1.0, delta=0.0).plot(pth="M.png"), "path"),
-        (lambda roller: roller.roll(1.0, 10.0, 1.0).contact(feilds="M"), "fields"),
-    ],
-)
-def test_objects_of_presets_and_results_tell_it_once(call, meant):
-    with pytest.raises(TypeError, match=rf"argument '\w+'; did you mean '{meant}'\?$"):
-        call(vr.presets.RUBBER_CYLINDER)
-
-
 def test_a_type_error_of_a_users_function_stays_as_it_is():
     def torque(t):
         return dict(t, speed=1.0) if t < 0.0 else torque(time=t)

@@ -55,24 +55,6 @@ def test_the_pressure_on_a_cover():
     assert "shear" not in axes.get_ylabel()
 
 
-def test_a_locked_wheel_slides_and_axes_have_words():
-    """Grey lasts from the start, in full slip, to the rest of the locked wheel at v0^2/(2 mu g)."""
-    motion = vr.presets.RUBBER_CYLINDER.roll(2.0, 20.0, np.linspace(0.0, 1.0, 201), brake=500.0)
-    axes = motion.plot().axes
-    (shade,) = [patch for patch in axes[0].patches if patch.get_width() > 0.1]
-    assert abs(shade.get_x() + shade.get_width() - motion.t[np.flatnonzero(motion.V)[-1]]) < 0.011
-    assert axes[0].get_ylabel() == "velocity of the axis\n$V$, m s$^{-1}$"
-
-
-def test_lengths_are_in_millimetres():
-    contact = vr.presets.RUBBER_CYLINDER.contact([0.5, 1.0, 2.0], delta=0.0)
-    axes = {each.get_ylabel(): each for each in contact.plot().axes}
-    assert not any("lambda" in label for label in axes)
-    np.testing.assert_array_equal(
-        axes["contact length, mm"].lines[0].get_ydata(), 1e3 * contact.length
-    )
-
-
 def test_the_histogram_of_close_values_has_many_bars():
     """Speeds that differ by less than 2^-8 of their value, a bin of a stored histogram, and none
     lies beyond.

@@ -15,7 +15,6 @@ from hypothesis import strategies as st
 
 import viscoroll as vr
 from viscoroll.core.errors import MotionStatus
-from viscoroll.laws.law_table import law_table
 from viscoroll.motion.ensemble import FIELDS
 
 pytestmark = pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
@@ -65,14 +64,6 @@ creeps = st.just(0.0) | st.builds(np.multiply, signs, tens(-5.0, 2.0) | tens(-15
 times = st.lists(st.just(0.0) | tens(-6.0, 6.0), min_size=1, max_size=4).map(sorted)
 
 # --- what is not, mostly ---
-
-any_float = st.floats(allow_nan=True, allow_infinity=True)
-usual = st.floats(1e-3, 1e3) | st.floats(-1e3, -1e-3) | st.sampled_from([0.0, -0.0, 1.0, -1.0])
-odd = st.sampled_from(
-    ["fast", None, True, 1j, [], [[1.0], [1.0, 2.0]], 10**400, {}, b"1", np.array([object()])]
-)
-number = usual | any_float | st.integers(-(10**20), 10**20)
-argument = number | st.lists(usual, max_size=4) | st.lists(number, max_size=3) | odd
 
 
 def long_or_short(examples):
@@ -167,56 +158,3 @@ def test_the_ends_of_the_ranges(scene, V, creep, share):
 
 
 # --- refusals ---
-
-
-def own_error(error):
-    """In one line that says something."""
-    text = str(error)
-    assert text
-    assert "\n" not in text
-
-
-@pytest.mark.filterwarnings("ignore")  # of numpy on odd objects
-@long_or_short(60)
-@given(st.lists(argument, min_size=6, max_size=6), st.lists(number, min_size=2, max_size=2))
-def test_anything(a, bounds):
-    few = min(a[0], 99) if isinstance(a[0], int) else a[0]
-    calls = (
-        lambda: vr.Scene(*a[:5]),
-        lambda: vr.contact(SCENE, a[0], delta=a[1]),
-        lambda: vr.contact(SCENE, a[2], omega=a[3], slopes=True),
-        lambda: vr.stress(SCENE, a[0], a[1], delta=a[2]),
-        lambda: SCENE.validity(a[0], omega=a[1]),
-        lambda: vr.ensemble(SCENE, a[0], a[1], a[2], rtol=a[3], rest=a[4], max_steps=STEPS),
-        lambda: vr.roll(SCENE, a[0], a[1], a[2], max_steps=STEPS),
-        lambda: vr.tables.build(SCENE, V=a[0], delta=a[1], alpha=a[2]),
-        lambda: vr.tables.spread(*bounds, few),
-        lambda: vr.Cylinder(*a[:5], *bounds, a[5]).scene(),
-        lambda: vr.presets.PAPER_CYLINDER.validity(a[1], density=a[0]),
-        lambda: vr.sampling.sample(few, a[1], a[2], V0=a[3]),
-        *(
-            lambda table=table: vr.tables.interpolate(table, alpha=a[0], V=a[1], delta=a[2])
-            for table in tables()
-        ),
-    )
-    for call in calls:
-        try:
-            call()
-        except vr.ViscorollError as error:
-            own_error(error)
-
-
-def tables(made=[]):  # noqa: B006 - built once
-    if not made:
-        made.append(
-            vr.tables.build(law_table(11.0), [0.1, 0.3, 2.0, 5.0], delta=[-0.01, 0.0, 0.03])
-        )
-        made.append(
-            vr.tables.build(
-                vr.presets.PAPER_SECTION_5,
-                [0.1, 0.3, 2.0],
-                delta=[-0.01, 0.0, 0.03],
-                alpha=[1.0, 11.0],
-            )
-        )
-    return made

@@ -15,7 +15,6 @@ from decimal import Decimal
 from fractions import Fraction
 from typing import Any, NamedTuple
 
-import experiments
 import numpy as np
 import pandas as pd
 import pint
@@ -444,6 +443,7 @@ GOOD = {
     "array": np.array,
     "long double": np.longdouble,
     "float32": np.float32,
+    "big-endian": lambda value: np.array(value, ">f8"),
     "labelled": xr.DataArray,
 }
 
@@ -524,8 +524,6 @@ def test_feedbacks_carry_units(name, units):
     found = {name: vr.Feedback(*milli)}
     pairs = (CYLINDER.roll(0.5, 0.5, 1.0, **found).V, CYLINDER.roll(0.5, 0.5, 1.0, **exact).V)
     assert close(*pairs, tolerances.UNIT_CONVERTED)
-    pairs = (CYLINDER.steady(**found).V, CYLINDER.steady(**exact).V)
-    assert close(*pairs, tolerances.UNIT_CONVERTED)
     wrong = {name: vr.Feedback(2.0, V=UNITS.Quantity(1.0, "kg"))}
     refused(lambda: CYLINDER.roll(0.5, 0.5, 1.0, **wrong), f"V of {name} is in kilogram")
     refused(
@@ -553,18 +551,11 @@ def test_columns_of_results_go_back():
         V,
         pd.Index(V),
         (3.6 * V).rename("V [km/h]"),
-        V.rename("run [left wheel]"),
         V.rename("run [1]"),
     ):
         assert close(CYLINDER.contact(column, delta=0.0).M, exact, tolerances.UNIT_CONVERTED)
     assert np.array_equal(CYLINDER.roll(0.5, 0.5, data["t [s]"]).V, V)
-    for column in (V, pd.Index(V)):
-        refused(
-            lambda column=column: SCENE.contact(column, delta=0.0),
-            "V is in m s-1",
-            "without dimension",
-        )
-        refused(lambda column=column: CYLINDER.roll(0.5, 0.5, column), "t is in m s-1", "in s")
+    refused(lambda: SCENE.contact(V, delta=0.0), "V is in m s-1", "without dimension")
 
 
 class Length:
@@ -592,26 +583,3 @@ def test_quantities_of_other_libraries():
     lengths = np.array([10.0, 20.0]).view(WithUnit)
     assert close(CYLINDER.replace(R=lengths).R, [0.1, 0.2], tolerances.UNIT_CONVERTED)
     refused(lambda: CYLINDER.replace(m=lengths), "m is in cm", "in kg m-1")
-
-
-@pytest.mark.parametrize(
-    "made", [Decimal, Fraction, int, np.float32, lambda value: np.array([value], object)]
-)
-def test_magnitudes_of_any_kind(made):
-    """Converted in double precision, whatever they are kept in."""
-    assert close(
-        CYLINDER.replace(R=UNITS.Quantity(made(5), "mm")).R, 0.005, tolerances.UNIT_CONVERTED
-    )
-
-
-def test_ranges_of_unknowns_carry_units():
-    data = experiments.resistance(seed=3)
-    plain, found = (
-        vr.identify(experiments.roller(), {"E": ends}, data, starts=1).values["E"]
-        for ends in ((3e5, 3e7), UNITS.Quantity([0.3, 30.0], "MPa"))
-    )
-    assert close(found, plain, tolerances.UNIT_CONVERTED)
-    refused(
-        lambda: vr.identify(experiments.roller(), {"E": UNITS.Quantity([1.0, 2.0], "m")}, data),
-        "E is in meter",
-    )

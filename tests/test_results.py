@@ -86,34 +86,6 @@ def test_each_is_equal_to_itself_alone(results):
             assert result != other
 
 
-def test_a_motion_tells_its_peak(results):
-    """First, largest with its time, last: a roller that is spun up and rolls out was fastest
-    between the two.
-    """
-    m = ROLLER.roll(
-        0.0, 0.0, np.linspace(0.0, 10.0, 101), torque=vr.Schedule([0.0, 1.0, 1.0], [2.0, 2.0, 0.0])
-    )
-    (line,) = (line for line in repr(m).splitlines() if line.startswith("  V "))
-    assert (
-        line.split(maxsplit=1)[1]
-        == f"first 0, largest {m.V[10]:.6g} (at t = 1), last {m.V[-1]:.6g} m s-1"
-    )
-    with pytest.warns(RuntimeWarning, match="step limit"):
-        cut = vr.roll(SCENE, 1.5, 0.5, np.linspace(0.0, 4e-3, 9), max_steps=12)
-    assert np.isnan(cut.V[-1])
-    assert f"last {cut.V[~np.isnan(cut.V)][-1]:.6g}" in repr(cut)
-
-
-def test_a_validity_is_a_card(results):
-    """Not the numbers of all times, in text and in a notebook; its parts are a sentence each."""
-    found = results["motion in SI"].validity()
-    assert repr(found) == str(found)
-    assert len(repr(found).splitlines()) == 1 + len(found)
-    assert found._repr_html_().count("<tr>") == len(found)
-    assert "True" not in found._repr_html_()
-    assert repr(found.steady) == f"yes: {found.steady.sentence}"
-
-
 def test_a_torque_that_jumps_is_drawn_with_both_sides():
     """In a figure of few output times too: the schedule's corners, and beside it what does not
     jump.

@@ -361,21 +361,6 @@ def test_losses_are_what_the_loads_put_in():
 # --- arrays ---
 
 
-def test_many_loads_are_single_calls_bit_for_bit():
-    scene = series_scene(TEN)
-    f = np.random.default_rng(5).uniform(-0.011, 0.011, 20_000)
-    s = vr.steady(scene, force=f)
-    assert s.V.shape == (20_000, s.count.max())
-    assert vr.steady(scene, force=f[:0]).V.shape == (0, 0)
-    assert (np.isfinite(s.V).sum(axis=1) == s.count).all()
-    for n in range(0, f.size, 997):
-        one = vr.steady(scene, force=f[n])
-        held = slice(0, s.count[n])
-        assert one.count == s.count[n]
-        for name in ("V", "omega", "delta", "Q", "M", "beta", "grip", "eigenvalues", "stable"):
-            np.testing.assert_array_equal(getattr(one, name), getattr(s, name)[n][held])
-
-
 def test_eigenvalues_at_the_least_and_largest_numbers():
     """The slope over slip, mu kappa/V, exceeds the square root of the doubles; that over V
     is -T_mean/(1 + j) still.

@@ -1,8 +1,5 @@
 """Flow maps on disk: the numbers that were made, or made anew."""
 
-import os
-from pathlib import Path
-
 import numpy as np
 import pytest
 
@@ -42,13 +39,6 @@ def test_made_once(folder):
     assert len(list(folder.iterdir())) == 3
 
 
-def test_no_folder(folder):
-    """A file stands in its place."""
-    folder.write_text("")
-    assert not kept(2.0)
-    assert not kept(2.0)
-
-
 def test_what_others_may_have_written_is_not_read(folder):
     kept(2.0)
     (path,) = folder.iterdir()
@@ -79,26 +69,3 @@ def test_a_damaged_map_is_built_again(folder, damage):
     with pytest.warns(RuntimeWarning, match=r"flow map is damaged \(.+\) and is built again"):
         assert not kept(2.0)
     assert kept(2.0)
-
-
-def test_a_read_only_folder_is_used(folder, monkeypatch):
-    """The time of use cannot be noted there; that is no reason to make it again."""
-
-    def refuse(*_):
-        raise PermissionError(13, "Permission denied")
-
-    kept(2.0)
-    monkeypatch.setattr(Path, "touch", refuse)
-    assert kept(2.0)
-
-
-def test_those_used_last_are_kept(folder, monkeypatch):
-    monkeypatch.setattr(flow, "KEPT", 2)
-    for number in (2.0, 3.0):
-        kept(number)
-        os.utime(place(number)[1], (0.0, number))  # long ago
-    assert kept(2.0)  # used again
-    kept(4.0)
-    assert len(list(folder.iterdir())) == 2
-    assert kept(2.0)
-    assert not kept(3.0)

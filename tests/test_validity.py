@@ -47,15 +47,6 @@ def test_how_thick_the_layer_is():
         assert np.array_equal(found.holds, [holds, holds])
 
 
-def test_the_load_is_compared_with_the_weight():
-    """A wheel that carries a part of a vehicle: its mass and its load are two numbers."""
-    wheel = vr.Cylinder(
-        R=0.05, m=20.0, load=5.0 * 20.0 * 9.81, material=vr.presets.RUBBER_CYLINDER.material, mu=0.5
-    )
-    assert "the load is 5 times m g" in wheel.validity(1.0).plane.sentence
-    assert "the load is 1 times m g" in wheel.replace(load=20.0 * 9.81).validity(1.0).plane.sentence
-
-
 def test_lengths_in_mm_give_one_warning():
     """A radius of 79.5 m is one of 79.5 mm, whose contact would look small."""
     tread = vr.Material(E=2e6, nu=0.49, prony=vr.Prony([2.0, 6.0], [1e-2, 1e-4]), thickness=8.0)

@@ -31,9 +31,6 @@ FULL_SLIP_EDGE = 1e-15
 #: Largest error that a law states of any function, against formulas in doubles; measured 1.1e-14
 #: (epsilon, N).
 LAW_STATED = 2e-14
-#: A spline at its own nodes: the banded solves round at 1e-16 times their condition, below 10 an
-#: axis.
-TABLE_SPLINE_NODE = 1e-13
 #: Compiled splines against scipy's, over the largest value of the field: sums of 64 products in
 #: another order.
 COMPILED_SPLINE = 1e-14
@@ -178,12 +175,7 @@ VALIDATION_WRONG = 1e-4
 #: Numbers read back from a drawn line: as computed, but for the factor of the axis.
 FIGURE = 1e-12
 
-# --- the benchmark at smoke sizes (test_bench.py) ---
-#: Motions of this package at rtol 1e-6: MOTION_RTOL times that; measured 1.4e-6.
-BENCH_OWN = 3e-5
-#: Those of the peers at loose tolerances, 1e-4 or 1e-3, relative to speeds down to 1e-8: only that
-#: they solve the same problem; measured 0.07.
-BENCH_PEER = 0.2
+# --- the benchmark that is kept (test_bench.py) ---
 #: The reference against a second method, whose own tolerance is 1e-11; measured 5.5e-11.
 BENCH_REFERENCE = 1e-9
 #: A number in six digits, and what depends on such a one.
@@ -208,12 +200,6 @@ FLOW_LOSS = 2e-9
 # Numbers below it, and inverses of them, may become 0 or infinite where subnormals are flushed:
 # products of a few.
 SUBNORMAL = 1e-290
-#: Directed rounding against round-to-nearest, over the largest of a field: sums that all err to one
-#: side; measured 1.3e-13.
-ROUNDING_MODE = 1e-12
-#: Motions likewise, at rtol 1e-6: steps that differ by a rounding may be accepted or not; measured
-#: 7e-11.
-ROUNDING_MODE_MOTION = 1e-8
 #: Bytes that a call may take whatever its size: blocks, threads, the allocator; measured 4e6.
 MEMORY_SLACK = 8_000_000
 
@@ -351,9 +337,6 @@ STEADY_POWER = 1e-11
 STEADINESS = 1e-6
 #: |N| (kappa V)^2 over 1 - 1/alpha: 1.3418/16 was found at most, of one mode and alpha near 100.
 STEADINESS_BOUND = 1.35 / 16.0
-#: N (kappa V)^2 over 1 - 1/alpha, of one relaxation time and kappa V >= 1: 0.644/16 was found at
-#: least, at kappa V = 1 and alpha near 1.
-STEADINESS_LEAST = 0.64 / 16.0
 # --- kernels/law/modes.py (test_unsteady.py) ---
 #: One mode as a series and as an alpha; -S_E.
 UNSTEADY_SERIES = 1e-12
@@ -392,8 +375,6 @@ DMA_ALPHA = 0.01
 #: M over nine decades of speed at the same load; measured 0.52 %, between the fit and wider grids
 #: 1.1 %.
 DMA_MOMENT = 0.02
-#: Shift factors that are given, once more: a few roundings.
-DMA_REPEATED = 1e-14
 #: Numbers read from a file, times the factor of a unit.
 DMA_READ = 1e-15
 #: Files written with seven digits: half a unit of the last one, of loss over storage twice.
@@ -437,33 +418,19 @@ SI_ENSEMBLE = 1e-9
 # largest value: other units of time round otherwise, and may step otherwise; measured 1.4e-10.
 RUN_SI = 1e-8
 
-# --- driven motions (motion/test_drive.py) ---
-#: The general method against that of free motions, both at 1e-10.
-DRIVE_FREE = 3e-9
-
 # --- examples of the bound law (docs/test_examples.py) ---
 #: V and omega by SciPy's Radau at rtol 1e-8 against roll; measured 3.7e-10.
 EXAMPLE_RADAU = 5e-9
-#: A linearly implicit Euler step of 1e-5 over 0.05; measured 2.9e-8.
-EXAMPLE_EULER = 1e-7
-#: and its order: halving the step halves the error; measured 7e-6.
-EXAMPLE_ORDER = 1e-3
 #: What is left of the train's start after 20 s, relative; measured 1.5e-5.
 EXAMPLE_TRAIN = 1e-4
-#: Slopes against central differences of 1e-6.
-EXAMPLE_JACOBIAN = 1e-4
 
 # --- a transient solver (evidence/test_transient.py) ---
-#: Largest error of V over the first speed, cells of 0.02 against 0.01; measured 4e-3 at cells of
-#: 0.04.
+#: Largest error of V over the first speed, against cells of 0.01; measured 4e-3 at cells of 0.04.
 TRANSIENT_ERROR = 6e-3
 
 # --- a layer on something rigid (evidence/test_layer.py) ---
 #: f - 1 at h = 100 half-widths against its first term, c/(2 h^2): the next is of h^-4.
 LAYER_THICK = 1e-3
-#: Half-width of a thin layer over that of its limit, from h = 0.08 and 0.04 extrapolated to 0;
-#: measured 7e-4.
-LAYER_THIN = 2e-3
 #: The file keeps three digits.
 LAYER_KEPT = 5e-3
 
@@ -559,8 +526,6 @@ COVER_FREE = 5e-5
 #: What shear does in rows of covers of nu = 1/2, of 2 kappa delta_star/mu: the end rows' fit of
 #: noise of the solve.
 COVER_SHEAR = 1e-8
-#: Bodies of a nip that change sides: sums in another order.
-COVER_MIRROR = 1e-12
 #: Digits of the numbers of other programs.
 COVER_MIRRORED = 2e-8
 #: The load of an elastic layer by pipeline/evidence/prove/layer.py, which is good to seven digits.
@@ -570,11 +535,6 @@ COVER_LOCAL = 1e-5
 #: A foundation of springs, which is off by the thickness over the half length times 0.43, at 1/6 of
 #: it.
 COVER_THIN = 0.08
-#: M V at 1e9 and 2e9 times the fastest rate.
-COVER_FAST = 1e-6
-#: Fields at nu = 1/2 - 1e-9, each over itself; delta_0 changes by the local strain, which is as
-#: large as that.
-COVER_NU = 1e-5
 #: Pressure of a thick cover against a half-space's, over its largest; and the integral of the
 #: pressure, over the load.
 COVER_PRESSURE = 1e-11
@@ -590,10 +550,6 @@ COVER_IN_C = 1e-11
 COVER_SLOPES = 1e-6
 #: Motions whose energy is looked at.
 COVER_RTOL = 1e-9
-#: Differences of V and omega over time: their second order.
-COVER_RATES = 1e-6
-#: Forces at equilibria, over P: roundings of Q near its limit.
-COVER_STEADY = 1e-13
 #: A thickness each, interpolated in its logarithm, against a law of its own; motions at rtol 1e-10.
 COVER_EACH = 1e-9
 COVER_EACH_MOTION = 1e-8
@@ -624,8 +580,6 @@ COVER_NAMES = 1e-5
 COVER_REST_LEVER = 5e-3
 #: Onsets of full slip beside those of the coupled solution, over delta_star: the error of the law.
 COVER_ONSETS = 0.08
-#: Printed digits of 2 kappa delta_0* of an elastic cover, of boundary elements.
-COVER_PRINTED = 1e-6
 #: 2 kappa delta_0* at u = 1e-7 and 1e7 beside elastic covers, first order in u and 1/u; for nu <
 #: 1/2 with a logarithm.
 COVER_ENDS = 1e-5
@@ -653,6 +607,8 @@ CARTER_PEAK = 5e-4
 FORMULA_SLOW = 1e-3
 #: Persson's integrals as Bessel functions, against quadrature up to k = 600, where 1e-7 is left.
 FORMULA_QUADRATURE = 1e-6
+#: The file keeps twelve digits of inputs; measured 6e-10 where the resistance is smallest.
+FORMULA_KEPT = 1e-8
 #: Three modes over 7 decades: 7.7e-3 of C_rr and 1.3e-2 of the length measured.
 PERSSON_THREE = 1.3e-2
 #: A thin layer of nu = 0.3 tends to springs; 1.6e-2 of M is left at h/l0 = 0.1.
@@ -690,9 +646,6 @@ TABLE_ENERGY = 1e-6
 #: losses of a motion fall by less where friction touches 0, over all losses: 3e-10, the error of
 #: motions between their steps
 TABLE_LOSS = 1e-9
-#: Power of a motion's states by the table and by the solver, over the losses; seen 4.7e-6 on the
-#: belt, 2.3e-5 on a compressible lining.
-TABLE_POWER = 1e-4
 #: The header of C of a table beside its kernels: rounding of the place in creep.
 TABLE_HEADER = 1e-11
 #: Creepage of free rolling of an elastic cover, h/l0 = 0.5, nu = 0.5, times 2 kappa: 0.165 of
@@ -707,3 +660,16 @@ BALANCE_OF_STEADY = 1e-9
 
 #: A motion on a cover at rtol 1e-10 against Radau's method on its law at 1e-10; seen 1e-13.
 COVER_MOTION = 1e-10
+
+# --- covers: limits, sides and motions (test_covers.py) ---
+#: Bodies of a nip that change sides: sums in another order.
+COVER_MIRROR = 1e-12
+#: M V at 1e9 and 2e9 times the fastest rate.
+COVER_FAST = 1e-6
+#: Fields at nu = 1/2 - 1e-9, each over itself; delta_0 changes by the local strain, which is as
+#: large as that.
+COVER_NU = 1e-5
+#: Differences of V and omega over time: their second order.
+COVER_RATES = 1e-6
+#: Forces at equilibria, over P: roundings of Q near its limit.
+COVER_STEADY = 1e-13

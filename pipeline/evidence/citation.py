@@ -7,43 +7,37 @@ package; date, reference and, once there are any, DOI and ORCIDs stand in
 [tool.viscoroll.citation], and the address in [project.urls].  "make release-check" compares.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import tomllib
-from typing import Any
 
 import viscoroll as vr
 from viscoroll.core.files import write_text
 
-from ..stage import ROOT, said, told
+from ..stage import ROOT, Row, said, told
 
 MESSAGE = "If you use this software, please cite it and the paper whose equations it implements."
 
 
-def facts() -> dict[str, Any]:
+def facts() -> Row:
     """What the files say: [project], over it [tool.viscoroll.citation], and the version."""
     content = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     own = content["tool"]["viscoroll"]["citation"]
     return content["project"] | own | {"version": vr.__version__}
 
 
-def _quoted(text: str) -> str:
+def _quoted(text):
     """A scalar of YAML: JSON's strings are among them."""
     return json.dumps(text, ensure_ascii=False)
 
 
-def _person(name: str, orcid: str | None) -> list[str]:
-    """Lines of an author or of one of a reference: a person has given and family names."""
+def _person(name, indent="  "):
+    """Lines of a person, who has given and family names."""
     given, _, family = name.rpartition(" ")
-    if orcid is None:
-        return [f"  - name: {name}"]
-    lines = [f"  - family-names: {family}", f"    given-names: {given}"]
-    return [*lines, f"    orcid: https://orcid.org/{orcid}"]
+    return [f"{indent}- family-names: {family}", f"{indent}  given-names: {given}"]
 
 
-def cff(of: dict[str, Any]) -> str:
+def cff(of: Row) -> str:
     """CITATION.cff, Citation File Format 1.2.0."""
     reference = of["reference"]
     orcids = of.get("orcid", {})
@@ -61,18 +55,20 @@ def cff(of: dict[str, Any]) -> str:
         *([f"repository-code: {_quoted(of['urls']['Repository'])}"] if "urls" in of else []),
         "authors:",
     ]
-    for author in of["authors"]:
-        lines += _person(author["name"], orcids.get(author["name"]))
+    for name in (author["name"] for author in of["authors"]):
+        if name in orcids:
+            lines += [*_person(name), f"    orcid: https://orcid.org/{orcids[name]}"]
+        else:
+            lines.append(f"  - name: {name}")
     lines += ["keywords:", *(f"  - {word}" for word in of["keywords"]), "references:"]
     lines += ["  - type: article", f"    title: {reference['title']}", "    authors:"]
     for name in reference["authors"]:
-        given, _, family = name.rpartition(" ")
-        lines += [f"      - family-names: {family}", f"        given-names: {given}"]
+        lines += _person(name, "      ")
     lines += [f"    {key}: {reference[key]}" for key in ("journal", "year", "doi")]
     return "\n".join([*lines, ""])
 
 
-def codemeta(of: dict[str, Any]) -> str:
+def codemeta(of: Row) -> str:
     """codemeta.json, CodeMeta 3.0."""
     orcids = of.get("orcid", {})
     people = [
@@ -107,7 +103,7 @@ def codemeta(of: dict[str, Any]) -> str:
     return json.dumps(found, indent=2, ensure_ascii=False) + "\n"
 
 
-def zenodo(of: dict[str, Any]) -> str:
+def zenodo(of: Row) -> str:
     """.zenodo.json, metadata of a deposit."""
     orcids = of.get("orcid", {})
     creators = [
@@ -144,10 +140,10 @@ def made() -> dict[str, str]:
     return {name: text(of) for name, text in FILES.items()}
 
 
-def main() -> int:
+def main():
     said(__doc__).parse_args()
 
-    def write() -> None:
+    def write():
         for name, text in made().items():
             write_text(ROOT / name, text)
 

@@ -4,8 +4,6 @@ motion-errors.png and transient.png in docs/figures.
 python -m pipeline.evidence.figures [-o FOLDER]
 """
 
-from __future__ import annotations
-
 import sys
 from pathlib import Path
 from typing import Any
@@ -28,7 +26,7 @@ _STYLES = {"flow": "*-k", "table": "o-k", "lsoda": "D-.g", "gsl-adams": "x:C3", 
 _ERRORS = {"max": "largest error", "p99": "99th percentile of the errors"}
 
 
-def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]], str]]) -> Any:
+def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]], str]]):
     """Error over time of each panel's rows by a key, a line for each method."""
     title = "Relative error of V and ω and computing time, for speeds above 1e-3"
     figure, drawn = new_panels(title, len(shown), 2.6, sharey=True)
@@ -52,7 +50,7 @@ def panels(methods: dict[str, str], shown: dict[str, tuple[list[dict[str, Any]],
     return figure
 
 
-def work_precision(results: Results) -> Any:
+def work_precision(results):
     """IC1-IC3 and random starts with every peer."""
     work = results["bench work-precision"]
     random = [row for row in work["rows"] if row["group"] == "random"]
@@ -64,7 +62,7 @@ def work_precision(results: Results) -> Any:
     return panels(work["methods"], few | many)
 
 
-def own_parameters(results: Results) -> Any:
+def own_parameters(results):
     """Motions whose scenes are their own."""
     own = results["bench own-parameters"]
     each = {f"a scene for each motion: {text}": (own["rows"], key) for key, text in _ERRORS.items()}
@@ -82,7 +80,7 @@ PANELS = {
 _LEAST = 1e-17
 
 
-def motion_errors(results: Results) -> Any:
+def motion_errors(results):
     """Tolerance against achieved error: worst and mean over the motions, with the bound and rtol
     itself.
     """
@@ -108,7 +106,7 @@ def motion_errors(results: Results) -> Any:
     return figure
 
 
-def transient(results: Results) -> Any:
+def transient(results):
     """The size of e over the unsteadiness, by the law and with N."""
     title = "Relative error of V of free motions, against a transient solver"
     figure, panels = new_figure(title, 1, 2, 4.2, sharey=True)

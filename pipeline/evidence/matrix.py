@@ -14,8 +14,6 @@ Pythons are those of the classifiers: this one, pyenv's and those on the PATH, o
 $PYTHONS names.  One that is not found is told, and is no failure.  Exit code 1 if a case fails.
 """  # noqa: E501
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
@@ -71,7 +69,7 @@ class Case(NamedTuple):
         return f"Python {self.version}, {'lowest' if self.lowest else 'newest'} dependencies"
 
 
-def main() -> int:
+def main():
     parser = said(__doc__)
     parser.add_argument("--quick", action="store_true")
     quick = parser.parse_args().quick
@@ -168,18 +166,13 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     package = (
         f"{packages.sdist if case.lowest else packages.wheel}[{'dev' if case.suite else 'runs'}]"
     )
-    pip = [python, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"]
-    warnings = "filterwarnings=ignore::viscoroll.ModelWarning"
-    quiet = [
-        "-p",
-        "no:cacheprovider",
-        "-o",
-        warnings,
-        "--disable-warnings",
-        "--show-capture=no",
-        "-rfE",
+    pip = [
+        python,
+        *["-m", "pip", "install", "--quiet", "--disable-pip-version-check", "--no-compile"],
     ]
-    test = [python, "-m", "pytest", *quiet, "--rootdir", packages.tree]
+    warnings = "filterwarnings=ignore::viscoroll.ModelWarning"
+    quiet = f"-p no:cacheprovider -o {warnings} --disable-warnings --show-capture=no -rfE"
+    test = [python, "-m", "pytest", *quiet.split(), "--rootdir", packages.tree]
     steps = {
         "environment": ([case.python, "-m", "venv", place / "env"], place),
         "installation": ([*pip, "-c", place / "constraints.txt", package, *TOOLS], place),
@@ -191,7 +184,7 @@ def tried(case: Case, packages: Packages, folder: Path) -> bool:
     dropped = ("PYTHONPATH", "VIRTUAL_ENV", "PYTHONDONTWRITEBYTECODE")
     environment = {name: value for name, value in os.environ.items() if name not in dropped}
     environment["VISCOROLL_CACHE_DIR"] = str(place / "cache")
-    told: dict[str, list[str]] = {}
+    told = {}
     for name, (command, where) in steps.items():
         done = subprocess.run(
             command,

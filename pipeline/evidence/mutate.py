@@ -12,8 +12,6 @@ place in the kernels, or several, or whose tests are gone (exit code 1 if there 
 run begins with.  Exit code 1 if fewer than 95 % of those run are killed.
 """
 
-from __future__ import annotations
-
 import datetime
 import json
 import os
@@ -26,13 +24,13 @@ from collections.abc import Iterable, Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from viscoroll.core.files import write_text
 
-from ..stage import ROOT, read_toml, said
+from ..stage import ROOT, Row, read_toml, said
 from .results import kernels_digest
 
 
@@ -68,7 +66,7 @@ LEAST_KILLED = 0.95
 LONGEST = 900.0
 
 
-def main() -> int:
+def main():
     parser = said(__doc__)
     parser.add_argument(
         "--check", action="store_true", help="only list the mutants that have lost their place"
@@ -88,9 +86,7 @@ def main() -> int:
     if lost or arguments.check:
         return int(bool(lost))
     before = json.loads(RESULTS.read_text(encoding="utf-8")) if RESULTS.exists() else {}
-    results: dict[str, Any] = {
-        name: before[name] for name in map(name_of, MUTANTS) if name in before
-    }
+    results = {name: before[name] for name in map(name_of, MUTANTS) if name in before}
     if arguments.fresh:
         chosen = {
             name: m
@@ -126,9 +122,7 @@ def without_place(mutants: Iterable[Mutant]) -> Iterator[str]:
             yield f"no {mutant.tests}: {name_of(mutant)}"
 
 
-def judge_all(
-    mutants: dict[str, Mutant], pool: ThreadPoolExecutor, results: dict[str, Any]
-) -> None:
+def judge_all(mutants: dict[str, Mutant], pool: ThreadPoolExecutor, results: Row) -> None:
     """Into ``results`` and their file, one by one, once the tests have passed without a defect."""
     for found in pool.map(partial(judge, None), {mutant.tests for mutant in mutants.values()}):
         if found["outcome"] != "survived":
@@ -151,7 +145,7 @@ def name_of(mutant: Mutant) -> str:
     return f"{mutant.file}: {mutant.old.strip()} -> {mutant.new.strip()}"
 
 
-def judge(mutant: Mutant | None, tests: str) -> dict[str, Any]:
+def judge(mutant: Mutant | None, tests: str) -> Row:
     """Outcome of the tests on a tree with this defect or none, and the first of them that
     failed.
     """
@@ -188,17 +182,7 @@ def plant(mutant: Mutant, path: Path) -> None:
 
 def run(tree: Path, tests: str) -> tuple[str, str]:
     """(killed, crashed, timed out or survived; the first failing test)."""
-    command = [
-        sys.executable,
-        "-m",
-        "pytest",
-        "-x",
-        "-rfE",
-        "--tb=no",
-        "-p",
-        "no:cacheprovider",
-        *tests.split(),
-    ]
+    command = [sys.executable, *f"-m pytest -x -rfE --tb=no -p no:cacheprovider {tests}".split()]
     environment = os.environ | {
         "PYTHONPATH": str(tree / "src"),
         "VISCOROLL_CACHE_DIR": str(tree / "cache"),

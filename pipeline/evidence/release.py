@@ -8,8 +8,6 @@ entry of OWNER.toml that is open: the entries that only the owner of the project
 code 1 if a check fails.
 """
 
-from __future__ import annotations
-
 import datetime
 import re
 import sys
@@ -72,7 +70,7 @@ def built(folder: Path) -> Packages:
     )
 
 
-def metadata(packages: Packages) -> Iterator[str]:
+def metadata(packages):
     """Name, version, licence and classifiers say the same everywhere."""
     found = packages.metadata
     if str(found.version) != vr.__version__:
@@ -93,7 +91,7 @@ def metadata(packages: Packages) -> Iterator[str]:
         yield "licence expression, summary or description is missing"
 
 
-def contents(packages: Packages) -> Iterator[str]:
+def contents(packages):
     """Every module of the tree is in the wheel, nothing else is; the sdist holds its own tests."""
     modules = {
         path.relative_to(ROOT / "src").as_posix() for path in (ROOT / "src/viscoroll").rglob("*.py")
@@ -118,7 +116,7 @@ def contents(packages: Packages) -> Iterator[str]:
     )
 
 
-def licences(packages: Packages) -> Iterator[str]:
+def licences(packages):
     """Our licence is in both packages; what others made has its own beside it, and a row that names
     it.
     """
@@ -138,13 +136,13 @@ def licences(packages: Packages) -> Iterator[str]:
             yield f"{name} has no licence"
 
 
-def page(packages: Packages) -> Iterator[str]:
+def page(packages):
     """The README renders as a package page."""
     if markdown.render(packages.metadata.description or "") is None:
         yield "the README does not render"
 
 
-def numbers(packages: Packages) -> Iterator[str]:
+def numbers(packages):
     """What README and docs state was measured at the kernels that are shipped."""
     others = outdated(RESULTS)
     if others:
@@ -176,7 +174,7 @@ CHECKS = {
 }
 
 
-def main() -> int:
+def main():
     said(__doc__).parse_args()
     with tempfile.TemporaryDirectory(prefix="viscoroll-release-") as folder:
         packages = built(Path(folder))

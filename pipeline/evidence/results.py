@@ -2,8 +2,6 @@
 parts, and of which kernels they are.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import datetime
@@ -12,7 +10,7 @@ import json
 import math
 import platform
 import sys
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from functools import lru_cache
 from pathlib import Path
 from typing import Any
@@ -25,7 +23,7 @@ from viscoroll.core.blocks import available_cores
 from viscoroll.core.errors import FileError
 from viscoroll.core.files import write_text
 
-from ..stage import ROOT, make_folder, read_toml, said, told
+from ..stage import ROOT, Row, Sizes, make_folder, read_toml, said, told
 from . import timing
 
 # --- of which kernels results are: a digest of what computes, which every file carries ---
@@ -51,7 +49,7 @@ def kernels_digest(kernels: Path = KERNELS) -> str:
     return digest.hexdigest()[:16]
 
 
-def _plain(node: Any) -> str:
+def _plain(node):
     """A syntax tree as text, the same in every version of Python; expressions that are constants
     alone, docstrings say, are left out, and fields that hold nothing, of which later versions have
     more.
@@ -73,12 +71,12 @@ def _plain(node: Any) -> str:
     return repr(node)
 
 
-def stamps(found: Any, name: str) -> dict[str, str]:
+def stamps(found, name: str) -> dict[str, str]:
     """Part of a result -> digest of the kernels it is of; "unknown" where a result says none."""
     return dict(_stamps(found, name)) or {name: "unknown"}
 
 
-def _stamps(found: Any, name: str) -> Iterator[tuple[str, str]]:
+def _stamps(found, name):
     if not isinstance(found, dict):
         return
     if "kernels" in found:
@@ -105,7 +103,7 @@ SIZES = ROOT / "pipeline/evidence/sizes.toml"
 
 
 #: name -> what measures that part of a stage: rows, or a dict that holds them, from the sizes
-Parts = Mapping[str, Callable[[dict[str, Any]], Any]]
+Parts = Mapping[str, Callable[[Sizes], Any]]
 
 
 def parser(
@@ -126,7 +124,7 @@ def parser(
 
 def run(
     name: str,
-    work: Callable[..., dict[str, Any]],
+    work: Callable[..., Row],
     doc: str | None,
     file: str | None = None,
     *,
@@ -137,7 +135,7 @@ def run(
     """
     arguments = parser(doc, RESULTS / (file or f"{name}.json"), sizes=sizes).parse_args()
 
-    def measured() -> None:
+    def measured():
         output = arguments.output.resolve()
         found = work(*([read_sizes(arguments.config, name, arguments.quick)] if sizes else []))
         write_results(output, found | {"machine": machine()})
@@ -151,7 +149,7 @@ def run_parts(
     parts: Parts,
     doc: str | None,
     file: str,
-    complaint: Callable[[dict[str, Any]], str | None] = lambda _: None,
+    complaint: Callable[[Sizes], str | None] = lambda _: None,
 ) -> int:
     """Run a stage of ``parts``: what each finds, its sizes and the machine, beside the parts
     that -o has already.
@@ -162,7 +160,7 @@ def run_parts(
     arguments = parser(doc, RESULTS / file, parts=parts).parse_args()
     output = arguments.output
 
-    def measured() -> int:
+    def measured():
         sizes = read_sizes(arguments.config, name, arguments.quick)
         before = json.loads(output.read_text(encoding="utf-8"))["parts"] if output.exists() else {}
         found = {part: before[part] for part in parts if part in before}
@@ -184,7 +182,7 @@ def run_parts(
     return told(name, measured)
 
 
-class Results(dict[str, Any]):
+class Results(Row):
     """What stages have left, by the name of the file, or "file part", from the first of the folders
     that has it.
     """
@@ -193,7 +191,7 @@ class Results(dict[str, Any]):
         super().__init__()
         self.folders = folders
 
-    def __missing__(self, name: str) -> Any:
+    def __missing__(self, name: str):
         file, _, part = name.partition(" ")
         for folder in self.folders:
             if (path := folder / f"{file}.json").exists():
@@ -203,7 +201,7 @@ class Results(dict[str, Any]):
         raise KeyError(f"{file}.json")
 
 
-def rows_of(parts: dict[str, dict[str, Any]]) -> list[dict[str, Any]]:
+def rows_of(parts: dict[str, Row]) -> list[Row]:
     """The rows of all parts, one part after the other."""
     return [row for part in parts.values() for row in part["rows"]]
 
@@ -214,7 +212,7 @@ def table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> str:
     return "".join("| " + " | ".join(line) + " |\n" for line in (head, ["---"] * len(head), *rows))
 
 
-def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
+def read_sizes(path: Path, name: str, quick: bool) -> Row:
     """Section [name] of the configuration, with its [quick] over it if asked, and those of its
     parts over theirs.
 
@@ -232,7 +230,7 @@ def read_sizes(path: Path, name: str, quick: bool) -> dict[str, Any]:
     return _sized(section, quick)
 
 
-def _sized(section: dict[str, Any], quick: bool) -> dict[str, Any]:
+def _sized(section, quick):
     small = section.get("quick", {}) if quick else {}
     parts = {
         key: _sized(each, quick)
@@ -242,14 +240,14 @@ def _sized(section: dict[str, Any], quick: bool) -> dict[str, Any]:
     return {key: value for key, value in (section | parts | small).items() if key != "quick"}
 
 
-def write_results(path: Path, results: Any) -> None:
+def write_results(path: Path, results) -> None:
     """``results`` as JSON; floats as :func:`rounded`."""
     make_folder(path.parent)
     text = json.dumps(rounded(results), indent=1, ensure_ascii=False, allow_nan=False)
     write_text(path, f"{text}\n")
 
 
-def rounded(value: Any) -> Any:
+def rounded(value):
     """Every float to three significant digits: more would be noise in the history; None for inf and
     NaN, as in JSON.
     """
@@ -262,7 +260,7 @@ def rounded(value: Any) -> Any:
     return float(f"{value:.3g}") if math.isfinite(value) else None
 
 
-def _caches() -> dict[str, str]:
+def _caches():
     """Return the sizes of the caches of one core as Linux states them, {"L2 Unified": "1024K"};
     empty elsewhere.
     """
@@ -275,7 +273,7 @@ def _caches() -> dict[str, str]:
     return found
 
 
-def machine() -> dict[str, Any]:
+def machine() -> Row:
     """Where and when, and with what, this was measured."""
     import numba
 

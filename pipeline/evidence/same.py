@@ -7,8 +7,6 @@ Contact states, stresses, motions, maps, steady rolling and tables through the p
 alone: the script outlives any move inside.
 """  # noqa: E501
 
-from __future__ import annotations
-
 import argparse
 import hashlib
 import os
@@ -30,7 +28,7 @@ _MOTIONS = 1_000
 _ALL = ("V", "omega", "x", "angle", "delta", "regime", "slip_loss", "rolling_loss")
 
 
-def main() -> int:
+def main():
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawTextHelpFormatter
     )
@@ -73,7 +71,7 @@ def parts() -> Iterator[tuple[str, Any]]:
         alpha=alpha[:_MOTIONS], kappa=kappa, mu=mu, j=draw.uniform(0.2, 2.0, _MOTIONS)
     )
 
-    def motions(each: Any, count: int = _MOTIONS, **how: Any) -> Any:
+    def motions(each, count=_MOTIONS, **how):
         return vr.ensemble(each, *starts[:, :count], t, fields=_ALL, **how)
 
     for rtol in (1e-6, 1e-10):
@@ -100,7 +98,7 @@ def parts() -> Iterator[tuple[str, Any]]:
     yield "law", vr.tables.law(vr.presets.RUBBER_CYLINDER.material)
 
 
-def _hash(found: Any) -> str:
+def _hash(found):
     """Of all numbers of a result or a table."""
     data = found.to_xarray() if hasattr(found, "to_xarray") else found
     total = hashlib.sha256()
@@ -110,7 +108,7 @@ def _hash(found: Any) -> str:
     return total.hexdigest()[:16]
 
 
-def _hashes_at(revision: str) -> dict[str, str]:
+def _hashes_at(revision):
     """What this script finds in a copy of another commit."""
     with tempfile.TemporaryDirectory() as folder:
         done = subprocess.run(

@@ -1,7 +1,5 @@
 """Time and memory: rounds of calls and their medians, processes of their own."""
 
-from __future__ import annotations
-
 import gc
 import json
 import os
@@ -70,7 +68,7 @@ given = json.loads(sys.argv[1])
 """
 
 
-def printed(program: str, *given: Any, **environment: str) -> Any:
+def printed(program: str, *given, **environment: str):
     """What a program prints as JSON that finds its arguments in the list ``given``, in a process of
     its own.
     """
@@ -98,11 +96,11 @@ def peak_mb() -> float:
     return max(usage.ru_maxrss for usage in usages()) * 1.024e-3
 
 
-def forked(work: Callable[..., Iterator[Any]], *arguments: Any) -> Iterator[Any]:
+def forked(work: Callable[..., Iterator[Any]], *arguments) -> Iterator[Any]:
     """What ``work`` yields in a forked process; after a crash of it, the exit code in words."""
     receiver, sender = get_context("fork").Pipe(duplex=False)
 
-    def run() -> None:
+    def run():
         for item in work(*arguments):
             sender.send(item)
 

@@ -10,8 +10,6 @@ package's own, a crash.  Sizes and seeds are in [torture] of the configuration, 
 into docs/torture.md.
 """
 
-from __future__ import annotations
-
 import hashlib
 import os
 import re
@@ -32,6 +30,7 @@ from threading import RLock
 from typing import Any
 
 import numpy as np
+from numpy.random import Generator
 from tqdm import tqdm
 
 from viscoroll import ViscorollError, tables
@@ -41,7 +40,7 @@ from viscoroll.presets import RUBBER_CYLINDER
 from viscoroll.runs import read_run, run_ensemble, verify
 
 from .. import offline
-from ..stage import ROOT
+from ..stage import ROOT, Row
 from .results import run_parts
 from .timing import forked, peak_mb, processor_time
 
@@ -58,17 +57,17 @@ MEMORY = 1 << 30
 tqdm.monitor_interval = 0
 tqdm.set_lock(RLock())
 _FORK = get_context("fork")
-Change = Callable[[bytes, np.random.Generator], bytes]
+Change = Callable[[bytes, Generator], bytes]
 
 
-def fingerprint(table: Any) -> str:
+def fingerprint(table) -> str:
     """SHA-256 over all that a table holds."""
     return hashlib.sha256(repr(table.to_dict()).encode()).hexdigest()
 
 
 def row(
     done: str, outcomes: Iterable[str], slowest: float | None = None, peak: float | None = None
-) -> dict[str, Any]:
+) -> Row:
     """How often each outcome was met; whatever is neither "refused" nor "unharmed" is wrong."""
     count = Counter(outcomes)
     good = {name: count.pop(name, 0) for name in ("refused", "unharmed")}
@@ -83,12 +82,12 @@ def row(
     }
 
 
-def unsealed(content: bytes) -> bytes:
+def unsealed(content):
     """A table as another program would have written it: without the seal."""
     return content[: content.rindex(b"\n", 0, -1)]
 
 
-def flip(content: bytes, rng: np.random.Generator) -> bytes:
+def flip(content, rng):
     """One bit; an empty file gets a byte."""
     changed = bytearray(content or b"\0")
     position = int(rng.integers(8 * len(changed)))
@@ -96,11 +95,11 @@ def flip(content: bytes, rng: np.random.Generator) -> bytes:
     return bytes(changed)
 
 
-def truncate(content: bytes, rng: np.random.Generator) -> bytes:
+def truncate(content, rng):
     return content[: int(rng.integers(max(len(content), 1)))]
 
 
-def edit(content: bytes, rng: np.random.Generator) -> bytes:
+def edit(content, rng):
     """Random bytes into the first 4 kB, or behind the mark of a header or B-tree."""
     starts = [match.start() for match in MARKS.finditer(content)]
     first, size = (0, 4096) if rng.random() < 0.5 or not starts else (int(rng.choice(starts)), 128)
@@ -124,14 +123,14 @@ def enlarge(disk: Path) -> None:
     _told("mount", "-o", "remount,size=64m", disk)
 
 
-def _told(*command: str | Path) -> None:
+def _told(*command):
     subprocess.run(command, capture_output=True, check=True)
 
 
 def ended(work: Callable[[], Any]) -> int:
     """Exit code of ``work`` in a process of its own: 2 for an error of a file, 1 for any other."""
 
-    def run() -> None:
+    def run():
         try:
             work()
         except FileError:
@@ -146,7 +145,7 @@ def ended(work: Callable[[], Any]) -> int:
 def killed(
     work: Callable[[], Any],
     seconds: float,
-    rng: np.random.Generator,
+    rng: Generator,
     begun: Callable[[], bool] = lambda: True,
 ) -> bool:
     """Whether ``work`` was killed, within ``seconds`` after it had ``begun``; False where it had
@@ -162,20 +161,20 @@ def killed(
     return process.exitcode == -signal.SIGKILL
 
 
-def trials(done: str, count: int, trial: Callable[[], str]) -> dict[str, Any]:
+def trials(done: str, count: int, trial: Callable[[], str]) -> Row:
     """A row of so many outcomes."""
     return row(done, [trial() for _ in tqdm(range(count), desc=done, delay=1.0, leave=False)])
 
 
 def damaged(
-    done: str, count: int, path: Path, content: bytes, change: Change, rng: np.random.Generator
-) -> dict[str, Any]:
+    done: str, count: int, path: Path, content: bytes, change: Change, rng: Generator
+) -> Row:
     """Change a table over and over, load it in processes with bounded memory, and see what comes
     out.
     """
     path.write_bytes(content)
     expected = fingerprint(tables.load(path))
-    found: list[tuple[str, float, float]] = []
+    found = []
     with tqdm(total=count, desc=done, delay=1.0, leave=False) as progress:
         while len(found) < count:
             seeds = rng.integers(1 << 62, size=min(BATCH, count - len(found))).tolist()
@@ -235,7 +234,7 @@ allowed = 1e-12
 WRITE = 0.02
 
 
-def of_tables(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def of_tables(sizes):
     """What was done to tables and what came of it."""
     rng = np.random.default_rng(sizes["seed"])
     with tempfile.TemporaryDirectory() as name:
@@ -265,14 +264,14 @@ def of_tables(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     return found
 
 
-def grid(command: str | None = None) -> Any:
+def grid(command: str | None = None):
     """A table whose file is headers for the most part."""
     return tables.build(
         RUBBER_CYLINDER, V=[0.1, 0.3, 2.0], delta=[-0.01, 0.0, 0.03], command=command
     )
 
 
-def kills(count: int, folder: Path, rng: np.random.Generator) -> list[dict[str, Any]]:
+def kills(count: int, folder: Path, rng: Generator) -> list[Row]:
     """SIGKILL what `make tables` does, at any moment and in its writes; the tables must be as they
     were, or new.
     """
@@ -286,7 +285,7 @@ def kills(count: int, folder: Path, rng: np.random.Generator) -> list[dict[str, 
     ended(build)
     seconds = time.perf_counter() - begun
 
-    def kill(in_write: bool) -> str:
+    def kill(in_write):
         written = f".*.tmp-{rng.choice([*expected])}" if in_write else "*"
         done = False
         while not done:  # it may end before
@@ -316,14 +315,14 @@ def hashes(folder: Path) -> dict[str, str] | None:
         return None
 
 
-def whole(path: Path) -> Any:
+def whole(path: Path):
     """A table whose seal holds."""
     if not seal_matches(path.read_bytes()):
         raise FileError(path, "has no seal that holds")
     return tables.load(path)
 
 
-def writers(done: str, count: int, path: Path) -> dict[str, Any]:
+def writers(done: str, count: int, path: Path) -> Row:
     """Two processes save one table over and over; every load between is one of theirs, whole."""
     made = [grid(f"writer {n}") for n in range(2)]
     expected = set()
@@ -331,11 +330,11 @@ def writers(done: str, count: int, path: Path) -> dict[str, Any]:
         tables.save(table, path)
         expected.add(fingerprint(tables.load(path)))
 
-    def save_all(table: Any) -> None:
+    def save_all(table):
         while True:
             tables.save(table, path)
 
-    def load() -> str:
+    def load():
         if not all(process.is_alive() for process in processes):
             return "a writer failed"
         return "unharmed" if fingerprint(whole(path)) in expected else "damaged"
@@ -370,7 +369,7 @@ keep = "all"
 """
 
 
-def of_ensembles(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def of_ensembles(sizes):
     """What was done to stores and what came of it."""
     with tempfile.TemporaryDirectory() as name:
         store = Store(Path(name), np.random.default_rng(sizes["seed"]))
@@ -389,7 +388,7 @@ class Store:
     of it.
     """
 
-    def __init__(self, folder: Path, rng: np.random.Generator) -> None:
+    def __init__(self, folder: Path, rng: Generator) -> None:
         self.rng = rng
         self.path = folder / "store.zarr"
         (folder / "run.toml").write_text(RUN, encoding="utf-8")
@@ -465,7 +464,7 @@ class Store:
 PARTS = {"tables": of_tables, "ensembles": of_ensembles}
 
 
-def harm(row: dict[str, Any]) -> str | None:
+def harm(row: Row) -> str | None:
     """What is to be said of a row in which something went wrong."""
     return (
         f"{row['done']}: {row['wrong']} of {row['tried']} wrong: {row['how']}"

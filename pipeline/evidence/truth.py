@@ -23,11 +23,7 @@ to double once, as monomials about the centre of the bin.
 Nothing here is installed with the package: python-flint comes with ``viscoroll[dev]``.
 """
 
-from __future__ import annotations
-
-import argparse
 import math
-from collections.abc import Callable
 from contextlib import suppress
 from functools import lru_cache
 from itertools import pairwise
@@ -43,6 +39,8 @@ from viscoroll import Bodies, Prony
 from viscoroll.core.errors import ConvergenceError
 from viscoroll.core.files import replace_file
 from viscoroll.kernels.law import bessel_ratios
+
+from ..stage import Row, said
 
 # --- materials of any number of relaxation times: both forms, midpoints without a radius ---
 
@@ -63,7 +61,7 @@ class Material(NamedTuple):
     weights: list[Any]
 
     @classmethod
-    def of_rates(cls, a: list[Any], b: list[Any], weights: list[Any] | None = None) -> Material:
+    def of_rates(cls, a: list[Any], b: list[Any], weights: list[Any] | None = None):
         """J_j = prod_i (a_i - b_j)/prod_{i != j} (b_i - b_j)/(alpha b_j), signs dropped, alpha =
         prod a/b.
         """
@@ -80,7 +78,7 @@ class Material(NamedTuple):
         return cls(a, b, J, weights or [arb(0.5)] * len(b))
 
 
-def material_of(given: Any) -> Material:
+def material_of(given) -> Material:
     """Of a stiffness ratio alpha (a float or a ball; times over T_epsilon), a series, or a pair
     that shares no time.
 
@@ -97,7 +95,7 @@ def material_of(given: Any) -> Material:
 
 
 @lru_cache(maxsize=64)
-def _converted(given: Prony | Bodies, bits: int) -> Material:
+def _converted(given, bits):
     with flint.ctx.workprec(bits + _MORE_BITS):
         if isinstance(given, Prony):
             return Material.of_rates(*_of_series(given))
@@ -121,10 +119,10 @@ def _converted(given: Prony | Bodies, bits: int) -> Material:
         return Material(_relaxing(b, J, rest), b, J, weights)
 
 
-def _of_series(given: Prony) -> tuple[list[Any], list[Any]]:
+def _of_series(given):
     """Rates of relaxation and of creep."""
 
-    def numbers(times: Any, strengths: Any) -> tuple[list[Any], list[Any]]:
+    def numbers(times, strengths):
         modes = sorted(zip(times.tolist(), strengths.tolist(), strict=True), reverse=True)
         return [1 / arb(time) for time, _ in modes], [arb(strength) for _, strength in modes]
 
@@ -135,17 +133,17 @@ def _of_series(given: Prony) -> tuple[list[Any], list[Any]]:
     return a, _zeros([arb(0), *a], [arb(1), *E], arb(0))
 
 
-def _relaxing(b: list[Any], J: list[Any], rest: Any) -> list[Any]:
+def _relaxing(b, J, rest):
     """Rates of relaxation from creep, ``rest`` 1/alpha."""
     return _zeros(b, [strength * rate for strength, rate in zip(J, b, strict=True)], rest)
 
 
-def _zeros(poles: list[Any], weights: list[Any], constant: Any) -> list[Any]:
+def _zeros(poles, weights, constant):
     """Zeros of constant + sum w/(pole - s), right of each pole; of the last one where the constant
     is not 0.
     """
 
-    def rising(s: Any) -> Any:
+    def rising(s):
         return constant + sum(
             weight / (pole - s) for weight, pole in zip(weights, poles, strict=True)
         )
@@ -154,7 +152,7 @@ def _zeros(poles: list[Any], weights: list[Any], constant: Any) -> list[Any]:
     return [_zero(rising, low.mid(), high.mid()) for low, high in pairwise(ends)]
 
 
-def _zero(rising: Any, low: Any, high: Any) -> Any:
+def _zero(rising, low, high):
     half = ((high - low) / 2).mid()
     from_low = rising(low + half) >= 0
     near = half * arb(2) ** -_NEAREST
@@ -177,7 +175,7 @@ _STEP_BITS = 180
 
 def contact_enclosure(
     alpha: float, kappa: float, mu: float, V: float, delta: float, bits: int = 100
-) -> dict[str, Any]:
+) -> Row:
     """State of the contact, Eqs. (6), (8)-(10), (15)-(18), each value an ``arb`` that contains it.
 
     Parameters
@@ -210,7 +208,7 @@ def contact_enclosure(
     return state
 
 
-def enclosed(given: dict[str, Any], bits: int) -> dict[str, Any]:
+def enclosed(given: Row, bits: int) -> Row:
     """``contact_enclosure`` of exact balls with V > 0 and delta >= 0; alpha: a ball, a series or a
     pair of bodies.
 
@@ -229,7 +227,7 @@ def enclosed(given: dict[str, Any], bits: int) -> dict[str, Any]:
     raise ConvergenceError(f"contact_enclosure: {_MOST_BITS} bits do not suffice")
 
 
-def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]:
+def condition_numbers(given: Row, bits: int = 40) -> dict[str, float]:
     """Sum over the inputs of |d ln f/d ln input| for every f: the relative error of f for one in
     each input.
 
@@ -252,7 +250,7 @@ def condition_numbers(given: dict[str, Any], bits: int = 40) -> dict[str, float]
     return total
 
 
-def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
+def slopes(given: Row, bits: int = 100) -> Row:
     """dQ_dV and dM_dV at fixed delta, dQ_ddelta at fixed V, by central differences that know no
     formula.
 
@@ -271,7 +269,7 @@ def slopes(given: dict[str, Any], bits: int = 100) -> dict[str, Any]:
     return found
 
 
-def shape_enclosure(Y: Any, z: Any, alpha: Any) -> Any:
+def shape_enclosure(Y, z, alpha):
     """S(Y; z) of the stresses, Eqs. (11)-(14), 0 where |Y| >= z; at the working precision.
 
     p/E' = V/(4 pi) S(X - g(zeta); zeta), X = x/(l0 kappa V), and the shear is mu times the
@@ -286,7 +284,7 @@ def shape_enclosure(Y: Any, z: Any, alpha: Any) -> Any:
     k = ratio_k(z)
     angle = (Y / z).acos()
 
-    def memory(u: Any, _: bool) -> Any:
+    def memory(u, _):
         cosine = (u * angle).cos()
         return (r + cosine) * (alpha * (Y - z * cosine)).exp()
 
@@ -294,17 +292,17 @@ def shape_enclosure(Y: Any, z: Any, alpha: Any) -> Any:
     return ellipse + (alpha - 1) * z / (1 + r * k) * angle * integral.real
 
 
-def ratio_r(x: Any) -> Any:
+def ratio_r(x):
     """I1/I0 at x > 0."""
     return x.bessel_i(1, scaled=True) / x.bessel_i(0, scaled=True)
 
 
-def ratio_i2(x: Any) -> Any:
+def ratio_i2(x):
     """I2/I0 at x > 0."""
     return x.bessel_i(2, scaled=True) / x.bessel_i(0, scaled=True)
 
 
-def ratio_k(z: Any) -> Any:
+def ratio_k(z):
     """K0/K1 at z > 0, by the asymptotic expansion where that has the digits, else by the power
     series.
 
@@ -333,7 +331,7 @@ class Zone(NamedTuple):
     i2: list[Any]
 
 
-def zone_of(of: Material, z: Any) -> Zone:
+def zone_of(of: Material, z) -> Zone:
     """The functions of a contact, or a stick zone, of half length z > 0 over V T_ref.
 
     h = sum X_i r_i, and of creep mode j in g and in m, as its memory does it to the pressure, with
@@ -368,7 +366,7 @@ def zone_of(of: Material, z: Any) -> Zone:
     return Zone(sum(shift), h, sum(m), (half_space, cylinder), X, i2)
 
 
-def _state(alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any] | None:
+def _state(alpha, kappa, mu, V, delta):
     """The law at the working precision; None where that does not decide a sign."""
     of = material_of(alpha)
     w = 2 * kappa * V
@@ -402,15 +400,15 @@ def _state(alpha: Any, kappa: Any, mu: Any, V: Any, delta: Any) -> dict[str, Any
     return state | {"full_slip": False, "beta": eta / zeta, "Q": mu * (1 - _H(of, eta) * w**2)}
 
 
-def _F(of: Material, z: Any) -> Any:
+def _F(of, z):
     return z + zone_of(of, z).g
 
 
-def _H(of: Material, z: Any) -> Any:
+def _H(of, z):
     return z * (z + 2 * zone_of(of, z).h)
 
 
-def _root(of: Material, function: Callable[[Material, Any], Any], y: Any, guess: Any) -> Any:
+def _root(of, function, y, guess):
     """A ball that holds the z > 0 at which F or H, which rise strictly, is y; None without the
     digits for it.
 
@@ -477,7 +475,7 @@ def chebyshev_fit(values: list[arb], half_width: arb) -> list[arb]:
 
 def ratio_table() -> list[float]:
     """Coefficients of every bin of every segment, in ratio_table order."""
-    found: list[float] = []
+    found = []
     with flint.ctx.workprec(BITS):
         half_width = arb(1) / (2 * bessel_ratios.BINS)
         points = [half_width * ((2 * i + 1) * arb.pi() / (2 * NODES)).cos() for i in range(NODES)]
@@ -496,10 +494,8 @@ def ratio_table() -> list[float]:
     return found
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(
-        description=__doc__, formatter_class=argparse.RawTextHelpFormatter
-    )
+def main():
+    parser = said(__doc__)
     parser.add_argument("-o", "--output", type=Path, default=TARGET)
     output = parser.parse_args().output
     with replace_file(output) as temporary:

@@ -10,6 +10,7 @@ import pytest
 import tolerances as tol
 from closeness import close
 from places import ROOT
+from refusals import refused
 from scipy.optimize import brentq
 
 import viscoroll as vr
@@ -100,15 +101,6 @@ def coupled_names():
     return "lam", "Q", "M", "M_cylinder", "beta"
 
 
-def test_a_thick_layer_is_a_half_space():
-    thick = coupled(scene_of(BELT.of_thickness(1e6)), 0.1, delta=0.02)
-    plain = coupled(
-        scene_of(vr.Bodies(vr.Prony.elastic(), ONE, 0.0, poisson=(0.5, 0.5))), 0.1, delta=0.02
-    )
-    assert close(thick.Q, plain.Q, tol.COUPLED_HALF_SPACE, scale=MU)
-    assert close(thick.M, plain.M, tol.COUPLED_HALF_SPACE, scale=1.0)
-
-
 def test_sides_and_directions():
     belt, lining = (
         coupled(scene_of(cover), 0.1, delta=sign * CREEPS)
@@ -169,13 +161,8 @@ def losses_by_transforms(pair, u, profile):
         total += (
             body.share * J * (L * abs(p) ** 2 + T * abs(t) ** 2 - 2.0 * C * np.imag(p * np.conj(t)))
         )
-    return (
-        (total / (1.0 + np.exp(-s))).sum()
-        * 0.2
-        / half
-        / np.pi
-        / np.trapezoid(profile.p, profile.nodes)
-    )
+    mean = (total / (1.0 + np.exp(-s))).sum() * 0.2 / half
+    return mean / np.pi / np.trapezoid(profile.p, profile.nodes)
 
 
 @pytest.mark.parametrize("cover", [BELT, LINING, NIP, MIXED])
@@ -284,34 +271,15 @@ def test_a_cylinder_has_the_units_of_its_scene():
         assert close(found[name], plain[name] * roller.scale[name], tol.COUPLED_SUM), name
 
 
-@pytest.mark.parametrize(
-    ("more", "words"),
-    [
-        ({"slopes": True}, "dQ_dV"),
-        ({"fields": "N"}, "N"),
-        ({"fields": "depth"}, "half-space"),
-        ({"fields": "depth", "method": "table"}, "coupled"),
-    ],
-)
-def test_what_it_does_not_have_is_refused(more, words):
-    scene = scene_of(ONE)
-    with pytest.raises(vr.ParameterError, match=words):
-        scene.contact(0.1, delta=0.0, **({"method": "coupled"} | more))
+NOT_THERE = {
+    "dQ_dV": {"slopes": True},
+    "N": {"fields": "N"},
+    "half-space": {"fields": "depth"},
+    "coupled": {"fields": "depth", "method": "table"},
+}
 
 
-def test_losses_in_slip_of_free_rolling_on_a_table_are_not_below_zero():
-    """They are differences of much larger powers there."""
-    layer = vr.Cover(vr.Prony([10.0], [1.0 / 11.0]), nu=0.5, thickness=0.5, on="base")
-    scene = vr.Scene(material=layer, kappa=4.0, mu=0.3)
-    state = vr.steady(scene, V=np.geomspace(1e-3, 1e3, 40), torque=0.0)
-    loss = state.loss
-    power = state.force * state.V
-    assert (loss.slip >= -tol.BALANCE_OF_STEADY * power).all()
-    assert (loss.half_space >= 0.0).all()
-    assert close(loss.slip + loss.half_space + loss.cylinder, power, tol.BALANCE_OF_STEADY)
-
-
-def test_a_table_at_minus_zero_speed_is_that_of_zero():
-    layer = vr.Cover(vr.Prony([2.0, 6.0], [1.0, 0.01]), nu=0.5, thickness=0.5, on="base")
-    scene = vr.Scene(material=layer, kappa=10.0, mu=0.3)
-    assert scene.contact(-0.0, omega=1e-3).Q == scene.contact(0.0, omega=1e-3).Q == 0.3
+@pytest.mark.parametrize("words", NOT_THERE)
+def test_what_it_does_not_have_is_refused(words):
+    given = {"method": "coupled"} | NOT_THERE[words]
+    refused(lambda: scene_of(ONE).contact(0.1, delta=0.0, **given), words)

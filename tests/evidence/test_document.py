@@ -1,6 +1,5 @@
 """Numbers are measured by a stage, and put on pages by another."""
 
-import json
 import re
 
 import pytest
@@ -28,19 +27,6 @@ def test_document_fills_and_refuses(tmp_path):
     assert "nowhere: no folder" in stage_refused(
         "evidence.document", "--results", tmp_path / "nowhere", page
     )
-
-
-def test_measure_runs_and_document_reads_it(tmp_path):
-    results = tmp_path / "measured.json"
-    page = tmp_path / "README.md"
-    made("evidence.measure", "--quick", "-o", results)
-    measured = json.loads(results.read_text())
-    committed = kept("measured.json")
-    assert measured.keys() == committed.keys()
-    assert measured["time"].keys() == committed["time"].keys()
-    page.write_text("<!-- measured:times -->\n<!-- end -->\n")
-    made("evidence.document", "--results", tmp_path, page)
-    assert "not those of this version" not in page.read_text()
 
 
 @pytest.mark.parametrize(

@@ -1,13 +1,11 @@
 """Runs on a cluster, and the stages that docs/ensembles.md has its numbers of."""
 
-import json
 import subprocess
 import sys
 import time
 
 import pytest
 from places import kept
-from processes import made
 
 import viscoroll as vr
 from viscoroll.runs import read_run, run_ensemble
@@ -47,15 +45,6 @@ def test_a_cluster_gives_the_same_files(tmp_path):
     files = {path.relative_to(alone) for path in alone.rglob("*") if path.is_file()}
     assert files == {path.relative_to(store) for path in store.rglob("*") if path.is_file()}
     assert all((store / file).read_bytes() == (alone / file).read_bytes() for file in files)
-
-
-@pytest.mark.parametrize(
-    ("name", "key"), [("evidence.measure.ensembles", "rows"), ("evidence.torture", "parts")]
-)
-def test_stages_run(tmp_path, name, key):
-    options = ["--only", "ensembles"] if name == "evidence.torture" else []
-    made(name, *options, "--quick", "-o", tmp_path / "results.json")
-    assert json.loads((tmp_path / "results.json").read_text())[key]
 
 
 def test_committed_figures():

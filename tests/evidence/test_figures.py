@@ -3,17 +3,15 @@ behind them.
 """
 
 import csv
-import re
-import runpy
 from html import escape
 
 import numpy as np
 import pytest
 import tolerances as tol
-from processes import made, stage_refused
+from processes import made
 
 import viscoroll as vr
-from pipeline.figures import FIGURES, GALLERY
+from pipeline.figures import FIGURES
 from pipeline.report import SECTIONS
 from viscoroll.core.plots import save
 
@@ -46,14 +44,6 @@ def test_labelled_and_saved_without_a_warning(drawn, tmp_path):
             assert axes.get_xlabel() or axes.get_shared_x_axes().get_siblings(axes) != [axes], name
         save(figure, tmp_path / f"{name}.png")
         assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG"), name
-
-
-def test_the_separatrix_parts_what_settles_from_what_runs_away():
-    page = runpy.run_path(str(GALLERY / "drive/d_slope.py"))
-    scene, slope, V, omega = (page[name] for name in ("scene", "slope", "separatrix", "across"))
-    for side in (-1e-4, 1e-4):
-        end = vr.ensemble(scene, V + side, omega, 1000.0 / scene.gamma, slope=slope).V[:, 0]
-        assert (side * (end - page["saddle"]) > 0.1 * abs(side)).all()
 
 
 # --- pipeline: motions, ensemble, figures, summary ---
@@ -133,37 +123,3 @@ def test_motions_from_tables_are_those_of_root_solves(demo):
         assert 0.0 < max(exact) < tol.DEMO_MOTION < grid
     page = (demo[1] / "index.html").read_text()
     assert all(f"<td>{escape(row['law by'])}</td>" in page for row in rows)
-
-
-def test_summary_page(demo):
-    _, out = demo
-    text = (out / "index.html").read_text()
-    links = set(re.findall('href="([^"]+)"', text))
-    assert all(
-        escape(caption) in text for figures in SECTIONS.values() for caption in figures.values()
-    )
-    assert (
-        text.index("preset paper-section-5")
-        < text.index("Free motion from three initial conditions")
-        < text.index("Duration of the stages")
-    )
-    assert "below the range of the quasi-steady assumption" in text
-    assert (
-        text.count("data:image/png;base64,") == sum(map(len, SECTIONS.values())) + 1
-    )  # and the benchmark's
-    assert {"ensemble.nc", "validation.csv", "validation.txt"} <= links
-    assert all((out / target).exists() for target in links)
-
-
-def test_stage_refuses_in_one_line(demo, tmp_path):
-    config = tmp_path / "bad.toml"
-    small = demo[0].read_text()
-    for name, old, new, words in (
-        ("ensemble", "kept = 40", "kept = 400", "kept = 400"),
-        ("ensemble", "kept = 40", "keep = 40", "[ensemble]"),
-        ("ensemble", '"paper-section-5-rounded"', '"paper"', "preset: 'paper' is not"),
-        ("ensemble", "[ensemble]", "[ensemble", "is not TOML"),
-        ("validate", "times = 5", "times = 1", "[validate]"),
-    ):
-        config.write_text(small.replace(old, new))
-        assert words in stage_refused(name, "--config", config, "-o", tmp_path / "out")

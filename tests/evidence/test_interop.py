@@ -354,14 +354,6 @@ def test_a_roller_of_c_in_steps_of_any_length(roller, name, calls, rest):
     assert close(np.array(found), exact, tol.INTEROP_TURNED, scale=np.abs(exact).max())
 
 
-def test_a_roller_of_c_stays_at_rest_and_starts_from_it(roller):
-    """Without a drive V = omega = 0 in the end, and to the end; with one it leaves V = slip = 0."""
-    status, V, omega, x = c_rolled(roller, 0.5, 0.0, 0.0, 1e-6, 0.5, -0.3, 4000.0, 1000, 1e-8)
-    assert (status, V, omega) == (0, 0.0, 0.0)
-    assert c_rolled(roller, 0.5, 0.0, 0.0, 1e-6, 0.5, -0.3, 8000.0, 2000, 1e-8)[3] == x
-    assert c_rolled(roller, 0.5, 0.0, 0.0, 1e-6, 0.0, 0.0, 1.0, 10, 1e-8) == [0, 0.0, 0.0, 0.0]
-
-
 @pytest.mark.parametrize("bad", [np.nan, np.inf])
 @pytest.mark.parametrize("place", range(9))
 def test_a_roller_of_c_refuses_what_is_no_number(roller, place, bad):
@@ -400,27 +392,6 @@ def test_the_roller_of_the_page(tmp_path):
     assert close(distance, m.x[-1], tol.RIGID_STEEL)
 
 
-def test_readers_in_c_refuse_what_is_no_law(tmp_path):
-    need("command -v cc && command -v nc-config")
-    grid = vr.tables.build(vr.presets.PAPER_SECTION_5, V=[0.1, 0.2], delta=[0.0, 0.01])
-    vr.tables.save(grid, tmp_path / "grid.nc")
-    law = vr.tables.law(11.0)
-    law.attrs["law_schema"] = np.int32(2)
-    law.to_netcdf(tmp_path / "later.nc", engine="h5netcdf")
-    (tmp_path / "open.c").write_text(
-        '#include <stdio.h>\n#include "vr_law_netcdf.h"\n'
-        "int main(int n, char **path) { vr_law a; int e = n == 2 ? vr_law_open(path[1], &a) : 0; "
-        'printf("%d", e); '
-        "if (!e) vr_law_close(&a); return 0; }\n"
-    )
-    output(
-        f"cc -std=c99 {_STRICT} -I'{HEADERS}' open.c -o open $(nc-config --cflags --libs) -lm",
-        tmp_path,
-    )
-    for name, expected in (("grid.nc", -1000), ("later.nc", -1000), ("none.nc", 2)):
-        assert int(output(f"./open {name}", tmp_path)) == expected, name
-
-
 @pytest.mark.parametrize("kind", ["law", "grid"])
 def test_cf_checker_finds_nothing(tmp_path, kind):
     checker = Path(sys.executable).with_name("compliance-checker")
@@ -432,72 +403,3 @@ def test_cf_checker_finds_nothing(tmp_path, kind):
     )
     command = f"HOME='{tmp_path}' '{checker}' --test cf:1.11 --criteria strict '{path}'"
     assert "All tests passed!" in output(command, tmp_path)
-
-
-def test_netcdf_of_a_law_by_ncdump(folder):
-    need("command -v ncdump")
-    vr.tables.export(vr.tables.load(folder / "law.nc"), folder / "three.cdf")
-    for name, kind in (("law.nc", "netCDF-4"), ("three.cdf", "64-bit offset")):
-        assert output(f"ncdump -k {name}", folder) == f"{kind}\n"
-
-
-#: A program -> what prints the sum of Q over grid.nc, and what succeeds where it can run.
-READERS = {
-    "xarray": (
-        f"'{sys.executable}' -W error -c 'import xarray as xr; "
-        'print(float(xr.open_dataset("grid.nc").Q.sum()))\'',
-        "true",
-    ),
-    "h5py": (
-        f"'{sys.executable}' -W error -c 'import h5py; "
-        'print(h5py.File("grid.nc")["Q"][()].sum())\'',
-        "true",
-    ),
-    "netCDF4": (
-        f"'{sys.executable}' -W error -c 'import netCDF4; "
-        'print(netCDF4.Dataset("grid.nc")["Q"][...].sum())\'',
-        f"'{sys.executable}' -c 'import netCDF4'",
-    ),
-    "ncdump": (
-        "ncdump -v Q grid.nc | tr -d ',;}' | awk '/^data:/ {found = 1} found' | tr -s ' \\n' '\\n'"
-        " | awk '/^-?[0-9]/ {sum += $1} END {printf \"%.17g\", sum}'",
-        "command -v ncdump",
-    ),
-    "octave": (
-        'octave-cli --eval \'pkg load netcdf; printf("%.17g", sum(ncread("grid.nc", "Q")(:)))\'',
-        "octave-cli --eval 'pkg load netcdf'",
-    ),
-    "R": (
-        'Rscript -e \'library(ncdf4); cat(sprintf("%.17g", sum(ncvar_get(nc_open("grid.nc"), '
-        '"Q"))))\'',
-        "Rscript -e 'library(ncdf4)'",
-    ),
-}
-
-
-@pytest.fixture(scope="module")
-def grid(tmp_path_factory):
-    """A grid in a file."""
-    scene = vr.presets.PAPER_SECTION_5
-    V = np.geomspace(1e-3, 2.0, 12)
-    grid = vr.tables.build(
-        scene, V, delta=np.linspace(-0.01, 0.03, 9), alpha=[1.0, 11.0], method="direct"
-    )
-    path = tmp_path_factory.mktemp("grid") / "grid.nc"
-    vr.tables.save(grid, path)
-    return path
-
-
-@pytest.mark.parametrize("name", READERS)
-def test_programs_open_a_grid_without_a_warning(grid, name):
-    command, needed = READERS[name]
-    need(needed)
-    done = subprocess.run(
-        command, shell=True, cwd=grid.parent, capture_output=True, text=True, check=False
-    )
-    told = [
-        line for line in done.stderr.splitlines() if "execution_exception" not in line
-    ]  # Octave 7 at the end of all
-    assert (done.returncode, told) == (0, [])
-    Q = vr.tables.load(grid).Q
-    assert close(float(done.stdout), float(Q.sum()), tol.INTEROP, scale=float(np.abs(Q).sum()))

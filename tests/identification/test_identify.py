@@ -55,6 +55,12 @@ def warm():
     return vr.Resistance(V, M, sigma=0.01, temperature=60.0, name="warm")
 
 
+def fit_of(names, data, more=(), **options):
+    """A fit of these parameters, and ranges of more, that starts at the truth or where told."""
+    options = {"cylinder": roller(), "starts": 1} | options
+    return vr.identify(unknown=ranges(*names.split()) | dict(more), data=data, **options)
+
+
 #: data without noise, what they hold, and what else is told
 HELD = {
     "pull over the hump": (
@@ -89,11 +95,11 @@ def test_exact_data_give_the_truth(case):
 
 
 def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
-    fit = vr.identify(roller(), ranges("E", "E_1"), [resistance(seed=1)], starts=1)
+    fit = fit_of("E E_1", [resistance(seed=1)])
     low, high = fit.intervals()["E"]
 
     def rise(E):
-        one = vr.identify(roller(E=E), ranges("E_1"), fit.records.values(), starts=1)
+        one = fit_of("E_1", fit.records.values(), cylinder=roller(E=E))
         return one.chi2 - fit.chi2
 
     width = high - low
@@ -106,8 +112,8 @@ def test_an_interval_is_where_a_dense_scan_of_the_profile_rises():
 
 
 def test_slow_rolling_tells_a_product_alone():
-    unknown = ranges("mu") | {"E_1": (4.5, 18.0), "T_ref": (5e-4, 2e-3)}
-    fit = vr.identify(roller(), unknown, [resistance(0.5 * SLOW[::8], seed=2)], starts=1)
+    unknown = {"E_1": (4.5, 18.0), "T_ref": (5e-4, 2e-3)}
+    fit = fit_of("mu", [resistance(0.5 * SLOW[::8], seed=2)], unknown)
     assert fit.does_not_act == ("mu",)
     assert fit.undetermined == ("E_1", "T_ref")
     assert fit.intervals()["mu"] == (None, None)
@@ -124,7 +130,7 @@ def test_a_product_that_a_range_limits_is_told():
     range.
     """
     plan = vr.Resistance([2.0, 2.0], sigma=1e-3)
-    fit = vr.identify(roller(), {"E": (1e6, 1e7), "T_ref": (0.8e-3, 1.2e-3)}, [plan])
+    fit = fit_of("", [plan], {"E": (1e6, 1e7), "T_ref": (0.8e-3, 1.2e-3)})
     known, ratio = fit.products()
     assert known.limited_by == [["T_ref"], []]
     assert ratio.powers == {"E": -1.0, "T_ref": 1.0}
@@ -149,9 +155,9 @@ def test_a_product_that_a_range_limits_is_told():
 
 def test_a_wrong_model_is_told_before_any_interval():
     """M of two modes, by one."""
-    two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
-    measured = vr.Resistance(V, two.contact(V, delta=0.0, fields="M").M, sigma=0.01)
-    fit = vr.identify(roller(), ranges("E", "T_ref"), [measured], starts=1)
+    M = two_modes().contact(V, delta=0.0, fields="M").M
+    measured = vr.Resistance(V, M, sigma=0.01)
+    fit = fit_of("E T_ref", [measured])
     assert fit.misfit == ("M of resistance",)
     lines = str(fit).splitlines()
     assert lines[1].startswith(
@@ -162,9 +168,9 @@ def test_a_wrong_model_is_told_before_any_interval():
 
 def test_sigma_that_is_not_given_is_estimated():
     data = [resistance(seed=4), traction(seed=5)]
-    given = vr.identify(roller(), ranges("mu", "E", "T_ref"), data, starts=1)
+    given = fit_of("mu E T_ref", data)
     bare = [vr.Resistance(V, data[0].M), vr.Traction(data[1].V, data[1].delta, data[1].Q)]
-    fit = vr.identify(roller(), ranges("mu", "E", "T_ref"), bare, starts=1)
+    fit = fit_of("mu E T_ref", bare)
     for name, sigma in {"M of resistance": 0.01, "Q of traction": 1.0}.items():
         assert close(fit.sigma[name][0], sigma, tol.SIGMA), name
     for name in fit.values:
@@ -173,62 +179,59 @@ def test_sigma_that_is_not_given_is_estimated():
     assert "standard deviation estimated: M of resistance 0.0" in str(fit)
 
 
-def test_outliers_count_less_where_asked():
+@pytest.mark.parametrize("robust", [False, True])
+def test_outliers_count_less_where_asked(robust):
     bad = M.copy()
     bad[[5, 25]] += 0.2, -0.2
-    names = ("E", "E_1", "T_ref")
-    for robust, bound in ((False, 1.0), (True, tol.OUTLIERS)):
-        fit = vr.identify(
-            roller(), ranges(*names), [vr.Resistance(V, bad, sigma=0.01)], starts=1, robust=robust
-        )
-        off = max(abs(np.log(fit.values[name] / TRUTH[name])) for name in names)
-        assert tol.OUTLIERS * (not robust) < off < bound
+    fit = fit_of("E E_1 T_ref", [vr.Resistance(V, bad, sigma=0.01)], robust=robust)
+    off = max(abs(np.log(value / TRUTH[name])) for name, value in fit.values.items())
+    assert (off < tol.OUTLIERS) == robust
+    assert off < 1.0
 
 
-@pytest.mark.parametrize("points", [40])
-def test_a_robust_fit_tells_outliers_from_a_wrong_model(points):
+def two_modes():
+    """Another material."""
+    return roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
+
+
+def test_a_robust_fit_tells_outliers_from_a_wrong_model():
     """With 5 % of outliers good data are no misfit of it; a wrong model is one, and a sigma far
     below the noise too.
     """
-    V = np.geomspace(0.02, 20.0, points)
-    one = roller().contact(V, delta=0.0, fields="M").M
-    two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
-    spoilt = np.zeros(points)
-    spoilt[7::20] = 0.2 * (-1.0) ** np.arange(points // 20)
+    spoilt = np.zeros(40)
+    spoilt[7::20] = 0.2, -0.2
+    V = np.geomspace(0.02, 20.0, 40)
 
-    def misfit(M, robust=True):
-        data = [vr.Resistance(V, M + spoilt, sigma=0.01)]
-        return bool(
-            vr.identify(roller(), ranges("E", "E_1", "T_ref"), data, starts=1, robust=robust).misfit
-        )
+    def misfit(seed, of, size=0.01, robust=True):
+        measured = noise(seed, of.contact(V, delta=0.0, fields="M").M, size) + spoilt
+        data = [vr.Resistance(V, measured, sigma=0.01)]
+        return bool(fit_of("E E_1 T_ref", data, robust=robust).misfit)
 
-    good = noise(1, one, 0.01)
-    assert (misfit(good, robust=False), misfit(good)) == (True, False)
-    assert misfit(noise(2, two.contact(V, delta=0.0, fields="M").M, 0.01))
-    assert misfit(noise(3, one, 0.025))
+    assert misfit(1, roller(), robust=False)
+    assert not misfit(1, roller())
+    assert misfit(2, two_modes())
+    assert misfit(3, roller(), 0.025)
 
 
 def test_a_prior_tells_what_slow_rolling_does_not():
     prior = {"E": (3e6, 0.1), "E_1": (9.0, 0.1)}
     data = [resistance(SLOW[::4], seed=7)]
-    fit = vr.identify(roller(), ranges("E", "E_1", "T_ref"), data, starts=1, prior=prior)
+    fit = fit_of("E E_1 T_ref", data, prior=prior)
     assert fit.undetermined == ()
     for name in fit.values:
         assert fit.stderr[name] < tol.PRIOR * fit.values[name]
 
 
 def test_a_plan_tells_what_a_fit_will_know():
-    names = ("mu", "E", "E_1", "T_ref")
-    plan = vr.identify(
-        roller(),
-        ranges(*names),
-        [vr.Resistance(V, sigma=0.01), vr.Traction(0.1, np.linspace(-0.06, 0.06, 21), sigma=1.0)],
-    )
+    names = "mu E E_1 T_ref"
+    creeps = np.linspace(-0.06, 0.06, 21)
+    planned = [vr.Resistance(V, sigma=0.01), vr.Traction(0.1, creeps, sigma=1.0)]
+    plan = fit_of(names, planned)
     assert plan.planned
     assert plan.chi2 == 0.0
     assert plan.cylinder.mu == roller().mu
-    fit = vr.identify(roller(), ranges(*names), [resistance(seed=8), traction(seed=9)], starts=1)
-    for name in names:
+    fit = fit_of(names, [resistance(seed=8), traction(seed=9)])
+    for name in fit.values:
         assert close(plan.stderr[name], fit.stderr[name], tol.PLANNED), name
         low, high = plan.intervals()[name]
         assert low < TRUTH[name] < high
@@ -236,7 +239,7 @@ def test_a_plan_tells_what_a_fit_will_know():
 
 def test_a_prediction_has_bands():
     """And the labels of what it was asked at."""
-    fit = vr.identify(roller(), ranges("E", "T_ref"), [resistance(seed=1)], starts=1)
+    fit = fit_of("E T_ref", [resistance(seed=1)])
     speeds = xr.DataArray(
         [0.1, 1.0], dims="speed", coords={"speed": ["slow", "fast"]}, attrs={"units": "m/s"}
     )
@@ -265,15 +268,13 @@ def test_motions_that_fail_are_far_off_and_end_no_fit(monkeypatch):
 
     monkeypatch.setattr(vr.Cylinder, "roll", fails)
     data = [thrown(seed=2)]
-    fit = vr.identify(roller(mu=0.4), ranges("mu", "E"), data, starts=4)
+    fit = fit_of("mu E", data, cylinder=roller(mu=0.4), starts=4)
     assert abs(fit.values["mu"] - TRUTH["mu"]) < 5.0 * fit.stderr["mu"]
     assert fit.residuals({"mu": 0.5}).max() == fit.residuals({"mu": 0.1}).max() == 1e6
 
 
 def test_slopes_are_those_of_the_residuals():
-    fit = vr.identify(
-        roller(), ranges("mu", "E") | {"V0:throw": (3.0, 5.0)}, [thrown(), traction()], starts=1
-    )
+    fit = fit_of("mu E", [thrown(), traction()], {"V0:throw": (3.0, 5.0)})
     J = fit.jacobian(fit.values)
     for i, (name, value) in enumerate(fit.values.items()):
         step = 1e-4 * value
@@ -284,7 +285,7 @@ def test_slopes_are_those_of_the_residuals():
 
 
 def test_a_dataset_and_a_figure_hold_all_of_it(tmp_path):
-    fit = vr.identify(roller(), ranges("mu", "E"), [resistance(seed=1), thrown(seed=2)], starts=1)
+    fit = fit_of("mu E", [resistance(seed=1), thrown(seed=2)])
     data = fit.to_xarray()
     assert close(
         data["throw V"] - data["throw V fit"],
@@ -304,7 +305,7 @@ def test_a_search_from_far_off_looks_beyond_the_ridges_of_its_valley():
     t = np.linspace(0.0, 40.0, 200)
     run = vr.Coastdown(t, noise(0, roller().roll(3.0, 30.0, t).V, 5e-3), sigma=5e-3, V0=3.0)
     near, far = (
-        vr.identify(roller(**start), ranges("E", "E_1", "T_ref"), [run], starts=1)
+        fit_of("E E_1 T_ref", [run], cylinder=roller(**start))
         for start in ({}, {"E_1": 72.0, "T_ref": 2e-4})
     )
     assert close(far.chi2, near.chi2, tol.IDENTIFIED)
@@ -325,7 +326,7 @@ def test_intervals_of_autocorrelated_residuals_cover_the_truth(points, least):
     for _ in range(40):
         noise = lfilter([0.8], [1.0, -0.6], rng.standard_normal(points + 50))[50:]
         data = vr.Resistance(V, M + 0.01 * noise, sigma=0.01)
-        fit = vr.identify(roller(), ranges("E", "T_ref"), [data], starts=1)
+        fit = fit_of("E T_ref", [data])
         far = np.array(
             [abs(fit.values[name] - TRUTH[name]) / fit.stderr[name] for name in fit.values]
         )

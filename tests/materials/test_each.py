@@ -18,7 +18,6 @@ pytestmark = pytest.mark.filterwarnings(
 SCENE = {"kappa": 2.91, "mu": 0.2, "gamma": 700.0}
 T = np.linspace(0.0, 3e-2, 9)
 KEPT = ("onset_time", "rest_time", "status", "steps")
-of_both = pytest.mark.parametrize("name", ["3 modes", "each"])
 
 
 def scene_of(material, **changes):
@@ -40,24 +39,20 @@ def test_an_ensemble_is_its_motions(name):
     for i in range(len(many)):
         motion = vr.roll(scene_of(many[i], mu=mu[i]), *start[:, i], T, rtol=1e-6, rest=1e-3)
         for field in fields:
-            exact = getattr(motion, field)
+            exact = motion[field]
             scale = max(np.nanmax(np.abs(exact)), float(field.endswith("loss")))
-            assert close(
-                getattr(found, field)[i], exact, tol.MOTION_EACH, scale=scale, what=(field, i)
-            )
+            assert close(found[field][i], exact, tol.MOTION_EACH, scale=scale, what=(field, i))
         times = motion.onset_time, motion.rest_time
         assert close((found.onset_time[i], found.rest_time[i]), times, tol.MOTION_EACH)
     some = slice(1, len(many) - 1)
     again = vr.ensemble(scene_of(many[some], mu=mu[some]), *start[:, some], T, **asked, threads=3)
     for field in (*fields, *KEPT):
-        assert np.array_equal(getattr(found, field)[some], getattr(again, field), equal_nan=True), (
-            field
-        )
+        assert np.array_equal(found[field][some], again[field], equal_nan=True), field
     kept = 0.5 * (found.V**2 + 0.5 * found.omega**2) + found.slip_loss + found.rolling_loss
     assert close(kept, np.broadcast_to(kept[:, :1], kept.shape), tol.ENERGY_OF_PAIRS)
 
 
-@of_both
+@pytest.mark.parametrize("name", ["3 modes", "each"])
 def test_stress(name):
     many = MATERIALS[name]()
     x = np.linspace(-0.6, 0.9, 7)[:, None]
@@ -65,8 +60,13 @@ def test_stress(name):
     for i, one in enumerate(many):
         alone = vr.stress(scene_of(one), x[:, 0], 0.3, delta=1e-3)
         for field in ("p", "tau"):
-            pair = getattr(found, field)[:, i], getattr(alone, field)
-            assert close(*pair, tol.SERIES_STATES, scale=alone.p.max(), what=(field, i))
+            assert close(
+                found[field][:, i],
+                alone[field],
+                tol.SERIES_STATES,
+                scale=alone.p.max(),
+                what=(field, i),
+            )
 
 
 def test_memory_is_bounded_by_a_block():

@@ -7,14 +7,13 @@ import dataclasses
 import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 from calls import TREAD as RUBBER
 from closeness import close
 
 import viscoroll as vr
 from viscoroll.materials.material_toml import material_as_toml, read_materials
 
-OMEGA = np.array([0.0, 1e-9, 0.02, 3.0, 3.3, 1e5, 1e9, 1e200, 1e308])
+OMEGA = np.array([0.0, 1e-9, 0.02, 3.0, 3.3, 1e5, 1e9])
 T = np.array([0.0, 1e-12, 1e-8, 1e-4, 0.3, 7.0, 1e200])
 
 
@@ -28,11 +27,13 @@ def modulus(material, omega):
 
 
 def test_moduli_are_the_sums_over_modes():
-    inner = OMEGA[OMEGA < 1e100]
-    exact = modulus(RUBBER, inner)
-    assert close(RUBBER.storage(inner), exact.real, tol.MATERIAL)
-    assert close(RUBBER.loss(inner), exact.imag, tol.MATERIAL)
-    assert close(RUBBER.tan_delta(inner), exact.imag / exact.real, tol.MATERIAL)
+    exact = modulus(RUBBER, OMEGA)
+    assert close(RUBBER.storage(OMEGA), exact.real, tol.MATERIAL)
+    assert close(RUBBER.loss(OMEGA), exact.imag, tol.MATERIAL)
+    assert close(RUBBER.tan_delta(OMEGA), exact.imag / exact.real, tol.MATERIAL)
+    far = [1e200, 1e308]
+    assert close(RUBBER.storage(far), RUBBER.instant, tol.MATERIAL)
+    assert close(RUBBER.loss(far), 0.0, tol.MATERIAL, scale=RUBBER.E)
     times = RUBBER.T_ref * RUBBER.prony.tau
     spelt_out = RUBBER.E * (
         1.0 + sum(E * np.exp(-T / tau) for E, tau in zip(RUBBER.prony.E, times, strict=True))
@@ -42,10 +43,9 @@ def test_moduli_are_the_sums_over_modes():
 
 def test_creep_is_the_inverse_of_relaxation():
     """At a frequency the compliance is one over the modulus."""
-    inner = OMEGA[OMEGA < 1e100]
-    product = 1j * inner[:, None] * RUBBER.T_ref * RUBBER.prony.T
+    product = 1j * OMEGA[:, None] * RUBBER.T_ref * RUBBER.prony.T
     compliance = 1.0 / RUBBER.prony.alpha + (RUBBER.prony.J / (1.0 + product)).sum(axis=1)
-    assert close(RUBBER.E / compliance, modulus(RUBBER, inner), tol.MATERIAL_FORMS)
+    assert close(RUBBER.E / compliance, modulus(RUBBER, OMEGA), tol.MATERIAL_FORMS)
 
 
 # --- temperature ---
@@ -64,7 +64,6 @@ def test_a_shift_whose_constants_are_of_another_temperature(reference):
     back = warm.at(20.0, shift=usual)
     assert close(back.T_ref, rubber.T_ref, tol.MATERIAL_PRINTED)
     assert back.temperature == 20.0
-    assert "temperature=20.0" in repr(rubber)
 
 
 # --- other programs ---
@@ -75,8 +74,8 @@ def test_a_shift_whose_constants_are_of_another_temperature(reference):
     [
         (0.49, [0.3, 0.3], [0.0, 0.0]),
         (0.35, [0.5, 0.3], [0.2, 0.1]),
-        (0.4, [0.1, 0.0], [0.4, 0.2]),
-        (0.25, [0.4, 0.3], [0.4, 0.3]),
+        (0.3, [0.1, 0.0], [0.2, 0.1]),
+        (0.2, [0.4, 0.3], [0.4, 0.3]),
     ],
 )
 def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
@@ -115,11 +114,13 @@ def test_what_the_contact_feels_under_a_bulk_modulus_that_relaxes(nu, g, k):
     [
         lambda: vr.Material.lsdyna(G=[1e6, 1e6], beta=[10.0, 0.0], K=[0.0, 2000.0]),
         lambda: vr.Material.comsol(1e6, 0.3, G=[9e6], tau=[1.0], K=[20.0]),
-        lambda: vr.Material.comsol(1e6, 0.3, G=[1e5, 2e5], tau=[0.1, 1.0], K=[1e3, 2e3]),
+        lambda: vr.Material.comsol(1e6, 0.4, G=[1e6, 2e5], tau=[1.0, 1e-3], K=[1e3, 2e3]),
+        # only between the two relaxation times
+        lambda: vr.Material.abaqus(1e7, 0.49, [0.001, 0.9], [1e-3, 1.0], k=[0.99, 0.0]),
     ],
 )
 def test_bulk_terms_in_another_unit_than_shear_warn(make):
-    with pytest.warns(vr.ModelWarning, match="both in one unit"):
+    with pytest.warns(vr.ModelWarning, match=r"Poisson's ratio -?0.* below 0\.2"):
         make()
 
 
@@ -155,7 +156,6 @@ def test_a_material_stored_is_read_to_the_bit(tmp_path):
     for n, material in enumerate(STORED):
         path = tmp_path / f"{n}.nc"
         material.to_netcdf(path)
-        assert vr.Material.from_netcdf(path) == material
         assert read_materials(path) == {"material": material}
         (tmp_path / "scene.toml").write_text(f'[material]\nfile = "{n}.nc"\n')
         assert read_materials(tmp_path / "scene.toml") == {"material": material}
@@ -163,24 +163,11 @@ def test_a_material_stored_is_read_to_the_bit(tmp_path):
         assert read_materials(tmp_path / "scene.toml") == {"material": material}
 
 
-def test_what_other_programs_read(tmp_path):
-    """Both forms of the series, units, and the law in words."""
-    rubber = STORED[0]
-    rubber.to_netcdf(tmp_path / "rubber.nc")
-    with xr.open_dataset(tmp_path / "rubber.nc", engine="h5netcdf") as found:
-        assert (found.E_long.item(), found.E_long.units) == (rubber.E, "Pa")
-        assert all(
-            np.array_equal(found[name], getattr(rubber.prony, name))
-            for name in ("E", "tau", "J", "T")
-        )
-
-
 def test_a_material_of_another_toml_file(tmp_path):
     """As ``material fit -o dma.toml`` leaves it, for either body; the layer may be given beside
     it.
     """
-    rubber = STORED[0]
-    belt = STORED[1]
+    rubber, belt, *_ = STORED
     (tmp_path / "dma.toml").write_text(material_as_toml(rubber))
     (tmp_path / "two.toml").write_text(material_as_toml(rubber) + material_as_toml(belt, "base"))
     scene = tmp_path / "scene.toml"
@@ -191,7 +178,5 @@ def test_a_material_of_another_toml_file(tmp_path):
     assert read_materials(scene) == {"material": rubber, "base": thin}
     scene.write_text('[material]\nfile = "two.toml"\n[base]\nfile = "two.toml"\n')
     assert read_materials(scene) == {"material": rubber, "base": belt}
-    for name in ("dma.toml", "dma.nc"):
-        rubber.to_netcdf(tmp_path / "dma.nc")
-        scene.write_text(f'[base]\nfile = "{name}"\nwlf = {{ T0 = 20.0 }}\ntemperature = 30.0\n')
-        assert read_materials(scene) == {"base": rubber.at(30.0, vr.WLF(T0=20.0))}
+    scene.write_text('[base]\nfile = "dma.toml"\nwlf = { T0 = 20.0 }\ntemperature = 30.0\n')
+    assert read_materials(scene) == {"base": rubber.at(30.0, vr.WLF(T0=20.0))}

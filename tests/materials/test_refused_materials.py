@@ -57,6 +57,8 @@ def narrow():
     return vr.tables.law(alpha=(1, 2))
 
 
+DECADES = np.logspace(-1, 1, 11)
+STEP = np.logspace(-3, 3, 20)
 REFUSED = [
     *each(
         None,
@@ -66,14 +68,13 @@ REFUSED = [
             ),
             "shapes factor (3,), materials (2,)": lambda: MANY.slower([1.0, 2.0, 3.0]),
             "name = 3": lambda: vr.Material(E=1e6, nu=0.4, name=3),
-            "T_ref = [1.0, 2.0]": lambda: vr.Material(E=1e6, nu=0.4, T_ref=[1.0, 2.0]),
             "source = 3": lambda: vr.Measured(1.0, 2.0, 0.1, 3),
+            "T_ref = [1.0, 2.0]": lambda: vr.Material(E=1e6, nu=0.4, T_ref=[1.0, 2.0]),
             "material = rigid": lambda: vr.Material.rigid().plot(),
             "tau | one for each G": lambda: vr.Material.comsol(1e6, 0.4, [], [1.0]),
             "K with beta = 0": lambda: vr.Material.lsdyna(
                 [1e6, 1e6], [1.0, 0.0], K=[1e6, 1e6], nu=0.4
             ),
-            "unknown | at least one name": lambda: vr.identify(roller(), {}, [resistance()]),
         },
     ),
     *each(
@@ -105,15 +106,6 @@ REFUSED = [
                 1e6, 0.5, T_ref=xr.DataArray(1.0, attrs={"units": "1/Hz"})
             ),
             "shift = <class | a function of the temperature": lambda: TREAD.at(20.0, shift=vr.WLF),
-            "loss has 0 points in curve 2: must be as many as omega, 20": lambda: vr.fit_prony(
-                [OMEGA] * 2, [DMA[1]] * 2, [DMA[2]], temperature=[0.0, 20.0]
-            ),
-            "columns = 'abc': must be quantity -> heading": lambda: vr.read_dma(
-                file("1,2,3\n2,3,4"), columns="abc"
-            ),
-            "encoding = 3: must be an encoding that Python knows": lambda: vr.read_dma(
-                file("1,2,3\n2,3,4"), encoding=3
-            ),
             "has shape (3,): must be a number or one for each motion, count = 2": lambda: (
                 lambda run: roll_inputs(
                     run, {name: [value] * 3 for name, value in run.inputs.medians.items()}, 2
@@ -138,49 +130,9 @@ REFUSED = [
             "mode = 'tension': must be 'shear'": lambda: vr.fit_prony(
                 vr.DynamicModuli(*DMA, mode="shear"), mode="tension"
             ),
-            "temperature | a single number": lambda: vr.fit_relaxation(
-                np.logspace(-3, 3, 20), 1.0 + np.exp(-np.logspace(-3, 3, 20)), temperature=[20.0]
-            ),
-            "moduli at 0 and 20 °C do not agree after any shift: must be curves that overlap "
-            "with their": lambda: vr.fit_prony(
-                [np.logspace(-1, 1, 11)] * 2,
-                [1.0 + 0.01 * np.logspace(-1, 1, 11), 50.0 + np.logspace(-1, 1, 11)],
-                [0.01 * np.logspace(-1, 1, 11), np.logspace(-1, 1, 11)],
-                temperature=[20.0, 0.0],
-            ),
-            "temperature has shape (1,): must be one for each of the 2 curves": lambda: (
-                vr.fit_prony(
-                    [np.logspace(-1, 1, 11)] * 2,
-                    [1.0 + 0.01 * np.logspace(-1, 1, 11), 50.0 + np.logspace(-1, 1, 11)],
-                    [0.01 * np.logspace(-1, 1, 11), np.logspace(-1, 1, 11)],
-                    temperature=[20.0],
-                )
-            ),
-            "omega has no points for curve 2: must be one frequency or more": lambda: vr.fit_prony(
-                [DMA[0], DMA[0][:0]],
-                [DMA[1], DMA[1][:0]],
-                [DMA[2], DMA[2][:0]],
-                temperature=[20.0, 0.0],
-            ),
-            "units | must be (frequency, moduli)": [
-                lambda: vr.read_dma(
-                    file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), units=("MPa", "Hz")
-                ),
-                lambda: vr.read_dma(file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), units="Hz"),
-                lambda: vr.read_dma(
-                    file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), units=("Hz", 1.0)
-                ),
-            ],
-            "V, delta, alpha": lambda: vr.tables.interpolate(
-                wide(),
-                V=2.0,
-                alpha=1.0,
-            ),
+            "V, delta, alpha": lambda: vr.tables.interpolate(wide(), V=2.0, alpha=1.0),
             "broadcast": lambda: vr.tables.interpolate(
-                wide(),
-                V=[1.0, 2.0],
-                delta=0.01,
-                alpha=[2.0] * 3,
+                wide(), V=[1.0, 2.0], delta=0.01, alpha=[2.0] * 3
             ),
             "a name that ends in .nc, .cdf, .csv, .txt, .mat for a grid": lambda: vr.tables.export(
                 wide(), "t.h"
@@ -202,42 +154,11 @@ REFUSED = [
             "a file name that is a valid C identifier, for example rubber.h": lambda: (
                 vr.tables.export(vr.tables.law(11.0), "my-rubber.h")
             ),
-            "unknown E | (1e+06, 2e+06) | contains the initial guess, 3e+06": lambda: vr.identify(
-                roller(), {"E": (1000000.0, 2000000.0)}, [resistance()]
-            ),
-            "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
-            "more points, or": lambda: vr.identify(roller(), ranges("E"), vr.Resistance(0.1, 0.1)),
-            "'V': ..., 'omega': ...": lambda: vr.Coastdown(
-                np.linspace(0.0, 20.0, 200),
-                np.linspace(0.0, 20.0, 200),
-                np.linspace(0.0, 20.0, 200),
-                sigma=0.1,
-            ),
+            "'V': ..., 'omega': ...": lambda: vr.Coastdown(TIMES, TIMES, TIMES, sigma=0.1),
             "2.0, 1.0 at rows 1, 2": lambda: vr.Coastdown(
                 [0.0, 2.0, 1.0], [1.0, 1.0, 1.0], sigma=0.1
             ),
             "(39,) | (40,)": lambda: vr.Resistance(HUMP, HUMP[:-1], sigma=0.1),
-            "name = 'a': must be different for each record": lambda: vr.identify(
-                roller(), ranges("E"), [resistance(name="a"), resistance(name="a")]
-            ),
-            "data has records with values and records without: must be one kind: fit the "
-            "records with values": lambda: vr.identify(
-                roller(), ranges("E"), [resistance(), vr.Resistance(HUMP, sigma=0.1, name="b")]
-            ),
-            "resistance: sigma": lambda: vr.identify(roller(), ranges("E"), [vr.Resistance(HUMP)]),
-            "run: V0 | a number: the data do not determine it": lambda: vr.identify(
-                roller(), ranges("E"), [vr.Coastdown(np.linspace(0.0, 20.0, 200), sigma=0.1)]
-            ),
-            "temperature = 60.0 | given with a shift of the material": lambda: vr.identify(
-                roller(), ranges("E"), [resistance(temperature=60.0)]
-            ),
-            "mu | a single number": lambda: vr.identify(
-                roller().replace(mu=[0.1, 0.2]), ranges("E"), [resistance()]
-            ),
-            "data = 3 | a list of records": lambda: vr.identify(roller(), ranges("E"), 3),
-            "data is empty: must be at least one record": lambda: vr.identify(
-                roller(), ranges("E"), []
-            ),
             "V0 | a prediction needs it": lambda: fitted().predict(vr.Coastdown(TIMES, TIMES)),
             "resistance: M has at all points the sign opposite to V: must be of the sign of V, "
             "as it resists: reverse its sign": lambda: vr.Resistance(
@@ -252,29 +173,6 @@ REFUSED = [
             "alpha = nan: must be": lambda: vr.load_law(netcdf(grid()), alpha=nan),
             "alpha = 11.0: must be left out | has no axis alpha": lambda: vr.load_law(
                 netcdf(OTHER_GRID), alpha=11.0
-            ),
-            "n = 1024: must be less, or t shorter: | quantities and times": lambda: sobol_indices(
-                run(
-                    "numbers",
-                    "t = [1e-4, 2e-3, 0.03]",
-                    "t = { low = 0.0, high = 1e-4, count = 40000 }",
-                ),
-                1024,
-            ),
-            "summaries = x at t = 0: it varies by no more than": lambda: sobol_indices(
-                run("unsteady", "t = [1.0, 3.0]", 't = 0.0\nsummaries = ["x"]'), 16
-            ),
-            "[correlation] = | E_2 | omega0 | must be left out": lambda: sobol_indices(
-                run("strengths", "n = 20", "n = 1"), 16
-            ),
-            "the run file has no uncertain input": lambda: sobol_indices(
-                read_run(
-                    file(
-                        'preset = "paper-section-5"\nstart = { V0 = 1.0, omega0 = 0.0 }\nrun = '
-                        "{ n = 1, t = 1.0 }"
-                    )
-                ),
-                16,
             ),
             "C2 is in degC: must be in K": lambda: vr.WLF(
                 T0=20.0, C2=xr.DataArray(50.0, attrs={"units": "degC"})
@@ -296,6 +194,97 @@ REFUSED = [
                 vr.fit_prony(*DMA).validity(ROLLER, 1.0)
             ),
         },
+    ),
+    *each(
+        lambda **more: vr.identify(
+            **{"cylinder": roller(), "unknown": ranges("E"), "data": [resistance()]} | more
+        ),
+        {
+            "unknown | at least one name": {"unknown": {}},
+            "unknown E | (1e+06, 2e+06) | contains the initial guess, 3e+06": {
+                "unknown": {"E": (1e6, 2e6)}
+            },
+            "number of unknowns = 1: must be at most 0, since the number of points is 1: give "
+            "more points, or": {"data": vr.Resistance(0.1, 0.1)},
+            "name = 'a': must be different for each record": {
+                "data": [vr.Resistance(HUMP, sigma=0.1, name="a")] * 2
+            },
+            "data has records with values and records without: must be one kind: fit the "
+            "records with values": {
+                "data": [vr.Resistance(HUMP, HUMP), vr.Resistance(HUMP, sigma=0.1, name="b")]
+            },
+            "resistance: sigma": {"data": [vr.Resistance(HUMP)]},
+            "run: V0 | a number: the data do not determine it": {
+                "data": [vr.Coastdown(TIMES, sigma=0.1)]
+            },
+            "temperature = 60.0 | given with a shift of the material": {
+                "data": [vr.Resistance(HUMP, HUMP, temperature=60.0)]
+            },
+            "mu | a single number": {"cylinder": roller().replace(mu=[0.1, 0.2])},
+            "data = 3 | a list of records": {"data": 3},
+            "data is empty: must be at least one record": {"data": []},
+        },
+    ),
+    *each(
+        lambda make, n=16: sobol_indices(make(), n),
+        {
+            "n = 1024: must be less, or t shorter: | quantities and times": (
+                partial(
+                    run,
+                    "numbers",
+                    "t = [1e-4, 2e-3, 0.03]",
+                    "t = { low = 0.0, high = 1e-4, count = 40000 }",
+                ),
+                1024,
+            ),
+            "summaries = x at t = 0: it varies by no more than": partial(
+                run, "unsteady", "t = [1.0, 3.0]", 't = 0.0\nsummaries = ["x"]'
+            ),
+            "[correlation] = | E_2 | omega0 | must be left out": partial(
+                run, "strengths", "n = 20", "n = 1"
+            ),
+            "the run file has no uncertain input": lambda: read_run(
+                file(
+                    'preset = "paper-section-5"\nstart = { V0 = 1.0, omega0 = 0.0 }\nrun = '
+                    "{ n = 1, t = 1.0 }"
+                )
+            ),
+        },
+    ),
+    *each(
+        lambda **more: vr.read_dma(file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), **more),
+        {
+            "columns = 'abc': must be quantity -> heading": {"columns": "abc"},
+            "encoding = 3: must be an encoding that Python knows": {"encoding": 3},
+            "units | must be (frequency, moduli)": [
+                {"units": units} for units in (("MPa", "Hz"), "Hz", ("Hz", 1.0))
+            ],
+        },
+    ),
+    *each(
+        vr.fit_prony,
+        {
+            "loss has 0 points in curve 2: must be as many as omega, 20": {
+                "omega": [OMEGA] * 2,
+                "storage": [DMA[1]] * 2,
+                "loss": [DMA[2]],
+                "temperature": [0.0, 20.0],
+            },
+            "moduli at 0 and 20 °C do not agree after any shift: must be curves that overlap "
+            "with their": {"temperature": [20.0, 0.0]},
+            "temperature has shape (1,): must be one for each of the 2 curves": {
+                "temperature": [20.0]
+            },
+            "omega has no points for curve 2: must be one frequency or more": {
+                "omega": [DECADES, []],
+                "storage": [DECADES, []],
+                "loss": [DECADES, []],
+                "temperature": [20.0, 0.0],
+            },
+        },
+        omega=[DECADES] * 2,
+        storage=[1.0 + 0.01 * DECADES, 50.0 + DECADES],
+        loss=[0.01 * DECADES, DECADES],
     ),
     *each(
         vr.Prony,
@@ -352,13 +341,14 @@ REFUSED = [
         },
     ),
     *each(
-        vr.fit_relaxation,
+        partial(vr.fit_relaxation, STEP),
         {
+            "temperature | a single number": {
+                "relaxation": 1.0 + np.exp(-STEP),
+                "temperature": [20.0],
+            },
             "relaxation rises with time from 1.001 to 2: must be a relaxation modulus, which "
-            "falls (a creep": (
-                np.logspace(-3, 3, 20),
-                2.0 - np.exp(-np.logspace(-3, 3, 20)),
-            ),
+            "falls (a creep": 2.0 - np.exp(-STEP),
         },
     ),
     *each(
@@ -414,10 +404,7 @@ REFUSED = [
         None,
         {
             "alpha = 17: must be within the table's range [1, 16]": lambda: vr.tables.interpolate(
-                wide(),
-                V=0.5,
-                delta=0.01,
-                alpha=17.0,
+                wide(), V=0.5, delta=0.01, alpha=17.0
             ),
         },
         errors.OutOfTableError,

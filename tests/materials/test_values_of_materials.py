@@ -14,7 +14,7 @@ import viscoroll as vr
 from viscoroll.kernels.law.bessel_ratios import ratio_i2, ratio_k, ratio_r
 from viscoroll.laws.law_netcdf import law_table_of
 from viscoroll.laws.law_table import law_table
-from viscoroll.presets import PAPER_CYLINDER, PAPER_STARTS, PRESETS
+from viscoroll.presets import PAPER_CYLINDER
 
 pytestmark = [
     pytest.mark.usefixtures("here"),
@@ -33,41 +33,27 @@ def test_cylinder_and_scene():
     E_prime = pi * 2.3e5 / (1.0 - 0.49**2)
     load = 35.5 * 9.81
     assert scene == vr.presets.PAPER_SECTION_5
-    assert PAPER_CYLINDER.scene() == vr.presets.PAPER_SECTION_5
-    assert [f"{scene.alpha:.5}", f"{scene.kappa:.5}"] == ["11.031", "2.921"]
-    assert (f"{scene.gamma:.5}", scene.mu, scene.j) == ("1.1231e+04", 0.2, 0.5)
     assert close(cylinder.load, load, tol.SCENE)
-    assert close(cylinder.E_prime, E_prime, tol.SCENE)
     assert close(cylinder.l0, math.sqrt(32.0 * 0.1 * load / (E_prime)), tol.SCENE)
     assert close(scene.alpha, 10.7 / 0.97, tol.SCENE)
     assert close(scene.kappa, math.sqrt(E_prime * 0.1 / (32.0 * load)), tol.SCENE)
     assert close(scene.gamma, load * 10.7**2 / (35.5 * 0.1), tol.SCENE)
-    assert vr.Cylinder(*SI.values()) == cylinder
     # limits that are allowed
     assert close(vr.Cylinder(**SI | {"nu": 0.5}).E_prime, pi * 2.3e5 / 0.75, tol.SCENE)
     assert close(vr.Cylinder(**SI, plane="stress").E_prime, pi * 2.3e5, tol.SCENE)
     assert vr.Cylinder(**SI | {"T_epsilon": 0.97}).scene().alpha == 1.0
     assert vr.Scene(1.0, 1e-300, 1e-300).alpha == 1.0
-    # presets: Figs. 2 and 3 use ten times the kappa of Sects. 4 and 5
-    assert vr.presets.PAPER_SECTION_5_ROUNDED == vr.Scene(11.0, 2.91, 0.2, 1.1e4, 0.5)
-    assert close(vr.presets.PAPER_FIGURES_2_3.kappa, 29.1, tol.SCENE)
-    assert sorted(PRESETS) == [
-        "paper-figures-2-3",
-        "paper-section-5",
-        "paper-section-5-rounded",
-        "rubber-roller",
-    ]
-    assert PAPER_STARTS == {"IC1": (1.5, 0.5), "IC2": (-1.5, 0.5), "IC3": (-1.5, -2.0)}
 
 
 def test_a_given_load():
     """Kappa and gamma by P; the weight is made anew where another mass is given, a load is not."""
     loaded = vr.Cylinder(**SI, load=1e3)
     scene = loaded.scene()
-    assert loaded.load == 1e3
-    assert close(scene.kappa, math.sqrt(0.1 * vr.Cylinder(**SI).E_prime / 32e3), tol.SCENE)
-    assert close(scene.gamma, 1e3 * 10.7**2 / (35.5 * 0.1), tol.SCENE)
-    assert vr.Cylinder(**SI, load=35.5 * 9.81).scene() == vr.presets.PAPER_SECTION_5
+    paper = vr.presets.PAPER_SECTION_5
+    by_load = 1e3 / (35.5 * 9.81)
+    assert close(scene.kappa, paper.kappa / math.sqrt(by_load), tol.SCENE)
+    assert close(scene.gamma, paper.gamma * by_load, tol.SCENE)
+    assert vr.Cylinder(**SI, load=35.5 * 9.81).scene() == paper
     assert replace(vr.Cylinder(**SI), m=1.0).load == 9.81
     assert replace(loaded, m=1.0).load == 1e3
 
@@ -78,13 +64,8 @@ def test_a_material_in_place_of_the_four_parameters():
     made = pair(rubber, None)
     scene = made.scene()
     paper = vr.presets.PAPER_SECTION_5
-    assert [getattr(scene, name) for name in ("alpha", "kappa", "mu", "gamma", "j", "coupled")] == [
-        getattr(paper, name) for name in ("alpha", "kappa", "mu", "gamma", "j", "coupled")
-    ]
+    assert scene.replace(material=None, alpha=paper.alpha) == paper
     assert scene.material == rubber.prony
-    assert [getattr(made, name) for name in ("E_prime", "l0", "load", "T_ref")] == [
-        getattr(PAPER_CYLINDER, name) for name in ("E_prime", "l0", "load", "T_ref")
-    ]
     assert vr.Cylinder(**SI, base=rubber).scene() == paper
 
 
@@ -103,17 +84,12 @@ def test_moduli_and_times_of_pairs():
     assert (on_rigid.E_prime, on_rigid.pair.share) == (2.0 * pi * 2.3e5 / 0.75, 1.0)
     assert (under_rigid.E_prime, under_rigid.pair.share) == (2.0 * pi * 2.3e5 / 0.75, 0.0)
     # the time is the cylinder's, or the base's where the cylinder does not relax
-    assert [
-        (c.T_ref, c.scale["t"], 1.0 / c.scale["V"]) for c in (on_hard, on_steel, under_steel)
-    ] == [(0.3, 0.3, 0.3 / 0.1)] * 3
-    assert [
-        (c.T_ref, c.scale["t"], 1.0 / c.scale["V"]) for c in (pair(HARD, RUBBER), pair(HARD, rigid))
-    ] == [(2.0, 2.0, 2.0 / 0.1)] * 2
+    assert [c.T_ref for c in (on_hard, on_steel, under_steel)] == [0.3] * 3
+    assert [pair(HARD, base).T_ref for base in (RUBBER, rigid)] == [2.0] * 2
     assert on_hard.scene().material == vr.Bodies(
         SERIES, HARD.prony.slower(2.0 / 0.3), on_hard.pair.share, (0.5, 0.5)
     )
     assert close(on_hard.scene().kappa, 0.1 / on_hard.l0, tol.SCENE)
-    assert close(on_hard.scene().gamma, 35.5 * 9.81 * 0.3**2 / (35.5 * 0.1), tol.SCENE)
     assert pair(rigid, HARD).scene().material == vr.Bodies(
         vr.Prony.elastic(), HARD.prony, 0.0, (rigid.nu, 0.5)
     )
@@ -123,13 +99,7 @@ def test_limits_of_a_material():
     """Of frequency and time; what is elastic."""
     solid = vr.Material.sls(2.3e5, 0.49, 10.7, 0.97)
     t = np.array([0.0, 1e-4, 0.3, 7.0, 1e200])
-    assert close(TREAD.instant, 20.0 * 2.3e5, tol.MATERIAL)
-    assert (TREAD.storage(0.0), TREAD.relaxation(1e200), TREAD.loss(0.0)) == (2.3e5, 2.3e5, 0.0)
-    assert close(
-        (TREAD.storage(1e308), TREAD.relaxation(0.0)), (TREAD.instant, TREAD.instant), tol.MATERIAL
-    )
     assert close((TREAD.creep(0.0), TREAD.creep(1e200)), (1.0 / 20.0, 1.0), tol.MATERIAL)
-    assert np.isfinite(TREAD.loss([0.0, 1e-9, 3.3, 1e9, 1e200, 1e308])).all()
     assert (
         [getattr(STEEL, name)(3.0) for name in ("relaxation", "loss", "creep")],
         STEEL.instant,
@@ -158,14 +128,11 @@ def test_shifts_by_temperature():
     # log10 a_T = -17.44 * 10/(51.6 + 10) ten degrees above T0; T_ref becomes a_T T_ref, nothing
     # else
     assert close(math.log10(warm.T_ref / TREAD.T_ref), -174.4 / 61.6, tol.MATERIAL)
-    assert warm.temperature == 30.0
     assert replace(warm, T_ref=TREAD.T_ref, temperature=None) == TREAD
-    assert TREAD.at(20.0, shift=shift) == replace(TREAD, temperature=20.0)
     # 100 kJ/mol between 20 and 30 degrees: ln a_T = 12027.24 (1/303.15 - 1/293.15)
     assert close(
         math.log(vr.Arrhenius(energy=1e5, T0=20.0)(30.0)), -1.3533756, tol.MATERIAL_PRINTED
     )
-    assert vr.Arrhenius(energy=1e5, T0=20.0)(20.0) == 1.0
     # a_T = 100: the data hold a hundredth of their frequencies
     assert known.at(0.0, lambda _: 100.0).measured == vr.Measured(1e-3, 3.0, 0.01, "dma.csv")
     assert "0.1 to 300 rad/s, misfit 1 % (dma.csv)" in repr(known._summary())
@@ -213,11 +180,8 @@ def test_series():
         tol.SERIES_FORMS,
     )
     # equal times are added up, zeros are dropped
-    p = vr.Prony(E=[6.0, 0.0, 2.0, 1.0], tau=[1e-05, 3.0, 1.0, 1.0])
-    assert (p.E.tolist(), p.tau.tolist()) == ([3.0, 6.0], [1.0, 1e-05])
     assert {added: 1}[known] == 1
     assert eval(repr(known), {"Prony": vr.Prony}) == known
-    assert vr.Prony.elastic().alpha == 1.0
 
 
 def test_arrays_of_materials():
@@ -233,25 +197,16 @@ def test_arrays_of_materials():
 
 def test_a_scene_keeps_its_law():
     """And what follows from a change of a cylinder."""
-    of_law = vr.Scene(kappa=20.0, mu=0.3, material=law_table(SERIES))
-    scene = of_law
     table = law_table(SERIES)
+    scene = vr.Scene(kappa=20.0, mu=0.3, material=table)
     assert scene.table is scene.replace(mu=0.2).table is law_table_of(table) is table
-    assert of_law.replace(alpha=3.0).table is not law_table(SERIES)
+    assert scene.replace(alpha=3.0).table is not table
     assert vr.Scene(kappa=20.0, mu=0.3, material=law_table(11.0)).alpha == 11.0
-    assert ((PAPER_CYLINDER.replace(nu=0.0), hash(PAPER_CYLINDER.replace(nu=0.0)))) == (
-        PAPER_CYLINDER.replace(nu=-0.0),
-        hash(PAPER_CYLINDER.replace(nu=-0.0)),
-    )
+    signs = {PAPER_CYLINDER.replace(nu=nu) for nu in (0.0, -0.0)}
+    assert len(signs) == 1
     assert PAPER_CYLINDER.replace(material=RUBBER).E is None
     assert (
         pair(RUBBER, STEEL).replace(E=2.3e5, nu=0.49, T_epsilon=10.7, T_sigma=0.97).material is None
-    )
-    assert (
-        vr.Cylinder(
-            R=0.1, m=35.5, E=2.3e6, nu=0.49, T_epsilon=[1e-3, 2e-2], T_sigma=[1e-3, 5e-3], mu=0.3
-        ).T_ref
-        == 2e-2
     )
 
 
@@ -259,14 +214,7 @@ def test_a_scene_and_a_series_are_values():
     """A scene and a series are values."""
     two = vr.Scene(np.array([2.0, 3.0]), 2.0, 0.2)
     assert two == vr.Scene([2.0, 3.0], 2.0, 0.2)
-    assert two not in (PAPER, "scene")
-    assert (vr.Scene(11, 2.91, 0.2, 1.1e4), type(vr.Scene(11, 2.91, 0.2, 1.1e4).alpha)) == (
-        PAPER,
-        float,
-    )
-    assert (PAPER.replace(mu=0.3).mu, PAPER.mu) == (0.3, 0.2)
     assert eval(repr(PAPER), {"Scene": vr.Scene}) == PAPER
-    assert vr.Scene([1.0, 2.0, 3.0], [[1.0], [2.0]], 0.2).shape == (2, 3)
     assert vr.Prony([[0.0], [1.0]], [1.0]).slow_time.tolist() == [
         1.0,
         3.0,

@@ -6,7 +6,6 @@ import ast
 import re
 import warnings
 
-import numpy as np
 import pytest
 import rubbers
 import tolerances as tol
@@ -249,20 +248,3 @@ def test_advice_helps(title, tmp_path):
     path.write_text(rubbers.filled(changed, {"sep": sep, "format": "%.9g"}), encoding="utf-8")
     good, message = read(path, options)
     assert good or (rest and isinstance(rest[0], str) and re.search(rest[0], message)), message
-
-
-def test_a_column_of_temperature_helps(tmp_path):
-    """Two sweeps in one file are refused, and read where the column is written that the message
-    asks for.
-    """
-    path = tmp_path / "dma.csv"
-    both = "f [Hz];E' [MPa];E'' [MPa]\n<f; S/1e6; L/1e6>\n<f; S/2e6; L/2e6>\n"
-    path.write_text(rubbers.filled(both, {"sep": ";"}))
-    with pytest.raises(vr.FileError, match="need a column of temperature"):
-        vr.read_dma(path)
-    rows = both.replace("f [Hz]", "T [°C];f [Hz]").replace("<f; S/1e6", "<20*one; f; S/1e6")
-    path.write_text(
-        rubbers.filled(rows.replace("<f; S/2e6", "<40*one; f; S/2e6"), {"sep": ";"}),
-        encoding="utf-8",
-    )
-    assert np.array_equal(vr.read_dma(path).temperature, np.repeat([20.0, 40.0], 12))

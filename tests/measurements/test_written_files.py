@@ -39,30 +39,30 @@ PASCAL = {
 RATIO = {"": 1.0, "-": 1.0, "1": 1.0, "%": 100.0}
 DEGREES = {"deg": 1.0, "°": 1.0, "rad": np.pi / 180.0}
 PLACES = [
-    (f, HERTZ, ["f", "Frequency", "Frequenz", "freq.", "Test frequency", "Prüffrequenz"]),
+    (f, HERTZ, "f;Frequency;Frequenz;freq.;Test frequency;Prüffrequenz"),
     (
         w,
         ANGULAR,
-        ["omega", "ω", "Angular frequency", "Kreisfrequenz", "ang. freq.", "angular_frequency"],
+        "omega;ω;Angular frequency;Kreisfrequenz;ang. freq.;angular_frequency",
     ),
 ]
 STORAGE = (
     S,
     PASCAL,
-    ["E'", "E′", "Storage modulus", "Speichermodul", "E_stor", "Storage Modulus E'", "E'-Modul"],
+    "E';E′;Storage modulus;Speichermodul;E_stor;Storage Modulus E';E'-Modul",
 )
 LOSS = (
     L,
     PASCAL,
-    ["E''", 'E"', "Loss modulus", "Verlustmodul", "E_loss", "E″", "Loss Modulus (E'')"],
+    "E'';E\";Loss modulus;Verlustmodul;E_loss;E″;Loss Modulus (E'')",
 )
 TAN = (
     L / S,
     RATIO,
-    ["tan delta", "tan(δ)", "Loss factor", "Verlustfaktor", "Tan(delta)", "tan_delta", "Damping"],
+    "tan delta;tan(δ);Loss factor;Verlustfaktor;Tan(delta);tan_delta;Damping",
 )
-WHOLE = np.hypot(S, L), PASCAL, ["|E*|", "E*", "Complex modulus", "Komplexer Modul"]
-PHASE = np.degrees(np.arctan2(L, S)), DEGREES, ["delta", "Phase angle", "Phasenwinkel", "δ"]
+WHOLE = np.hypot(S, L), PASCAL, "|E*|;E*;Complex modulus;Komplexer Modul"
+PHASE = np.degrees(np.arctan2(L, S)), DEGREES, "delta;Phase angle;Phasenwinkel;δ"
 CHOICES = [
     (STORAGE, LOSS),
     (STORAGE, TAN),
@@ -105,7 +105,7 @@ def files(draw):
     columns = []
     for values, units, names in [draw(st.sampled_from(PLACES)), *draw(st.sampled_from(CHOICES))]:
         unit = draw(st.sampled_from([*units]))
-        name = draw(st.sampled_from(names))
+        name = draw(st.sampled_from(names.split(";")))
         log = (
             units is not RATIO
             and units is not DEGREES

@@ -18,7 +18,6 @@ pytestmark = pytest.mark.filterwarnings(
 SCENE = vr.Scene(alpha=11.0, kappa=2.91, mu=0.2, gamma=1.0, j=0.5)
 T = np.linspace(0.0, 8.0, 33)
 BROAD = vr.Prony(E=[2.0, 6.0], tau=[1.0, 1e-2])
-PAIR = vr.Bodies(cylinder=BROAD, base=vr.Prony(E=[1.0, 4.0], tau=[0.3, 1e-3]), share=0.7)
 
 
 def test_how_a_schedule_is_written():
@@ -52,20 +51,6 @@ def test_brake_locks_backspin_if_it_is_stronger_than_friction(share):
     assert (omega > 0.0).all() if share < 1.0 else not omega.any()
     assert [s.regime for s in m.switches] == ([] if share < 1.0 else ["locked"])
     assert balance(m) <= 1e-7
-
-
-def test_bodies_that_differ():
-    """Energy closes; by the kernel of two bodies a pair that hardly differs rolls as one
-    material.
-    """
-    scene = vr.Scene(material=PAIR, kappa=10.0, mu=0.3, gamma=0.5, j=0.5)
-    t = np.append(0.0, np.geomspace(0.1, 300.0, 20))
-    assert balance(vr.roll(scene, 1.0, 0.4, t, rtol=1e-9)) <= 1e-7
-    nearly = vr.Bodies(cylinder=BROAD, base=BROAD, share=0.5 + 1e-12)
-    one, two = (
-        vr.roll(scene.replace(material=given), 1.0, 0.4, t, rtol=1e-10) for given in (nearly, BROAD)
-    )
-    assert speed_error(one, two, so_far=True).max() <= tol.DRIVE_FREE
 
 
 def test_an_exception_of_a_callable_passes():

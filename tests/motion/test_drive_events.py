@@ -33,6 +33,14 @@ def test_a_faint_push_the_other_way(share):
     assert close(m.V[1:], plain.V[1:], 100.0 * share + BOUND * 1e-10)
 
 
+def locks_and_holds(m, times, V, omega, bound, rtol=1e-8):
+    """The brake locks, then holds, at these times; speeds are those of the closed form."""
+    assert [s.regime for s in m.switches] == ["locked", "held"]
+    assert close([s.t for s in m.switches], times, BOUND * rtol)
+    assert close(m.V, V, bound, scale=1.0)
+    assert close(m.omega, omega, bound, scale=1.0)
+
+
 @pytest.mark.parametrize("early", [0.02, 0.1, 0.3])
 def test_a_brake_locks_just_before_v_is_zero(early):
     """Sliding at V > 0 > omega: omega comes to 0 first, and only then do V and with it the slip
@@ -50,11 +58,8 @@ def test_a_brake_locks_just_before_v_is_zero(early):
     m = vr.roll(
         ELASTIC, 1.0, -stop, t, rtol=rtol, brake=0.3, force=vr.Schedule([0.0, 10.0], [0.0, -0.1])
     )
-    assert [s.regime for s in m.switches] == ["locked", "held"]
-    assert close([s.t for s in m.switches], [stop, end], BOUND * rtol)
-    bound = BOUND * rtol * stop
-    assert close(m.V, np.where(t < end, 1.0 - 0.2 * t - 0.005 * t**2, 0.0), bound, scale=1.0)
-    assert close(m.omega, np.minimum(t - stop, 0.0), bound, scale=1.0)
+    V = np.where(t < end, 1.0 - 0.2 * t - 0.005 * t**2, 0.0)
+    locks_and_holds(m, [stop, end], V, np.minimum(t - stop, 0.0), BOUND * rtol * stop)
 
 
 @pytest.mark.parametrize("pull", [-0.001, 0.001])
@@ -91,12 +96,8 @@ def test_a_brake_that_begins_at_0():
     stop = (
         np.sqrt(0.34) - 0.2
     ) / 0.3  # of omega = -1 + 0.4 t + 0.3 t^2, where the brake takes more than mu
-    assert [s.regime for s in m.switches] == ["locked", "held"]
-    assert close([s.t for s in m.switches], [stop, 5.0], BOUND * rtol)
-    assert close(m.V, np.maximum(1.0 - 0.2 * t, 0.0), BOUND * rtol, scale=1.0)
-    assert close(
-        m.omega, np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0), BOUND * rtol, scale=1.0
-    )
+    omega = np.where(t < stop, -1.0 + 0.4 * t + 0.3 * t**2, 0.0)
+    locks_and_holds(m, [stop, 5.0], np.maximum(1.0 - 0.2 * t, 0.0), omega, BOUND * rtol)
 
 
 @pytest.mark.parametrize("most", [0.0859, 0.0333, 0.1])
@@ -138,43 +139,33 @@ def test_a_brake_lets_go_after_what_it_takes_turned():
         assert close(m.switches[0].t, 0.25 / 0.45, BOUND * rtol)
 
 
-@pytest.mark.parametrize("rtol", [1e-6, 1e-8, 1e-11])
-@pytest.mark.parametrize("then", [1.0, -1.0])
-def test_a_prescribed_speed_stands_at_0(rtol, then):
-    """What its integration leaves of it is 0: the other speed comes to rest too; then it sets out
-    either way.
-    """
-    scene = vr.Scene(alpha=11.0, kappa=10.0, mu=0.05, gamma=1.0, j=0.5)
-    t = np.linspace(0.0, 4.0, 17)
-    stands = vr.Schedule([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, then])
-    turning = vr.roll(scene, None, -0.1, t, rtol=rtol, V=stands)
-    # sliding at V = 0 it spins down by 0.1 a unit of time
-    assert close(turning.V, np.interp(t, stands.times, stands.values), BOUND * rtol, scale=1.0)
-    assert turning.status == vr.MotionStatus.DONE
-    assert not turning.omega[(t > 2.5) & (t < 3.0)].any()
-
-
 @pytest.mark.parametrize("rtol", [1e-3, 1e-8, 1e-12])
 @pytest.mark.parametrize(
     ("values", "turns"), [([1, 0, -1], [1.0]), ([1, 0, 0, -1], [2.0]), ([1, 0, 0, 1], [])]
 )
-def test_a_prescribed_V_turns_where_it_leaves_0_the_other_way(values, turns, rtol):
-    """Not where it comes to 0 with a piece of the drive, whatever rounding makes of that."""
+def test_a_prescribed_speed_that_comes_to_0(values, turns, rtol):
+    """What its integration leaves of it is 0: the other speed comes to rest too; V turns where it
+    leaves 0 the other way, not where it comes to 0 with a piece of the drive.
+    """
+    scene = vr.Scene(11.0, 10.0, 0.05, 1.0, 0.5)
     V = vr.Schedule(np.arange(len(values)), values)
-    m = vr.roll(
-        vr.Scene(11.0, 10.0, 0.05, 1.0, 0.5), None, -2.0, V.times[-1], rtol=rtol, V=V, torque=-0.051
-    )
+    t = np.linspace(0.0, V.times[-1], 17)
+    m = vr.roll(scene, None, -2.0, t, rtol=rtol, V=V, torque=-0.051)
     assert m.reversals.tolist() == turns
+    assert close(m.V, np.interp(t, V.times, V.values), BOUND * rtol, scale=1.0)
+    # sliding at V = 0 it spins down by 0.1 a unit of time
+    stands = vr.Schedule([0.0, 1.0, 3.0, 4.0], [1.0, 0.0, 0.0, values[-1]])
+    still = vr.roll(scene, None, -0.1, [2.6, 2.9, 4.0], rtol=rtol, V=stands)
+    assert still.status == vr.MotionStatus.DONE
+    assert not still.omega[:2].any()
 
 
-@pytest.mark.parametrize("slope", np.linspace(0.002, 0.28, 40))
-def test_a_brake_that_just_holds_a_slope(slope):
+def test_a_brake_that_just_holds_a_slope():
     """Both sides of the equality are rounded, each in its way: equality is rest."""
     roller = vr.presets.RUBBER_CYLINDER
-    held = roller.roll(
-        0.0, 0.0, [0.5, 1.0], slope=slope, brake=roller.load * np.sin(slope) * roller.R
-    )
-    assert held.status == 0
+    slope = np.linspace(0.002, 0.28, 40)
+    brake = roller.load * np.sin(slope) * roller.R
+    held = roller.ensemble(0.0, 0.0, 1.0, slope=slope, brake=brake, fields=("V", "regime"))
     assert not held.V.any()
     assert (held.regime == 4).all()
 

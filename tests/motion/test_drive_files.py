@@ -15,7 +15,7 @@ def test_other_times_keep_the_drive():
     m = vr.roll(ROLLER, 0.0, 0.0, t, force=np.sin, torque=RAMP, slope=0.01, brake=0.02)
     same = vr.roll(ROLLER, 0.0, 0.0, 4.0, force=np.sin, torque=RAMP, slope=0.01, brake=0.02).at(t)
     for name in ("V", "omega", *ACTING):
-        assert np.array_equal(getattr(m, name), getattr(same, name)), name
+        assert np.array_equal(m[name], same[name]), name
 
 
 def test_a_motion_carries_its_drive(tmp_path):
@@ -27,7 +27,7 @@ def test_a_motion_carries_its_drive(tmp_path):
     m.to_xarray().to_netcdf(tmp_path / "m.nc", engine="h5netcdf")
     with xr.open_dataset(tmp_path / "m.nc", engine="h5netcdf", decode_times=False) as data:
         for name in ACTING:
-            assert np.array_equal(data[name].values, getattr(m, name))
+            assert np.array_equal(data[name].values, m[name])
             assert data[name].attrs.keys() >= {"long_name", "units", "symbol"}
         assert data.attrs["drive_force"] == "a function of t"
         assert data.attrs["drive_error"] == m.drive_error > 0.0
@@ -50,4 +50,4 @@ def test_an_ensemble_carries_its_drives():
     assert data["drive_torque"].dims == ("motion", "drive_torque_time")
     assert data["drive_slope"].values.tolist() == [0.01, 0.02]
     for name in ACTING:
-        assert np.array_equal(data[name].values, getattr(e, name))
+        assert np.array_equal(data[name].values, e[name])

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from memory import taken_beside
 
 import viscoroll as vr
 from pipeline.evidence.prove import independent
@@ -132,6 +131,10 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
     assert cut.status == vr.MotionStatus.STEP_LIMIT
     assert np.isfinite(cut.V).tolist() == [True, False]
     assert cut.regime[1] == -1
+    along = cut.contact()
+    assert along.Q[0] == cut.at([1e-6]).contact().Q[0]
+    assert np.isnan(along.Q[1])
+    assert not along.full_slip[1]
     t, V, omega = (float(value) for value in words.match(cut.message).group(1, 3, 5))
     there = vr.roll(ROUNDED, 1.5, 0.5, [t])
     assert 1e-6 < t < 1.0
@@ -142,38 +145,6 @@ def test_a_motion_that_is_given_up_says_where_it_stood():
         stood = words.match(cut.message.replace("full slip", "partial slip"))
         assert stood.group(2, 4, 6) == (" s", " m s-1", " rad s-1"), steps
         assert "nan" not in cut.message, steps
-
-
-def test_a_high_step_limit_takes_no_memory():
-    """A double a step would be 80 MB."""
-    assert (
-        taken_beside(lambda: vr.roll(ROUNDED, 1.5, 0.5, 5e-3, rtol=1e-12, max_steps=10_000_000))
-        < 10_000_000
-    )
-
-
-@pytest.mark.filterwarnings("ignore:roll")
-def test_contact_along_a_motion_that_ended_early():
-    """NaN where it did not arrive; elsewhere the same bits as of the motion up to there."""
-    motion = vr.roll(ROUNDED, 1.5, 0.5, [1e-6, 2e-6, 1.0], max_steps=5)
-    reached = motion.regime >= 0
-    assert reached.tolist() == [True, True, False]
-    found = motion.contact()
-    expected = motion.at([1e-6, 2e-6]).contact()
-    for name, values in found.as_dict().items():
-        assert np.array_equal(values[reached], getattr(expected, name)), name
-        assert not values[2] if name == "full_slip" else np.isnan(values[2]), name
-
-
-@pytest.mark.parametrize("rtol", [1e-6, 1e-11])
-def test_last_output_on_a_switch(rtol):
-    """The end time equals a located switch to the last bit: no step is left to take."""
-    start = (1.7409319521579478, 1.50438076269256)
-    onset = vr.roll(ROUNDED, *start, [1e-3], rtol=rtol).onset_time
-    motion = vr.roll(ROUNDED, *start, [onset], rtol=rtol)
-    beyond = vr.roll(ROUNDED, *start, [onset, 1e-3], rtol=rtol)
-    for name in ("V", "omega", "x", "angle", "delta"):
-        assert close(getattr(motion, name)[0], getattr(beyond, name)[0], 30 * rtol)
 
 
 @pytest.mark.parametrize("j", [0.3, 0.5, 1.7])

@@ -22,8 +22,8 @@ def pieces_of(drive, end):
     return functions.pieces
 
 
-@pytest.mark.parametrize("count", [2_000, 200_000])
-def test_memory_of_a_schedule_is_proportional_to_its_corners(count):
+def test_memory_of_a_schedule_is_proportional_to_its_corners():
+    count = 50_000
     times = np.arange(count) * 1e-3
     drive = Drive(
         torque=vr.Schedule(times, 0.1 * np.sin(times)), force=vr.Schedule(times + 5e-4, 0.0 * times)
@@ -45,13 +45,15 @@ def test_motions_with_corners_of_their_own_have_the_bits_of_each_alone(monkeypat
     values = random.uniform(-0.1, 0.3, (12, 7))
     times[:, 0] = 0.0
     start = (None, 0.2) if name == "V" else (0.3, 0.2)
+    alone = [
+        vr.roll(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(*each)})
+        for each in zip(times, values, strict=True)
+    ]
     for size in (1, 2_000, drive_functions._BLOCK_BYTES):
         monkeypatch.setattr(drive_functions, "_BLOCK_BYTES", size)
         many = vr.ensemble(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times, values)})
-        for n in range(12):
-            one = vr.roll(ROLLER, *start, [2.0, 8.0], **{name: vr.Schedule(times[n], values[n])})
-            for field in ("V", "omega", "x"):
-                assert np.array_equal(many[field][n], one[field]), (size, n, field)
+        for field in ("V", "omega", "x"):
+            assert np.array_equal(many[field], [one[field] for one in alone]), (size, field)
 
 
 def test_a_jump_of_one_slow_motion_is_refused_beside_fast_ones():

@@ -19,7 +19,6 @@ import viscoroll as vr
 from viscoroll.motion.many_motions import FLOW_PAYS
 from viscoroll.runs import export_netcdf, open_run, roll_inputs, run_ensemble, verify
 from viscoroll.runs.run_records import identity
-from viscoroll.runs.run_rollers import roller_of
 from viscoroll.runs.run_store import block_inputs, columns_of, roll_block
 from viscoroll.runs.sensitivity import sobol_indices
 
@@ -155,18 +154,6 @@ def test_the_identity_is_of_every_number_but_n(read, text):
             continue
 
 
-def test_a_material_of_a_file_is_in_the_digest(read, tmp_path):
-    text = CERTAIN.replace("E = 3e6\nnu = 0.5", 'file = "rubber.nc"')
-    digests = set()
-    for E in (3e6, 4e6):
-        rubber = vr.Material(E, 0.5, vr.Prony([0.3, 1.5], [2e-2, 1e-5]))
-        rubber.to_netcdf(tmp_path / "rubber.nc")
-        run = read(text)
-        digests.add(run.digest)
-        assert run.inputs.content["material"] == rubber
-    assert len(digests) == 2
-
-
 @pytest.mark.parametrize(
     "file", ["a preset", "numbers", "known rubber", "driven", "a driven roller"]
 )
@@ -204,28 +191,6 @@ def test_a_store_holds_the_run(read, tmp_path, file):
 # --- which method ---
 
 
-def test_a_cylinder_from_its_flow_map(read):
-    """The map is made for dimensionless speeds, the threshold of rest is one."""
-    text = (
-        FILES["numbers"]
-        .replace("n = 20", "n = 3000\nrest = 1e-3\nmethod = 'flow'")
-        .replace("1e-10", "1e-7")
-    )
-    text = re.sub(
-        r"(R|T_epsilon) = \{.*",
-        lambda found: found[1] + (" = 0.1" if found[1] == "R" else " = 10.7"),
-        text,
-    )
-    run = read(text.replace(', "slip_loss", "rolling_loss"]', "]"))
-    values, motions = roll_block(run, 0)
-    assert motions.flow.mean() > 0.5
-    columns = columns_of(run, values, motions)
-    for i in range(5):
-        one = alone(run, values, i)
-        assert close(columns["V"][i], one.V, 1e-7, scale=abs(values["V0"][i]))
-        assert close(columns["rest_time"][i], one.rest_time, 1e-6)
-
-
 def test_the_flow_map_where_many_start_in_one_scene(read):
     """Chosen by the run: a block of slow starts does not get a finer one.  Of motions at rest there
     is none.
@@ -239,17 +204,6 @@ def test_the_flow_map_where_many_start_in_one_scene(read):
     assert roll_inputs(run, few, 2).V[0, 1] == motions.V[3, 1]
     still = read(PAPER + '[start]\nV0 = 0.0\nomega0 = 0.0\n[run]\nn = 2\nt = 1e-3\nmethod = "flow"')
     assert roll_block(still, 0)[1].V.tolist() == [[0.0], [0.0]]
-
-
-def test_nothing_is_uncertain(read):
-    """The same motion n times; scenes are those of presets and series."""
-    start = "[start]\nV0 = 1.5\nomega0 = 0.5\n[run]\nn = 3\nt = 1e-3"
-    _, motions = roll_block(read(PAPER + start), 0)
-    assert (
-        motions.V[:, 0].tolist() == [vr.roll(vr.presets.PAPER_SECTION_5, 1.5, 0.5, [1e-3]).V[0]] * 3
-    )
-    run = read('preset = "rubber-roller"\n[scene]\nalpha = 3.0\n' + start)
-    assert roller_of(run.path, run.inputs.content) == vr.presets.RUBBER_ROLLER.replace(alpha=3.0)
 
 
 SPREAD = '{ distribution = "uniform", loc = 0.05, scale = 0.1 }'
@@ -273,29 +227,6 @@ def test_a_start_in_pure_rolling(read, R):
         values["V0"].tolist(),
         run.inputs.largest("V0"),
     )
-
-
-@pytest.mark.parametrize(
-    ("name", "inputs"),
-    [
-        ("driven", {"drive_torque_2", "drive_slope", "drive_force"}),
-        (
-            "rubber on rubber",
-            {"mu", "V0", "E_1", "E_2", "tau_1", "E", "base_E", "base_E_1", "base_tau_1"},
-        ),
-    ],
-)
-def test_inputs_have_indices(read, name, inputs):
-    """Rolling resistance spreads by the strengths of the modes that it is made of, less by friction
-    and the start.
-    """
-    text = re.sub(r"\[correlation\]\n.*\n", "", FILES[name]).replace('"lost_to_slip"]', '"torque"]')
-    found = sobol_indices(read(text), 64, threads=1)
-    assert set(found["input"].values) == inputs
-    if "base_E_1" in inputs:
-        total = found.lost_to_rolling_ST.isel(t=-1)
-        assert total.sel(input="E_2") > 0.2 > total.sel(input="mu")
-        assert min(total.sel(input=["tau_1", "base_E_1"])) > total.sel(input="V0")
 
 
 # --- columns of files ---
@@ -347,6 +278,18 @@ def test_a_file_by_two_names_is_one_file(read, tmp_path, sample):
     refused(lambda: read(text), "line 3", "'a' is not a number", error=vr.FileError)
 
 
+def test_a_material_of_a_file_is_in_the_digest(read, tmp_path):
+    text = CERTAIN.replace("E = 3e6\nnu = 0.5", 'file = "rubber.nc"')
+    digests = set()
+    for E in (3e6, 4e6):
+        rubber = vr.Material(E, 0.5, vr.Prony([0.3, 1.5], [2e-2, 1e-5]))
+        rubber.to_netcdf(tmp_path / "rubber.nc")
+        run = read(text)
+        digests.add(run.digest)
+        assert run.inputs.content["material"] == rubber
+    assert len(digests) == 2
+
+
 def test_each_motion_has_the_temperature_that_was_drawn(read):
     """As of the material at that temperature, also beside modes that are uncertain."""
     shift = vr.WLF(T0=20.0, C1=8.86, C2=101.6)
@@ -369,3 +312,26 @@ def test_each_motion_has_the_temperature_that_was_drawn(read):
         )
         alone = vr.Cylinder(R=0.1, m=35.5, mu=0.5, material=rubber).roll(2.0, 0.0, run.t)
         assert close(motions.V[i], alone.V, tol.MOTION_RTOL * run.settings.rtol)
+
+
+@pytest.mark.parametrize(
+    ("name", "inputs"),
+    [
+        ("driven", {"drive_torque_2", "drive_slope", "drive_force"}),
+        (
+            "rubber on rubber",
+            {"mu", "V0", "E_1", "E_2", "tau_1", "E", "base_E", "base_E_1", "base_tau_1"},
+        ),
+    ],
+)
+def test_inputs_have_indices(read, name, inputs):
+    """Rolling resistance spreads by the strengths of the modes that it is made of, less by friction
+    and the start.
+    """
+    text = re.sub(r"\[correlation\]\n.*\n", "", FILES[name]).replace('"lost_to_slip"]', '"torque"]')
+    found = sobol_indices(read(text), 64, threads=1)
+    assert set(found["input"].values) == inputs
+    if "base_E_1" in inputs:
+        total = found.lost_to_rolling_ST.isel(t=-1)
+        assert total.sel(input="E_2") > 0.2 > total.sel(input="mu")
+        assert min(total.sel(input=["tau_1", "base_E_1"])) > total.sel(input="V0")

@@ -16,7 +16,6 @@ import pytest
 from refusals import refused
 
 import viscoroll as vr
-from viscoroll.cli import main
 from viscoroll.core import files
 from viscoroll.runs import export_netcdf, open_run, read_run, run_ensemble, verify
 from viscoroll.runs.run_store import locked
@@ -80,12 +79,6 @@ def copied(store, target):
         (target / name).parent.mkdir(parents=True, exist_ok=True)
         (target / name).write_bytes(data)
     return target
-
-
-def test_one_thread_gives_the_same_files(run_file, tmp_path, whole):
-    run_ensemble(read_run(run_file), tmp_path / "one.zarr", threads=1)
-    assert content(tmp_path / "one.zarr") == content(whole)
-    assert verify(whole).ok
 
 
 def test_damaged_motions_are_not_exported(tmp_path, whole):
@@ -244,15 +237,6 @@ def test_a_run_that_cannot_grow_is_refused(run_file, tmp_path, before, now, word
     assert content(store) == was
 
 
-def test_a_sobol_sequence_grows_to_powers_of_two(run_file, tmp_path):
-    for store, counts in (("grown", (256, 1024)), ("scratch", (1024,))):
-        for n in counts:
-            text = RUN.replace("n = 1200", f"n = {n}").replace("block = 100", "block = 256")
-            run_file.write_text(text + 'design = "sobol"\n')
-            run_ensemble(read_run(run_file), tmp_path / store, threads=2)
-    assert content(tmp_path / "grown") == content(tmp_path / "scratch")
-
-
 def test_a_killed_run_goes_on(run_file, tmp_path, whole):
     """SIGKILL of everything: what is done stays as it is, and at most one block a worker is made
     again.
@@ -283,24 +267,6 @@ def test_a_killed_run_goes_on(run_file, tmp_path, whole):
     assert run_ensemble(read_run(run_file), store) == 12 - len(done)
     assert {path: path.stat().st_mtime_ns for path in done} == done
     assert content(store) == content(whole)
-
-
-def test_command(run_file, tmp_path, whole, capsys):
-    store = tmp_path / "store.zarr"
-    assert main(["ensemble", str(run_file)]) == 0
-    assert "1200 motions in 12 blocks of 100" in capsys.readouterr().out
-    assert not store.exists()
-    assert main(["ensemble", str(run_file), "-o", str(store)]) == 0
-    shown = capsys.readouterr()
-    assert "fell below the rest threshold" in shown.out
-    assert shown.err == ""  # no bar where nobody looks
-    assert main(["ensemble", str(run_file), "-o", str(store)]) == 0
-    assert "12 of 12 blocks were complete already" in capsys.readouterr().out
-    assert main(["verify", str(store)]) == 0
-    assert "complete: 12 blocks" in capsys.readouterr().out
-    (store / "motions/x/3.0").write_bytes(b"")
-    assert main(["verify", str(store)]) == 1
-    assert "motions/x/3.0" in capsys.readouterr().out
 
 
 def _heeding():

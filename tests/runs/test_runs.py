@@ -3,20 +3,17 @@
 import itertools
 
 import numpy as np
-import pandas as pd
 import pytest
 import tolerances as tol
-import xarray as xr
 from closeness import close
 from run_files import run_of
 from scipy import stats
 from scipy.stats import qmc
 
-import viscoroll as vr
 from viscoroll import sampling
 from viscoroll.motion.summaries import QUANTITIES, Histogram, merge_summaries, summarise
 from viscoroll.runs.run_store import roll_block
-from viscoroll.runs.uncertain_inputs import Distribution, Inputs, read_column
+from viscoroll.runs.uncertain_inputs import Distribution, Inputs
 
 pytestmark = pytest.mark.filterwarnings(
     "ignore::viscoroll.ModelWarning"
@@ -48,20 +45,6 @@ def run(tmp_path):
 # --- designs ---
 
 
-@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
-def test_points_depend_on_seed_and_block_alone(design):
-    edges = [(0, 300), (300, 600), (600, 1000)]
-    forward = [sampling.points(design, 3, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
-    backward = [sampling.points(design, 3, 1000, 2, *edges[b], b) for b in (2, 1, 0)][::-1]
-    assert all(map(np.array_equal, forward, backward))
-    every = np.hstack(forward)
-    assert every.min() > 0.0
-    assert every.max() < 1.0
-    assert min(stats.kstest(row, "uniform").pvalue for row in every) > tol.KOLMOGOROV
-    other = [sampling.points(design, 4, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
-    assert not np.array_equal(every, np.hstack(other))
-
-
 def test_a_latin_hypercube_fills_every_stratum():
     """Every one once, for any number of them and however they are cut into blocks."""
     for n in (1, 2, 3, 7, 64, 1000, 1025):
@@ -88,15 +71,6 @@ def test_sobol_blocks_are_those_of_scipy():
 
 
 # --- inputs ---
-
-
-def test_a_cut_tail_keeps_its_digits():
-    u = np.linspace(sampling.SMALLEST, sampling.LARGEST, 101)
-    for low, high in ((30.0, 31.0), (-31.0, -30.0), (-1.0, 2.0)):
-        found = Distribution(stats.norm(), low, high).ppf(u)
-        exact = stats.truncnorm(low, high).ppf(u)
-        assert np.abs(found - exact).max() < tol.TRUNCATED
-        assert (np.diff(found) > 0.0).all()
 
 
 def test_the_copula_keeps_marginals_and_gives_the_correlation():
@@ -145,11 +119,24 @@ def test_merged_summaries_are_those_of_all(run):
             assert close(one.spread / one.count, np.nanvar(values), tol.MOMENT, scale=1.0)
 
 
-def test_columns_of_parquet_and_netcdf_state_their_unit_or_warn(tmp_path):
-    values = {"E": [2.0, 3.0], "E [MPa]": [2.0, 3.0]}
-    pd.DataFrame(values).to_parquet(tmp_path / "x.parquet")
-    xr.Dataset({"E": ("n", values["E"])}).to_netcdf(tmp_path / "x.nc", engine="h5netcdf")
-    for name in ("x.parquet", "x.nc"):
-        with pytest.warns(vr.ModelWarning, match="column 'E' has no unit, and is taken in Pa"):
-            assert read_column(tmp_path / name, "E", "Pa").tolist() == values["E"]
-    close(read_column(tmp_path / "x.parquet", "E [MPa]", "Pa"), [2e6, 3e6], rel=tol.UNIT_CONVERTED)
+def test_a_cut_tail_keeps_its_digits():
+    u = np.linspace(sampling.SMALLEST, sampling.LARGEST, 101)
+    for low, high in ((30.0, 31.0), (-31.0, -30.0), (-1.0, 2.0)):
+        found = Distribution(stats.norm(), low, high).ppf(u)
+        exact = stats.truncnorm(low, high).ppf(u)
+        assert np.abs(found - exact).max() < tol.TRUNCATED
+        assert (np.diff(found) > 0.0).all()
+
+
+@pytest.mark.parametrize("design", ["random", "latin", "sobol"])
+def test_points_depend_on_seed_and_block_alone(design):
+    edges = [(0, 300), (300, 600), (600, 1000)]
+    forward = [sampling.points(design, 3, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
+    backward = [sampling.points(design, 3, 1000, 2, *edges[b], b) for b in (2, 1, 0)][::-1]
+    assert all(map(np.array_equal, forward, backward))
+    every = np.hstack(forward)
+    assert every.min() > 0.0
+    assert every.max() < 1.0
+    assert min(stats.kstest(row, "uniform").pvalue for row in every) > tol.KOLMOGOROV
+    other = [sampling.points(design, 4, 1000, 2, *edge, b) for b, edge in enumerate(edges)]
+    assert not np.array_equal(every, np.hstack(other))

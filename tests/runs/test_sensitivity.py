@@ -2,20 +2,16 @@
 documentation.
 """
 
-import csv
 import re
-from pathlib import Path
 
 import numpy as np
 import pytest
 import tolerances as tol
-import xarray as xr
 from closeness import close
 from run_files import run_of
 from scipy import stats
 
 import viscoroll as vr
-from viscoroll.cli import main
 from viscoroll.runs.sensitivity import sobol_indices
 
 pytestmark = pytest.mark.filterwarnings(
@@ -120,16 +116,6 @@ def test_an_input_without_influence_has_index_zero(sliding):
         assert np.abs(idle[key]).max() <= tol.SENSITIVITY_NONE
 
 
-def test_a_product_has_total_above_first():
-    """Y = a b: S1 = var(a) E(b)^2 / var(Y), ST = var(a) E(b^2) / var(Y)."""
-    indices = sobol_indices(run_of(PRODUCT), N)
-    for name, other in (("mu", "gamma"), ("gamma", "mu")):
-        share = FACTORS[name].var() / product_variance()
-        assert inside(indices, "V", "S1", name, share * FACTORS[other].mean() ** 2, 0)
-        assert inside(indices, "V", "ST", name, share * FACTORS[other].moment(2), 0)
-    assert (indices["V_ST"] > indices["V_S1"]).all()
-
-
 def test_intervals_err_on_the_wide_side():
     """Of 20 seeds, at least the 95 % that the intervals state hold the exact index."""
     exact = FACTORS["mu"].mean() ** 2 * FACTORS["gamma"].var() / product_variance()
@@ -139,25 +125,6 @@ def test_intervals_err_on_the_wide_side():
         value, half = (float(indices[key].sel(input="gamma")[0]) for key in ("V_S1", "V_S1_conf"))
         held += abs(value - exact) <= half
     assert held >= 19
-
-
-def test_same_bits_for_any_threads():
-    one, two = (sobol_indices(run_of(ONSET), 64, threads=threads) for threads in (1, 2))
-    assert one.identical(two)
-    other = sobol_indices(run_of(ONSET.replace("n = 1\n", "n = 1\nseed = 4\n")), 64)
-    assert not one["V_S1"].identical(other["V_S1"])
-
-
-def test_a_column_of_a_file_is_an_input():
-    """The rows of one column are a distribution as any other: here the very values that V depends
-    on.
-    """
-    values = 0.2 + 0.01 * np.random.default_rng(0).random(50)
-    Path("mu.csv").write_text("friction\n" + "\n".join(map(repr, values.tolist())))
-    text = re.sub(r"mu = \{.*\}", 'mu = { file = "mu.csv", column = "friction" }', SLIDING)
-    indices = sobol_indices(run_of(text), N)
-    parts = np.array([stats.uniform(1.0, 0.2).var(), (GAMMA * 1e-4) ** 2 * values.var()])
-    assert inside(indices, "V", "ST", "mu", parts[1] / parts.sum(), 1)
 
 
 # --- what has no indices ---
@@ -179,22 +146,11 @@ def test_what_some_motions_lack_is_refused_and_said():
 # --- figure and command ---
 
 
-def test_command(here, capsys):
-    run_of(ONSET)
-    assert main(["sensitivity", "run.toml", "-n", "50", "-o", "s.nc"]) == 0
-    out, err = capsys.readouterr()
-    assert err == ""
-    assert "64 base points (50, rounded up to a power of two), 256 motions, seed 0" in out
-    assert re.search(r"no indices for onset_time: \d+ of 256 motions have no value", out)
-    assert re.search(r"V +0.00012 +omega0 +[01]\.\d+", out).start() < out.index(" mu ")
-    with xr.open_dataset("s.nc", engine="h5netcdf") as stored:
-        assert stored.attrs["run_file"] == ONSET
-        assert {"seed", "source", "versions"} <= stored.attrs.keys()
-        expected = sobol_indices(run_of(ONSET), 50)
-        assert np.array_equal(
-            stored["V_S1"].sel(input="mu"), expected["V_S1"].sel(input="mu"), equal_nan=True
-        )
-    assert main(["sensitivity", "run.toml", "-n", "50", "-o", "s.csv"]) == 0
-    with open("s.csv", newline="") as file:
-        row = next(csv.DictReader(file))
-    assert float(row["ST"]) == expected["V_ST"].sel(t=float(row["t"]), input=row["input"])
+def test_a_product_has_total_above_first():
+    """Y = a b: S1 = var(a) E(b)^2 / var(Y), ST = var(a) E(b^2) / var(Y)."""
+    indices = sobol_indices(run_of(PRODUCT), N)
+    for name, other in (("mu", "gamma"), ("gamma", "mu")):
+        share = FACTORS[name].var() / product_variance()
+        assert inside(indices, "V", "S1", name, share * FACTORS[other].mean() ** 2, 0)
+        assert inside(indices, "V", "ST", name, share * FACTORS[other].moment(2), 0)
+    assert (indices["V_ST"] > indices["V_S1"]).all()

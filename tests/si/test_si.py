@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 import tolerances as tol
 from closeness import close
-from refusals import refused
 
 import viscoroll as vr
 
@@ -87,11 +86,6 @@ def spun(body, u):
     )
 
 
-def towed(body, u):
-    speeds = vr.Schedule(TIMES[::4] / u.t, np.array([0.01, 0.03, -0.01]) / u.V)
-    return body.roll(None, 0.0, TIMES / u.t, V=speeds, torque=0.5 / u.torque)
-
-
 SPEEDS = np.array([-0.2, 0.05, 0.3])
 SPINS = np.array([-1.99, 0.5, 3.1])
 STATE = (
@@ -140,7 +134,6 @@ CALLS = {
     ),
     "driven": (everything_acts, DRIVEN),
     "spun": (spun, DRIVEN),
-    "towed": (towed, DRIVEN),
     "from rest": (
         lambda body, u: body.roll(
             1.0 / u.V, 10.0 / u.omega, TIMES / u.t, unsteady=True, rested=60.0 / u.t
@@ -177,32 +170,6 @@ def test_the_dimensionless_call_in_other_units(name):
         assert not times.size or close(times, exact * unit["t"], rel)
 
 
-def test_functions_are_the_methods():
-    """Of scene and cylinder, with one signature; what is neither is refused by name."""
-    for name in (
-        "contact",
-        "stress",
-        "steady",
-        "resistance_extrema",
-        "law",
-        "roll",
-        "ensemble",
-        "validity",
-    ):
-        function = getattr(vr, name)
-        assert function is getattr(vr.Scene, name) is getattr(vr.Cylinder, name)
-        arguments = {
-            "stress": 2,
-            "steady": 0,
-            "resistance_extrema": 0,
-            "law": 0,
-            "roll": 3,
-            "ensemble": 3,
-        }.get(name, 1)
-        said = refused(lambda function=function, n=arguments: function("a roller", *[0.1] * n))
-        assert said == f"{name} takes a Scene or a Cylinder, not 'a roller'"
-
-
 # --- many cylinders ---
 
 SLOW = np.array([1e-3, 1e-2, 2e-2])
@@ -232,6 +199,7 @@ def test_each_of_many_is_as_alone(name):
         0.5, 3.0, TIMES, torque=vr.Feedback(0.01, V=-0.001, omega=-drags), fields=fields[:-1]
     )
     state = many.contact(0.5, delta=0.01)
+    unsteady = many.validity(0.5).steady
     s = many.steady(slope=1e-3) if name != "times" else None  # of one alpha
     for n in range(3):
         one = roller.replace(**{key: values[n] for key, values in each.items()})
@@ -243,6 +211,9 @@ def test_each_of_many_is_as_alone(name):
         for field in ("M", "Q", "length", "beta"):
             exact = getattr(one.contact(0.5, delta=0.01), field)
             assert close(getattr(state, field)[n], exact, tol.SI_MOTION, what=field)
+        alone = one.validity(0.5).steady
+        assert close(unsteady.value[n], alone.value, tol.STEADINESS, scale=1e-9)
+        assert close(unsteady.ten_percent.speed[n], alone.ten_percent.speed, tol.STEADINESS)
         assert s is None or close(s.V[n][: s.count[n]], one.steady(slope=1e-3).V, tol.SI_MOTION)
     again = roller.replace(**{key: values.copy() for key, values in each.items()})
     assert (many, hash(many)) == (again, hash(again))

@@ -78,47 +78,6 @@ def test_data_over_the_band_determine_M(growth, thickness):
     assert error[4] > tol.MEASURED_BEYOND
 
 
-@pytest.mark.parametrize("worker", [False, True])
-def test_a_word_once_a_material_and_none_in_workers(monkeypatch, worker):
-    monkeypatch.setattr(model_warnings, "_warned_records", set())
-    monkeypatch.setattr(model_warnings, "is_worker", lambda: worker)
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("always")
-        for _ in range(2):
-            BELT.contact(10.0, delta=0.0)
-    assert [(each.category, each.filename) for each in found] == [(vr.ModelWarning, __file__)] * (
-        not worker
-    )
-
-
-@pytest.mark.parametrize(
-    "call",
-    [
-        lambda roller: roller.contact(0.1, delta=0.0),
-        lambda roller: roller.stress(V=0.1, delta=0.0, x=0.0),
-        lambda roller: roller.steady(V=0.1, torque=0.0),
-        lambda roller: roller.law()(0.1, 1.0),
-        lambda roller: roller.law()([0.1, 0.2], 1.0),
-        lambda roller: roller.roll(0.1, 1.0, 1e-3),
-    ],
-)
-def test_every_call_warns_of_large_contacts(call):
-    """Contact, stress, steady rolling, bound law and motion: of a contact larger than the radius,
-    once a line.
-    """
-    large = vr.Cylinder(R=0.1, m=30.0, material=replace(RUBBER, measured=None, E=2.0), mu=0.5)
-    with warnings.catch_warnings(record=True) as found:
-        warnings.simplefilter("always")
-        call(large)
-    said = [each for each in found if "kappa = R/l0 is below 1" in str(each.message)]
-    assert len(said) == 1, [str(each.message) for each in found]
-    assert (said[0].category, said[0].filename) == (vr.ModelWarning, __file__)
-
-
-def test_a_law_with_and_without_data_has_the_same_numbers():
-    assert BELT.law()(0.1, 1.0) == BELT.replace(base=replace(RUBBER, measured=None)).law()(0.1, 1.0)
-
-
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
 def test_curves_are_dashed_beyond(tmp_path):
     """Over speed, from a file, and over frequency: what is solid and what is dashed meet, and are

@@ -103,23 +103,20 @@ def test_compiled_values_are_those_of_the_interpolant(grid, kind, linear):
 def test_compiled_slopes_are_those_of_the_values(grid):
     points = inside(grid, 200)
     step = 1e-6
-    middle = {
-        name: each * (1.0 - 4.0 * step) + 2.0 * step * grid[name].values.mean()
+    middle = [
+        each * (1.0 - 4.0 * step) + 2.0 * step * grid[name].values.mean()
         for name, each in points.items()
-    }
+    ]
     for field in ("Q", "lam"):
         at, spline = vr.tables.Interpolant(grid).jitted(field)
-        for one in np.column_stack([*middle.values()]):
-            found = at(spline, *one)
-            for n, slope in enumerate(found[1:]):
+        for one in np.column_stack(middle):
+            value, *slopes = at(spline, *one)
+            for n, slope in enumerate(slopes):
                 move = np.eye(3)[n] * one[n] * step
-                low = at(spline, *(one - move)).value
-                high = at(spline, *(one + move)).value
-                if abs(found.value) < SCENE.mu and {abs(low), abs(high)}.isdisjoint({SCENE.mu}):
-                    scale = abs(found.value) / abs(one[n])
-                    assert close(
-                        (high - low) / (2.0 * move[n]), slope, tol.COMPILED_SLOPE, scale=scale
-                    )
+                low, high = (at(spline, *(one + sign * move)).value for sign in (-1.0, 1.0))
+                if SCENE.mu not in np.abs([value, low, high]):
+                    found = (high - low) / (2.0 * move[n])
+                    assert close(found, slope, tol.COMPILED_SLOPE, scale=abs(value / one[n]))
 
 
 def test_compiled_values_are_clipped_and_nothing_is_extrapolated(grid):

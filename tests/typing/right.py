@@ -25,16 +25,6 @@ print(motion.onset_time, motion.V[-1], motion.contact().beta)
 many = vr.ensemble(
     scene, V, 0.0, 1e-3, force=V, torque=vr.Feedback(0.01, V=-0.1), brake=abs, fields=("V",)
 )
-print(
-    many.messages(),
-    vr.steady(scene, force=V, torque=0.0).V,
-    vr.presets.PAPER_CYLINDER.resistance_extrema().V,
-)
-print(
-    vr.presets.PAPER_CYLINDER.contact(V, omega=V)["C_rr"],
-    scene.roll(1.0, 0.0, 1.0).success,
-    scene.law()(1.0, 1.0).Q,
-)
 law = vr.law(scene)
 print(
     law(0.3, 0.3).Q + 1.0,

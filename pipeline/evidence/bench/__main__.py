@@ -9,13 +9,10 @@ running.  A peer that is not installed is skipped with a printed reason
 (README.md beside).  pipeline/evidence/figures.py draws it.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -53,7 +50,7 @@ print(json.dumps(rows))
 """  # noqa: E501
 
 
-def first_calls(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def first_calls(sizes):
     """Rows of the first calls of a process whose kernel cache is empty, and of one that finds it
     full.
     """
@@ -93,7 +90,7 @@ print(json.dumps(found))
 """
 
 
-def last_release(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def last_release(sizes):
     """``contact`` beside that of the last release, checked out into a folder, in processes that
     take turns.
 

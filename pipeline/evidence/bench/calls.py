@@ -1,10 +1,7 @@
 """Calls that are timed in turn on one core: states of the law, motions of materials, a map."""
 
-from __future__ import annotations
-
 import ctypes
 from functools import partial
-from typing import Any
 
 import numba
 import numpy as np
@@ -34,9 +31,7 @@ def starts(random: np.random.Generator, count: int) -> NDArray:
     return random.uniform(-2.0, 2.0, (2, count))
 
 
-def ensemble(
-    scene: vr.Scene, start: NDArray, t: Any, fields: tuple[str, ...] = ("V", "omega"), **how: Any
-) -> Any:
+def ensemble(scene: vr.Scene, start: NDArray, t, fields: tuple[str, ...] = ("V", "omega"), **how):
     """A call on one thread, by the integrator unless told."""
     given = {"method": "integrate", "threads": 1} | how
     return partial(vr.ensemble, scene, *start, t, fields=fields, **given)
@@ -52,7 +47,7 @@ def jitted_states(law, V, omega):
     return total
 
 
-def bound_law(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def bound_law(sizes):
     """A row for each material and way to call the law of a scene, with that of contact() called
     alike.
 
@@ -111,7 +106,7 @@ def rubber(modes: int, strength: float = 10.0) -> vr.Prony:
     return vr.Prony(np.full(modes, strength / modes), 3.0 ** -np.arange(float(modes)))
 
 
-def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def series(sizes):
     """A row a material: nanoseconds a state and a motion, and milliseconds of its table."""
     random = np.random.default_rng(sizes["seed"])
     n = sizes["states"]
@@ -120,7 +115,7 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     start = starts(random, m)
     t = np.linspace(0.0, sizes["end"], sizes["times"])
 
-    def spread(modes: int) -> vr.Prony:
+    def spread(modes):
         """Materials whose strengths and times are off by some 10 and 30 %."""
         mean = rubber(modes)
         off = random.standard_normal((2, m, modes))
@@ -146,7 +141,7 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             m,
             ensemble(scene, start, t, ("V", "omega", "x"), rtol=sizes["rtol"]),
         )
-    rows: dict[str, dict[str, Any]] = {}
+    rows = {}
     for (name, kind), ns in timed(calls, sizes["repeats"]).items():
         rows.setdefault(name, {"material": name, "table_ms": None})[kind] = ns
     for name, material in materials.items():
@@ -154,14 +149,14 @@ def series(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     return [*rows.values()]
 
 
-def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
+def fixed_scene(sizes):
     """Many motions of one scene by its flow map: ns a motion by fields and output times; the map's
     own figures.
     """
     start = starts(np.random.default_rng(sizes["seed"]), sizes["motions"])
     t = np.linspace(0.0, sizes["end"], sizes["times"] + 1)[1:]
 
-    def load() -> Any:
+    def load():
         flow._map.cache_clear()
         return flow.flow_map(PAPER, 2.0)
 
@@ -187,9 +182,9 @@ def fixed_scene(sizes: dict[str, Any]) -> dict[str, Any]:
     return {
         "rows": [{"call": name} | row for name, row in rows.items()],
         "error": {
-            "final": float(off[by_map, -1].max()),
-            "all_times": float(off[by_map].max()),
-            "with_integrated": float(off.max()),
+            "final": off[by_map, -1].max(),
+            "all_times": off[by_map].max(),
+            "with_integrated": off.max(),
         },
         "compared": by_map.size,
         "not_in_map": int((~by_map).sum()),

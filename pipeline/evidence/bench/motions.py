@@ -4,8 +4,6 @@ A new method needs a function that prepares it, a row of METHODS, and its tolera
 [bench.*.methods] of the configuration; one that the configuration does not name is not run.
 """
 
-from __future__ import annotations
-
 import subprocess
 import tempfile
 from collections.abc import Callable
@@ -14,7 +12,7 @@ from importlib.metadata import version
 from importlib.util import find_spec
 from itertools import product
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,6 +20,7 @@ from tqdm import tqdm
 
 import viscoroll as vr
 
+from ...stage import Row, Sizes
 from ...validation import roll_direct
 from ..timing import seconds_of, steady_seconds
 from . import peers
@@ -52,7 +51,7 @@ class Problem(NamedTuple):
         columns = (np.broadcast_to(getattr(self.scene, name), self.V0.shape) for name in PARAMETERS)
         return np.array([*columns]).T
 
-    def take(self, count: int) -> Problem:
+    def take(self, count: int):
         """The first motions, over and over where there are fewer: a single one would time the call
         around it.
         """
@@ -62,7 +61,7 @@ class Problem(NamedTuple):
             scene, V0, omega0, self.t, None if self.drive is None else self.drive[:count]
         )
 
-    def rolled(self, **how: Any) -> Any:
+    def rolled(self, **how):
         """By the package."""
         driven = {} if self.drive is None else dict(zip(("force", "torque"), self.drive.T))
         return vr.ensemble(self.scene, self.V0, self.omega0, self.t, **driven, **how)
@@ -78,11 +77,11 @@ class Outcome(NamedTuple):
     seconds: float | None = None
 
 
-def _times(sizes: dict[str, Any], end: float) -> NDArray:
+def _times(sizes, end):
     return np.linspace(0.0, end, sizes["times"] + 1)[1:]
 
 
-def paper_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
+def paper_problems(sizes):
     """IC1-IC3 of the paper, rounded parameters, to the end or the speed ``LEAST_SPEED``, if that is
     first; and random starts in [-2, 2]^2, the paper's first.
     """
@@ -99,7 +98,7 @@ def paper_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
     return problems | {"random": Problem(scene, *starts.T.copy(), _times(sizes, end))}
 
 
-def own_problem(sizes: dict[str, Any]) -> dict[str, Problem]:
+def own_problem(sizes):
     """Every motion its own scene."""
     random = np.random.default_rng(sizes["seed"])
     n = sizes["motions"]
@@ -110,7 +109,7 @@ def own_problem(sizes: dict[str, Any]) -> dict[str, Problem]:
     return {"own": Problem(scene, *random.uniform(-2.0, 2.0, (2, n)), _times(sizes, sizes["end"]))}
 
 
-def driven_problems(sizes: dict[str, Any]) -> dict[str, Problem]:
+def driven_problems(sizes):
     """Random scenes under a force and a torque that stay, from any start and from rest."""
     random = np.random.default_rng(sizes["seed"])
     n = sizes["motions"]
@@ -131,7 +130,7 @@ def reference(problem: Problem) -> Outcome:
     return Outcome(best.V, best.omega)
 
 
-def reference_difference(problem: Problem, best: Outcome, motions: int) -> dict[str, Any]:
+def reference_difference(problem: Problem, best: Outcome, motions: int) -> Row:
     """The reference against the printed equations by scipy's integrators, other unknowns, on the
     first motions.
     """
@@ -144,13 +143,13 @@ def reference_difference(problem: Problem, best: Outcome, motions: int) -> dict[
     return {"motions": len(direct), "second_method": method} | errors(found, best)
 
 
-def speed_error(tried: Any, best: Any) -> NDArray:
+def speed_error(tried, best) -> NDArray:
     """Difference of (V, omega) over the larger of the two."""
     off = np.maximum(np.abs(tried.V - best.V), np.abs(tried.omega - best.omega))
     return off / np.maximum(np.abs(best.V), np.abs(best.omega))
 
 
-def errors(tried: Any, best: Outcome, driven: bool = False) -> dict[str, Any]:
+def errors(tried, best: Outcome, driven: bool = False) -> Row:
     """Relative error of (V, omega), over the larger of the two, if ``driven`` over the largest so
     far, as speeds pass through 0: of outputs with a speed of at least ``LEAST_SPEED``, worst over
     time.
@@ -164,9 +163,7 @@ def errors(tried: Any, best: Outcome, driven: bool = False) -> dict[str, Any]:
         off *= size / np.maximum.accumulate(size, axis=1)
     done = np.isfinite(off).all(axis=1)
     worst = np.where(size >= LEAST_SPEED, off, 0.0)[done].max(axis=1)
-    found = (
-        {"max": float(worst.max()), "p99": float(np.quantile(worst, 0.99))} if worst.size else {}
-    )
+    found = {"max": worst.max(), "p99": np.quantile(worst, 0.99)} if worst.size else {}
     return found | {"failed": int((~done).sum())}
 
 
@@ -177,14 +174,14 @@ _MOST = 2_000_000
 Call = Callable[[], Outcome]
 
 
-def _ensemble(problem: Problem, rtol: float, method: str) -> Call:
+def _ensemble(problem, rtol, method):
     """This package: :func:`viscoroll.ensemble` on one thread."""
     call = partial(problem.rolled, rtol=rtol, method=method, fields=("V", "omega"), threads=1)
     call()  # compiles, and builds what is built once
     return call
 
 
-def _paper_method(problem: Problem, rtol: float, name: str) -> Call:
+def _paper_method(problem, rtol, name):
     program = peers.paper_program(Path(_build_folder().name))
     starts = np.column_stack([problem.V0, problem.omega0])
     given = (program, name, problem.parameters(), starts, problem.t, rtol, _MOST)
@@ -192,11 +189,11 @@ def _paper_method(problem: Problem, rtol: float, name: str) -> Call:
 
 
 @cache
-def _build_folder() -> tempfile.TemporaryDirectory:
+def _build_folder():
     return tempfile.TemporaryDirectory(prefix="viscoroll-peers-")
 
 
-def _lsoda(problem: Problem, rtol: float) -> Call:
+def _lsoda(problem, rtol):
     drive = np.zeros((problem.V0.size, 2)) if problem.drive is None else problem.drive
     parameters = problem.parameters().tolist()
     scenes = np.array(
@@ -234,22 +231,22 @@ METHODS = {
 }
 
 
-def work_precision(sizes: dict[str, Any]) -> dict[str, Any]:
+def work_precision(sizes):
     """Groups IC1, IC2, IC3 (one motion each) and ``random`` (the same starts for all methods)."""
     return compare(paper_problems(sizes), sizes)
 
 
-def own_parameters(sizes: dict[str, Any]) -> dict[str, Any]:
+def own_parameters(sizes):
     """Every motion its own scene."""
     return compare(own_problem(sizes), sizes)
 
 
-def driven(sizes: dict[str, Any]) -> dict[str, Any]:
+def driven(sizes):
     """Under a force and a torque."""
     return compare(driven_problems(sizes), sizes)
 
 
-def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, Any]:
+def compare(problems: dict[str, Problem], sizes: Sizes) -> Row:
     """Every method on every problem at each of its tolerances: rows, and what could not run in
     ``skipped``.
     """
@@ -286,8 +283,7 @@ def compare(problems: dict[str, Problem], sizes: dict[str, Any]) -> dict[str, An
         },
         "methods": {name: METHODS[name].label for name in sizes["methods"]},
         "rows": [
-            row | {"us": float(np.median(row["us"])), "least_us": min(row["us"])}
-            for row, *_ in entries
+            row | {"us": np.median(row["us"]), "least_us": min(row["us"])} for row, *_ in entries
         ],
         "skipped": skipped,
         "tools": tools(),

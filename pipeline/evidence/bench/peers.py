@@ -2,8 +2,6 @@
 Scientific Library (paper_method.c).
 """
 
-from __future__ import annotations
-
 import shutil
 import subprocess
 from functools import cache
@@ -84,7 +82,7 @@ def _compiled():
 
 
 @cache
-def _law(alpha: float) -> Law:
+def _law(alpha):
     return law_table(alpha).record
 
 
@@ -130,17 +128,8 @@ def paper_program(folder: Path) -> Path:
     flags = subprocess.run(
         ["pkg-config", "--cflags", "--libs", "gsl"], check=True, capture_output=True, text=True
     )
-    command = [
-        "cc",
-        "-O2",
-        "-march=native",
-        str(SOURCE),
-        *flags.stdout.split(),
-        "-lm",
-        "-o",
-        str(program),
-    ]
-    subprocess.run(command, check=True)
+    options = f"{flags.stdout} -lm -o".split()
+    subprocess.run(["cc", "-O2", "-march=native", SOURCE, *options, program], check=True)
     return program
 
 

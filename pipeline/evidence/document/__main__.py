@@ -9,8 +9,6 @@ code 1 if a block is out of date.  Exit code 2 for results that are missing or i
 broken marks.
 """
 
-from __future__ import annotations
-
 import re
 import sys
 from pathlib import Path
@@ -45,7 +43,7 @@ def filled(text: str, folders: list[Path], name: str) -> str:
         Marks that do not pair, an unknown block, or results that lack a number.
     """
 
-    def fill(match: re.Match[str]) -> str:
+    def fill(match):
         if match[2] not in BLOCKS:
             raise DocumentError(
                 f"{name}: unknown block {match[2]!r}: must be one of {', '.join(BLOCKS)}"
@@ -74,7 +72,7 @@ def provenance(results: Results) -> str:
         for name, found in results.items()
         for part, digest in stamps(found, name).items()
     }
-    others: dict[str, list[str]] = {}
+    others = {}
     for part, digest in read.items():
         if digest != kernels_digest():
             others.setdefault(digest[:SHORT], []).append(part)
@@ -91,7 +89,7 @@ def provenance(results: Results) -> str:
     )
 
 
-def _listed(parts: list[str]) -> str:
+def _listed(parts):
     """Return the names of parts of results in a sentence, of many their number."""
     return ", ".join(parts) if len(parts) <= _NAMED else f"{len(parts)} of them"
 
@@ -116,7 +114,7 @@ def document(files: list[Path], results: Path, check: bool) -> int:
     return int(check and bool(stale))
 
 
-def main() -> int:
+def main():
     parser = said(__doc__)
     parser.add_argument(
         "--check", action="store_true", help="write nothing; exit code 1 if a block is out of date"

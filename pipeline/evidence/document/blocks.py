@@ -2,14 +2,12 @@
 left.
 """
 
-from __future__ import annotations
-
 import html
 import re
 import statistics
 import string
 import tomllib
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +15,7 @@ import numpy as np
 
 from viscoroll.core.scale import DIMENSIONS, SYMBOLS, describe_quantity, si_unit
 
+from ...stage import Row
 from ..results import Results, rows_of, table
 from . import house
 from . import house as costs
@@ -55,7 +54,7 @@ CONVERSIONS = {
 class Cells(string.Formatter):
     """``str.format`` with the CONVERSIONS; nothing of None and of empty text."""
 
-    def convert_field(self, value: Any, conversion: str | None) -> Any:
+    def convert_field(self, value, conversion: str | None):
         if not conversion:
             return value
         return "" if value in (None, "") else CONVERSIONS[conversion](value)
@@ -78,7 +77,7 @@ _NEVER = "no influence"
 _OPEN = "unbounded"
 
 
-def _known(row: dict[str, Any], name: str) -> str:
+def _known(row, name):
     """Standard deviation and interval over the truth."""
     if name not in row["unknowns"]:
         return "given"
@@ -91,7 +90,7 @@ def _known(row: dict[str, Any], name: str) -> str:
     return f"{100.0 * one['sd']:.2g} % [{', '.join(ends)}]"
 
 
-def _together(row: dict[str, Any]) -> str:
+def _together(row):
     """What is determined of those that are not told apart."""
     if not row["undetermined"]:
         return "all"
@@ -107,19 +106,14 @@ def _together(row: dict[str, Any]) -> str:
     return "; ".join([*texts, *others]) or "nothing"
 
 
-def identify_learn(results: Results, part: str = "learn") -> Iterator[dict[str, str]]:
+def identify_learn(results, part="learn"):
     """One row an experiment."""
     for row in results[f"identification {part}"]["rows"]:
         known = {name: _known(row, name) for name in ("mu", "E", "E_1", "T_ref", "brake", "drag")}
         yield known | {"experiment": row["experiment"], "together": _together(row)}
 
 
-def identify_bearing(results: Results) -> Iterator[dict[str, str]]:
-    """The same of a roller in a bearing."""
-    return identify_learn(results, "bearing")
-
-
-def identify_said(results: Results) -> str:
+def identify_said(results):
     """Six reports."""
     rows = results["identification said"]["rows"]
     return "\n".join(
@@ -127,13 +121,13 @@ def identify_said(results: Results) -> str:
     )
 
 
-def identify_times(results: Results) -> Iterator[dict[str, Any]]:
+def identify_times(results):
     """How long it takes, and how near ends of intervals are."""
     off = max(row["off"] for row in results["identification width"]["rows"])
     return (row | {"off": off} for row in results["identification time"]["rows"])
 
 
-def identify_coverage(results: Results) -> Iterator[dict[str, Any]]:
+def identify_coverage(results):
     """How often intervals hold the truth."""
     for row in results["identification coverage"]["rows"]:
         yield row | {
@@ -143,16 +137,13 @@ def identify_coverage(results: Results) -> Iterator[dict[str, Any]]:
         }
 
 
-IDENTIFY = identify_learn, identify_bearing, identify_said, identify_times, identify_coverage
+IDENTIFY = identify_learn, identify_said, identify_times, identify_coverage
 
 
 # --- blocks ---
 
-Row = Mapping[str, Any]
 #: what is said of each
-BLOCKS: dict[str, dict[str, Any]] = tomllib.loads(
-    Path(__file__).with_suffix(".toml").read_text(encoding="utf-8")
-)
+BLOCKS = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
 
 
 def block(name: str, results: Results) -> str:
@@ -160,8 +151,8 @@ def block(name: str, results: Results) -> str:
     given = BLOCKS[name]
     values = results[given["of"]] if "of" in given else {}
     found = (
-        MAKERS[name](results, *given.get("given", ()))
-        if name in MAKERS
+        MAKERS[maker](results, *given.get("given", ()))
+        if (maker := given.get("maker", name)) in MAKERS
         else values.get(given.get("rows"), values)
     )
     if "claims" in given:
@@ -185,7 +176,7 @@ def block(name: str, results: Results) -> str:
 # --- measure ---
 
 
-def claims(results: Results, part: str, *words: str) -> list[dict[str, Any]]:
+def claims(results: Results, part: str, *words: str) -> list[Row]:
     """Rows of a part of the proofs whose claims hold all these words."""
     return [
         row
@@ -194,7 +185,7 @@ def claims(results: Results, part: str, *words: str) -> list[dict[str, Any]]:
     ]
 
 
-def three(results: Results) -> dict[str, Any]:
+def three(results):
     """Errors of states."""
     found = [row for name in ("Q, ", "M, ") for row in claims(results, "contact", "relative", name)]
     return {
@@ -203,10 +194,10 @@ def three(results: Results) -> dict[str, Any]:
     }
 
 
-def headline(results: Results) -> dict[str, Any]:
+def headline(results):
     """What matters most of all."""
 
-    def worst(part: str, *words: str) -> float:
+    def worst(part, *words):
         return max(row["worst"] for row in claims(results, part, *words))
 
     speed, onset = (
@@ -224,7 +215,7 @@ BLOCKS_OF = {
 }
 
 
-def ensembles(results: Results) -> list[Row]:
+def ensembles(results):
     """Time, memory and disk of each run, and the bare loop."""
     m = results["ensembles"]
     rows = sorted(m["rows"].items(), key=lambda item: (item[1]["motions"], item[0]))
@@ -236,7 +227,7 @@ def ensembles(results: Results) -> list[Row]:
     return [*(row | {"name": name} for name, row in rows), m["loop"] | alone]
 
 
-def ensembles_plan(results: Results) -> Iterator[Row]:
+def ensembles_plan(results):
     """10^11 motions on 100 machines like the one measured on."""
     m = results["ensembles"]
     sizes = m["sizes"]
@@ -264,7 +255,7 @@ def ensembles_plan(results: Results) -> Iterator[Row]:
         }
 
 
-def grids(results: Results) -> str:
+def grids(results):
     """Motions from the rows beside those from a grid of 161 by 161 nodes, at the least
     tolerance.
     """
@@ -282,7 +273,7 @@ def grids(results: Results) -> str:
     )
 
 
-def mutants(results: Results) -> str:
+def mutants(results):
     """Number of defects planted in the kernels, and of those that the tests noticed."""
     outcomes = [row["outcome"] for row in results["mutants"].values()]
     killed = outcomes.count("killed")
@@ -298,7 +289,7 @@ def mutants(results: Results) -> str:
 # --- prove ---
 
 
-def proofs(results: Results) -> Iterator[Row]:
+def proofs(results):
     """A row a proof, with the claim that comes closest to its bound; data/results/proofs.json has
     all of them.
     """
@@ -311,7 +302,7 @@ def proofs(results: Results) -> Iterator[Row]:
         yield closest | {"title": name.replace("_", " "), "claims": len(found), "points": points}
 
 
-def independent_paper(results: Results) -> Iterator[Row]:
+def independent_paper(results):
     """Numbers that the paper prints, and the same computed here."""
     for row in results["independent"]["paper"]:
         yield row | {
@@ -325,16 +316,16 @@ def independent_paper(results: Results) -> Iterator[Row]:
 FEW = 6
 
 
-def unsteady_gamma(results: Results) -> Iterator[Row]:
+def unsteady_gamma(results):
     """Largest errors of V of the first motions, alpha = 11 and kappa V = 4.4 at the start."""
     return (row | {"gamma": 1.5 * row["g"]} for row in results["transient"]["rows"][:FEW])
 
 
-def unsteady(results: Results) -> Iterator[Row]:
+def unsteady(results):
     """e by level of the unsteadiness: least, largest and median of the motions; of the law, and
     with N.
     """
-    found: dict[float, dict[str, list[float]]] = {}
+    found = {}
     for row in results["transient"]["rows"]:
         for start in ("steady", "rest"):
             for level, *e, _ in row[start]["e"]:
@@ -349,7 +340,7 @@ def unsteady(results: Results) -> Iterator[Row]:
         yield dict.fromkeys(("steady0", "steady1", "rest0", "rest1"), "") | {"level": level} | texts
 
 
-def unsteady_ways(results: Results) -> Iterator[Row]:
+def unsteady_ways(results):
     """How far the motions go, in contact lengths."""
     rows = results["transient"]["rows"][FEW:]
     return (row | {"cost": row["steady"]["shift"] - row["rest"]["shift"]} for row in rows)
@@ -367,9 +358,9 @@ LOOKED_UP = "flow"
 DEFAULT_RTOL = 1e-8
 
 
-def paper_rows(found: list[dict[str, Any]]) -> list[dict[str, Any]]:
+def paper_rows(found: list[Row]) -> list[Row]:
     """Rows over IC1-IC3 together: mean time, largest error."""
-    together: dict[tuple[str, float], list[dict[str, Any]]] = {}
+    together = {}
     for row in found:
         if row["group"] in PAPER_GROUPS:
             together.setdefault((row["method"], row["rtol"]), []).append(row)
@@ -391,7 +382,7 @@ def finished(row: Row) -> bool:
     return bool(row.get("max")) and row["failed"] <= MOST_FAILED * row["motions"]
 
 
-def ratios(found: list[dict[str, Any]], own: str) -> list[dict[str, Any]]:
+def ratios(found: list[Row], own: str) -> list[Row]:
     """For each row of another method: how many times faster the quickest row of ``own`` with no
     larger error is.
     """
@@ -408,7 +399,7 @@ def ratios(found: list[dict[str, Any]], own: str) -> list[dict[str, Any]]:
     return result
 
 
-def bench_peers(results: Results) -> Iterator[Row]:
+def bench_peers(results):
     """Each peer at the setting with its smallest error, on IC1-IC3, on random starts, and with own
     parameters, where nothing is looked up.
 
@@ -427,7 +418,7 @@ def bench_peers(results: Results) -> Iterator[Row]:
             row for row in found if row["method"] != INTEGRATED or row["rtol"] == DEFAULT_RTOL
         ]
         looked_up = {(row["method"], row["rtol"]): row for row in ratios(found, LOOKED_UP)}
-        best: dict[str, Any] = {}
+        best = {}
         for row in sorted(ratios(default, INTEGRATED), key=lambda row: -row["max"]):
             best[row["method"]] = row
         for row in best.values():
@@ -445,18 +436,13 @@ def bench_peers(results: Results) -> Iterator[Row]:
                 }
 
 
-def bench_own(results: Results, part: str = "own-parameters") -> Iterator[Row]:
+def bench_own(results, part="own-parameters"):
     """Every tolerance of the motions with scenes of their own."""
     found = results[f"bench {part}"]
     return (row | {"label": found["methods"][row["method"]]} for row in found["rows"])
 
 
-def bench_driven(results: Results) -> Iterator[Row]:
-    """Driven motions beside LSODA."""
-    return bench_own(results, "driven")
-
-
-def bench_bound_law(results: Results) -> Iterator[Row]:
+def bench_bound_law(results):
     """The law of one scene beside contact()."""
     for row in results["bench bound-law"]["rows"]:
         yield row | {
@@ -465,7 +451,7 @@ def bench_bound_law(results: Results) -> Iterator[Row]:
         }
 
 
-def bench_series(results: Results) -> Iterator[Row]:
+def bench_series(results):
     """Contact, motions and tables by the number of modes."""
     for row in results["bench series"]["rows"]:
         yield row | {
@@ -490,7 +476,7 @@ def greek(name: str) -> str:
 _POWERS = str.maketrans({"-": "⁻", "1": "¹", "2": "²"})
 
 
-def symbols(_: Results) -> Iterator[Row]:
+def symbols(_):
     """Every symbol of a result: what it is, in which unit a scene and a cylinder give it, its range
     and equation.
     """
@@ -504,7 +490,7 @@ def symbols(_: Results) -> Iterator[Row]:
         yield said | {"name": name, "greek": greek(name), "unit": unit}
 
 
-MAKERS: dict[str, Callable[..., Any]] = {
+MAKERS = {
     made.__name__: made
     for made in (
         three,
@@ -520,7 +506,6 @@ MAKERS: dict[str, Callable[..., Any]] = {
         unsteady_ways,
         bench_peers,
         bench_own,
-        bench_driven,
         bench_bound_law,
         bench_series,
         symbols,
@@ -531,8 +516,4 @@ MAKERS: dict[str, Callable[..., Any]] = {
         house.sections,
         *IDENTIFY,
     )
-} | {
-    "commands_runs": house.commands,
-    "commands_files": house.commands,
-    "sections_runs": house.sections,
 }

@@ -2,18 +2,14 @@
 is measured.
 """
 
-from __future__ import annotations
-
 import argparse
 import ast
 import inspect
 import re
 import tokenize
 import tomllib
-from collections.abc import Iterator
 from functools import cache, partial
 from pathlib import Path
-from typing import Any
 
 import msgspec
 from msgspec import inspect as schema
@@ -26,7 +22,7 @@ from viscoroll.runs.run_rollers import RUN_SECTIONS
 from viscoroll.runs.runfile import RunSection
 
 from ...stage import ROOT
-from ..results import Results, table
+from ..results import table
 
 # --- size in tokens: names, numbers, operators and strings, without docstrings ---
 
@@ -63,7 +59,7 @@ def sizes() -> dict[str, int]:
     return {path.relative_to(ROOT).as_posix(): count_tokens(path) for path in paths}
 
 
-def folder_costs(_: Results, folders: dict[str, str]) -> Iterator[dict[str, Any]]:
+def folder_costs(_, folders):
     """Yield a row for each folder: its files, its tokens, and these over those of the first, which
     is what users call.
 
@@ -79,7 +75,7 @@ def folder_costs(_: Results, folders: dict[str, str]) -> Iterator[dict[str, Any]
         yield row | {"share": sum(own) / called}
 
 
-def capability_costs(_: Results, capabilities: dict[str, list[str]]) -> Iterator[dict[str, Any]]:
+def capability_costs(_, capabilities):
     """Yield a row for each capability: tokens of what users call, of tests and of evidence.
 
     A file belongs to the first capability that has a word of its path; the last one has the empty
@@ -103,7 +99,7 @@ def capability_costs(_: Results, capabilities: dict[str, list[str]]) -> Iterator
 
 _PACKAGE = ROOT / "src/viscoroll"
 #: sections of a TOML file: what reads them, and whose parameters they hold
-_SECTIONS: dict[str, tuple[Any, tuple[Any, ...]]] = {
+_SECTIONS = {
     "[scene]": (SceneSection, (vr.Scene,)),
     "[cylinder]": (CylinderSection, (vr.Cylinder,)),
     "[material], [base]": (MaterialSection, (vr.Material,)),
@@ -119,7 +115,7 @@ _KINDS = {
 }
 
 
-def rooms(results: Results) -> str:
+def rooms(results):
     """The picture: a box a room, by the layers of the import contract, with the rooms that its
     files import.
     """
@@ -144,7 +140,7 @@ def rooms(results: Results) -> str:
     return "```text\n" + "\n".join(lines) + "\n```\n"
 
 
-def _imported(file: Path) -> Iterator[str]:
+def _imported(file):
     """The rooms that a file imports from, by their names below the package."""
     package = file.relative_to(_PACKAGE).parts[:-1]
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
@@ -153,13 +149,13 @@ def _imported(file: Path) -> Iterator[str]:
             yield from (path[0],) if path[0] else (name.name for name in node.names)
 
 
-def commands(results: Results, *names: str) -> str:
+def commands(results, *names):
     """A heading for every command of these names, and the text of its --help below the usage."""
     texts = (text for name, text in _commands(parser()) if name.split()[1] in names)
     return "\n".join(texts)
 
 
-def _commands(program: Any) -> Iterator[tuple[str, str]]:
+def _commands(program):
     """Yield (name, text) of every command below a parser."""
     below = [
         action for action in program._actions if isinstance(action, argparse._SubParsersAction)
@@ -174,12 +170,12 @@ def _commands(program: Any) -> Iterator[tuple[str, str]]:
             yield from _commands(command)
 
 
-def sections(results: Results, *wanted: str) -> str:
+def sections(results, *wanted):
     """A heading and a table of keys for each of these sections of a TOML file."""
     lines = []
     for names in wanted:
         section, meant = _SECTIONS[names]
-        meanings: dict[str, str] = {}
+        meanings = {}
         for each in (*meant, section):  # the section knows its keys best
             meanings |= _parameters(each)
         rows = [
@@ -191,7 +187,7 @@ def sections(results: Results, *wanted: str) -> str:
     return "\n".join(lines)
 
 
-def _parameters(thing: Any) -> dict[str, str]:
+def _parameters(thing):
     """What a docstring says of each of its parameters, without the paragraphs that follow."""
     text = inspect.getdoc(thing) or ""
     found = re.findall(r"(?m)^(\w+(?:, \w+)*) : (.*(?:\n    .*)*)", text)
@@ -202,7 +198,7 @@ def _parameters(thing: Any) -> dict[str, str]:
     }
 
 
-def _kind(kind: Any) -> str:
+def _kind(kind):
     """A type in words."""
     if isinstance(kind, schema.UnionType):
         return " or ".join(
@@ -217,7 +213,7 @@ def _kind(kind: Any) -> str:
     return _KINDS[type(kind)]
 
 
-def _default(field: schema.Field) -> str:
+def _default(field):
     """The default of a key as a file would say it; empty where there is none."""
     if field.required:
         return ""

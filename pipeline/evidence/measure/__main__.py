@@ -7,13 +7,10 @@ of --quick in [measure.quick].  Times are of this machine, at this moment: run i
 running.  pipeline/evidence/document/ puts the numbers into the text.
 """
 
-from __future__ import annotations
-
 import os
 import subprocess
 import sys
 from functools import partial
-from typing import Any
 
 import numpy as np
 
@@ -24,13 +21,13 @@ from ..results import run
 from ..timing import timed
 
 
-def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+def measure(sizes):
     """Everything that measured.json holds beside the machine."""
     os.environ["VISCOROLL_THREADS"] = "1"  # every time is that of one core
     return {"time": call_times(sizes) | process_times(sizes), "sizes": sizes}
 
 
-def call_times(sizes: dict[str, Any]) -> dict[str, float]:
+def call_times(sizes):
     """Median times on one core: of a state or motion in arrays, and of single calls; motions end at
     t = 3e-3.
     """
@@ -44,7 +41,7 @@ def call_times(sizes: dict[str, Any]) -> dict[str, float]:
     start = starts(random, m)
     many = starts(random, 50 * m)
 
-    def contact(own: vr.Scene, count: int, **how: Any) -> Any:
+    def contact(own, count, **how):
         delta = creep(own, V[:count], 1.2 * s[:count])
         return count, partial(vr.contact, own, V[:count], delta=delta, fields=("Q", "M"), **how)
 
@@ -67,7 +64,7 @@ def call_times(sizes: dict[str, Any]) -> dict[str, float]:
     return {name: row["ns"] for name, row in timed(calls, sizes["repeats"]).items()}
 
 
-def process_times(sizes: dict[str, Any]) -> dict[str, float]:
+def process_times(sizes):
     """Whole processes: import over a bare python, and the program rolling IC1; kernels cached."""
     motion = "paper-section-5", "--V0", "1.5", "--omega0", "0.5", "--t", "3e-3"
     commands = {

@@ -7,17 +7,17 @@ Of each scene at one speed, at creepages from beyond one onset of full slip to b
 docs/validity_covers.md.
 """
 
-from __future__ import annotations
-
 import sys
 from collections.abc import Iterator
-from typing import Any, NamedTuple
+from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 
 import viscoroll as vr
 from viscoroll.contact_mechanics.coupled_pair import CoupledPair, CoupledRow
 
+from ...stage import Row, read_toml
 from ..results import run
 
 KAPPA = 10.0
@@ -28,39 +28,8 @@ MATERIALS = {
     "one": vr.Prony([10.0], [1.0 / 11.0]),
     "three": vr.Prony([2.0, 6.0, 3.0], [1.0, 0.1, 0.003]),
 }
-#: Layers on a rigid body or under it: material, nu, h/l0, kappa |V|, mu, body.
-LAYERS = (
-    ("elastic", 0.5, 0.5, 1.0, 0.3, "base"),
-    ("elastic", 0.3, 0.5, 1.0, 0.3, "base"),
-    ("elastic", 0.45, 1.0, 1.0, 0.6, "cylinder"),
-    ("elastic", 0.5, 2.0, 1.0, 0.2, "cylinder"),
-    ("one", 0.5, 0.3, 0.35, 0.6, "base"),
-    ("one", 0.49, 0.3, 0.03, 0.3, "base"),
-    ("one", 0.5, 0.5, 0.35, 0.3, "base"),
-    ("one", 0.3, 0.5, 0.35, 0.3, "base"),
-    ("one", 0.45, 0.5, 0.35, 0.2, "cylinder"),
-    ("one", 0.5, 1.0, 0.35, 0.3, "cylinder"),
-    ("one", 0.3, 1.0, 1.0, 0.6, "base"),
-    ("one", 0.4, 2.0, 3.0, 0.3, "cylinder"),
-    ("one", 0.5, 5.0, 1.0, 0.3, "base"),
-    ("one", 0.3, 2.0, 0.35, 0.1, "cylinder"),
-    ("three", 0.45, 0.3, 1.0, 0.4, "base"),
-    ("three", 0.5, 0.3, 0.01, 0.5, "cylinder"),
-    ("three", 0.5, 0.5, 0.1, 0.3, "base"),
-    ("three", 0.3, 0.5, 3.0, 0.3, "cylinder"),
-    ("three", 0.4, 0.5, 0.01, 0.2, "base"),
-    ("three", 0.49, 1.0, 0.35, 0.3, "cylinder"),
-    ("three", 0.5, 2.0, 0.03, 0.1, "base"),
-    ("three", 0.35, 1.0, 30.0, 0.4, "base"),
-    ("three", 0.3, 5.0, 0.03, 0.1, "base"),
-)
-#: Two bodies that deform: the layer on the base, the other body, kappa |V|, mu.
-NIPS = (
-    (("one", 0.5, 0.5), ("three", 0.4, 0.3), 0.6, 0.35, 0.3),
-    (("three", 0.45, 0.5), ("one", 0.3, 0.8), 0.6, 0.1, 0.3),
-    (("one", 0.5, 0.5), ("three", 0.3, None), 0.7, 0.35, 0.4),
-    (("one", 0.5, 0.3), ("elastic", 0.5, 2.0), 0.5, 1.0, 0.2),
-)
+#: Layers, and nips of two bodies that deform.
+SCENES = read_toml(Path(__file__).with_suffix(".toml"))
 
 
 class Compared(NamedTuple):
@@ -88,29 +57,21 @@ class Compared(NamedTuple):
 def scenes() -> list[tuple[str, vr.Scene, float]]:
     """Return names, scenes and speeds kappa |V|."""
     found = []
-    for name, nu, h, u, mu, on in LAYERS:
+    for name, nu, h, u, mu, on in SCENES["layers"]:
         cover = vr.Cover(MATERIALS[name], nu=nu, thickness=h, on=on)
-        found.append(
-            (f"{name}, {on}", vr.Scene(material=cover, kappa=KAPPA, mu=mu, coupled=False), u)
-        )
-    for (name, nu, h), (other, other_nu, other_h), part, u, mu in NIPS:
-        nip = vr.Cover(
-            MATERIALS[name],
-            nu=nu,
-            thickness=h,
-            on="base",
-            part=part,
-            other=MATERIALS[other],
-            other_nu=other_nu,
-            other_thickness=other_h,
-        )
-        found.append(
-            (f"{name}, {other}", vr.Scene(material=nip, kappa=KAPPA, mu=mu, coupled=False), u)
-        )
-    return found
+        found.append((f"{name}, {on}", cover, mu, u))
+    for (name, nu, h), (other, other_nu, other_h), part, u, mu in SCENES["nips"]:
+        own = {"nu": nu, "thickness": h, "part": part}
+        theirs = {"other_nu": other_nu, "other_thickness": other_h or None}
+        nip = vr.Cover(MATERIALS[name], on="base", other=MATERIALS[other], **own, **theirs)
+        found.append((f"{name}, {other}", nip, mu, u))
+    return [
+        (name, vr.Scene(material=cover, kappa=KAPPA, mu=mu, coupled=False), u)
+        for name, cover, mu, u in found
+    ]
 
 
-def energy(scene: vr.Scene, V: float, state: Any) -> tuple[float, float]:
+def energy(scene: vr.Scene, V: float, state) -> tuple[float, float]:
     """Return (least loss, times 2 kappa/(mu V P); largest efficiency) of states of the law at one
     speed.
     """
@@ -122,12 +83,11 @@ def energy(scene: vr.Scene, V: float, state: Any) -> tuple[float, float]:
         - free.M_half_space
         + spin * (state.M_cylinder - free.M_cylinder)
     )
-    least = min(slip.min(), free.M_half_space, float((spin * free.M_cylinder).min()))
+    least = min(slip.min(), free.M_half_space, (spin * free.M_cylinder).min())
     powers = np.stack([state.M_half_space - state.Q, spin * (state.Q + state.M_cylinder)])
     output, given = (np.maximum(signed, 0.0).sum(axis=0) for signed in (-powers, powers))
-    return 2.0 * KAPPA / float(scene.mu) * least, float(
-        (output[given > 0.0] / given[given > 0.0]).max()
-    )
+    rolls = given > 0.0
+    return 2.0 * KAPPA / scene.mu * least, (output[rolls] / given[rolls]).max()
 
 
 def compared(scene: vr.Scene, u: float, creeps: int) -> Compared:
@@ -144,19 +104,19 @@ def compared(scene: vr.Scene, u: float, creeps: int) -> Compared:
     free = abs(2.0 * KAPPA * found.delta_0[0] - row.free_creep())
     least, efficiency = energy(scene, V, found)
     return Compared(
-        kM=float(abs(KAPPA * found.M - true.kM_base - true.kM_cylinder).max()),
-        Q=float(abs(found.Q / mu - true.Q_over_mu).max()),
-        epsilon=float(abs(found.epsilon - true.epsilon).max()),
-        lam=float(abs(found.lam / true.lam - 1.0).max()),
-        free=float(0.5 * mu * free / KAPPA / found.delta_star[0]),
-        free_part=float(0.5 * free / KAPPA / found.delta_star[0]),
+        kM=abs(KAPPA * found.M - true.kM_base - true.kM_cylinder).max(),
+        Q=abs(found.Q / mu - true.Q_over_mu).max(),
+        epsilon=abs(found.epsilon - true.epsilon).max(),
+        lam=abs(found.lam / true.lam - 1.0).max(),
+        free=0.5 * mu * free / KAPPA / found.delta_star[0],
+        free_part=0.5 * free / KAPPA / found.delta_star[0],
         loss=least,
         efficiency=efficiency,
-        value=float(scene.validity(V).traction.value),
+        value=scene.validity(V).traction.value,
     )
 
 
-def summaries(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
+def summaries(rows: list[Row]) -> Iterator[Row]:
     """Yield, of each group of scenes, how many there are, and median and worst of every error."""
     groups = {
         "one layer": [row for row in rows if row["value"] <= 1.0 and not row["nip"]],
@@ -166,15 +126,15 @@ def summaries(rows: list[dict[str, Any]]) -> Iterator[dict[str, Any]]:
     for group, own in groups.items():
         if not own:
             continue
-        found: dict[str, Any] = {"group": group, "count": len(own)}
+        found = {"group": group, "count": len(own)}
         for name in Compared._fields:
             values = [row[name] for row in own]
             worst = min(values) if name == "loss" else max(values)
-            found[name] = {"median": float(np.median(values)), "worst": worst}
+            found[name] = {"median": np.median(values), "worst": worst}
         yield found
 
 
-def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+def measure(sizes):
     """Return a row for each scene, and their summaries."""
     rows = []
     for name, scene, u in scenes()[: sizes["scenes"]]:

@@ -8,8 +8,6 @@ does not change as much.  Sizes are in [ensembles] of the configuration, those o
 [ensembles.quick].  pipeline/evidence/document/ puts the numbers into docs/ensembles.md.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import tempfile
@@ -25,6 +23,7 @@ from viscoroll.core.blocks import run_blocks, thread_count
 from viscoroll.runs import read_run, run_ensemble, verify
 from viscoroll.runs.run_store import Store
 
+from ...stage import Row
 from ..results import run
 from ..timing import forked, peak_mb, processor_time
 
@@ -54,14 +53,14 @@ block = {block}
 """
 
 
-def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+def measure(sizes):
     """All rows, in a folder of their own."""
     with tempfile.TemporaryDirectory() as folder:
         os.chdir(folder)
         return measured(sizes) | {"threads": thread_count(), "sizes": sizes}
 
 
-def measured(sizes: dict[str, Any]) -> dict[str, Any]:
+def measured(sizes):
     block = sizes["block"]
     designs = sizes["designs"]
     rolled(FIXED, 4 * block, "warm", block)  # compiles, and builds the flow map
@@ -97,7 +96,7 @@ def rolled(
     design: str = "random",
     keep: str = "summaries",
     cluster: str | None = None,
-) -> dict[str, Any]:
+) -> Row:
     """Seconds, peak memory and bytes on disk of a run."""
     path = Path(f"{name}.toml")
     path.write_text(text + RUN.format(n=n, design=design, keep=keep, block=block), encoding="utf-8")
@@ -123,7 +122,7 @@ def loop(n: int, block: int) -> dict[str, float]:
     t = np.array([3e-3])
     V0, omega0 = np.random.default_rng(1).uniform(-2.0, 2.0, (2, block))
 
-    def work(start: int, stop: int) -> None:
+    def work(start, stop):
         vr.ensemble(scene, V0, omega0, t, method="flow", rtol=1e-6, threads=1)
 
     work(0, 1)
@@ -147,8 +146,8 @@ def cluster(blocks: list[int], rounds: int, block: int) -> dict[str, float]:
     if not rounds:
         return {}
     few, many = blocks
-    results: dict[str, float] = {}
-    least: dict[tuple[str, int, str], float] = {}
+    results = {}
+    least = {}
     for attempt in range(rounds):
         for count in blocks:
             for where, asked in (("threads", None), ("dask", "local")):

@@ -9,16 +9,14 @@ they show no long-time modulus the fit refuses them, and another rubber is drawn
 pipeline/evidence/document/ puts the result into docs/validity.md.
 """
 
-from __future__ import annotations
-
 import sys
 import warnings
-from typing import Any
 
 import numpy as np
 
 import viscoroll as vr
 
+from ...stage import Row
 from ..results import run
 
 #: relative noise of the moduli, of which one is drawn
@@ -27,7 +25,7 @@ NOISE = (0.0, 0.003, 0.01)
 MISFIT = 1.2
 
 
-def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+def measure(sizes):
     """Errors of all rubbers at the speeds of the estimate: at the ends of the band, and a factor of
     5 inside and more.
 
@@ -36,7 +34,7 @@ def measure(sizes: dict[str, Any]) -> dict[str, Any]:
     accuracy; and the same three of errors relative to the accuracy.
     """
     rng = np.random.default_rng(sizes["seed"])
-    found: list[np.ndarray] = []
+    found = []
     refused = 0
     while len(found) < sizes["rubbers"]:
         try:
@@ -56,19 +54,18 @@ def measure(sizes: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def row(place: str, error: np.ndarray, stated: np.ndarray) -> dict[str, Any]:
+def row(place: str, error: np.ndarray, stated: np.ndarray) -> Row:
     """Statistics of one part of the speeds."""
-    beyond = float(np.mean(error > stated * (1.0 + 1e-3) + 1e-6))
     return {
         "place": place,
         "speeds": error.size,
-        "beyond": beyond,
-        "median": float(np.median(error)),
-        "most": float(np.quantile(error, 0.95)),
-        "largest": float(error.max()),
-        "stated_median": float(np.median(stated)),
-        "stated_most": float(np.quantile(stated, 0.95)),
-        "ratio": float(np.quantile(error / (stated + 1e-6), 0.95)),
+        "beyond": np.mean(error > stated * (1.0 + 1e-3) + 1e-6),
+        "median": np.median(error),
+        "most": np.quantile(error, 0.95),
+        "largest": error.max(),
+        "stated_median": np.median(stated),
+        "stated_most": np.quantile(stated, 0.95),
+        "ratio": np.quantile(error / (stated + 1e-6), 0.95),
     }
 
 

@@ -7,10 +7,7 @@ Reads out/benchmark.csv (make benchmark).  pipeline/evidence/document/ puts a se
 README.md.
 """
 
-from __future__ import annotations
-
 import sys
-from typing import Any
 
 from viscoroll.core.errors import FileError
 
@@ -20,7 +17,7 @@ from ..results import run
 TIMES = ROOT / "out/benchmark.csv"
 
 
-def work() -> dict[str, Any]:
+def work():
     try:
         rows = read_rows(TIMES)
     except OSError as error:

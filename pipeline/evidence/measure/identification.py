@@ -11,12 +11,10 @@ scan (width), and what it all takes (time).  Sizes and seeds are in [identificat
 configuration.  Exit code 1 if a bound asked is exceeded.
 """
 
-from __future__ import annotations
-
 import os
 import sys
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import partial
 from typing import Any
@@ -30,6 +28,7 @@ from viscoroll.measurements.identification_result import Identification
 from viscoroll.measurements.measurement_records import Record
 from viscoroll.measurements.profile import ProfileWalk
 
+from ...stage import Row, Sizes
 from ..results import run_parts
 
 TRUTH = {"mu": 0.3, "E": 3e6, "E_1": 9.0, "T_ref": 1e-3}
@@ -64,7 +63,7 @@ def roller(values: dict[str, float] = TRUTH) -> vr.Cylinder:
     return vr.Cylinder(R=0.1, m=35.5, mu=values["mu"], material=rubber)
 
 
-def drum(V: NDArray, **more: Any) -> vr.Resistance:
+def drum(V: NDArray, **more) -> vr.Resistance:
     """Planned: M over V."""
     return vr.Resistance(V, sigma=NOISE["M"], **more)
 
@@ -75,7 +74,7 @@ def traction(*speeds: float) -> vr.Traction:
     return vr.Traction(np.repeat(speeds, 21), delta, sigma=NOISE["Q"])
 
 
-def motion(V0: float, end: float, what: str = "V", **more: Any) -> vr.Coastdown:
+def motion(V0: float, end: float, what: str = "V", **more) -> vr.Coastdown:
     """Planned: 200 points of a motion, let go rolling unless told."""
     sigma = {name: NOISE[name] for name in what.split()}
     return vr.Coastdown(np.linspace(0.0, end, 200), sigma=sigma, V0=V0, **{"name": "run"} | more)
@@ -90,7 +89,7 @@ HUMPED = [drum(HUMP)]
 ROLLED = [motion(3.0, 40.0)]
 THROWN = [thrown()]
 #: unknown -> what is measured -> its records; the second with a series that is known
-EXPERIMENTS: list[tuple[tuple[str, ...], dict[str, list[Record]]]] = [
+EXPERIMENTS = [
     (
         tuple(TRUTH),
         {
@@ -126,11 +125,9 @@ EXPERIMENTS: list[tuple[tuple[str, ...], dict[str, list[Record]]]] = [
         },
     ),
 ]
-LOADS: list[dict[str, Any]] = [
-    {"load": share * LOAD, "name": f"at {share:g} P"} for share in (0.3, 2.0)
-]
+LOADS = [{"load": share * LOAD, "name": f"at {share:g} P"} for share in (0.3, 2.0)]
 TWO_LOADS = [motion(3.0, 30.0, **at) for at in LOADS]
-IN_A_BEARING: list[tuple[tuple[str, ...], dict[str, list[Record]]]] = [
+IN_A_BEARING = [
     (
         SHAPE,
         {
@@ -149,14 +146,14 @@ IN_A_BEARING: list[tuple[tuple[str, ...], dict[str, list[Record]]]] = [
     ),
 ]
 #: experiments whose intervals are counted, and their unknowns
-COUNTED: dict[str, tuple[list[Record], tuple[str, ...]]] = {
+COUNTED = {
     "M across its maximum": (HUMPED, SHAPE),
     "M across its maximum and Q at 0.1 m/s": ([*HUMPED, traction(0.1)], tuple(TRUTH)),
     "launched without rotation, V and omega": ([thrown("V omega")], tuple(TRUTH)),
 }
 #: one of which a product is
 PRODUCT = {"M below its maximum": ([drum(SLOW)], SHAPE, "E_1 T_ref")}
-SEARCHED: dict[str, tuple[list[Record], tuple[str, ...]]] = {
+SEARCHED = {
     "M across its maximum": (HUMPED, SHAPE),
     "coast-down to 0": (ROLLED, SHAPE),
     "launched without rotation, V": (THROWN, tuple(TRUTH)),
@@ -172,7 +169,7 @@ def ranges(names: Iterable[str], records: Iterable[Record]) -> dict[str, tuple[f
     return {each: RANGES[each] for each in names} | starts
 
 
-def told(name: str, fit: Identification) -> dict[str, Any]:
+def told(name: str, fit: Identification) -> Row:
     """A row: of each unknown s.d. and ends of the interval, both over the truth, less 1 (results
     keep three digits).
     """
@@ -196,14 +193,12 @@ def told(name: str, fit: Identification) -> dict[str, Any]:
     }
 
 
-def learn(
-    sizes: dict[str, Any], of: Any = EXPERIMENTS, bearing: Any = None
-) -> list[dict[str, Any]]:
+def learn(sizes, of=EXPERIMENTS, bearing=None):
     """What experiments would tell of the truth: of a roller in a bearing, of exact data, as no plan
     has a bearing.
     """
 
-    def fit(names: tuple[str, ...], records: list[Record]) -> Identification:
+    def fit(names, records):
         if bearing:
             return fitted(records, None, names, bearing=bearing)
         return vr.identify(roller(), ranges(names, records), records)
@@ -215,14 +210,12 @@ def learn(
     ]
 
 
-def first(group: dict[str, Any], sizes: dict[str, Any]) -> Iterable[tuple[str, Any]]:
+def first(group: Row, sizes: Sizes) -> Iterable[tuple[str, Any]]:
     """As many experiments as are asked for."""
     return tqdm([*group.items()][: sizes["experiments"]])
 
 
-def _measured(
-    record: Record, rng: np.random.Generator | None, bearing: dict[str, float] | None = None
-) -> Record:
+def _measured(record, rng, bearing=None):
     """A planned record with values, at the truth, with noise."""
     exact = record.model(roller().replace(**record.overrides), bearing or {})
     values = {
@@ -252,7 +245,7 @@ def fitted(
     return vr.identify(roller(TRUTH | start), given, data, starts=starts, seed=0)
 
 
-def said(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def said(sizes):
     """Reports of six problems that cannot be solved as they are put."""
     two = roller().replace(material=vr.Material(3e6, 0.5, vr.Prony([4.0, 5.0], [1.0, 0.05]), 1e-3))
     exact = two.contact(HUMP, delta=0.0, fields="M").M
@@ -277,7 +270,7 @@ def said(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     return [{"problem": name, "report": str(fit())} for name, fit in first(fits, sizes)]
 
 
-def coverage(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def coverage(sizes):
     """Share of data sets whose intervals hold the truth: those in which chi2 rises by no more than
     3.84 up to there.
     """
@@ -285,7 +278,7 @@ def coverage(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     for name, (records, names, *counted) in first(COUNTED | PRODUCT, sizes):
         fits = [fitted(records, sizes["seed"] + n, names) for n in tqdm(range(sizes["sets"]), name)]
         held = {
-            each: float(np.mean([rise_at_truth(fit, each) <= RISE for fit in fits]))
+            each: np.mean([rise_at_truth(fit, each) <= RISE for fit in fits])
             for each in counted or names
         }
         rows.append({"experiment": name, "sets": sizes["sets"], "held": held})
@@ -303,7 +296,7 @@ def rise_at_truth(fit: Identification, product: str) -> float:
     return walk.minimum_at(walk.distance(true), fit._likelihood.best.u).chi2 - fit.chi2
 
 
-def reach(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def reach(sizes):
     """Share of single searches from starts a factor of ten off that arrive."""
     rows = []
     for name, (records, names) in first(SEARCHED, sizes):
@@ -314,12 +307,12 @@ def reach(sizes: dict[str, Any]) -> list[dict[str, Any]]:
             {each: TRUTH[each] * one for each, one in zip(names, row)} for row in off.tolist()
         )
         chi2 = np.array([at(start).chi2 for start in tqdm(starts, name, sizes["starts"])])
-        share = float(np.mean(chi2 < min(*chi2, at().chi2) + _ARRIVED))
+        share = np.mean(chi2 < min(*chi2, at().chi2) + _ARRIVED)
         rows.append({"experiment": name, "starts": sizes["starts"], "reached": share})
     return rows
 
 
-def width(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def width(sizes):
     """Largest difference of an end from a scan of the profile, over the width of the interval."""
     rows = []
     for name, (records, names) in first(COUNTED, sizes):
@@ -340,7 +333,7 @@ def width(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
-def times(sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def times(sizes):
     """Seconds of processor of a fit of five unknowns to 200 points, from 30 % off, and of its five
     profiles.
     """
@@ -371,7 +364,7 @@ def times(sizes: dict[str, Any]) -> list[dict[str, Any]]:
     return rows
 
 
-PARTS: dict[str, Callable[[dict[str, Any]], list[dict[str, Any]]]] = {
+PARTS = {
     "learn": learn,
     "bearing": partial(learn, of=IN_A_BEARING, bearing=BEARING),
     "said": said,
@@ -382,7 +375,7 @@ PARTS: dict[str, Callable[[dict[str, Any]], list[dict[str, Any]]]] = {
 }
 
 
-def complaint(row: dict[str, Any]) -> str | None:
+def complaint(row: Row) -> str | None:
     """What a row exceeds of what is asked."""
     counted = row["held"] if row.get("sets", 0) >= FEWEST else {}
     found = {f"{name} held by its interval": ("held", share) for name, share in counted.items()}

@@ -8,11 +8,9 @@ in [large] of the configuration; 10^8 motions want 8 GB.  pipeline/evidence/docu
 into docs/times.md.
 """
 
-from __future__ import annotations
-
 import sys
-from typing import Any
 
+from ...stage import Row
 from ..results import run
 from ..timing import printed
 
@@ -51,14 +49,14 @@ print(json.dumps(run(*given)))
 """  # noqa: E501
 
 
-def measured(name: str, count: int) -> dict[str, Any]:
+def measured(name: str, count: int) -> Row:
     """Seconds, bytes of the result, and bytes at the peak beside it and the input."""
     return {"call": CALLS[name], "elements": count} | printed(
         _CHILD.replace("CALL", CALLS[name]), count
     )
 
 
-def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+def measure(sizes):
     """All calls."""
     return {
         "rows": [

@@ -8,8 +8,6 @@ configuration.  Every number is of one core.  pipeline/evidence/document/ puts i
 and docs/loading/README.md.
 """
 
-from __future__ import annotations
-
 import html
 import json
 import os
@@ -19,7 +17,6 @@ import subprocess
 import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import Any
 
 import numpy as np
 
@@ -28,13 +25,13 @@ from viscoroll import tables
 from viscoroll.core.errors import MissingDependencyError
 from viscoroll.roller_toml import read_law_source
 
-from ...stage import ROOT
+from ...stage import ROOT, Row, Sizes
+from ...validation import FIELDS
 from ..results import run
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 #: of which law, on the page and in the programs
 RUBBER = ROOT / "src/viscoroll/datasets/rubber.toml"
-FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: live.md without its theme: sets a slider, and times the redraw with its layout
 PAGE = """<!DOCTYPE html><link rel="stylesheet" href="viscoroll.css"><pre id="found"></pre><div id="law"></div>
 <script src="read_law.js"></script><script src="rubber.js"></script><script src="live.js"></script>
@@ -96,7 +93,7 @@ int main(void) {
 """  # noqa: E501
 
 
-def measure(sizes: dict[str, Any]) -> dict[str, Any]:
+def measure(sizes):
     """All that outside.json holds beside the machine."""
     law = tables.law(read_law_source(RUBBER))
     with TemporaryDirectory() as name:
@@ -121,7 +118,7 @@ def printed(folder: Path, *command: str) -> str:
     ).stdout
 
 
-def page(folder: Path, sizes: dict[str, Any]) -> dict[str, Any]:
+def page(folder: Path, sizes: Sizes) -> Row:
     """Milliseconds of a redraw, and the largest errors of the numbers that are shown."""
     random = np.random.default_rng(sizes["seed"])
     count = sizes["redraws"]
@@ -139,14 +136,8 @@ def page(folder: Path, sizes: dict[str, Any]) -> dict[str, Any]:
     rubber = (folder / "rubber.json").read_text(encoding="utf-8")
     (folder / "rubber.js").write_text(f"const RUBBER = {rubber};\n", encoding="utf-8")
     (folder / "page.html").write_text(PAGE.replace("STATES", json.dumps(states)), encoding="utf-8")
-    options = (
-        "--headless",
-        "--no-sandbox",
-        "--disable-gpu",
-        "--disable-dev-shm-usage",
-        "--dump-dom",
-    )
-    shown = printed(folder, program(*BROWSERS), *options, (folder / "page.html").as_uri())
+    options = "--headless --no-sandbox --disable-gpu --disable-dev-shm-usage --dump-dom"
+    shown = printed(folder, program(*BROWSERS), *options.split(), (folder / "page.html").as_uri())
     found = json.loads(
         html.unescape(re.search(r'<pre id="found">(.*?)</pre>', shown, re.DOTALL)[1])
     )  # type: ignore[index]
@@ -158,8 +149,8 @@ def page(folder: Path, sizes: dict[str, Any]) -> dict[str, Any]:
     )
     ms = at["ms"]
     return {
-        "median_ms": float(np.median(ms)),
-        "slowest_ms": float(ms.max()),
+        "median_ms": np.median(ms),
+        "slowest_ms": ms.max(),
         "bytes": len(rubber),
         "error": max(
             largest(at[name], getattr(exact, name), 1.0 if name == "beta" else 0.0)
@@ -168,12 +159,12 @@ def page(folder: Path, sizes: dict[str, Any]) -> dict[str, Any]:
     }
 
 
-def largest(found: Any, exact: Any, scale: Any = 0.0) -> float:
+def largest(found, exact, scale=0.0) -> float:
     """Largest difference over the larger of ``exact`` and ``scale``."""
-    return float(np.max(np.abs(found - exact) / np.maximum(np.abs(exact), scale)))
+    return np.max(np.abs(found - exact) / np.maximum(np.abs(exact), scale))
 
 
-def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
+def programs(folder: Path, sizes: Sizes) -> dict[str, float]:
     """Nanoseconds a state."""
     random = np.random.default_rng(sizes["seed"])
     count = sizes["states"]
@@ -188,7 +179,7 @@ def programs(folder: Path, sizes: dict[str, Any]) -> dict[str, float]:
     (folder / "node.js").write_text(NODE)
     rows = ",".join("{" + ",".join(map(repr, row)) + "}" for row in states)
     (folder / "time.c").write_text(C.replace("STATES", rows))
-    printed(folder, program("cc"), "-std=c99", "-O2", "time.c", "-lm", "-o", "time")
+    printed(folder, program("cc"), *["-std=c99", "-O2", "time.c", "-lm", "-o", "time"])
     values, slopes = map(float, printed(folder, "./time").split())
     return {
         "c_ns": values,

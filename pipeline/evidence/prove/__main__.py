@@ -10,18 +10,15 @@ Exit code 1 where a bound is exceeded.  pipeline/evidence/document/ puts the tab
 docs/accuracy_proofs.md.
 """
 
-from __future__ import annotations
-
 import sys
 from functools import partial
-from typing import Any
 
+from ...stage import Row, Sizes
 from ..results import run_parts
 from . import motion, series, shape, states
-from .cases import Proof
 
 #: Every proof: what `make prove`, the tests and the accuracy page read.
-TABLE: list[Proof] = [
+TABLE = [
     *states.RATIO_PROOFS,
     *states.PROOFS,
     *shape.PROOFS,
@@ -31,7 +28,7 @@ TABLE: list[Proof] = [
 ]
 
 
-def part(name: str, sizes: dict[str, Any]) -> list[dict[str, Any]]:
+def part(name: str, sizes: Sizes) -> list[Row]:
     """Return the rows of all proofs of a part.
 
     name: of the part.
@@ -49,7 +46,7 @@ def part(name: str, sizes: dict[str, Any]) -> list[dict[str, Any]]:
 PROOFS = {proof.part: partial(part, proof.part) for proof in TABLE}
 
 
-def beyond(row: dict[str, Any]) -> str | None:
+def beyond(row: Row) -> str | None:
     """What is to be said of a row beyond its bound."""
     if row["worst"] <= row["bound"]:
         return None

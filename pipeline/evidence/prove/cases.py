@@ -3,8 +3,6 @@ over the whole domain and along its edges; reference motions of data/reference, 
 data/README.md says how they were made.
 """
 
-from __future__ import annotations
-
 import json
 from collections.abc import Callable, Iterable
 from types import SimpleNamespace
@@ -12,12 +10,14 @@ from typing import Any, NamedTuple
 
 import numpy as np
 from flint import arb
+from numpy.random import Generator
 from scipy.special import i0e, i1e, k0e, k1e
 from tqdm import tqdm
 
 import viscoroll as vr
 
 from ... import stage
+from ...stage import Row
 from ..truth import contact_enclosure
 
 # --- a proof: what is drawn, errors against a truth, and the claims on these ---
@@ -42,14 +42,14 @@ class Proof(NamedTuple):
     size: str
     domain: str
     claims: dict[Any, tuple[str, float]]
-    found: Callable[[np.random.Generator, Any], Found]
+    found: Callable[[Generator, Any], Found]
     name: str = ""
 
     def key(self) -> str:
         """Return part, size and name: the name of this proof among all."""
         return f"{self.part} {self.size} {self.name}"
 
-    def random(self, seed: int) -> np.random.Generator:
+    def random(self, seed: int) -> Generator:
         """Return the random numbers of this proof.
 
         They follow from its own key, not from its place among the proofs, so that a new proof
@@ -59,7 +59,7 @@ class Proof(NamedTuple):
         """
         return np.random.default_rng([seed, *self.key().encode()])
 
-    def rows(self, seed: int, size: Any) -> list[dict[str, Any]]:
+    def rows(self, seed: int, size) -> list[Row]:
         """Return a row for each claim: claim, domain, bound, points, worst, mean, and where the
         worst was.
 
@@ -75,9 +75,9 @@ class Proof(NamedTuple):
                 each = np.atleast_1d(np.asarray(errors[name], float)).ravel()
                 each = np.where(np.isnan(each), np.inf, np.maximum(each, 0.0))
                 row = kept[name]
-                worst = float(each.max(initial=0.0))
+                worst = each.max(initial=0.0)
                 row[0] += each.size
-                row[1] += float(each.sum())
+                row[1] += each.sum()
                 row[2:] = (worst, where) if worst > row[2] else row[2:]
         rows = []
         for name, (points, total, worst, where) in kept.items():
@@ -112,7 +112,6 @@ VALUES, FREE, DRIVEN = (
     FOLDER / name for name in ("check_values.csv", "check_motions.csv", "check_driven.json")
 )
 PARAMETERS = ("alpha", "kappa", "mu", "gamma", "j")
-SPEEDS = ("V", "omega")
 OUTPUTS = ("V", "omega", "x", "angle")
 PATHS = ("x", "angle", "work_force", "work_torque", "brake_loss", "slip_loss")
 
@@ -124,7 +123,7 @@ class Case(NamedTuple):
     V0: float | None
     omega0: float | None
     t: Any
-    drive: dict[str, Any]
+    drive: Row
 
     def __str__(self) -> str:
         return (
@@ -133,7 +132,7 @@ class Case(NamedTuple):
         )
 
 
-def free_motion(rows: list[dict[str, Any]]) -> tuple[Case, Any]:
+def free_motion(rows: list[Row]) -> tuple[Case, Any]:
     """The motion that rows of check_motions.csv describe, and its values."""
     first = rows[0]
     t = np.array([row["t"] for row in rows])
@@ -144,7 +143,7 @@ def free_motion(rows: list[dict[str, Any]]) -> tuple[Case, Any]:
     )
 
 
-def driven_motion(row: dict[str, Any]) -> Case:
+def driven_motion(row: Row) -> Case:
     """The motion that a row of check_driven.json describes."""
     given = {"alpha": None} | row["scene"]
     bodies = {
@@ -163,7 +162,7 @@ def driven_motion(row: dict[str, Any]) -> Case:
     return Case(vr.Scene(**given), row["V0"], row["omega0"], np.array(row["t"]), drive)
 
 
-def read_elements(name: str) -> list[dict[str, Any]]:
+def read_elements(name: str) -> list[Row]:
     """Return the states of check_elements.json of one kind: "bodies", "covers" or "free_creep"."""
     return json.loads((FOLDER / "check_elements.json").read_text(encoding="utf-8"))[name]
 
@@ -180,13 +179,13 @@ STATES = (
 OUTPUT_SHARES = np.array([1e-3, 1e-2, 0.1, 0.25, 0.5, 0.75, 1.0])
 
 
-def powers(random: np.random.Generator, *ends: tuple[float, float]) -> list[float]:
+def powers(random: Generator, *ends: tuple[float, float]) -> list[float]:
     """10^x, x even between the ends."""
     low, high = zip(*ends)
     return (10.0 ** random.uniform(low, high)).tolist()
 
 
-def generators(z: Any, alpha: float) -> tuple[Any, Any]:
+def generators(z, alpha: float) -> tuple[Any, Any]:
     """g and h of one relaxation time, to place states by a half length z over V T."""
     r = i1e(alpha * z) / i0e(alpha * z)
     k = k0e(z) / k1e(z)
@@ -194,7 +193,7 @@ def generators(z: Any, alpha: float) -> tuple[Any, Any]:
     return h * k, h
 
 
-def chosen_alpha(random: np.random.Generator) -> float:
+def chosen_alpha(random: Generator) -> float:
     """At an edge, one time in four; else log-uniform in [1, 1e6]."""
     return (
         float(random.choice(EDGE_ALPHAS))
@@ -203,7 +202,7 @@ def chosen_alpha(random: np.random.Generator) -> float:
     )
 
 
-def chosen_creep(random: np.random.Generator, delta_star: Any) -> float:
+def chosen_creep(random: Generator, delta_star) -> float:
     """s = delta/delta_star log-uniform toward 0 and toward 1, at 0, at 1e-300 and 1e-16, and within
     an ULP of 1.
     """
@@ -228,9 +227,7 @@ def chosen_creep(random: np.random.Generator, delta_star: Any) -> float:
     return kinds[random.integers(len(kinds))]
 
 
-def chosen_state(
-    random: np.random.Generator, alpha: float
-) -> tuple[float, float, float, float, float]:
+def chosen_state(random: Generator, alpha: float) -> tuple[float, float, float, float, float]:
     """(alpha, kappa, mu, V, delta): kappa, mu in [1e-6, 1e6], kappa V in [1e-300, 1e300], half of
     it in [1e-8, 1e8].
     """
@@ -243,7 +240,7 @@ def chosen_state(
     return alpha, kappa, mu, sign_V * kappa_V / kappa, sign_delta * delta
 
 
-def free(random: np.random.Generator) -> Case:
+def free(random):
     """alpha in [1, 1e4], kappa in [0.5, 200], mu in [0.01, 3], gamma in [1e-3, 1e8], j in [0.1, 2],
     starts of every sign in [-2, 2]^2, half of them at an edge: V0 = 0, omega0 = 0, pure rolling,
     V0 + j omega0 = 0; onset and rest within and beyond the end.
@@ -266,7 +263,7 @@ def free(random: np.random.Generator) -> Case:
     return Case(vr.Scene(alpha, kappa, mu, gamma, j), V0, omega0, float(end) * OUTPUT_SHARES, {})
 
 
-def slight(random: np.random.Generator) -> Case:
+def slight(random):
     """Friction so slight that rolling resistance spends nearly all of it, on cylinders of little
     inertia.
     """
@@ -284,7 +281,7 @@ def slight(random: np.random.Generator) -> Case:
     )
 
 
-def driven(random: np.random.Generator, wild: bool = False) -> Case:
+def driven(random, wild=False):
     """A scene, most of them of no cylinder if ``wild``, a start from rest or not, and a drive of up
     to three pieces.
     """
@@ -308,7 +305,7 @@ def driven(random: np.random.Generator, wild: bool = False) -> Case:
     )
 
 
-def braked(random: np.random.Generator) -> Case:
+def braked(random):
     """Such a motion with a brake, a quarter of them at alpha = 1; in half of them one of the speeds
     is 0 at first.
     """
@@ -321,7 +318,7 @@ def braked(random: np.random.Generator) -> Case:
     return Case(scene, V0, omega0, t, drive | {"brake": vr.Schedule(times, brake)})
 
 
-def prescribed(random: np.random.Generator) -> Case:
+def prescribed(random):
     """V or omega prescribed, as large as the other speed at first times 1e-9 to 1e3, and long
     enough for that to pass.
 
@@ -353,7 +350,7 @@ def prescribed(random: np.random.Generator) -> Case:
     return Case(scene, other, None, t, {"omega": speed, "force": acting})
 
 
-def _prescribed_speed(random: np.random.Generator, end: float, size: float) -> vr.Schedule:
+def _prescribed_speed(random, end, size):
     """A speed of about this size that stays, ramps, falls by up to 8 decades, or stands at 0 for a
     while.
     """
@@ -369,7 +366,7 @@ def _prescribed_speed(random: np.random.Generator, end: float, size: float) -> v
     return vr.Schedule(times, [sign * size, 0.0, 0.0, size * float(random.normal())])
 
 
-def fed_back(random: np.random.Generator) -> Case:
+def fed_back(random):
     """Such a motion with gains, of which none makes the speeds grow."""
     case = driven(random)
     force_V, force_omega, torque_omega = -(10.0 ** random.uniform(-1.0, 1.0, 3)) * (

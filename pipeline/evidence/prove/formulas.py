@@ -1,5 +1,4 @@
-"""Formulas of others beside the exact law -> data/results/formulas.json and
-data/reference/rolling_formulas.csv (kept in git).
+"""Formulas of others beside the exact law -> data/results/formulas.json (kept in git).
 
     python -m pipeline.evidence.prove.formulas [-o FILE]
 
@@ -9,24 +8,18 @@ cylinder that rolls freely.  pipeline/evidence/document/ puts the tables into
 docs/accuracy_independent.md.
 """
 
-from __future__ import annotations
-
-import csv
-import io
 import sys
 from collections.abc import Iterator
 from dataclasses import replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
 from scipy.optimize import brentq
 from scipy.special import i0e, i1e, k0e, k1e
 
 import viscoroll as vr
-from viscoroll.core.files import write_text
 
-from ...stage import ROOT
+from ...stage import Row
 from ..results import run
 from .layer import MATERIAL, springs_moment
 
@@ -47,7 +40,7 @@ class Rolled(NamedTuple):
     length: float
 
 
-def _weights(a: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _weights(a):
     """Return the shares of each mode in loss and in compliance under a pressure of Hertz.
 
     Of the integrals over the wave number k of the pressure, (2 J_1(k)/k)^2, with a mode of
@@ -92,17 +85,17 @@ def persson(material: vr.Material, R: float, load: float, V: float) -> Rolled:
     times = np.asarray(series.T) * material.T_ref
     glassy = 1.0 - strengths.sum()
 
-    def effective(s: float) -> float:
-        return float(glassy + strengths @ _weights(s / (V * times))[1])
+    def effective(s):
+        return glassy + strengths @ _weights(s / (V * times))[1]
 
-    def hertz(share: float) -> float:
-        return float(np.sqrt(4.0 * load * R * compliance * share / np.pi))
+    def hertz(share):
+        return np.sqrt(4.0 * load * R * compliance * share / np.pi)
 
     low = hertz(glassy)
     high = hertz(1.0)
     s = brentq(lambda s: s - hertz(effective(s)), 0.999 * low, 1.001 * high, rtol=1e-12)
     lost = strengths @ _weights(s / (V * times))[0]
-    return Rolled(float(8.0 * load / (np.pi * s) * compliance * lost), 2.0 * s)
+    return Rolled(8.0 * load / (np.pi * s) * compliance * lost, 2.0 * s)
 
 
 def jonkers(material: vr.Material, thickness: float, R: float, load: float, V: float) -> Rolled:
@@ -125,16 +118,16 @@ def jonkers(material: vr.Material, thickness: float, R: float, load: float, V: f
     """
     diameter = 2.0 * R
 
-    def front(omega: float) -> tuple[float, float]:
+    def front(omega):
         """Length ahead of the axis, m, and loss angle."""
         angle = float(np.arctan(material.tan_delta(omega)))
         wave = (np.pi + 2.0 * angle) * np.cos(angle) * (1.0 + np.sin(angle)) / 4.0
         return np.cbrt(load * thickness * diameter * wave / material.storage(omega)), angle
 
-    def excess(log_omega: float) -> float:
+    def excess(log_omega):
         omega = np.exp(log_omega)
         ahead, angle = front(omega)
-        return float(log_omega - np.log((np.pi + 2.0 * angle) * V / (2.0 * ahead)))
+        return log_omega - np.log((np.pi + 2.0 * angle) * V / (2.0 * ahead))
 
     guess = np.log(np.pi * V / (2.0 * front(0.0)[0]))
     omega = np.exp(brentq(excess, guess - 5.0, guess + 10.0, xtol=1e-12))
@@ -142,16 +135,11 @@ def jonkers(material: vr.Material, thickness: float, R: float, load: float, V: f
     shape = (np.pi + 2.0 * angle) * np.cos(angle) / (4.0 * np.sqrt(1.0 + np.sin(angle)))
     bed = np.cbrt(load * thickness / (material.storage(omega) * diameter**2))
     C_rr = 0.5 * np.pi * np.tan(angle) * shape ** (4.0 / 3.0) * bed
-    return Rolled(float(C_rr), float(2.0 * np.pi * ahead / (np.pi + 2.0 * angle)))
+    return Rolled(C_rr, 2.0 * np.pi * ahead / (np.pi + 2.0 * angle))
 
 
 # --- beside the law ---
 
-REFERENCE = ROOT / "data/reference/rolling_formulas.csv"
-COLUMNS = (
-    *("formula", "E", "nu", "prony_E", "prony_tau_s", "h"),
-    *("R", "P", "V", "C_rr", "length"),
-)
 #: Idler and belt cover of docs/howto/covers.md: m, N per m of width, m.
 R = 0.08
 LOAD = 2e3
@@ -194,10 +182,10 @@ def speeds(rubber: vr.Material) -> Iterator[tuple[float, float]]:
     """Yield the speeds of Persson's formula: contact lengths per retardation time, and m/s."""
     rest = 2.0 * np.sqrt(4.0 * LOAD * R * (1.0 - rubber.nu**2) / (np.pi * rubber.E))
     for share in SPEEDS:
-        yield share, float(share * rest / rubber.prony.T.max())
+        yield share, share * rest / rubber.prony.T.max()
 
 
-def over_speed() -> list[dict[str, Any]]:
+def over_speed() -> list[Row]:
     """Persson's C_rr and contact length less those of the law, relative."""
     rows = []
     for name, rubber in RUBBERS.items():
@@ -217,7 +205,7 @@ def over_speed() -> list[dict[str, Any]]:
     return rows
 
 
-def belt() -> list[dict[str, Any]]:
+def belt() -> list[Row]:
     """Half-space, Jonkers and Persson over the layer of the how-to."""
     rows = []
     for temperature in TEMPERATURES:
@@ -237,7 +225,7 @@ def belt() -> list[dict[str, Any]]:
     return rows
 
 
-def limits() -> list[dict[str, Any]]:
+def limits() -> list[Row]:
     """Limits of Hunter, and of May, Morris & Atack: quantity, what it tends to, and the law."""
     half = vr.Scene(material=vr.Bodies(MATERIAL, vr.Prony.elastic(), 1.0), kappa=1.0, mu=1.0)
     slow = half.contact(SLOWEST, delta=0.0, fields=("M", "lam"))
@@ -275,32 +263,8 @@ def limits() -> list[dict[str, Any]]:
     return rows
 
 
-def reference() -> str:
-    """Return the formulas' own numbers as CSV, 12 digits, with every input."""
-    rows = []
-    for rubber in RUBBERS.values():
-        rows += [("Persson", rubber, "", V, persson(rubber, R, LOAD, V)) for _, V in speeds(rubber)]
-    for temperature in TEMPERATURES:
-        rubber = BELT.at(temperature, SHIFT)
-        rows += [
-            ("Jonkers", rubber, THICKNESS, V, jonkers(rubber, THICKNESS, R, LOAD, V))
-            for V in BELT_SPEEDS
-        ]
-    text = io.StringIO()
-    file = csv.writer(text, lineterminator="\n")
-    file.writerow(COLUMNS)
-    for name, rubber, h, V, found in rows:
-        series = rubber.prony
-        times = series.tau * rubber.T_ref
-        modes = (" ".join(f"{each:.12g}" for each in part) for part in (series.E, times))
-        numbers = (f"{each:.12g}" for each in (V, *found))
-        file.writerow([name, rubber.E, rubber.nu, *modes, h, R, LOAD, *numbers])
-    return text.getvalue()
-
-
-def found() -> dict[str, Any]:
-    """Write the reference values; return the comparisons with the law."""
-    write_text(REFERENCE, reference())
+def found() -> Row:
+    """Return the comparisons with the law."""
     return {"persson": over_speed(), "belt": belt(), "limits": limits()}
 
 

@@ -11,11 +11,8 @@ tests/evidence/test_independent.py says how large they may be; pipeline/evidence
 tables into docs/accuracy_independent.md.
 """
 
-from __future__ import annotations
-
 import math
 import sys
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,7 +21,7 @@ from scipy.optimize import brentq
 import viscoroll as vr
 from viscoroll.contact_mechanics.coupled_pair import CoupledPair, CoupledRow
 
-from ...stage import ROOT, read_rows
+from ...stage import ROOT, Row, read_rows
 from ..results import run
 
 REFERENCE = ROOT / "data/reference"
@@ -43,14 +40,14 @@ BENTALL_HALF_LENGTH = 0.1
 SYMBOLS = {"lam": "λ", "epsilon": "ε", "beta": "β"}
 
 
-def columns(rows: list[dict[str, Any]]) -> dict[str, NDArray]:
+def columns(rows: list[Row]) -> dict[str, NDArray]:
     return {name: np.array([row[name] for row in rows]) for name in rows[0]}
 
 
 # --- Wang & Knothe ---
 
 
-def wang_knothe() -> dict[str, NDArray]:
+def wang_knothe():
     """Deviations by quantity and unit, one entry a case; cells are those of the other's grid."""
     cases = read_rows(REFERENCE / "wang_knothe.csv")
     off = columns([wang_knothe_case(case) for case in cases])
@@ -93,7 +90,7 @@ def wang_knothe_case(case: dict[str, float]) -> dict[str, float]:
 # --- examples of CONTACT ---
 
 
-def bentall() -> dict[str, NDArray]:
+def bentall():
     """Creepage at a given traction of unlike elastic bodies, pressure and shear together, relative.
 
     Creepage is 2 kappa delta, which times half the contact length over R is delta.  The row of an
@@ -119,7 +116,7 @@ def bentall() -> dict[str, NDArray]:
     return {"creep, relative": np.array(off)}
 
 
-def carter() -> dict[str, NDArray]:
+def carter():
     """Q and largest pressure of like elastic bodies at a given creepage; Carter's theory."""
     (case,) = read_rows(REFERENCE / "carter2d.csv")
     # half-length = R/(2 kappa); E' = pi E/(1 - nu^2) of two like bodies
@@ -137,7 +134,7 @@ def carter() -> dict[str, NDArray]:
 # --- the half-space code ---
 
 
-def half_space() -> dict[str, NDArray]:
+def half_space():
     """Deviations by quantity and unit, an entry a state; full slip: 1 where it is decided
     otherwise.
     """
@@ -163,7 +160,7 @@ def half_space() -> dict[str, NDArray]:
     }
 
 
-def profiles() -> dict[str, NDArray]:
+def profiles():
     """p over its peak, on the inner part of the contact; tau over mu times the peak."""
     data = columns(read_rows(REFERENCE / "profiles.csv"))
     p_off = []
@@ -189,14 +186,10 @@ def profiles() -> dict[str, NDArray]:
 # --- the motion ---
 
 
-def section_5() -> dict[str, NDArray]:
+def section_5():
     """V and omega over |V|, onset relative: IC1-IC3 with both sets of parameters, at rtol 1e-11."""
     rows = read_rows(REFERENCE / "section5.csv")
-    off: dict[str, list[NDArray]] = {
-        "V, relative": [],
-        "ω, divided by V": [],
-        "onset time, relative": [],
-    }
+    off = {"V, relative": [], "ω, divided by V": [], "onset time, relative": []}
     for ic, params in sorted({(row["ic"], row["params"]) for row in rows}):
         data = columns([row for row in rows if (row["ic"], row["params"]) == (ic, params)])
         scene = vr.Scene(**{name: data[name][0] for name in ("alpha", "kappa", "mu", "gamma", "j")})
@@ -210,17 +203,17 @@ def section_5() -> dict[str, NDArray]:
 # --- the paper's own numbers ---
 
 
-def paper() -> list[dict[str, Any]]:
+def paper() -> list[Row]:
     """Each number that the paper prints, the same computed here, and the difference in its last
     printed digits.
     """
     start = vr.presets.PAPER_STARTS["IC1"]
     onset = vr.roll(vr.presets.PAPER_SECTION_5, *start, 1e-3).onset_time
 
-    def at(t: float, name: str, scene: vr.Scene = vr.presets.PAPER_SECTION_5) -> float:
+    def at(t, name, scene=vr.presets.PAPER_SECTION_5):
         return float(getattr(vr.roll(scene, *start, [t]).contact((name,)), name)[0])
 
-    def own(row: dict[str, Any]) -> float:
+    def own(row):
         if row["quantity"] == "onset":
             return onset
         return (
@@ -277,22 +270,23 @@ SOURCES = {
 }
 
 
-def rows() -> list[dict[str, Any]]:
+def rows() -> list[Row]:
     """Source, quantity, number of values, worst and mean of the deviations' moduli."""
     return [
         {
             "source": source,
             "quantity": quantity,
             "values": off.size,
-            "worst": float(np.max(np.abs(off))),
-            "mean": float(np.mean(np.abs(off))),
+            "worst": np.max(np.abs(off)),
+            "mean": np.mean(np.abs(off)),
         }
         for source, deviations in SOURCES.items()
         for quantity, off in deviations().items()
     ]
 
 
-def compare() -> dict[str, Any]:
+def compare() -> Row:
+    """Return both tables."""
     return {"deviations": rows(), "paper": paper()}
 
 

@@ -19,12 +19,9 @@ half-widths are as 1/sqrt(f).
 python -m pipeline.evidence.prove.layer [-o FILE]: data/results/layer.json, in seconds.
 """
 
-from __future__ import annotations
-
 import math
 import sys
 from functools import lru_cache
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -32,6 +29,7 @@ from scipy.optimize import brentq, minimize_scalar
 
 import viscoroll as vr
 
+from ...stage import Row
 from ..results import run
 
 #: Thickness over l0, and Poisson's ratios of the covers.
@@ -49,7 +47,7 @@ _NODES = 1000
 _POINTS = 31
 
 
-def kernel(u: NDArray[np.float64], nu: float) -> NDArray[np.float64]:
+def kernel(u: NDArray, nu: float) -> NDArray:
     """Return L of an elastic layer, by decaying exponentials:
 
     L(u) = (2 c sinh 2u - 4 u)/(2 c cosh 2u + 4 u^2 + 1 + c^2),   c = 3 - 4 nu,   1 of a half-space
@@ -60,9 +58,7 @@ def kernel(u: NDArray[np.float64], nu: float) -> NDArray[np.float64]:
     c = 3.0 - 4.0 * nu
     once = np.exp(-2.0 * u)
     rest = (4.0 * u * u + 1.0 + c * c) * once
-    result: NDArray[np.float64] = (c * (1.0 - once * once) - 4.0 * u * once) / (
-        c * (1.0 + once * once) + rest
-    )
+    result = (c * (1.0 - once * once) - 4.0 * u * once) / (c * (1.0 + once * once) + rest)
     return result
 
 
@@ -80,22 +76,22 @@ def load(h: float, nu: float, points: int = _POINTS) -> float:
     apart = x[:, None] - s
     regular = _regular(apart / h, nu) / h
     phi = np.linalg.lstsq(weights * (1.0 / apart + regular), np.pi * x, rcond=None)[0]
-    return float(weights @ phi / (0.5 * np.pi))
+    return weights @ phi / (0.5 * np.pi)
 
 
-def _regular(y: NDArray[np.float64], nu: float) -> NDArray[np.float64]:
+def _regular(y, nu):
     u, weights = _quadrature()
     part = (kernel(u, nu) - 1.0) * weights
     return np.array([np.sin(np.multiply.outer(row, u)) @ part for row in y])
 
 
 @lru_cache
-def _quadrature() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+def _quadrature():
     at, weights = np.polynomial.legendre.leggauss(_NODES)
     return 0.5 * _LAST * (1.0 + at), 0.5 * _LAST * weights
 
 
-def springs(p: vr.Prony, z: float, h: float, nu: float) -> NDArray[np.float64]:
+def springs(p: vr.Prony, z: float, h: float, nu: float) -> NDArray:
     """(H, g, m) of a foundation of springs K E * w, w = (b^2 - x^2)/2: a thin compressible layer.
 
     E * w is the response of the relaxation modes to the deflection from the front edge x = b on; at
@@ -104,12 +100,10 @@ def springs(p: vr.Prony, z: float, h: float, nu: float) -> NDArray[np.float64]:
     K = 2.0 * (1.0 - nu) ** 2 / (1.0 - 2.0 * nu) / h
     a = 1.0 / p.tau
 
-    def pressure(x: NDArray[np.float64], b: float) -> NDArray[np.float64]:
+    def pressure(x, b):
         s = (b - x)[..., None]
         f = -np.expm1(-s * a) / a
-        result: NDArray[np.float64] = K * (
-            0.5 * (b * b - x * x) + (f * x[..., None] + f / a - s * (1.0 / a - f)) @ p.E
-        )
+        result = K * (0.5 * (b * b - x * x) + (f * x[..., None] + f / a - s * (1.0 / a - f)) @ p.E)
         return result
 
     b = brentq(lambda b: float(pressure(np.array(b - 2.0 * z), b)), z, 2.0 * z)
@@ -128,10 +122,10 @@ def springs_moment(u: float, h: float, nu: float) -> float:
         2.0 / u,
         xtol=1e-12,
     )
-    return float(u * springs(MATERIAL, z, h / u, nu)[2])
+    return u * springs(MATERIAL, z, h / u, nu)[2]
 
 
-def compared(nu: float, thickness: float) -> dict[str, Any]:
+def compared(nu: float, thickness: float) -> Row:
     """Half-space over cover: contact length at rest, largest M; speed of the largest M of the cover
     over that of the half-space; largest M of the foundation over that of the cover."""
     half = vr.Scene(
@@ -143,9 +137,9 @@ def compared(nu: float, thickness: float) -> dict[str, Any]:
     row = {
         "nu": nu,
         "thickness": thickness,
-        "length": float(1.0 / rest - 1.0),
-        "M": float(top.M[0] / own.M[0] - 1.0),
-        "speed": float(own.V[0] / top.V[0]),
+        "length": 1.0 / rest - 1.0,
+        "M": top.M[0] / own.M[0] - 1.0,
+        "speed": own.V[0] / top.V[0],
         "springs": None,
     }
     if nu < 0.5 and thickness <= 1.0:
@@ -154,11 +148,11 @@ def compared(nu: float, thickness: float) -> dict[str, Any]:
             bounds=np.log(_SPEEDS),
             method="bounded",
         )
-        row["springs"] = -found.fun / float(own.M[0]) - 1.0
+        row["springs"] = -found.fun / own.M[0] - 1.0
     return row
 
 
-def found() -> dict[str, Any]:
+def found() -> Row:
     """Return half-spaces and foundations in place of covers, a row for each ratio and thickness."""
     return {"covers": [compared(nu, thickness) for nu in COVER_RATIOS for thickness in THICKNESS]}
 

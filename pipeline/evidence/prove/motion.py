@@ -2,12 +2,9 @@
 precision; identities.
 """
 
-from __future__ import annotations
-
 import json
 import math
 import warnings
-from collections.abc import Callable
 from functools import partial
 from itertools import cycle, groupby
 from operator import itemgetter
@@ -21,7 +18,7 @@ import viscoroll as vr
 
 from ...stage import ROOT, read_rows
 from . import cases
-from .cases import DRIVEN, FREE, PATHS, Case, Found, Proof, driven_motion, free_motion
+from .cases import DRIVEN, FREE, PATHS, Case, Proof, driven_motion, free_motion
 
 #: errors over rtol that the documentation states, of all motions and of 99 in 100; steps that no
 #: motion needs
@@ -51,7 +48,7 @@ DRIVEN_TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 CHECKED_TOLERANCES = (1e-6, 1e-8, 1e-10, 1e-12)
 
 
-def rolled(case: Case, rtol: float, **options: Any) -> Any:
+def rolled(case: Case, rtol: float, **options):
     """The motion; None where it stops before its end."""
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", RuntimeWarning)
@@ -59,14 +56,14 @@ def rolled(case: Case, rtol: float, **options: Any) -> Any:
     return m if m.status == vr.MotionStatus.DONE else None
 
 
-def speed_error(m: Any, best: Any, so_far: bool = False) -> NDArray:
+def speed_error(m, best, so_far: bool = False) -> NDArray:
     """Of V and omega over the larger of both, or over the largest so far."""
     size = np.maximum(np.abs(best.V), np.abs(best.omega))
     size = np.maximum(np.maximum.accumulate(size) if so_far else size, _GONE)
     return np.maximum(np.abs(m.V - best.V), np.abs(m.omega - best.omega)) / size
 
 
-def path_errors(m: Any, best: Any) -> list[float]:
+def path_errors(m, best) -> list[float]:
     """Of x, angle, works and losses over their largest."""
     pairs = [
         (getattr(m, name), np.array(getattr(best, name))) for name in PATHS if hasattr(best, name)
@@ -74,7 +71,7 @@ def path_errors(m: Any, best: Any) -> list[float]:
     return [np.abs(a - b).max() / np.abs(b).max() for a, b in pairs if np.abs(b).max() > 0.0]
 
 
-def errors(m: Any, best: Any, end: float) -> dict[str, float]:
+def errors(m, best, end: float) -> dict[str, float]:
     """Of a free motion: V and omega over the larger of both; x, and the angle, over the longest way
     so far of both; the onset, of which it is known that it is no earlier than the end where it is
     beyond.
@@ -82,15 +79,14 @@ def errors(m: Any, best: Any, end: float) -> dict[str, float]:
     path = np.maximum.accumulate(np.maximum(abs(best.x), abs(best.angle)))
     early = np.fmin(m.onset_time, end)
     late = np.fmin(best.onset_time, end)
-    found = {
+    return {
         "speed": speed_error(m, best).max(),
         "x": max((abs(m.x - best.x) / path).max(), (abs(m.angle - best.angle) / path).max()),
         "onset": abs(early / late - 1.0),
     }
-    return {name: float(error) for name, error in found.items()}
 
 
-def condition(case: Case, best: Any) -> float:
+def condition(case: Case, best) -> float:
     """Sum over all inputs of the relative change of V, omega for one of the input, at the worst
     time.
 
@@ -103,20 +99,16 @@ def condition(case: Case, best: Any) -> float:
         for name in _INPUTS
     ]
     found = [rolled(other, _CHANGED_RTOL) for other in moved]
-    return (
-        math.inf
-        if None in found
-        else float(sum(speed_error(m, best) for m in found).max() / _CHANGE)
-    )
+    return math.inf if None in found else sum(speed_error(m, best) for m in found).max() / _CHANGE
 
 
-def free(random: np.random.Generator, count: int) -> Found:
+def free(random, count):
     """At each tolerance in turn, divided by rtol: against the tightest."""
     for _, rtol in zip(range(count), cycle(TOLERANCES)):
         case = cases.free(random)
         m, best = (rolled(case, one, max_steps=10 * STEPS) for one in (rtol, TIGHTEST))
         where = f"rtol = {rtol:g}, {case}"
-        yield where, {"given up": float(m is None or best is None)}
+        yield where, {"given up": m is None or best is None}
         if m is None or best is None:
             continue
         found = errors(m, best, case.t[-1])
@@ -129,7 +121,7 @@ def free(random: np.random.Generator, count: int) -> Found:
         )
 
 
-def identities(random: np.random.Generator, count: int) -> Found:
+def identities(random, count):
     for _ in range(count):
         case = cases.free(random)
         m = rolled(case, RTOL)
@@ -145,7 +137,7 @@ def identities(random: np.random.Generator, count: int) -> Found:
         yield str(case), found | {"gamma": max(errors(scaled, m, case.t[-1]).values()) / RTOL}
 
 
-def in_other_units(case: Case, sign: float, time: float) -> Any:
+def in_other_units(case: Case, sign: float, time: float):
     """Rolled the other way where ``sign`` is -1, with ``time`` gamma at t/time, and turned back."""
     scene = case.scene.replace(gamma=time * case.scene.gamma)
     found = rolled(Case(scene, sign * case.V0, sign * case.omega0, case.t / time, {}), RTOL)
@@ -175,7 +167,7 @@ def balances(case: Case) -> dict[str, float]:
         (along.omega - along.V) * state.Q + 0.5 * (along.V + along.omega) * state.M
     )
     energy = np.diff(0.5 * (V**2 + scene.j * omega**2))[0] + weight @ power
-    return {"momentum": float(abs(momentum)) / scale, "energy": float(abs(energy)) / scale**2}
+    return {"momentum": abs(momentum) / scale, "energy": abs(energy) / scale**2}
 
 
 def risen_energy(case: Case) -> float:
@@ -184,10 +176,10 @@ def risen_energy(case: Case) -> float:
     energy = 0.5 * (m.V**2 + case.scene.j * m.omega**2)
     forward = m.V * m.omega >= 0.0
     both = forward[1:] & forward[:-1] & (energy[:-1] > 0.0)
-    return float(np.max(np.diff(energy)[both] / energy[:-1][both], initial=0.0))
+    return np.max(np.diff(energy)[both] / energy[:-1][both], initial=0.0)
 
 
-def long_lives(random: np.random.Generator, count: int) -> Found:
+def long_lives(random, count):
     """One motion for 1e-12 to 1e12 of its decay times: speeds fall to 0, distances converge, rest
     is reached.
     """
@@ -208,7 +200,7 @@ def long_lives(random: np.random.Generator, count: int) -> Found:
         yield str(case), {"steps": [m.steps, rested.steps], "wrong": not good}
 
 
-def slight(random: np.random.Generator, count: int) -> Found:
+def slight(random, count):
     for _ in range(count):
         case = cases.slight(random)
         m, best = (rolled(case, rtol, max_steps=10 * STEPS) for rtol in (RTOL, TIGHT))
@@ -217,9 +209,7 @@ def slight(random: np.random.Generator, count: int) -> Found:
             yield str(case), {"steps": m.steps, "speed": speed_error(m, best).max() / RTOL}
 
 
-def driven(
-    random: np.random.Generator, count: int, draw: Callable[[np.random.Generator], Case]
-) -> Found:
+def driven(random, count, draw):
     """At each tolerance in turn, divided by rtol, and the balance of energy of the tight one."""
     for _, rtol in zip(range(count), cycle(DRIVEN_TOLERANCES)):
         case = draw(random)
@@ -230,7 +220,7 @@ def driven(
             yield str(case), {("speed", rtol): error, "many": error > MOST, "energy": balance(best)}
 
 
-def mapped(random: np.random.Generator, count: int) -> Found:
+def mapped(random, count):
     """By its flow map and integrated, over what the map states and 30 rtol, of the starts that the
     map answers.
     """
@@ -254,8 +244,8 @@ def balance(m: vr.Motion) -> float:
     energy = 0.5 * (m.V**2 + m.scene.j * m.omega**2)
     work = m.work_force + m.work_torque
     lost = m.brake_loss + m.slip_loss + m.rolling_loss
-    scale = max(float(np.abs(part).max()) for part in (energy, m.work_force, m.work_torque, lost))
-    return float(np.abs(work - (energy - energy[0]) - lost).max()) / scale if scale > 0.0 else 0.0
+    scale = max(np.abs(part).max() for part in (energy, m.work_force, m.work_torque, lost))
+    return np.abs(work - (energy - energy[0]) - lost).max() / scale if scale > 0.0 else 0.0
 
 
 def check_motions() -> list[tuple[Case, Any]]:
@@ -263,7 +253,7 @@ def check_motions() -> list[tuple[Case, Any]]:
     return [free_motion(list(rows)) for _, rows in groupby(read_rows(FREE), itemgetter("motion"))]
 
 
-def checked_free(random: np.random.Generator, few: int) -> Found:
+def checked_free(random, few):
     """Each at every tolerance, divided by rtol, or over rtol x condition/30 where that is
     larger.
     """
@@ -274,7 +264,7 @@ def checked_free(random: np.random.Generator, few: int) -> Found:
             yield str(case), {(name, rtol): error / rtol / excuse for name, error in found.items()}
 
 
-def checked_driven(random: np.random.Generator, few: int) -> Found:
+def checked_driven(random, few):
     """Each at every tolerance, divided by rtol."""
     for row in json.loads(DRIVEN.read_text(encoding="utf-8"))["motions"]:
         case = driven_motion(row)
@@ -319,9 +309,7 @@ _STEPS = {"steps": ("steps of a motion", STEPS)}
 _RANDOM = "random motions"
 
 
-def _driven(
-    size: str, domain: str, draw: Any, worst: float = FACTOR, given_up: float = 0.0
-) -> Proof:
+def _driven(size, domain, draw, worst=FACTOR, given_up=0.0):
     return Proof(
         "driven",
         size,
@@ -399,7 +387,7 @@ PROOFS = [
                 "motions whose speeds do not fall to 0, distances not converge, or that reach no "
                 "rest",
                 0.0,
-            ),
+            )
         },
         long_lives,
     ),

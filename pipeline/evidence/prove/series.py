@@ -5,15 +5,13 @@ system that the kernels solve; that they are the contact's, boundary elements sa
 which know none of them.
 """
 
-from __future__ import annotations
-
 import math
 from functools import partial
-from typing import Any
 
 import flint
 import numpy as np
 from flint import arb
+from numpy.random import Generator
 
 import viscoroll as vr
 from viscoroll.contact_mechanics.contact_table import OF_BODIES
@@ -22,7 +20,7 @@ from viscoroll.kernels.law.modes import modes_loop
 from viscoroll.laws.law_rows import modes_record
 
 from ..truth import INPUTS, Material, enclosed, material_of, slopes, zone_of
-from .cases import Found, Proof, at, powers
+from .cases import Proof, at, powers
 from .states import EPSILON, LAM
 
 BITS = 400
@@ -36,7 +34,7 @@ BELOW = 30.0
 ABOVE = 28.0
 
 
-def random_series(random: np.random.Generator, modes: int) -> vr.Prony:
+def random_series(random: Generator, modes: int) -> vr.Prony:
     """Times even in their logarithm over some of the decades, strengths over two of ten; slow time
     near 1.
     """
@@ -57,7 +55,7 @@ def of_z(p: vr.Prony, z: float) -> list[float]:
     return [shift * z, rise * z, half_space + cylinder]
 
 
-def functions(random: np.random.Generator, count: int, modes: int) -> Found:
+def functions(random, count, modes):
     """g, h and m, which rows are made of, over all z: ten z a material, of many modes fewer."""
     for _ in range(max(count // modes // 10, 1)):
         p = random_series(random, modes)
@@ -73,7 +71,7 @@ def functions(random: np.random.Generator, count: int, modes: int) -> Found:
                 )
 
 
-def state_errors(given: Any, V: float, delta: float) -> dict[str, float]:
+def state_errors(given, V: float, delta: float) -> dict[str, float]:
     """Relative errors of a state by its rows at kappa = mu = 1: beta and the slopes of Q over the
     condition of beta.
 
@@ -103,7 +101,7 @@ def state_errors(given: Any, V: float, delta: float) -> dict[str, float]:
     return errors
 
 
-def any_state(random: np.random.Generator, material: Material) -> tuple[float, float]:
+def any_state(random: Generator, material: Material) -> tuple[float, float]:
     """V and delta: zeta from 14 decades below the fastest time to 14 above the slowest or near
     them, 1 - beta any.
     """
@@ -118,7 +116,7 @@ def any_state(random: np.random.Generator, material: Material) -> tuple[float, f
     return float(V), float((zeta + whole.g - eta - stick.g) * V)
 
 
-def any_material(random: np.random.Generator, n: int) -> Any:
+def any_material(random: Generator, n: int):
     """An alpha, a series, a pair by turns; now and then an alpha whose rows are least exact, and 30
     modes.
     """
@@ -137,7 +135,7 @@ def any_material(random: np.random.Generator, n: int) -> Any:
     return made[n % 3]()
 
 
-def states(random: np.random.Generator, count: int) -> Found:
+def states(random, count):
     """Every field of states by their rows, five a material."""
     for n in range(count):
         given = any_material(random, n)
@@ -147,7 +145,7 @@ def states(random: np.random.Generator, count: int) -> Found:
             yield f"{at(V=V, delta=delta)}, {given!r}", state_errors(given, V, delta)
 
 
-def axis_states(random: np.random.Generator, count: int) -> Found:
+def axis_states(random, count):
     """Yield differences of states by the axis of alpha, as where there are several, from those by
     the rows of alpha.
 
@@ -177,7 +175,7 @@ def axis_states(random: np.random.Generator, count: int) -> Found:
         yield at(alpha=alpha), errors
 
 
-def _states(sentence: str, bound: float, *names: str) -> dict[str, tuple[str, float]]:
+def _states(sentence, bound, *names):
     return {name: (f"{name}, {sentence}, by rows", bound) for name in names}
 
 

@@ -7,18 +7,17 @@ units in the last place of mu, 1 and lam.  Two values that differ by less than t
 out in either order: the bounds are twice the errors that one value has.
 """
 
-from __future__ import annotations
-
 from functools import partial
 from typing import Any
 
 import numpy as np
+from numpy.random import Generator
 from numpy.typing import NDArray
 
 import viscoroll as vr
 from viscoroll.kernels.law import bessel_ratios
 
-from .cases import EDGE_ALPHAS, Found, Proof, generators
+from .cases import EDGE_ALPHAS, Proof, generators
 
 #: the two ways that contact() takes, and the largest fall allowed: see above
 WAYS = ("different alphas", "one alpha")
@@ -36,7 +35,7 @@ _EDGES = (
 ).ravel()
 
 
-def octaves(random: np.random.Generator) -> NDArray:
+def octaves(random: Generator) -> NDArray:
     """Every edge of a row of any alpha up to 1e6, and as many in the slow row, each some times."""
     return 2.0 ** random.permutation(np.repeat(np.arange(-12, 64), 40))
 
@@ -46,18 +45,14 @@ def neighbours(x: NDArray) -> NDArray:
     return (x.view(np.int64)[..., None] + _NEIGHBOURS).view(np.float64)
 
 
-def contact(
-    way: str, alpha: Any, kappa: Any, mu: Any, V: NDArray, delta: NDArray, fields: tuple[str, ...]
-) -> Any:
+def contact(way: str, alpha, kappa, mu, V: NDArray, delta: NDArray, fields: tuple[str, ...]):
     """contact() that way."""
     if way != "one alpha":
         alpha = np.broadcast_to(alpha, np.broadcast_shapes(np.shape(V), np.shape(delta)))
     return vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=fields)
 
 
-def falls(
-    way: str, alpha: Any, kappa: Any, mu: Any, V: NDArray, delta: NDArray
-) -> dict[str, NDArray]:
+def falls(way: str, alpha, kappa, mu, V: NDArray, delta: NDArray) -> dict[str, NDArray]:
     """Falls in ULP along the last axis, on which delta rises, or V where delta is 0; what rises is
     negative.
     """
@@ -73,11 +68,11 @@ def falls(
     }
 
 
-def log_uniform(random: np.random.Generator, low: float, high: float, *shape: int) -> NDArray:
+def log_uniform(random: Generator, low: float, high: float, *shape: int) -> NDArray:
     return 10.0 ** random.uniform(np.log10(low), np.log10(high), shape)
 
 
-def random_pairs(random: np.random.Generator, count: int, way: str) -> Found:
+def random_pairs(random, count, way):
     """Pairs of delta at one V, s toward 0 and toward 1; pairs of V."""
     for first in range(0, count, _CHUNK):
         n = min(count - first, _CHUNK)
@@ -98,7 +93,7 @@ def random_pairs(random: np.random.Generator, count: int, way: str) -> Found:
         yield way, falls(way, alpha, kappa, mu, slower, np.float64(0.0))
 
 
-def at_edges(random: np.random.Generator, way: str, alpha: float) -> Any:
+def at_edges(random: Generator, way: str, alpha: float):
     """(kappa, mu, V, delta) of neighbouring doubles: V where zeta or kappa V is on an edge, delta
     where eta or F is.
     """
@@ -106,7 +101,7 @@ def at_edges(random: np.random.Generator, way: str, alpha: float) -> Any:
     mu = 0.2
     if way == "one alpha":
 
-        def lengths(V: NDArray) -> NDArray:
+        def lengths(V):
             """lam (1 + epsilon) at kappa = 1."""
             return (
                 2.0
@@ -133,13 +128,13 @@ def at_edges(random: np.random.Generator, way: str, alpha: float) -> Any:
         yield kappa, mu, V[:, None], neighbours(mu * V * (zeta - z + (g_zeta - g)))
 
 
-def falls_at_edges(random: np.random.Generator, _: int, way: str) -> Found:
+def falls_at_edges(random, _, way):
     for alpha in (*EDGE_ALPHAS[1:], 1.5, 11.0, 24.0, 28.0, 81.5, 1e3):
         for case in at_edges(random, way, alpha):
             yield f"alpha = {alpha!r}", falls(way, alpha, *case)
 
 
-def slope_scales(mu: float, V: Any, alpha: float, star: Any) -> dict[str, Any]:
+def slope_scales(mu: float, V, alpha: float, star) -> dict[str, Any]:
     """What a slope may be measured by: a change of Q by mu as V or delta changes by all of itself;
     c for M.
     """
@@ -147,7 +142,7 @@ def slope_scales(mu: float, V: Any, alpha: float, star: Any) -> dict[str, Any]:
     return {"dQ_dV": mu / V, "dQ_ddelta": mu / star, "dQ_domega": mu / (V * star), "dM_dV": c}
 
 
-def jumps(random: np.random.Generator, _: int) -> Found:
+def jumps(random, _):
     """Steps of slopes, over their scales."""
     for alpha in (1.0001, 1.5, 11.0, 1e3, 1e6):
         for way in WAYS:
@@ -164,7 +159,7 @@ def jumps(random: np.random.Generator, _: int) -> Found:
                 )
 
 
-def friction_excess(random: np.random.Generator, count: int) -> Found:
+def friction_excess(random, count):
     """(|tau| - mu p)/(mu p) in ULP of 1, at random points across the contact, edges included; p and
     tau >= 0.
     """
@@ -195,7 +190,7 @@ def friction_excess(random: np.random.Generator, count: int) -> Found:
         )
 
 
-def _shape(way: str, domain: str, found: Any) -> Proof:
+def _shape(way, domain, found):
     fall = {"Q": "Q rises with delta", "beta": "beta falls with delta", "lam": "lam falls with V"}
     bounds = dict.fromkeys(fall, FALL) | (
         {"lam": FALL_OF_AXIS} if way == "different alphas" else {}

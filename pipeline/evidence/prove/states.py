@@ -2,8 +2,6 @@
 finite thickness against the boundary elements of data/reference/check_elements.json.
 """
 
-from __future__ import annotations
-
 import math
 from collections.abc import Iterator
 from functools import partial
@@ -12,26 +10,18 @@ from typing import Any
 import flint
 import numpy as np
 from flint import arb
+from numpy.random import Generator
 
 import viscoroll as vr
+from pipeline.validation import FIELDS, closures, random_states
 from viscoroll.contact_mechanics.validity import stated_error
 from viscoroll.kernels.law import bessel_ratios
 from viscoroll.kernels.law import bessel_ratios as kernels
 
-from ...validation import closures, random_states
+from ...stage import Row
 from .. import truth as enclosures
 from ..truth import INPUTS, condition_numbers, contact_enclosure, shape_enclosure
-from .cases import (
-    STATES,
-    Found,
-    Proof,
-    at,
-    chosen_alpha,
-    chosen_state,
-    generators,
-    powers,
-    read_elements,
-)
+from .cases import STATES, Proof, at, chosen_alpha, chosen_state, generators, powers, read_elements
 
 # --- r, k, i2 and the slopes of r and k, over all positive doubles ---
 
@@ -43,7 +33,7 @@ SLOPE_ULP = 8.0
 _BITS = 120
 
 
-def points(random: np.random.Generator, count: int) -> np.ndarray:
+def points(random: Generator, count: int) -> np.ndarray:
     """Every bin edge and its neighbours; and at random: half over the tables, half over all binary
     exponents.
     """
@@ -56,7 +46,7 @@ def points(random: np.random.Generator, count: int) -> np.ndarray:
     return np.concatenate([*fixed, common, bits.view(np.float64)])
 
 
-def ulps(value: float, exact: Any, *terms: Any) -> float:
+def ulps(value: float, exact, *terms) -> float:
     """|value - exact| in units in the last place of the exact value, or of the largest of some
     terms.
     """
@@ -85,7 +75,7 @@ def ratio_errors(x: float) -> Iterator[tuple[str, float]]:
         )
 
 
-def of_ratios(random: np.random.Generator, count: int) -> Found:
+def of_ratios(random, count):
     for x in points(random, count).tolist():
         # the terms of the slopes, 1/x, cancel to 1/x^2
         with flint.ctx.workprec(_BITS + 2 * max(math.frexp(x)[1], 0)):
@@ -101,13 +91,12 @@ RATIO_PROOFS = [
         {name: (f"{name}, ULP", RATIO_ULP) for name in ("r", "k", "i2")}
         | {name: (_SLOPE.format(name), SLOPE_ULP) for name in ("slope of r", "slope of k")},
         of_ratios,
-    ),
+    )
 ]
 
 
 # --- contact states and stress ---
 
-FIELDS = ("lam", "epsilon", "delta_star", "beta", "Q", "M")
 #: relative error where the condition number leaves it, else that many roundings of the inputs
 WELL = 1e-13
 ROUNDINGS = 4.0
@@ -125,14 +114,14 @@ EPSILON = 3e-14
 _TOGETHER = 150
 
 
-def found_of(states: list[tuple[float, ...]], each: bool) -> dict[str, Any]:
+def found_of(states: list[tuple[float, ...]], each: bool) -> Row:
     """States with an alpha each, or by the rows of one alpha."""
     alpha, kappa, mu, V, delta = np.array(states).T
     scene = vr.Scene(alpha if each else float(alpha[0]), kappa, mu)
     return vr.contact(scene, V, delta=delta, fields=(*FIELDS, "full_slip")).as_dict()
 
 
-def relative_error(value: float, exact: Any) -> float:
+def relative_error(value: float, exact) -> float:
     """|value - exact|/|exact|, less what the last subnormals cannot hold."""
     with flint.ctx.workprec(200):
         off = abs(arb(value) - exact)
@@ -141,12 +130,12 @@ def relative_error(value: float, exact: Any) -> float:
         return math.inf if exact.contains(0) else float((off / abs(exact)).upper())
 
 
-def given(state: tuple[float, ...]) -> dict[str, Any]:
+def given(state: tuple[float, ...]) -> Row:
     """Inputs as the doubles they are, without their signs."""
     return {name: arb(abs(value)) for name, value in zip(INPUTS, state)}
 
 
-def contact(random: np.random.Generator, count: int, each: bool) -> Found:
+def contact(random, count, each):
     """full_slip, then each field over its bound."""
     for first in range(0, count, _TOGETHER):
         one = None if each else chosen_alpha(random)
@@ -172,9 +161,7 @@ def contact(random: np.random.Generator, count: int, each: bool) -> Found:
                 yield where, {(name, well): error if well else error / (factor * UNIT)}
 
 
-def enclosed_stress(
-    exact: dict[str, Any], alpha: Any, kappa: Any, mu: Any, V: Any, x: Any
-) -> tuple[Any, Any]:
+def enclosed_stress(exact: Row, alpha, kappa, mu, V, x) -> tuple[Any, Any]:
     """p/E' and tau/E' at x."""
     zeta = exact["zeta"]
     eta = exact["beta"] * zeta
@@ -185,7 +172,7 @@ def enclosed_stress(
     return scale * whole, mu * scale * (whole - stuck)
 
 
-def of_stress(random: np.random.Generator, count: int) -> Found:
+def of_stress(random, count):
     """At x in l0 within 1e-16 to 1 of either edge and of the stick point, on both sides, and
     between.
 
@@ -225,7 +212,7 @@ def of_stress(random: np.random.Generator, count: int) -> Found:
                     yield where, {name: (off - allowed) / scale}
 
 
-def of_closures(random: np.random.Generator, count: int) -> Found:
+def of_closures(random, count):
     scene, V, delta = random_states(count, int(random.integers(1 << 31)))
     for i in range(count):
         one = vr.Scene(scene.alpha[i], scene.kappa[i], scene.mu[i])
@@ -236,7 +223,7 @@ def of_closures(random: np.random.Generator, count: int) -> Found:
         )
 
 
-def by_elements(_: np.random.Generator, count: int) -> Found:
+def by_elements(_, count):
     """Yield errors of states of bodies against load, offset, moments, creep and friction of
     boundary elements.
 
@@ -271,7 +258,7 @@ def by_elements(_: np.random.Generator, count: int) -> Found:
         )
 
 
-def _contact(way: str, size: str, each: bool) -> Proof:
+def _contact(way, size, each):
     ill = f"divided by condition × 1.1e-16, condition above {WELL_CONDITIONED:.0f} ({way})"
     claims = {
         (name, True): (f"{name}, relative, condition below {WELL_CONDITIONED:.0f} ({way})", WELL)
@@ -321,9 +308,7 @@ PROOFS = [
             name: (f"{name} {_BY_ELEMENTS}", 1e-4)
             for name in ("load", "epsilon", "M", "M_half_space", "delta", "Q")
         }
-        | {
-            "hurt": ("share of states in which p, p - q, q or the slip is negative somewhere", 0.0),
-        },
+        | {"hurt": ("share of states in which p, p - q, q or the slip is negative somewhere", 0.0)},
         by_elements,
     ),
 ]
@@ -338,7 +323,7 @@ _MUCH = 1e3
 _FAR = 1e6
 
 
-def placed(truth: dict[str, Any]) -> tuple[vr.Scene, Any, str]:
+def placed(truth: Row) -> tuple[vr.Scene, Any, str]:
     """Return the scene of a state of the file, its contact in free rolling, and where it is, in
     words.
 
@@ -355,7 +340,7 @@ def placed(truth: dict[str, Any]) -> tuple[vr.Scene, Any, str]:
     )
 
 
-def cover_states(_: np.random.Generator, count: int) -> Found:
+def cover_states(_, count):
     """Yield errors of lam, epsilon, M, delta_star and Q.
 
     count: how many cover_states of the file, the first ones.
@@ -382,7 +367,7 @@ def cover_states(_: np.random.Generator, count: int) -> Found:
         )
 
 
-def free_creep(_: np.random.Generator, count: int) -> Found:
+def free_creep(_, count):
     """Yield errors of delta_0 and delta_0* where nu = 1/2: all strain by the pressure comes of the
     finite thickness.
 

@@ -11,12 +11,9 @@ The motions are those of data/reference/unsteady.json; data/README.md says how t
 python -m pipeline.evidence.prove.unsteady [-o FILE]: data/results/transient.json, in seconds.
 """
 
-from __future__ import annotations
-
 import json
 import sys
 import warnings
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,10 +22,10 @@ from scipy.interpolate import PchipInterpolator
 
 import viscoroll as vr
 
-from ...stage import ROOT
+from ...stage import ROOT, Row
 from ..results import run
 
-Array = NDArray[np.float64]
+Array = NDArray
 
 REFERENCE = ROOT / "data/reference/unsteady.json"
 LEVELS = (0.003, 0.01, 0.03, 0.1, 0.2, 0.4, 1.0)
@@ -69,13 +66,13 @@ class Laws:
             if self.nu[0] < level < self.nu[-1]:
                 at = int(np.searchsorted(self.nu, level))
                 law, added = (
-                    float(solved(when[at]) / self.u[at] - 1.0) for when in (self.t, self.t_added)
+                    solved(when[at]) / self.u[at] - 1.0 for when in (self.t, self.t_added)
                 )
                 found.append((level, law, None if np.isnan(added) else added, float(self.t[at])))
         return found
 
 
-def compared(motion: dict[str, Any]) -> dict[str, Any]:
+def compared(motion: Row) -> Row:
     """Return what is kept of a motion: its numbers, and from either start the largest error, the
     shift and e by level.
 
@@ -99,8 +96,8 @@ def compared(motion: dict[str, Any]) -> dict[str, Any]:
         t, u = (np.array(motion[start][name]) for name in ("t", "u"))
         law = np.interp(t, whole.t, whole.u, right=0.0)
         row[start] = {
-            "error": float(np.abs(u - law).max() / u0),
-            "shift": float(np.trapezoid(u, t) - steady.whole),
+            "error": np.abs(u - law).max() / u0,
+            "shift": np.trapezoid(u, t) - steady.whole,
             "e": whole.errors(t, u) if start == "steady" else [],
         }
     if u0 - float(steady.start.speed) > _CLEAR * u0:
@@ -108,7 +105,7 @@ def compared(motion: dict[str, Any]) -> dict[str, Any]:
     return row
 
 
-def found() -> dict[str, Any]:
+def found() -> Row:
     """Return rows of all motions of the file, and the cell of its grid."""
     content = json.loads(REFERENCE.read_text(encoding="utf-8"))
     return {"rows": [compared(motion) for motion in content["motions"]], "h": content["h"]}

@@ -74,7 +74,7 @@ def warm_up(arguments: Namespace) -> None:
     cache_folder.announced = True  # the bar takes the place of the notice
     start = time.perf_counter()
     calls = _calls()
-    bar = tqdm(calls.items(), leave=False, disable=None)
+    bar = tqdm(calls.items(), leave=False, disable=None)  # drawn on a terminal alone
     for name, call in bar:
         bar.set_description(name)
         call()
@@ -93,7 +93,7 @@ def _calls() -> dict[str, Callable[[], Any]]:
     Returns a dict, name for the progress bar -> function without arguments, whose result is not
     used; each makes its call when it is called, and nothing is written but the cache.
     """
-    from ..contact_mechanics import coupled_law
+    from ..contact_mechanics.coupled_tables import coupled_law
     from ..motion import flow
 
     scene = vr.presets.PAPER_SECTION_5
@@ -172,7 +172,7 @@ def _lines() -> Iterator[tuple[str, str]]:
     (:func:`_check`).
     Raises ParameterError for a wrong $VISCOROLL_THREADS.
     """
-    from ..core import thread_count
+    from ..core.blocks import thread_count
     from ..kernels.numerics.cache_folder import cache_root
     from ..kernels.numerics.jit import sources_digest
 

@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import hashlib
 import math
+import sys
 import threading
 from functools import lru_cache
 from pathlib import Path
@@ -343,8 +344,8 @@ def stored_rows(pair: CoupledPair, mu: float) -> CoupledRows:
 
     pair: the bodies.
     mu: coefficient of friction, > 0.
-    A process that a user started shows a progress bar after one second, unless $VISCOROLL_QUIET is
-    1.
+    A process that a user started shows a progress bar after one second where standard error is a
+    terminal, unless $VISCOROLL_QUIET is 1.
     Raises ConvergenceError for a state that is not solved.
     """
     with _lock:
@@ -362,7 +363,7 @@ def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
     path = cache_root() / "coupled" / f"{key}.npz"
     damaged = "coupled table is damaged ({}) and is made again"
     if (found := load_kept(path, damaged, _read)) is None:
-        found = tabulate(pair, mu, progress=not is_quiet())
+        found = tabulate(pair, mu, progress=not is_quiet() and sys.stderr.isatty())
         arrays = {name: getattr(found, name) for name in ("mu", "u", "t", "edges", "fields")}
         save_kept(path, _KEPT, arrays | {"errors": [found.errors[name] for name in FIELDS]})
     return found

@@ -225,13 +225,13 @@ class Workspace(NamedTuple):
     scene, drive, options : Scene, Drive and Options, the problem
     output_tau : (k,), times tau of the outputs, increasing
     outputs : (13, k), [quantity, time], filled as far as the motion goes, NaN after it; rows as in
-    :mod:`output`
+    :mod:`.output`
     with_quadratures : whether distance, angle and energies are requested
     with_forces : whether force and torque are requested
     switches : (m, 2), filled with t and the code of the regime after each regime change, or
         DIRECTION_REVERSED, as far as it has room
     step_ends : filled with the end t of each accepted step, as far as it has room
-    nodes : pointer to WORKSPACE_SIZE numbers: rows ROW_* and single numbers (:mod:`collocation`)
+    nodes : pointer to WORKSPACE_SIZE numbers: rows ROW_* and single numbers (:mod:`.collocation`)
     p_matrix, d_matrix : pointers to the inverse Newton matrices of p and of the second unknown,
     column by column
     """
@@ -307,8 +307,8 @@ N_QUADRATURES = 7
 class Flow(NamedTuple):
     """The flow map of a scene.
 
-    table : all tables of :mod:`flow_layout` in one vector of layout.SIZE doubles.
-    first : int; onsets are tabulated for kappa V from 2**first to 2**(first + layout.OCTAVES).
+    table : all tables of :mod:`.flow_layout` in one vector of flow_layout.SIZE doubles.
+    first : int; onsets are tabulated for kappa V from 2**first to 2**(first + flow_layout.OCTAVES).
     kappa, mu, j : slenderness R/l0, coefficient of friction and moment of inertia J/(m R^2) of the
     scene.
     slow_rate : rate at which the slow logarithm falls along the slow manifold in unit time tau =

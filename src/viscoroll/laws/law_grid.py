@@ -247,8 +247,7 @@ def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> Non
 
 def refuse_filled(variable: DataArray, path: Any) -> None:
     """Raise FileError for a node of a grid that has no value: not finite, a fill value, declared or
-    customary, or outside of the range that the attributes ``valid_min``, ``valid_max`` or
-    ``valid_range`` of the CF conventions declare.
+    customary, or outside of the valid range that the file declares.
 
     variable: variable of a grid, of real numbers, in the unit of the file; of an axis, which users
         choose, customary fill values are numbers as any other.
@@ -260,11 +259,27 @@ def refuse_filled(variable: DataArray, path: Any) -> None:
     filled = np.isin(values, declared) | np.isin(np.abs(values), customary)
     _refuse_nodes(variable, ~np.isfinite(values), path, "finite")
     _refuse_nodes(variable, filled, path, "given: this number stands for a missing value")
-    low, high = np.ravel(variable.attrs.get("valid_range", [-np.inf, np.inf])).astype(float)
-    low = max(low, float(variable.attrs.get("valid_min", -np.inf)))
-    high = min(high, float(variable.attrs.get("valid_max", np.inf)))
-    allowed = f"in [{low:g}, {high:g}], the valid range that the file declares"
-    _refuse_nodes(variable, (values < low) | (values > high), path, allowed)
+    with _told_of(path):
+        low, high = _valid_range(variable)
+    margin = _ROUNDING * np.abs((low, high))
+    invalid = (values < low - margin[0]) | (values > high + margin[1])
+    valid = f"within its valid range [{low:g}, {high:g}], beyond which values are missing"
+    _refuse_nodes(variable, invalid, path, valid)
+
+
+def _valid_range(variable: DataArray) -> Floats:
+    """Return the range outside of which a file declares values as missing, by the attributes
+    ``valid_range``, ``valid_min`` and ``valid_max`` (CF conventions 1.11, section 2.5.1).
+
+    variable: variable of a grid; packed numbers, whose limits are packed too, are unpacked.
+    Returns (low, high), infinite where none is declared; raises ValueError and TypeError for
+    attributes that are no numbers.
+    """
+    low, high = variable.attrs.get("valid_range", (-np.inf, np.inf))
+    limits = (variable.attrs.get("valid_min", low), variable.attrs.get("valid_max", high))
+    packed = np.array([np.asarray(limit, np.float64).item() for limit in limits])
+    factor = variable.encoding.get("scale_factor", 1.0)
+    return np.sort(factor * packed + variable.encoding.get("add_offset", 0.0))
 
 
 def check_nodes(table: Dataset, path: Any) -> None:

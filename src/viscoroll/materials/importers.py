@@ -32,19 +32,19 @@ from ..core import (
 from .bodies import Bodies
 from .prony import Prony
 
-#: Poisson's ratio below which bulk terms are doubted: glass, the least of the glassy solids that
-#: people import, has 0.2; K in MPa beside G in Pa gives less, down to -1
-_LEAST_POISSON = 0.2
 #: keywords that every constructor passes to :class:`Material`
 _MATERIAL_KEYWORDS = ("name", "density", "thickness", "measured", "temperature")
+#: Poisson's ratio below which imported bulk terms warn: solid rubber has 0.3 (glass) to 0.5; the
+#: last digits leave room for rounding of 0.2 itself
+_LEAST_POISSON = 0.2 - 1e-9
 
 
 class FromPrograms:
     """Constructors of :class:`Material`; T_ref is 1 s, so that times in s are kept as given.
 
     A ``temperature`` outside -150 to 200 degrees Celsius gives a ModelWarning: it looks like one in
-    kelvin.  So do bulk terms by which Poisson's ratio is negative, at long times or at t = 0: they
-    look like those of another unit.
+    kelvin.  So do bulk terms by which Poisson's ratio is below 0.2 at some time: they look like
+    those of another unit.
     """
 
     @classmethod
@@ -405,7 +405,7 @@ class FromPrograms:
             if not np.array_equal(K * G_inf, G * K_inf):
                 prony = plane_strain(G_inf, G, K_inf=K_inf, K=K, tau=tau)
                 early = _poisson(G_inf + math.fsum(G), K_inf + math.fsum(K))
-            _warn_of_poisson(nu, early)
+            _warn_of_low_poisson(G_inf, G, K_inf, K, tau)
         check_names("keyword", more, _MATERIAL_KEYWORDS, "a keyword of this function")
         return cls(E=E, nu=nu, prony=prony, nu_instant=early, **more)  # type: ignore[call-arg]
 
@@ -420,23 +420,28 @@ def check_poisson(nu: Any, name: str = "nu") -> float:
     return nu
 
 
-def _poisson(G: float, K: float) -> float:
-    """Return Poisson's ratio (3 K - 2 G)/(6 K + 2 G) of shear and bulk modulus in one unit."""
+def _poisson(G: Any, K: Any) -> Any:
+    """Return Poisson's ratio (3 K - 2 G)/(6 K + 2 G) of shear and bulk modulus in one unit, numbers
+    or arrays.
+    """
     return (3.0 * K - 2.0 * G) / (6.0 * K + 2.0 * G)
 
 
-def _warn_of_poisson(late: float, early: float | None) -> None:
-    """Warn where bulk terms make Poisson's ratio smaller than that of any rubber or plastic, at
-    long times or at t = 0: their unit may be another.
+def _warn_of_low_poisson(G_inf: float, G: Floats, K_inf: float, K: Floats, tau: Floats) -> None:
+    """Warn where bulk terms make Poisson's ratio lower than that of any rubber, at some time: their
+    unit may be another.
 
-    late, early: Poisson's ratio of long times and of t = 0; None: that of long times.
+    G_inf, G, K_inf, K, tau: as in :func:`plane_strain`.  Times are 0, infinity, and those at and a
+    factor of 10 beside each of tau.
     """
-    lowest = late if early is None else min(late, early)
+    ratio = np.outer((0.0, 0.1, 1.0, 10.0), tau).reshape(-1, 1) / tau
+    left = np.vstack([np.exp(-ratio), np.zeros_like(tau)])
+    lowest = np.min(_poisson(G_inf + left @ G, K_inf + left @ K))
     if lowest < _LEAST_POISSON:
         text = (
-            f"bulk and shear moduli give Poisson's ratio {lowest:.3g}, where rubber and plastics "
-            f"have {_LEAST_POISSON:g} and more: give both in one unit, "
-            "and as moduli or as fractions like the program from which they are"
+            f"bulk and shear moduli give Poisson's ratio {lowest:.3g} at some time, below "
+            f"{_LEAST_POISSON:g}, which rubber does not have: give both in one unit, and as moduli "
+            "or as fractions like the program from which they are"
         )
         warn_of_model(text)
 

@@ -51,7 +51,7 @@ BARE = _DATA["bare"]
 #: test -> its quantities
 QUANTITIES = {
     test: [name for name, about in _DATA["quantities"].items() if test in about["of"].split()]
-    for test in BARE
+    for test in (*BARE, "motion")
 }
 #: kinds of the words of a name -> quantity
 _NAMED_BY = {
@@ -160,7 +160,7 @@ _RANGES = {
     "temperature": (ABSOLUTE_ZERO, math.inf, f"finite and above {ABSOLUTE_ZERO} °C"),
 }
 #: units of frequency that say revolutions or cycles, or radians; "1/s" and "1/min" say neither
-_CYCLES = re.compile(r"(?i)hz|rpm|cpm|rad|rev|cyc|osc|giri|tours|[ucr]/|upm|u\s*min|deg|°")
+CYCLES = re.compile(r"(?i)hz|rpm|cpm|rad|rev|cyc|osc|giri|tours|[ucr]/|upm|u\s*min|deg|°")
 #: a heading that begins with G and at most three further letters or digits
 _OF_G = re.compile(r"\W*[Gg][^\W_]{0,3}(?![^\W_])")
 #: a power of ten in a heading, or a logarithm of a base that is not read
@@ -387,7 +387,7 @@ def numbers_of(table: Table, column: Column) -> Numbers:
         values = column.log**values
         half = values * math.log(column.log) * half
     factor, offset = conversion(unit, UNITS[name])
-    if column.quantity.endswith("frequency") and "angular" not in name and not _CYCLES.search(unit):
+    if column.quantity.endswith("frequency") and "angular" not in name and not CYCLES.search(unit):
         factor *= 2.0 * math.pi
     values = factor * values + offset
     half = factor * half

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from operator import attrgetter
 from os import PathLike
 from pathlib import Path
@@ -36,10 +37,12 @@ from ..core import (
 from ..materials import SECTIONS, parse_shifts
 from ..roller_toml import read_roller
 from ..rollers import Cylinder
+from .dma_columns import CYCLES, meanings
 from .identification_result import Identification
 from .least_squares import Minimum, Problem
 from .measurement_records import OF_RECORDS, Coastdown, Record, Resistance, Traction
-from .text_table import column_in_unit, find_column, missing_column, named_table
+from .text_cells import NO_UNIT, conversion, readings
+from .text_table import Table, column_in_unit, find_column, missing_column, named_table
 from .unknowns import Shift, Unknown, changes_law, cylinder_of, unknowns_of
 
 # --- Parameters of a cylinder from measurements ---
@@ -348,6 +351,18 @@ _SECTION: list[Any] = [
     ("encoding", str, ""),
     *((name, dict[str, str], msgspec.field(default_factory=dict)) for name in ("columns", "units")),
 ]
+#: quantity that a heading says -> names that a record may have for it
+_SAID = {
+    "speed": ("V",),
+    "time": ("t",),
+    "angular velocity": ("omega",),
+    "angular frequency": ("omega",),
+    "rotational speed": ("omega",),
+    "moment": ("M",),
+    "force": ("F", "Q"),
+    "creepage": ("delta",),
+    "path": ("x",),
+}
 #: word for an initial speed that is unknown, None in Python
 _UNKNOWN = "unknown"
 
@@ -447,8 +462,8 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     """Read coordinates and quantities from a file of data, in SI units.
 
     path : path of the file of data.
-    kind : class of the record, whose names of coordinates and quantities the columns have where the
-    section names none.
+    kind : class of the record, whose names of coordinates and quantities the columns have, or words
+    for them (:func:`_said`), where the section names none.
     section : the [[data]] with its attributes ``columns``, name -> heading; ``units``, name -> unit
         in place of that of the file; ``decimal`` and ``encoding``, "" for what the file shows.
     Returns a dict, name of each coordinate, and of each quantity that the file has -> values, SI,
@@ -472,6 +487,7 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         name: section.columns.get(name, name) for name in (*kind.COORDINATES, *kind.QUANTITIES)
     }
     table = named_table(path, headings.values(), section.decimal or None, section.encoding or None)
+    headings |= _said(table, {name for name in headings if name not in section.columns})
     columns = {name: find_column(table, heading) for name, heading in headings.items()}
     present = [name for name, column in columns.items() if column is not None]
     for name in (*kind.COORDINATES, *section.columns, *section.units):
@@ -498,6 +514,8 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     found = {}
     for name in present:
         unit = kind.unit(name)
+        if name == "omega":
+            _refuse_unclear_turns(table, columns[name], section.units.get(name, ""))
         try:
             found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
         except ParameterError as error:
@@ -506,3 +524,49 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
                 name, f"is in {error.value}", f"in a unit of the dimension of {unit}{per}"
             ) from error
     return found
+
+
+def _said(table: Table, names: set[str]) -> dict[str, str]:
+    """Return the headings that say a coordinate or a quantity in words, as "Speed [km/h]" and
+    "Zeit (s)".
+
+    table : :class:`.text_table.Table` of a file of data.
+    names : names of coordinates and quantities that the user has not named a column of.
+    Returns a dict, name -> heading, of those of ``names`` that are no heading themselves.
+    Raises FileError where two headings say one.
+    """
+    found: dict[str, list[str]] = {}
+    for n, heading in enumerate(table.headings):
+        said = {
+            name for each in meanings(heading, table.units[n]) for name in _SAID.get(each.name, ())
+        }
+        for name in said & names:
+            if table.has_numbers(n) and find_column(table, name) is None:
+                found.setdefault(name, []).append(heading)
+    for name, (first, *others) in found.items():
+        if others:
+            advice = f"name the one of {name} in columns = {{ {name} = ... }}"
+            raise FileError(table.path, f"{first!r} and {others[0]!r} both say {name}: {advice}")
+    return {name: first for name, (first, *_) in found.items()}
+
+
+def _refuse_unclear_turns(table: Table, index: int | None, unit: str) -> None:
+    """Raise FileError for an angular velocity in 1/min or such: of turns, or of radians; and for
+    turns without a unit.
+
+    table, index : :class:`.text_table.Table` and column; an angular one in 1/s is in rad/s.
+    unit : unit that the user gives, "" for that of the file.
+    """
+    heading = table.headings[index or 0]
+    turns = "rotational speed" in {each.name for each in meanings(heading, table.units[index or 0])}
+    stated = {each.unit for each in readings(heading, table.units[index or 0])}
+    units = ({unit} if unit else stated).difference(NO_UNIT)
+    doubtful = "no unit" if turns and not units else ""
+    for each in units:
+        with suppress(ParameterError):
+            factor, _ = conversion(each, "rad/s")
+            if not CYCLES.search(each) and (factor != 1.0 or (turns and not unit)):
+                doubtful = f"the unit {each}"
+    if doubtful:
+        problem = f"column {heading!r} has {doubtful}, and may be of turns or of radians"
+        raise FileError(table.path, f'{problem}: give units = {{ omega = "rpm" }}, or such')

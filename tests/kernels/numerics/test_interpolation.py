@@ -15,16 +15,3 @@ def test_digits_do_not_depend_on_the_caller():
         low = Interpolation(radau(9, 1)).powers(), *gauss(28), to_chebyshev(9)
     high = Interpolation(radau(9, 1)).powers(), *gauss(28), to_chebyshev(9)
     assert all(np.array_equal(a, b) for a, b in zip(low, high, strict=True))
-
-
-def test_matrices_are_in_c_order():
-    """numpy's einsum adds in the order of memory, so that last bits of all that matrices are
-    applied to follow it.
-    """
-    nodes = radau(9, 1)
-    interpolation = Interpolation(nodes)
-    matrices = [interpolation.powers(), to_chebyshev(9)]
-    matrices += [
-        of(nodes) for of in (interpolation.values, interpolation.slopes, interpolation.integrals)
-    ]
-    assert all(matrix.flags.c_contiguous for matrix in matrices)

@@ -181,12 +181,15 @@ def select_alpha(n, source):
         marks = integers_at(source.marks, PARTS_PER_ROW)
         first = OCTAVE_SIZE * octave
         octaves = integers_at(source.octaves, first + OCTAVE_SIZE)
+        # The mantissa of alpha in [1, 2) is alpha/2^N.
         s = 2.0 * np.log2(bits_to_float((bits & _MANTISSA) | (_BIAS << 52))) - 1.0
+        # T_2; then T_4 = 2 T_2^2 - 1, T_8 = 2 T_4^2 - 1 and T_12 = T_4 (2 T_8 - 1).
         second = fma(2.0 * s, s, -1.0)
         rows[_S] = s
         rows[_S + 1] = fma(2.0 * second, second, -1.0)
         rows[_S + 2] = fma(2.0 * rows[_S + 1], rows[_S + 1], -1.0)
         rows[_S + 3] = rows[_S + 1] * fma(2.0, rows[_S + 2], -1.0)
+        # The fast limit of one creep mode, J_1 = c and T_1 = 1: W = c, C = c (ln 2 - 0.5772).
         c = (alpha - 1.0) / alpha
         rows[ALPHA] = alpha
         rows[LAM_FAST] = 1.0 / np.sqrt(alpha)
@@ -219,7 +222,7 @@ def make_part(number, source):
     # by shifts: a division would delay the loads by as long as the sums take
     part = number & (PARTS_PER_ROW - 1)
     row = (number >> _PARTS_EXPONENT) - 1
-    c = rows[FAST_TOTAL]
+    c = rows[FAST_TOTAL]  # (alpha - 1)/alpha
     pair = part < H_OVER_F2 // PART_SIZE
     function = row * ALPHA_FUNCTIONS + (part >> 1 if pair else part - ALPHA_FUNCTIONS)
     begins = integers_at(marks[_AXIS + 1], function + 2)
@@ -229,11 +232,11 @@ def make_part(number, source):
     axis = floats_at(marks[_AXIS], stop)
     # read once: stores to rows could change them for all that the compiler knows
     s = rows[_S], rows[_S + 1], rows[_S + 2], rows[_S + 3]
-    if c == 0.0:
+    if c == 0.0:  # alpha = 1
         for k in range(start, start + (2 * PART_SIZE if pair else PART_SIZE)):
             rows[k] = 0.0
         rows[start] = 1.0
-    elif pair:
+    elif pair:  # A part with fewer coefficients than all groups have is one of the short ones.
         if stop - first < 2 * PART_SIZE * ALPHA_TERMS:
             _sum_short_pair(axis, first, s, c, rows, start)
         else:

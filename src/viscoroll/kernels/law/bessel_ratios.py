@@ -1,27 +1,24 @@
-"""Ratios of modified Bessel functions, from a table of coefficients.
-
-Layout of the coefficient table ``ratios.npy``, shared by its builder and its reader.
-
-Each segment covers whole octaves ``[2**low, 2**high)`` of its argument.  An octave is cut
-into :data:`BINS` equal bins of the mantissa m in [1, 2); in each bin the function is a
-polynomial of degree :data:`DEGREE` in t = m - (centre of the bin), constant term first.
-A bin spans 1/33 of the distance to the nearest singularity of the function (the origin for
-k), so the truncation error falls like 66**-(DEGREE + 1) = 4e-17.
-
-The three Bessel ratios that carry the whole contact law, and their slopes.
+"""Ratios of modified Bessel functions, from a table of coefficients, and their slopes.
 
     r(x) = I1(x)/I0(x)      k(z) = K0(z)/K1(z)      i2(x) = I2(x)/I0(x) = 1 - 2 r(x)/x
 
-Piecewise polynomials indexed by the bits of the argument (:mod:`bessel_ratios`, no logarithm), the
-power series below them and the asymptotic series above, economized to the same degree: every
-positive
-double is served by one polynomial, chosen without a branch. Relative error at most 2.4 ULP
-(``pipeline/evidence/prove/``; on the points of ``tests/kernels/bessel/test_ratios.py``, against 60
-digits, 2).  Slopes come from the Riccati equations
+They carry the whole contact law.  Each is a piecewise polynomial, indexed by the bits of the
+argument without a logarithm, the power series below the bins and the asymptotic series above,
+economized to the same degree: every positive double is served by one polynomial, chosen without a
+branch.  Relative error at most 2.4 ULP (``pipeline/evidence/prove/``; on the points of
+``tests/kernels/bessel/test_ratios.py``, against 60 digits, 2).  Slopes come from the Riccati
+equations
 
     r' = 1 - r/x - r^2      k' = k^2 + k/z - 1
 
 and cost no further Bessel function.
+
+The layout of the coefficient table ``ratios.npy`` is shared by its builder and its reader.  Each
+segment covers whole octaves ``[2**low, 2**high)`` of its argument.  An octave is cut into
+:data:`BINS` equal bins of the mantissa m in [1, 2); in each bin the function is a polynomial of
+degree :data:`DEGREE` in t = m - (centre of the bin), constant term first.  A bin spans 1/33 of the
+distance to the nearest singularity of the function (the origin for k), so the truncation error
+falls like 66**-(DEGREE + 1) = 4e-17.
 """
 
 from decimal import Decimal
@@ -80,7 +77,7 @@ TABLE_SIZE = segment_start(len(SEGMENTS))
 
 # --- The three Bessel ratios that carry the whole contact law, and their slopes ---
 
-#: Coefficients of the bins, as :mod:`bessel_ratios` says.
+#: Coefficients of the bins, as the module says.
 TABLE = np.load(Path(__file__).with_name("ratios.npy"))
 
 #: Leading bits of the mantissa that number a bin: log2(BINS).
@@ -155,7 +152,7 @@ def _tail(sign: int) -> np.ndarray:
     nodes in [0, 1/64].
 
     sign : int, -1 for r, 1 for k.
-    Returns the 9 coefficients (layout.COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant
+    Returns the 9 coefficients (COEFFICIENTS) of ascending powers of 1/x or 1/z, the constant
     1/2 first, doubles.
     """
     series = [-a for a in asymptotic_series(sign, 17)[1:]]

@@ -1,22 +1,20 @@
-"""Boundary elements of a contact, and its zones of stick and slip.
-
-Boundary elements of a contact: mesh, matrices of slopes by piecewise linear tractions, moments.
+"""Boundary elements of a contact, and its zones of stick and slip by Coulomb's law.
 
 Lengths are divided by l0, the contact length at rest of half-spaces; slopes by l0/R; tractions so
 that an elastic half-space of the summed long-time compliance has the slope (1/pi) int p(y)/(x - y)
-dy.  Nodes ascend from the rear edge to the front edge; both tractions are 0 at the two outer nodes.
-Slopes are collocated at one place in each element.
-
-The linear system of one contact, and the zones of stick and slip that satisfy Coulomb's law.
+dy.  There are N elements.  Nodes ascend from the rear edge to the front edge; tractions are linear
+between them, and 0 at the two outer ones.  Slopes are collocated at one place in each element.
 
 With pressure p and shear q at inner nodes, g the place of the middle of the contact ahead of the
-axis, and x the places of collocation,
+axis, x the places of collocation from the middle on, u' the strain of the surface there, d = kappa
+delta the creepage, mu the coefficient of friction, and matrices H, T and C (:func:`assemble`),
 
-    H p + C q = x + g        u' = T q - C p        d - u' = 0 in stick, q = mu z p in slip with z = 1 or -1
+    H p + C q = x + g        u' = T q - C p
+    d - u' = 0 in stick, q = mu z p in slip with z = 1 or -1
 
-Pressure and g are eliminated once for a mesh, so that the system of each choice of zones has the
-size of q alone.
-"""  # noqa: E501
+(docs/theory_covers.md, Pressure and shear together).  Pressure and g are eliminated once for a
+mesh, p = a - B q, so that the system of each choice of zones has the size of q alone.
+"""
 
 import math
 
@@ -48,8 +46,8 @@ _MOST_STEPS = 60
 
 @inline_kernel
 def graded(t):
-    """Return the place in [0, 1] of the parameter t of a mesh: dense at both ends, as tractions
-    fall like roots.
+    """Return the place in [0, 1] of the parameter t in [0, 1] of a mesh, a float: dense at both
+    ends, as tractions fall like roots there.
     """
     return math.sin(0.5 * math.pi * t) ** 2
 
@@ -99,8 +97,10 @@ def make_mesh(c, spots, used, nodes, at, place):
             spots[k, 2] *= reduced
         low *= reduced
         high *= reduced
-    plain = count - (high - low)
+    plain = count - (high - low)  # a of s(t), such that s(1) - s(0) is the number of elements
     t = 0.0
+    # Nodes and, half an element after each, places: t with s(t) - s(0) = n/2, by Newton's
+    # iteration, bisected where it leaves its bracket.
     for n in range(2 * count + 1):
         wanted = 0.5 * n + low
         left = t
@@ -118,7 +118,7 @@ def make_mesh(c, spots, used, nodes, at, place):
             t -= error / (plain + rate)
             if not left < t < right:
                 t = 0.5 * (left + right)
-        if n == 0:
+        if n == 0:  # The ends are exact.
             t = 0.0
         if n == 2 * count:
             t = 1.0
@@ -143,17 +143,22 @@ def scale_mesh(c, nodes, at):
 @inline_kernel
 def _local_part(local, h):
     """Return the part of the coupling that acts at the middle of an element of length h as if at
-    once.
+    once, a float, dimensionless.
 
-    local : (modes, 2), strength and length of each, with 0 for the length of the instantaneous one.
+    local : (modes, 2), strength and length (divided by l0) of each, with 0 for the length of the
+        instantaneous one.
+    h : float, length of the element divided by l0, > 0.
+
     It is the integral of the memory times what linear tractions leave out: the parabola that is 1
     there and 0 at the ends of the element, less its mean 2/3, which the values at the nodes make up
-    for.
+    for.  With r = h/(2 length) the integral of exp(-s) (1/3 - s^2/r^2) over s from 0 to r.
     """
     found = 0.0
     for k in range(local.shape[0]):
         length = local[k, 1]
         r = 0.5 * h / length if length > 0.0 else np.inf
+        # Where terms of the closed form cancel, its first term; where exp(-r) is below rounding, or
+        # r infinite, the form without it.
         if r < _SMALL_RATIO:
             found += local[k, 0] * r * r / 12.0
         elif r > _LARGE_RATIO:
@@ -171,13 +176,18 @@ def add_local(local, nodes, at, C):
     """Add to the local part of the coupling what linear tractions leave out, by the values at four
     nodes.
 
-    local : as of :func:`_local_part`; nodes, at : mesh; C : matrix of :func:`assemble`, changed.
-    The tractions are odd about the two outer nodes, in the parameter of the mesh.
+    local : as of :func:`_local_part`.
+    nodes, at : mesh, (N + 1,) and (N,).
+    C : (N, N - 1), matrix of :func:`assemble`, changed.
+    The tractions are odd about the two outer nodes, in the parameter of the mesh.  Returns nothing.
     """
     last = at.size - 1
     for e in range(last + 1):
         h = nodes[e + 1] - nodes[e]
         part = _local_part(local, h)
+        # What linear tractions leave out at the place: the cubic through four nodes, with weights
+        # (-1, 9, 9, -1)/16 in the middle of the element, less the linear interpolation, with
+        # weights 1 - ``ahead`` and ``ahead``.  Column n belongs to node n + 1.
         ahead = (at[e] - nodes[e]) / h
         if e > 0:
             C[e, e - 1] += part * (0.5625 - (1.0 - ahead))
@@ -185,7 +195,7 @@ def add_local(local, nodes, at, C):
             C[e, e] += part * (0.5625 - ahead)
         if e > 1:
             C[e, e - 2] -= part * 0.0625
-        elif e == 0:
+        elif e == 0:  # The node before the first one has minus the traction of node 1.
             C[e, 0] += part * 0.0625
         if e < last - 1:
             C[e, e + 1] -= part * 0.0625
@@ -206,6 +216,7 @@ def assemble(table, instant, nodes, at, H, T, C):
     H, T, C : (N, N - 1) each, written: slope at places by the traction at inner nodes.
     """
     N = at.size
+    # Second antiderivatives of the three kernels, at the place i less each node.
     first = np.empty(N + 1)
     second = np.empty(N + 1)
     third = np.empty(N + 1)
@@ -213,6 +224,7 @@ def assemble(table, instant, nodes, at, H, T, C):
         for j in range(N + 1):
             x = at[i] - nodes[j]
             log = math.log(abs(x))
+            # Bin b of ln|x|, and the position y in it in [-1, 1].
             y = (log - LOWEST) / WIDTH
             b = min(max(int(y), 0), BINS - 1)
             y = 2.0 * (y - b) - 1.0
@@ -228,6 +240,8 @@ def assemble(table, instant, nodes, at, H, T, C):
             first[j] = a0 + own
             second[j] = a1 + own
             third[j] = a2
+        # The traction of inner node n is 1 at node n + 1 and falls linearly to 0 at its neighbours:
+        # its second derivative is three impulses, with which the antiderivative is multiplied.
         for n in range(N - 1):
             behind = 1.0 / (nodes[n + 1] - nodes[n])
             ahead = 1.0 / (nodes[n + 2] - nodes[n + 1])
@@ -246,8 +260,10 @@ def node_value(values, e):
 
 @kernel
 def moments(nodes, values):
-    """Return (integral, first moment) of a traction.  nodes: (N + 1,); values: at inner nodes, (N -
-    1,).
+    """Return (integral, first moment about the middle of the contact) of a traction, floats.
+
+    nodes : (N + 1,), places of the nodes.
+    values : (N - 1,), traction at inner nodes.
     """
     total = 0.0
     moment = 0.0
@@ -266,9 +282,11 @@ def product(nodes, at, values, slope):
 
     The gradient in an element is that between the places of its neighbours, so that a linear slope
     is exact.
+
     nodes, at : mesh, (N + 1,) and (N,).
     values : traction at inner nodes, (N - 1,).
     slope : at ``at``, (N,).
+    Returns a float, in the units of the module.
     """
     found = 0.0
     last = at.size - 1
@@ -302,6 +320,7 @@ def factor(matrix, order):
 
     matrix : (n, n), overwritten.
     order : (n,), int, written: the row that was exchanged with each.
+    The diagonal of L is 1 and not stored.
     """
     n = matrix.shape[0]
     for k in range(n):
@@ -310,7 +329,7 @@ def factor(matrix, order):
             if abs(matrix[i, k]) > abs(matrix[best, k]):
                 best = i
         order[k] = best
-        if not abs(matrix[best, k]) > 0.0:
+        if not abs(matrix[best, k]) > 0.0:  # True for NaN too.
             return False
         if best != k:
             for j in range(n):
@@ -334,9 +353,10 @@ def substitute(matrix, order, right):
     """Solve for many right sides with the factors of :func:`factor`.
 
     matrix, order : factors and row exchanges, (n, n) and (n,).
-    right : (n, m), replaced by the solutions.
+    right : (n, m), replaced by the solutions.  Returns nothing.
     """
     n, m = right.shape
+    # Row exchanges, then L from the first row on, then U from the last row on.
     for k in range(n):
         best = order[k]
         if best != k:
@@ -374,6 +394,7 @@ def eliminate(H, C, at, coupled):
     the last row belongs to g).  Without ``coupled`` B is 0.
     """
     N = at.size
+    # (H, -1) (p, g) = x - C q, N equations for N - 1 pressures and g.
     matrix = np.empty((N, N))
     matrix[:, : N - 1] = H
     matrix[:, N - 1] = -1.0
@@ -405,6 +426,7 @@ def strain_by_shear(T, C, B, coupled):
     Returns (N, N): the factors of q in the first N - 1 columns, u' for q = 0 in the last.
     """
     N = B.shape[0]
+    # u' = T q - C p = (T + C B) q - C a.
     S = np.zeros((N, N))
     S[:, : N - 1] = T
     if coupled:
@@ -440,6 +462,7 @@ def solve_zones(S, B, mu, zone, d, q):
     for j in range(n):
         row = matrix[j]
         z = mu * zone[j]
+        # Stick: the strain in element j + 1, ahead of inner node j, is d.  Slip: q = z (a - B q).
         if z == 0.0:
             other = S[j + 1]
             for k in range(n):
@@ -509,10 +532,10 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
         if not solve_zones(S, B, mu, zone, d, q):
             return False, g
         g = pressure_and_strain(S, B, q, p, strain)
-        scale = 0.0
+        scale = 0.0  # largest slip, over V
         for e in range(n + 1):
             scale = max(scale, abs(d - strain[e]))
-        worst = 0.0
+        worst = 0.0  # largest relative violation of Coulomb's law, and its node
         which = -1
         for i in range(kept, n):
             new[i] = zone[i]
@@ -522,7 +545,7 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
                 over = abs(q[i]) - mu * p[i] * (1.0 + _ROUNDING)
                 if over > 0.0:
                     new[i] = 1.0 if q[i] > 0.0 else -1.0
-                    wrong = over / max(mu * abs(p[i]), 1e-300)
+                    wrong = over / max(mu * abs(p[i]), 1e-300)  # not divided by a pressure of 0
             elif slip * zone[i] < -_ROUNDING * scale:
                 new[i] = 0.0
                 wrong = abs(slip) / scale
@@ -531,6 +554,7 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
                 which = i
         if which < 0:
             return True, g
+        # All wrong nodes change together in the first choices, then the worst alone.
         if choice > _TOGETHER:
             zone[which] = new[which]
         else:

@@ -1,9 +1,10 @@
 """States of the contact from the rows of their law: no root, no iteration, and nothing that is not
 requested.
 
-With D = 2 kappa |delta|/mu and w = L - D, |Q|/mu = 1 - w^2 (H/F^2)(2 u/w), where 1 = L^2 (H/F^2)(2
-u/L) is close to it at small creepage.  There their difference is exact with the mean slope S of
-H/F^2 between v1 = 2 u/L and v2 = 2 u/w:
+The traction is |Q|/mu = 1 - w^2 (H/F^2)(2 u/w) with w = L - D (letters below;
+docs/internals_law.md, Rows).  At small creepage it is a small difference, as 1 = L^2 (H/F^2)(2
+u/L).  With v1 = 2 u/L, v2 = 2 u/w, v2 - v1 = v2 D/L and the mean slope S of H/F^2 between them, 1 =
+L^2 [(H/F^2)(v2) - S v2 D/L], so that nothing cancels in
 
     |Q|/mu = D [(2 L - D) (H/F^2)(v2) - v2 L S]
 
@@ -24,14 +25,15 @@ Terms of this file:
   that of free rolling, and from the asymmetry c of the onsets of full slip (:mod:`.cover_law`).
   D < L in partial slip, and infinite stands for full slip.
 - v = 2 u/(L - D) = 1/F(eta), with eta half the transit time of the stick zone; H and F are
-  functions of the material (:mod:`.law`), of which only H/F^2 and eta/F occur, as functions of v.
-  A NaN of u or v where L and D are finite has no meaning and is not checked.
+  functions of the material (:mod:`.law_functions`), of which only H/F^2 and eta/F occur, as
+  functions of v. A NaN of u or v where L and D are finite has no meaning and is not checked.
 - State: kappa, mu, V, and ``creep``, which is delta, or omega where ``creep_is_omega``.
 - Request: states, and the quantities of them that are written into rows of ``out``.
 - Block: up to TOGETHER = 64 states that are evaluated together.  Column c: place of a state in its
   block.
 - Scratch: for each number of a state (kappa, mu, V and so on) TOGETHER doubles in a row, of which
-  that at c belongs to the state in column c.
+  that at c belongs to the state in column c.  Its indices are unsigned, as numba would test signed
+  ones for negative numbers.
 """
 
 import numpy as np
@@ -137,12 +139,12 @@ def traction_over_mu(position, v, u, L, D, law):
     """Return |Q|/mu, the fraction of the friction that is used; the fraction keeps its digits at
     small creepage too.
 
-    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    position : :class:`.law_functions.RowPosition` of v; like v it is not read in full slip.
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     u : float, kappa |V|, dimensionless, >= 0; read where the form with the mean slope is used.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, L |d|, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 are read.
 
     Returns a float in [0, 1], dimensionless: 0.0 at D = 0; 1.0 in full slip, where D is rounded to
     L or above, and where L or D is NaN.  From D = L/16 on it is 1 - w^2 (H/F^2)(v) with w = L - D,
@@ -182,11 +184,11 @@ def _cancels(traction, D, L):
 def friction_reserve(position, v, L, D, law):
     """Return the friction reserve 1 - |Q|/mu, which keeps all its digits where it is small.
 
-    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    position : :class:`.law_functions.RowPosition` of v; like v it is not read in full slip.
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, L |d|, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 are read.
     Returns a float in [0, 1], dimensionless: (L - D)^2 (H/F^2)(v), which is 1 to rounding at D = 0;
     0.0 in full slip (L <= D), and where L or D is NaN.
     """
@@ -198,18 +200,19 @@ def friction_reserve(position, v, L, D, law):
 def stick_fraction(position, v, lam, L, D, law):
     """Return beta, the length of the stick zone divided by the contact length.
 
-    position : :class:`RowPosition` of v; like v it is not read in full slip and at D = 0.
+    position : :class:`.law_functions.RowPosition` of v; like v it is not read in full slip and at D
+        = 0.
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     lam : float, length of the contact divided by l0, dimensionless, > 0; not read in full slip and
     at D = 0.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, L |d|, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material, of which the polynomials of eta/F are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of eta/F are read.
     Returns a float in [0, 1], dimensionless: exactly 1.0 at D = 0, else (eta/F)(v) (L - D)/lam; 0.0
     in full slip (L <= D), and where L or D is NaN.
     """
     w = L - D
-    if not w > 0.0:
+    if not w > 0.0:  # full slip, or NaN
         return 0.0
     return min(eta_over_F(position, v, law) * w / lam, 1.0) if D > 0.0 else 1.0
 
@@ -222,7 +225,7 @@ def traction_slopes(u, L, dL, D, law):
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless; dL is read only
         where the plain formula below is used: neither with the mean slopes nor in full slip.
     D : float, L |d|, dimensionless, >= 0; infinite in full slip.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 are read.
     Returns (slope over u, slope over D), floats, dimensionless; (0.0, 0.0) in full slip (L <= D),
     and where L or D is NaN.  With w = L - D, v = 2 u/w and A = H/F^2 - (v/2) d(H/F^2)/dv they
     are -2 w (A dL + d(H/F^2)/dv) and 2 w A.
@@ -232,18 +235,19 @@ def traction_slopes(u, L, dL, D, law):
     from D = L/16 on the plain formula holds at u = 0 too, unless a difference would lose digits.
     """
     w = L - D
-    if not w > 0.0:
+    if not w > 0.0:  # full slip, or NaN
         return 0.0, 0.0
     v = 2.0 * u / w
     position = locate_row(v, law)
     value, slope = H_over_F2(position, v, law)
-    w_slope = value - 0.5 * v * slope
+    w_slope = value - 0.5 * v * slope  # A
     if D < SMALL_CREEP * L or _cancels(1.0 - w * w * value, D, L):
         x = D / w
         v1 = 2.0 * u / L
         _, _, secant, slope_secant = H_over_F2_secants(position, locate_row(v1, law), v, x, law)
-        # with f = H/F^2 and A = f - v f'/2, dL/du = -f'/A at v1, and the two terms below are close
-        step = v1 * x
+        # With f = H/F^2: from L^2 f(2 u/L) = 1 follows dL/du = -f'/A at v1, so that A dL + f' of
+        # the plain formula is a difference of values at v and v1, which is formed by mean slopes.
+        step = v1 * x  # v - v1
         slope_1 = slope - slope_secant * step
         A_1 = value - secant * step - 0.5 * v1 * slope_1
         over_u = step * (
@@ -264,14 +268,15 @@ def signed_creep(L, free_creep, asymmetry, state, law):
     L : float, 2 kappa delta_star/mu at the speed of the state, dimensionless, > 0.
     free_creep, asymmetry : floats, 2 kappa delta_0, with delta_0 the creepage of free rolling, and
         the asymmetry c, dimensionless; not read for half-spaces.
-    state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
-    law : :class:`Law`, of which only ``cover_rows`` is read: whether the material is a cover (not
-    None).
+    state : :class:`.law_record.State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
+    law : :class:`.law_record.Law`, of which only ``cover_rows`` is read: whether the material is a
+    cover (not None).
     Returns a float, dimensionless: its sign is that of omega - V for half-spaces, that of (delta -
     delta_0) V for a cover, where V = 0.0 counts as V > 0; free rolling gives 0.0 or -0.0; full slip
     gives inf or -inf; NaN where the creepage is NaN, or ``free_creep`` of a cover.
     """
     slip, delta = slip_and_creepage(state)
+    # D of half-spaces, which that of a cover replaces.
     full_slip = abs(delta) >= 0.5 * state.mu / state.kappa * L
     D = np.copysign(np.inf if full_slip else 2.0 * state.kappa / state.mu * abs(delta), slip)
     return creep_of_state(D, delta, L, free_creep, asymmetry, state, law.cover_rows)
@@ -281,14 +286,14 @@ def signed_creep(L, free_creep, asymmetry, state, law):
 def signed_traction(position, v, u, L, D, mu, law):
     """Return the traction Q, Eq. (15), divided by the load P.
 
-    position : :class:`RowPosition` of v; like v it is not read in full slip.
+    position : :class:`.law_functions.RowPosition` of v; like v it is not read in full slip.
     v : float, argument of the stick zone, of :func:`stick_argument`, dimensionless.
     u : float, kappa |V|, dimensionless, >= 0.
     L : float, 2 kappa delta_star/mu, dimensionless, > 0.
     D : float, L |d| with the sign of the traction, of :func:`signed_creep`,
         dimensionless; inf or -inf in full slip.
     mu : float, coefficient of friction, dimensionless, > 0.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 are read.
     Returns a float in [-mu, mu], dimensionless, with the sign of D, which may be that of -0.0; mu
     or -mu in full slip, and also where D or L is NaN.
     """
@@ -304,9 +309,9 @@ def Q_slopes(u, L, dL, D, state, law):
     L, dL : floats, 2 kappa delta_star/mu, > 0, and its slope dL/du, dimensionless.
     D : float, L |d| with the sign of the traction, of :func:`signed_creep`,
         dimensionless; inf or -inf in full slip, where nothing else is read.
-    state : :class:`State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 and, of a cover,
-    ``cover_rows`` are read.
+    state : :class:`.law_record.State` of numbers: V, kappa, mu, and delta or omega, dimensionless.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 and, of a
+    cover, ``cover_rows`` are read.
 
     Returns (dQ/dV, dQ/ddelta, dQ/domega), floats, dimensionless.  The first is taken at fixed delta
     or at fixed omega, whichever ``state`` has, the others at fixed V.  All are 0 in full slip,
@@ -320,11 +325,12 @@ def Q_slopes(u, L, dL, D, state, law):
     over_u, over_D = slopes_of_cover(
         over_u, over_D, D, locate_row(u, law), u, L, dL, state, law.cover_rows
     )
+    # Q = +-mu |Q|/mu with D = 2 kappa |delta|/mu and u = kappa |V|; delta = omega/V - 1 at fixed V.
     over_delta = 2.0 * state.kappa * over_D
     over_omega = over_delta / abs(state.V)
     over_V = np.sign(-D if state.V < 0.0 else D) * state.mu * state.kappa * over_u
     over_V = slope_over_speed(over_V, over_delta, free_creep_and_slopes(u, law)[1], law.cover_rows)
-    if state.creep_is_omega:
+    if state.creep_is_omega:  # d delta/dV = -omega/V^2 = -(1 + delta)/V at fixed omega
         over_V -= over_omega * (1.0 + slip_and_creepage(state)[1])
     return over_V, -over_delta if state.V < 0.0 else over_delta, over_omega
 
@@ -335,13 +341,13 @@ def traction_on_moments(pairs, functions, Q, state, cover_rows):
     :class:`.cover_law.MomentChange`.
 
     pairs : of :func:`.cover_law.pairs_at` at the speed.
-    functions : :class:`LengthAndMoment` at that speed, of which L and dL are read.
+    functions : :class:`.law_functions.LengthAndMoment` at that speed, of which L and dL are read.
     Q : float, traction of the state, dimensionless.
-    state : :class:`State` of numbers, of which kappa and mu are read.
+    state : :class:`.law_record.State` of numbers, of which kappa and mu are read.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces: all changes are 0.
     """
-    if cover_rows is None:  # a sum with -0.0 keeps the sign of a zero
+    if cover_rows is None:  # -0.0, as a sum with it keeps the sign of a zero
         return MomentChange(
             half_space=-0.0,
             cylinder=-0.0,
@@ -372,7 +378,7 @@ def moment_slope_over_V(change_du, change_dQ, dQ_dV, state):
     change_du, change_dQ : floats, derivatives of :class:`.cover_law.MomentChange` of the body over
     u and in Q.
     dQ_dV : float, slope of the traction, at fixed creepage or omega.
-    state : :class:`State` of numbers, of which kappa and the sign of V are read.
+    state : :class:`.law_record.State` of numbers, of which kappa and the sign of V are read.
     """
     return np.copysign(state.kappa, state.V) * change_du + moment_slope(change_dQ, dQ_dV)
 
@@ -382,21 +388,22 @@ def _index(k, request):
     """Return the index of the state at a position in the order of evaluation, an int.
 
     k : int, the position, from 0 to ``count`` - 1 of :func:`contact_loop`; not checked.
-    request : :class:`Request`, of which ``order`` is read: the index is ``order[k]``, or k itself
-    if it is empty.
+    request : :class:`.law_record.Request`, of which ``order`` is read: the index is ``order[k]``,
+    or k itself if it is empty.
     """
     return request.order[np.uint64(k)] if request.order.size > 0 else k
 
 
 @inline_kernel
 def _state(c, scratch, request):
-    """Return the :class:`State` of numbers of a state of the block, from the copy in the scratch.
+    """Return the :class:`.law_record.State` of numbers of a state of the block, from the copy in
+    the scratch.
 
     c : unsigned int, column of the state in the scratch, its place in the block, from 0 to
     TOGETHER - 1.
     scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`, of which kappa, mu, V and the creep
     are read.
-    request : :class:`Request`, of whose states ``creep_is_omega`` is read.
+    request : :class:`.law_record.Request`, of whose states ``creep_is_omega`` is read.
     """
     return State(
         kappa=scratch[_KAPPA + c],
@@ -417,8 +424,8 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
     _STICK_POSITION for v.
     begin, end : int, first column, which is the place of a state in its block, and the one after
         the last; 0 <= begin <= end <= TOGETHER = 64, the states in a block.
-    laws : tuple of :class:`Law`; the state in column k belongs to law k modulo their number, which
-        must have its material selected.
+    laws : tuple of :class:`.law_record.Law`; the state in column k belongs to law k modulo their
+        number, which must have its material selected.
     scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`.  Three numbers a state are written:
         at ``positions`` the number of its row, an int (-1 beyond the last row) whose bits are
         stored as a double; TOGETHER numbers further t; again TOGETHER further dt/dx.  With row -1,
@@ -435,8 +442,8 @@ def _write_positions(arguments, positions, begin, end, laws, scratch):
 
 @inline_kernel
 def _position(place, c, scratch):
-    """Return the :class:`RowPosition` of a state of the block, as :func:`_write_positions` has
-    written it.
+    """Return the :class:`.law_functions.RowPosition` of a state of the block, as
+    :func:`_write_positions` has written it.
 
     place : unsigned int, index in ``scratch`` of the positions: _POSITION for u, _STICK_POSITION
     for v.
@@ -455,11 +462,11 @@ def _write_other_fields(n, c, law, scratch, request):
 
     n : int, index of the state, >= 0; not checked.
     c : unsigned int, its column in ``scratch``, 0 to TOGETHER - 1.
-    law : :class:`Law` with the material of the state selected; without rows of the moments of the
-        bodies (:mod:`.alpha_axis`) none of these four may be requested.
+    law : :class:`.law_record.Law` with the material of the state selected; without rows of the
+        moments of the bodies (:mod:`.alpha_axis`) none of these four may be requested.
     scratch : (SCRATCH_SIZE,) doubles, of :func:`contact_loop`, after all its stages; not changed.
-    request : :class:`Request` of states and quantities; of ``out`` the numbers of state n in the
-        rows of the requested quantities are written, dimensionless.
+    request : :class:`.law_record.Request` of states and quantities; of ``out`` the numbers of state
+        n in the rows of the requested quantities are written, dimensionless.
 
     Returns nothing.  The quantities: delta_star (critical creepage), delta (creepage), delta_0
     (creepage of free rolling), delta_minus and delta_plus (onsets of full slip),
@@ -484,6 +491,7 @@ def _write_other_fields(n, c, law, scratch, request):
     write_field(to.delta, slip_and_creepage(state)[1], n, request)
     write_field(to.delta_0, 0.5 * scratch[_FREE_CREEP + c] / state.kappa, n, request)
     if max(to.delta_minus, to.delta_plus) >= 0:
+        # delta_0, delta_star and c: the onsets are delta_0 + delta_star (c -+ 1).
         middle = 0.5 * scratch[_FREE_CREEP + c] / state.kappa
         star = 0.5 * state.mu / state.kappa * L
         shift = scratch[_ASYMMETRY + c] if _is_cover(law.cover_rows) else 0.0
@@ -511,6 +519,7 @@ def _write_other_fields(n, c, law, scratch, request):
         slopes_of_Q = max(to.dQ_dV, to.dQ_ddelta, to.dQ_domega) >= 0
         of_M = max(to.dM_dV, to.dM_ddelta, to.dM_domega, to.dM_half_space_dV, to.dM_cylinder_dV)
         of_M = max(of_M, to.dM_half_space_domega, to.dM_cylinder_domega)
+        # M of a cover depends on Q, so that its slopes need those of Q.
         slopes_of_Q = slopes_of_Q or (_is_cover(law.cover_rows) and of_M >= 0)
         _write_moments_and_slopes(n, c, bodies, slopes_of_Q, law, scratch, request)
 
@@ -521,13 +530,13 @@ def _write_reaction(n, position, u, state, law, cover_rows, request):
     (:class:`.cover_law.Reaction`), if it is requested.
 
     n : int, index of the state.
-    position : :class:`RowPosition` of u.
+    position : :class:`.law_functions.RowPosition` of u.
     u : float, kappa |V|, dimensionless, >= 0.
-    state : :class:`State` of numbers, of which kappa and mu are read.
-    law : :class:`Law` of the material, of which L is read.
+    state : :class:`.law_record.State` of numbers, of which kappa and mu are read.
+    law : :class:`.law_record.Law` of the material, of which L is read.
     cover_rows : ``law.cover_rows``; None for half-spaces, of which nothing is written: nobody asks
     for it.
-    request : :class:`Request` of states and quantities.
+    request : :class:`.law_record.Request` of states and quantities.
     Returns nothing.
     """
     if cover_rows is not None:
@@ -644,7 +653,8 @@ def _write_pairs(c, position, functions, cover_rows, scratch, request):
     """Store in the scratch what the rows of a cover give besides at the speed of a state.
 
     c, scratch, request : as of :func:`_write_other_fields`.
-    position, functions : :class:`RowPosition` of u, and :class:`LengthAndMoment` there.
+    position, functions : :class:`.law_functions.RowPosition` of u, and
+        :class:`.law_functions.LengthAndMoment` there.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None for
     half-spaces, of which delta_0 = 0 alone is written.
     Returns nothing.
@@ -672,7 +682,8 @@ def _write_cover(c, cover_rows, scratch, request):
     factors of Q in M.
 
     No polynomial is evaluated here, so that a loop over states becomes vector instructions.
-    c : column of the scratch.
+
+    c : unsigned int, column of the scratch.
     cover_rows : as of :func:`_write_pairs`; of half-spaces nothing is written.
     scratch, request : as of :func:`_write_other_fields`.
     Returns nothing.
@@ -695,7 +706,9 @@ def _write_cover(c, cover_rows, scratch, request):
 
 @inline_kernel
 def _asks_for_moments(request):
-    """Return whether M, or that of a body, is requested of a :class:`Request`, a bool."""
+    """Return whether M, or that of a body, is requested of a :class:`.law_record.Request`, a
+    bool.
+    """
     to = request.to
     return max(to.M, to.M_half_space, to.M_cylinder) >= 0
 
@@ -711,7 +724,8 @@ def _write_moment_of_half_space(n, c, position, functions, cover_rows, scratch, 
     """Write M of a state on half-spaces, which depends on the speed alone, if it is requested.
 
     n, c, scratch, request : as of :func:`_write_other_fields`.
-    position, functions : :class:`RowPosition` of u, and :class:`LengthAndMoment` there.
+    position, functions : :class:`.law_functions.RowPosition` of u, and
+        :class:`.law_functions.LengthAndMoment` there.
     cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`), and then nothing
         is written; None for half-spaces.
     Returns nothing.
@@ -747,15 +761,15 @@ def contact_loop(laws, request, scratch, count):
     """Evaluate the law at ``count`` states and write what is requested, in the units of
     docs/symbols.md for a scene.
 
-    laws : tuple of :class:`Law`.  States of one material have one law, whose rows are complete.  If
-        every state has a material of its own, these are as many laws as states are evaluated
-        together, each with one material selected at a time; the loop selects them.
-    request : :class:`Request`: ``states`` (arrays of length 1 or with one number for each state),
-        ``order`` of evaluation, ``to`` (for each quantity its row of ``out``, -1 if it is not
-        requested), ``out``, (quantities, columns), of which column ``first`` + n is written for
-        state n.  The quantities are lam, zeta, epsilon, delta_star, delta, full_slip, beta, grip,
-        Q, M, dQ_dV, dQ_ddelta, dQ_domega, dM_dV, M_half_space, M_cylinder, dM_half_space_dV,
-        dM_cylinder_dV and delta_0.
+    laws : tuple of :class:`.law_record.Law`.  States of one material have one law, whose rows are
+        complete.  If every state has a material of its own, these are as many laws as states are
+        evaluated together, each with one material selected at a time; the loop selects them.
+    request : :class:`.law_record.Request`: ``states`` (arrays of length 1 or with one number for
+        each state), ``order`` of evaluation, ``to`` (for each quantity its row of ``out``, -1 if it
+        is not requested), ``out``, (quantities, columns), of which column ``first`` + n is written
+        for state n.  The quantities are lam, zeta, epsilon, delta_star, delta, full_slip, beta,
+        grip, Q, M, dQ_dV, dQ_ddelta, dQ_domega, dM_dV, M_half_space, M_cylinder, dM_half_space_dV,
+        dM_cylinder_dV, delta_0 and the others of :data:`.law_record.Fields`.
     scratch : (SCRATCH_SIZE,) doubles, overwritten.
     count : int, number of states, >= 0; with an ``order`` its first ``count`` entries are
         evaluated, else the states 0 to ``count`` - 1.
@@ -770,7 +784,7 @@ def contact_loop(laws, request, scratch, count):
     instructions, and what is requested is tested once for a block.
     """
     to = request.to
-    others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)
+    others = request.out.shape[0] > (to.Q >= 0) + (to.M >= 0)  # whether more than Q and M is asked
     for first in range(0, count, TOGETHER):
         size = min(TOGETHER, count - first)
         for k in range(size):
@@ -781,6 +795,8 @@ def contact_loop(laws, request, scratch, count):
             scratch[_V + c] = state.V
             scratch[_CREEP + c] = state.creep
             scratch[_U + c] = state.kappa * abs(state.V)
+        # One law serves all states of a block; of many materials as many states as there are laws
+        # are evaluated together.
         together = size if laws[0].selector == 0 else len(laws)
         for begin in range(0, size, together):
             end = min(begin + together, size)

@@ -2,20 +2,21 @@
 state at a time.
 
 A table is one vector of doubles: a head, nodes, edges of each row, fields, each with its rows and
-in them nodes.  Its speed is u = kappa |V|, its creep D = 2 kappa delta.
-Three creeps divide the states of a speed, each a cubic spline of ln u: the onset of full slip of
-negative sign, D_-, a creep D_0 between, and the onset of positive sign, D_+.  With sigma = 1 above
-D_0 and -1 below, a state has the place
+in them nodes.  Its speed is u = kappa |V|, its creep D = 2 kappa delta, with the slenderness kappa
+= R/l0 and the creepage delta.  Three creeps divide the states of a speed, each a cubic spline of
+ln u: the onset of full slip of negative sign, D_-, a creep D_0 between, and the onset of positive
+sign, D_+.  With sigma = 1 above D_0 and -1 below, a state has the place
 
-    w = (D - D_0)/(D_sigma - D_0),   0 <= w <= 1 in partial slip,   t = sigma w   or   t = sigma sqrt(1 - (1 - w)^(2/3))
+    w = (D - D_0)/(D_sigma - D_0),   0 <= w <= 1 in partial slip,
+    t = sigma w   or   t = sigma sqrt(1 - (1 - w)^(2/3))
 
 and each field is a tensor spline in (ln u, t), the second form of t where the table is graded:
 there fields of a contact in which shear acts on pressure are smooth at D_0 and at the onsets.
 Below the first node a field is linear in u between the limit of u = 0 and that node, beyond the
 last one linear in 1/u between it and the limit of u infinite.
 
-``materials.law.coupled_table`` writes the vector.  All quantities are dimensionless.
-"""  # noqa: E501
+``viscoroll.laws.law_rows`` writes the vector.  All quantities are dimensionless.
+"""
 
 from typing import NamedTuple
 
@@ -145,16 +146,19 @@ def _interval(begin, count, step, x, table):
     """Return the :class:`Interval` of a coordinate; outside of the nodes it is the first or the
     last.
 
-    begin, count : int, where the nodes begin, and their number.
-    step : int, where the step of the axis is in the head.
-    x : float, coordinate.  table : vector of the module.
+    begin, count : ints, where the nodes begin in the vector, and their number.
+    step : int, index in the head of the step of the axis: U_STEP or T_STEP.
+    x : float, coordinate, ln u or t.
+    table : vector of the module.
     """
+    # Indices of the vector are unsigned: numba would test signed ones for negative numbers.
     h = table[np.uint64(step)]
-    if h > 0.0:
+    if h > 0.0:  # Equal steps: the interval follows from the coordinate.
         inverse = table[np.uint64(step + 1)]
         y = (x - table[np.uint64(begin)]) * inverse
-        first = np.int64(min(max(y, 0.0), count - 1.5))
+        first = np.int64(min(max(y, 0.0), count - 1.5))  # at most count - 2, the last interval
         return Interval(first, h, inverse, y - first)
+    # Else it is found by bisection: ``low`` is its left node, ``span`` the intervals left.
     low = np.int64(0)
     span = count - 1
     while span > 1:
@@ -168,16 +172,16 @@ def _interval(begin, count, step, x, table):
 
 @inline_kernel
 def _cubic(first, at, dx):
-    """Return the :class:`Weights` of a cubic between two nodes.
+    """Return the :class:`Weights` of the cubic of Hermite between two nodes.
 
     first : int, number of the row or node at the left end.
-    at : :class:`Interval`.
-    dx : derivative of the coordinate over what derivatives are asked for.
+    at : :class:`Interval` of the coordinate between them.
+    dx : float, derivative of the coordinate over what derivatives are asked for, u or w.
     """
     h = at.h
     s = at.s
     r = 1.0 - s
-    slope = 6.0 * s * r * dx * at.inverse
+    slope = 6.0 * s * r * dx * at.inverse  # derivative of a1, and minus that of a0
     return Weights(
         first=first,
         a0=(1.0 + 2.0 * s) * r * r,
@@ -195,16 +199,17 @@ def _cubic(first, at, dx):
 def locate_speed(u, table):
     """Return the :class:`Weights` of the rows at a speed, with derivatives over u.
 
-    u : float, kappa |V|, >= 0, which may be infinite.  table : vector of the module.
+    u : float, kappa |V|, >= 0, which may be infinite.
+    table : vector of the module.
     """
     rows = np.int64(table[ROWS])
-    if u <= table[FIRST]:
+    if u <= table[FIRST]:  # linear in u from row 0, the limit of u = 0
         part = u / table[FIRST]
         slope = 1.0 / table[FIRST]
         return Weights(
             first=0, a0=1.0 - part, a1=part, b0=0.0, b1=0.0, da0=-slope, da1=slope, db0=0.0, db1=0.0
         )
-    if u >= table[LAST]:
+    if u >= table[LAST]:  # linear in 1/u to the last row, the limit of u infinite
         part = table[LAST] / u
         return Weights(
             first=rows - 2,
@@ -225,17 +230,21 @@ def locate_speed(u, table):
 def edge_at(name, u, speed, table):
     """Return an edge, one of the creeps of the module, as :class:`Edge`.
 
-    name : MIDDLE, ONSET, ONSET + 1 or FREE.
-    u : float, kappa |V|.  speed : its weights, of :func:`locate_speed`.
+    name : int, MIDDLE, ONSET, ONSET + 1 or FREE.
+    u : float, kappa |V|.
+    speed : :class:`Weights` of u, of :func:`locate_speed`.
     table : vector of the module.
     """
     at = np.int64(table[EDGES]) + (speed.first * EDGE_COUNT + name) * 2
+    # Values f and slopes g over ln u in the two rows of the interval.
     f0 = table[np.uint64(at)]
     g0 = table[np.uint64(at + 1)]
     f1 = table[np.uint64(at + 2 * EDGE_COUNT)]
     g1 = table[np.uint64(at + 2 * EDGE_COUNT + 1)]
     value = speed.a0 * f0 + speed.a1 * f1 + speed.b0 * g0 + speed.b1 * g1
     slope = speed.da0 * f0 + speed.da1 * f1 + speed.db0 * g0 + speed.db1 * g1
+    # Second derivative over u: of a function linear in u, of one linear in 1/u, and of the cubic in
+    # x = ln u, (f'' - f')/u^2 with f' = u slope.
     if u <= table[FIRST]:
         return Edge(value, slope, 0.0)
     if u >= table[LAST]:
@@ -253,13 +262,15 @@ def edge_at(name, u, speed, table):
 def locate_creep(w, sigma, table):
     """Return the :class:`Weights` of the nodes in t at a place, with derivatives over w.
 
-    w : float, place of the module, clipped to [0, 1]; beyond 1, in full slip, derivatives are 0.
-    sigma : 1.0 or -1.0, the side.
+    w : float, place of the module, clipped to [0, 1]; from 1 on, in full slip, derivatives are 0.
+    sigma : float, 1.0 or -1.0, the side.
     table : vector of the module.
     """
-    rest = max(1.0 - max(w, 0.0), 0.0)
-    t = 1.0 - rest
-    slope = 1.0
+    rest = max(1.0 - max(w, 0.0), 0.0)  # 1 - w
+    t = 1.0 - rest  # |t|
+    slope = 1.0  # d|t|/dw
+    # With root = (1 - w)^(1/3), |t| = sqrt(1 - root^2) has the slope 1/(3 |t| root).  Both are kept
+    # from 0, so that the slope is finite.
     if table[GRADED] > 0.0:
         root = np.cbrt(max(rest, _ONSET_DISTANCE))
         t = max(np.sqrt(max(1.0 - root * root, 0.0)), _MIDDLE_DISTANCE)
@@ -325,7 +336,8 @@ def _corners(rows, nodes):
 def cell_at(speed, place, table):
     """Return the :class:`Cell` of a state.
 
-    speed : :class:`Weights` of :func:`locate_speed`.  place : those of :func:`locate_creep`.
+    speed : :class:`Weights` of the rows, of :func:`locate_speed`.
+    place : :class:`Weights` of the nodes, of :func:`locate_creep`.
     table : vector of the module.
     """
     down = np.int64(table[NODES]) * JET
@@ -369,8 +381,9 @@ def value_at(name, cell, table):
 def field_at(name, w, cell, table):
     """Return a field as :class:`FieldValue`, continued along its tangent for w < 0.
 
-    name : TRACTION to WORK + 1.
-    w : float, place of the state.  cell : :class:`Cell` of :func:`cell_at`.
+    name : int, TRACTION to WORK + 1.
+    w : float, place of the state.
+    cell : :class:`Cell` of :func:`cell_at`.
     table : vector of the module.
     """
     nodes = _nodes_of(name, cell, table)
@@ -385,8 +398,9 @@ def field_at(name, w, cell, table):
 class Place(NamedTuple):
     """Where a creep D lies at one speed.
 
-    sigma : side, 1.0 or -1.0.  w : place, above 1 in full slip.
-    dw_dD, dw_du : derivatives of w at fixed u and at fixed D.
+    sigma : side, 1.0 or -1.0.
+    w : place, from 1 on in full slip.
+    dw_dD, dw_du : derivatives of w in D at fixed u and in u at fixed D.
     """
 
     sigma: float
@@ -400,7 +414,8 @@ def place_of(D, u, speed, table):
     """Return the :class:`Place` of a creep.
 
     D : float, 2 kappa delta, which may be infinite.
-    u : float, kappa |V|.  speed : its weights, of :func:`locate_speed`.
+    u : float, kappa |V|.
+    speed : :class:`Weights` of u, of :func:`locate_speed`.
     table : vector of the module.
     """
     middle = edge_at(MIDDLE, u, speed, table)
@@ -408,4 +423,5 @@ def place_of(D, u, speed, table):
     onset = edge_at(ONSET + np.int64(D >= middle.value), u, speed, table)
     width = onset.value - middle.value
     w = (D - middle.value) / width
+    # In dw/du w counts as at most 1, so that it is finite for an infinite D too.
     return Place(sigma, w, 1.0 / width, -(middle.du + min(w, 1.0) * (onset.du - middle.du)) / width)

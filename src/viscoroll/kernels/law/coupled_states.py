@@ -1,8 +1,19 @@
-"""States of one row, that is at one speed: contact length of the load, edge of the stick zone,
-powers.
+"""States of one row, that is at one speed, of a contact in which pressure and shear are solved
+together: contact length of the load, zones of stick and slip, powers.
 
-Units as in :mod:`.contact_elements`; then lam = 2 c, epsilon = g/c, kappa M = g + int x p/int p, 2
-kappa delta = 2 d, and the load is int p = pi/8.
+The equations are those of docs/theory_covers.md, Pressure and shear together.  Units as in
+:mod:`.contact_elements`: lengths are divided by l0, slopes and creep by l0/R.  Letters:
+
+- kappa = R/l0, mu the coefficient of friction, delta the creepage.
+- x: place ahead of the middle of the contact.  c: half length of the contact, lam = 2 c.  g: place
+  of its middle ahead of the axis, epsilon = g/c.
+- p, q: pressure, and shear on the cylinder along V.  The load int p is pi/8, as p = sqrt(c^2 - x^2)
+  of an elastic half-space has int p = pi c^2/2, and c = 1/2 at rest.
+- d = kappa delta.  u': strain of the surface; d - u' is the slip divided by V.
+- M: rolling moment divided by P R, kappa M = g + int x p/int p.  Q: traction, int q/(mu int p) is
+  Q/(mu P).
+- The rear edge is at x = -c, where nodes begin; the parameter of a node is 0 there, 1 at the front
+  edge.
 """
 
 import math
@@ -31,8 +42,8 @@ LOAD = math.pi / 8.0
 #: columns of a state: lam, epsilon, Q/(mu P), kappa M, 2 kappa times the work of the strain, kappa
 #: M and work of the cylinder alone, beta, status, half length
 COLUMNS = 10
-#: status of a state: solved; the zones were not found; negative pressure; the load was not reached;
-#: singular matrix
+#: status of a state: solved (0); the zones were not found (1); negative pressure (2); the load was
+#: not reached (3); singular matrix (4)
 SOLVED, NO_ZONES, TENSION, NO_LOAD, SINGULAR = range(5)
 #: distance of an edge from its spot times the number of elements from which on the mesh is made
 #: anew
@@ -67,19 +78,20 @@ _LARGEST_STEP = 2.0
 
 
 class Row(NamedTuple):
-    """Kernels of both bodies at one speed.
+    """Kernels of both bodies at one speed, dimensionless.
 
-    table : summed, (BINS, 2, 3, DEGREE + 1), as :func:`.contact_elements.assemble` takes it; own:
-    those of the cylinder.
+    table : summed over the bodies, (BINS, 2, 3, DEGREE + 1), as :func:`.contact_elements.assemble`
+        takes it.
+    own : the same of the cylinder alone.
     instant, own_instant : instantaneous compliance of both, and of the cylinder, over the long-time
-    one of both.
+        one of both.
     coupled : whether shear acts on the pressure.
     split : whether both bodies deform; else all losses are in one.
     cylinder : whether that one is the cylinder.
     local, own_local : local coupling of both, and of the cylinder, by modes
-    (:func:`.contact_elements.add_local`).
-    layer : length of the layer at the front edge in which the material is stiff; infinite without
-    one.
+        (:func:`.contact_elements.add_local`).
+    layer : length of the layer at the front edge in which the material is stiff, divided by l0;
+        infinite without one.
     """
 
     table: Any
@@ -95,11 +107,18 @@ class Row(NamedTuple):
 
 
 class Contact(NamedTuple):
-    """Arrays of one contact of N elements.
+    """Arrays of one contact of N elements, in the units of the module.
 
-    nodes : (N + 1,).  at : (N,), places of collocation.  H, T, C : (N, N - 1).  p, q : at inner
-    nodes, (N - 1,).
-    strain : u' at places, (N,).  zone : (N - 1,).  place : parameters of the nodes, (N + 1,).
+    Inner node i is node i + 1 of the mesh; element e lies between nodes e and e + 1.
+
+    nodes : (N + 1,), x of the nodes, from -c to c.
+    at : (N,), x of the places of collocation, one in each element.
+    H, T, C : (N, N - 1), slope by pressure, strain by shear and coupling at the places, by the
+        tractions at inner nodes (:func:`.contact_elements.assemble`).
+    p, q : (N - 1,), pressure and shear at inner nodes.
+    strain : (N,), u' at the places.
+    zone : (N - 1,), 0 for stick, 1 or -1 for the sign of the slip, at inner nodes.
+    place : (N + 1,), parameters of the nodes, from 0 to 1 (:func:`.contact_elements.graded`).
     """
 
     nodes: Any
@@ -116,7 +135,9 @@ class Contact(NamedTuple):
 
 @kernel(allocates=True)
 def new_contact(count):
-    """Return the arrays of a contact of ``count`` elements."""
+    """Return the :class:`Contact` of ``count`` elements, of zeros but for equal parameters of the
+    nodes; all its inner nodes stick.
+    """
     inner = count - 1
     return Contact(
         nodes=np.zeros(count + 1),
@@ -134,15 +155,17 @@ def new_contact(count):
 
 @kernel
 def find_spots(zone, place, width, weight, spots):
-    """Write the spots of a mesh at the edges of the zones of a contact; return their number.
+    """Write the spots of a mesh, places at which it is refined, at the edges of the zones of a
+    contact; return their number, an int.
 
     zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
-    width, weight : of each spot.
-    spots : (MOST_SPOTS, 3), written; further edges have none.
+    width, weight : floats, of each spot, as in :func:`.contact_elements.make_mesh`.
+    spots : (MOST_SPOTS, 3), parameter, width and weight, written; further edges have none.
     """
     used = 0
     for i in range(zone.size - 1):
         if zone[i] != zone[i + 1] and used < spots.shape[0]:
+            # The edge counts as at the node that slips, of two that slip at the rear one.
             spots[used, 0] = place[i + 1] if zone[i] != 0.0 else place[i + 2]
             spots[used, 1] = width
             spots[used, 2] = weight
@@ -154,11 +177,12 @@ def find_spots(zone, place, width, weight, spots):
 def carry_zones(zone, place, own, moved):
     """Write zones of one mesh to the nodes of another: that of the nearest node.
 
-    zone, place : (N - 1,) and (N + 1,), of the first mesh.  own : parameters of the other, (M +
-    1,).
-    moved : (M - 1,), written.
+    zone, place : zones at inner nodes, (N - 1,), and parameters of the nodes, (N + 1,), of the
+        first mesh.
+    own : parameters of the nodes of the other, (M + 1,).
+    moved : zones at its inner nodes, (M - 1,), written.  Returns nothing.
     """
-    i = 0
+    i = 0  # nearest inner node of the first mesh, which grows with k
     for k in range(moved.size):
         t = own[k + 1]
         while i + 1 < zone.size and abs(place[i + 2] - t) <= abs(place[i + 1] - t):
@@ -168,15 +192,20 @@ def carry_zones(zone, place, own, moved):
 
 @kernel(allocates=True)
 def gather(row, contact, c, spots):
-    """Make the mesh of a contact, which gathers at the edges of its zones and at the edge layer;
-    return their number.
+    """Make the mesh of a contact, which gathers at the edges of its zones and at the layer at the
+    front edge; return the number of edges, an int.
 
-    row : :class:`Row`.  contact : its zones are carried to the new mesh.  c : half length.
-    spots : (MOST_SPOTS, 3), written: the edges first.
+    row : :class:`Row`, of which ``layer`` is read.
+    contact : :class:`Contact`, whose mesh is written and whose zones are carried to it.
+    c : float, half length divided by l0, > 0.
+    spots : (MOST_SPOTS, 3), written: the edges first, then the layer if it is thinner than an
+        element.
     """
     count = contact.at.size
     edges = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
     used = edges
+    # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a place near t = 1 is
+    # c pi^2 (1 - t)^2/2 behind the front edge.
     thin = math.sqrt(2.0 * row.layer / c) / math.pi
     if thin * count < 1.0 and used < MOST_SPOTS:
         spots[used, 0] = 1.0
@@ -207,7 +236,7 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     within OFF_SPOT elements of the refinements of the mesh.
     """
     count = contact.at.size
-    edges = 0
+    edges = 0  # number of edges at which the mesh is refined; 0 where the mesh is kept
     if again:
         scale_mesh(c, contact.nodes, contact.at)
     else:
@@ -218,12 +247,12 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     if not good:
         return SINGULAR, 0.0, True
     S = strain_by_shear(contact.T, contact.C, B, row.coupled)
-    if math.isinf(d):
+    if math.isinf(d):  # Full slip: the zones are given, and no node sticks, so that d is not read.
         if not solve_zones(S, B, mu, contact.zone, 0.0, contact.q):
             return SINGULAR, 0.0, True
         return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain), True
     good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
-    found = np.empty((MOST_SPOTS, 3))
+    found = np.empty((MOST_SPOTS, 3))  # edges of the zones of the solution
     centred = find_spots(contact.zone, contact.place, 1.0, 1.0, found) == edges
     for k in range(edges):
         centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
@@ -239,6 +268,8 @@ def slip_work(contact, d):
     Returns a float, in the units of the module.
     """
     found = 0.0
+    # Element e, ahead of inner node e - 1, has the zone of that node; the rearmost element that of
+    # inner node 0.
     for e in range(contact.at.size):
         if contact.zone[max(e - 1, 0)] != 0.0:
             a = node_value(contact.q, e)
@@ -276,6 +307,8 @@ def _of_matrix(matrix, e, values):
 def split_powers(row, contact):
     """Return (integral of p times the slope of the cylinder, integral of q times its strain).
 
+    They are its moment and the work of its strain, over V (docs/theory_covers.md, Powers).
+
     row : :class:`Row`, of which the kernels of the cylinder alone are read.
     contact : solved :class:`Contact`, whose matrices are overwritten by those of the cylinder.
     Both are floats, in the units of the module.
@@ -308,7 +341,7 @@ def write_state(row, contact, c, g, mu, d, status, out):
     """
     total, moment = moments(contact.nodes, contact.p)
     traction, _ = moments(contact.nodes, contact.q)
-    slip = 0.0 if math.isinf(d) else d
+    slip = 0.0 if math.isinf(d) else d  # a finite d for the branch of partial slip
     out[0] = 2.0 * c
     out[1] = g / c
     out[2] = traction / (mu * total)
@@ -316,6 +349,7 @@ def write_state(row, contact, c, g, mu, d, status, out):
     if math.isinf(d):
         out[4] = 2.0 * product(contact.nodes, contact.at, contact.q, contact.strain) / total
     else:
+        # int q u' = d int q - int q (d - u'), of which the last vanishes where the contact sticks.
         out[4] = 2.0 * (slip * traction - slip_work(contact, slip)) / total
     out[7] = stick_length(contact)
     if status == SOLVED:
@@ -346,15 +380,16 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
     """
     spots = np.empty((MOST_SPOTS, 3))
     y = math.log(c)
-    last = 0.0
-    before = 0.0
-    error = 1.0
+    last = 0.0  # error of the previous length
+    before = 0.0  # y of the previous length
+    error = 1.0  # ln(load/LOAD)
     for n in range(_MOST_LENGTHS):
         c = math.exp(y)
         status, g, centred = solve_contact(row, contact, c, mu, d, spots, n > _MOST_CENTRINGS)
         total = write_state(row, contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
+        # A load that is not above 0 counts as e times too small, so that the contact grows.
         error = math.log(total / LOAD) if total > 0.0 else -1.0
         if n > 0 and abs(y - before) > _LEAST_CHANGE:
             slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
@@ -365,7 +400,7 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
         y -= error / slope
     if not abs(error) < tolerance and out[8] == SOLVED:
         out[8] = NO_LOAD
-    c *= math.exp(-error / slope)
+    c *= math.exp(-error / slope)  # to first order, to the load LOAD
     out[0] = 2.0 * c
     out[9] = c
     return c, slope
@@ -411,6 +446,9 @@ def full_slip(row, mu, sign, count, c, out):
     best = -np.inf
     for e in range(count):
         best = max(best, sign * contact.strain[e])
+    # Places are at 0.5, 1.5 and 2.5 elements of the parameter from an edge; the parabola through
+    # the three strains in that coordinate, or in its square, is evaluated at 0 by Lagrange's
+    # formula.
     power = 1.0 if row.coupled else 2.0
     x0 = 0.5**power
     x1 = 1.5**power
@@ -434,7 +472,9 @@ def move_edges(place, last, before, count, ahead):
     last, before : edges of the last state and of the one before it, in column 0, (MOST_SPOTS, 3).
     count : number of edges of both.
     ahead : float, step to the next state divided by the step between the two.
+    Returns nothing.
     """
+    # Parameters of both ends and of the edges, before and after; those of nodes are interpolated.
     old = np.zeros(count + 2)
     new = np.zeros(count + 2)
     old[count + 1] = new[count + 1] = 1.0
@@ -463,8 +503,8 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
     Returns nothing.
     """
     contact = new_contact(count)
-    edges = np.zeros((2, MOST_SPOTS, 3))
-    found = np.zeros(2, np.int64)
+    edges = np.zeros((2, MOST_SPOTS, 3))  # edges of the last two states, in turn
+    found = np.zeros(2, np.int64)  # their numbers
     guess = c
     steepness = slope
     for n in range(creeps.size):
@@ -501,7 +541,7 @@ def rear_slip(row, contact, c, slope, mu, d, out):
     c, _ = find_length(row, contact, c, slope, mu, d, _ROUGH_LOAD, out)
     plus = False
     minus = False
-    for i in range(contact.zone.size // 2):
+    for i in range(contact.zone.size // 2):  # inner nodes of the rear half
         plus = plus or contact.zone[i] > 0.0
         minus = minus or contact.zone[i] < 0.0
     return plus, minus, contact.zone[0], c
@@ -534,9 +574,11 @@ def touch_creep(row, mu, low, high, count, c, slope):
         else:
             a = middle
     opened = 0.5 * (a + b)
+    # Above ``opened`` by a few times the error of the bisection: whether slip of sign - is left.
     _, minus, edge, c = rear_slip(row, contact, c, slope, mu, b + 2e-3 * (high - low), out)
     if not minus or edge < 0.0:
         return opened
+    # Both signs exist, with + at the rear edge: the creepage at which - ends.
     a = opened
     b = high
     for _ in range(_BISECTIONS):
@@ -559,7 +601,7 @@ def solve_one(row, mu, d, count, c, slope, sign, out):
     count : int, number of elements.
     c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
     sign : float, 1.0 or -1.0, sign of full slip; not read otherwise.
-    out : (COLUMNS,), the state, written.
+    out : (COLUMNS,), the state, written, but for moment and work of the cylinder.
     """
     contact = new_contact(count)
     if math.isinf(d):

@@ -1,51 +1,48 @@
 """The law of covers of finite thickness: what it has besides its rows, and rows over thickness.
 
-What the law of a cover of finite thickness has besides its rows, and how shear acts back on its
-rolling moment.
-
 ``cover_rows`` is None of half-spaces.  Then every function here returns what it was given, or 0,
 and numba compiles nothing of a cover.  Of a cover it holds a head of :data:`COVER_FRONT_SIZE`
 numbers, the limits of fast rolling and which body has a layer, and then for each row of the law
-three pairs of functions of u = kappa |V| (:mod:`simd`).  The limits hold beyond the last row of the
-law.  Of the functions below the first pair has the sums over both bodies, f = f_b + f_c and
-g = g_b + g_c, the second pair f_c and g_c, which are read only where each body has a layer.
+three pairs of functions of u = kappa |V| (:mod:`.simd`).  The limits hold beyond the last row of
+the law.  Of the functions below the first pair has the sums over both bodies, f = f_b + f_c and
+g = g_b + g_c, the second pair f_c and g_c, which are read only where each body has a layer, the
+third lam_Q and epsilon_Q.
 
-With the traction Q, |Q| <= mu, and delta_f = (f_b + f_c)/(2 kappa), the creepage of free rolling
-with stick,
+Letters: kappa = R/l0, mu the coefficient of friction; Q the traction, |Q| <= mu; L = 2 kappa
+delta_star/mu with the critical creepage delta_star; lam, length of the contact divided by l0, and
+epsilon, its shift in half contact lengths, functions of u (lam_0 and epsilon_0 without traction);
+eta, half the transit time of the stick zone, and eta/F, a function of v = 1/F(eta)
+(:mod:`.law_functions`); delta_0, the creepage of free rolling.  b stands for the base, the body
+called half-space, c for the cylinder.
+
+With delta_0 = (f_b + f_c)/(2 kappa),
 
     M_half_space = V m_half_space - Q [f_b + g_b |Q|/mu]/(2 kappa)
     M_cylinder = V m_cylinder - Q [f_c + g_c |Q|/mu]/(2 kappa + f_b + f_c)
     lam = lam_0 + lam_Q Q        epsilon = epsilon_0 + epsilon_Q Q
 
-f_b and f_c are what the stretched surface of the base and of the cylinder adds to 2 kappa delta_f;
-g_b and g_c change the moment of full slip to that of the mirrored strain (docs/theory_covers.md).
-A body without a layer has f = g = 0.
-|g_b + g_c| is limited to mu L/2 by a smooth function, so that the loss in slip is never below 0.
+f_b and f_c are what the stretched surface of the base and of the cylinder adds to 2 kappa delta_0;
+g_b and g_c, m_b and m_c of docs/theory_covers.md, Shear acts back, change the moment of full slip
+to that of the mirrored strain.  A body without a layer has f = g = 0.  |g_b + g_c| is limited to
+mu L/2 by a smooth function, so that the loss in slip is never below 0.
 
-Full slip begins at creepages that lie unlike far from delta_f where shear acts back:
+Full slip begins at creepages that lie unlike far from delta_0 where shear acts back:
 
-    delta = delta_f + delta_star (d + c d^2)
+    delta = delta_0 + delta_star (d + c d^2)
     c = -r/(1 + (2 r)^6)        r = 2 (g_b + g_c)/(mu L)
 
 where d in [-1, 1] is the creepage of a half-space over its delta_star, from which Q follows, and c,
 |c| < 0.32, the asymmetry.  r is the excess in units of what it is limited to; where it is above 1
 both ends slip, and no law of this form holds.  Losses in slip stay above 0 for every r.
 
-Letters: kappa = R/l0, mu the coefficient of friction; L = 2 kappa delta_star/mu; lam, length of the
-contact divided by l0, and epsilon, its shift in half contact lengths, functions of u; eta, half the
-transit time of the stick zone, and eta/F, a function of v = 1/F(eta) (:mod:`.law`).
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-Rows for one thickness of a cover after another, interpolated between laws at nodes, without root
-finding.
-
+Rows for one thickness after another are interpolated between laws at nodes, without root finding.
 Every number of a law is a polynomial of log2(h/l0) within an octave of the thickness h, and of
 ln(3 - 4 nu) where covers differ in Poisson's ratio nu.  It is the sum of the numbers of the laws at
 the nodes, each times a weight that depends on thickness and nu alone.  The head, the rows and the
-marks of a law, and the parts of a row, are those of :mod:`law_record`; cover rows are the numbers
-that only a cover has (:mod:`cover_law`).  All numbers are dimensionless.
+marks of a law, and the parts of a row, are those of :mod:`.law_record`.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
 """
 
 from typing import NamedTuple
@@ -73,9 +70,9 @@ from .law_record import (
 #: Index in the head: lam as u -> infinity; after it the coefficient of 1/u, as after each of the
 #: next six.
 LAM_LIMIT = 0
-#: Index in the head: f_b, the part of 2 kappa delta_f by the base, as u -> infinity.
+#: Index in the head: f_b, the part of 2 kappa delta_0 by the base, as u -> infinity.
 FREE_HALF_SPACE_LIMIT = 2
-#: Index in the head: f_c, the part of 2 kappa delta_f by the cylinder, as u -> infinity.
+#: Index in the head: f_c, the part of 2 kappa delta_0 by the cylinder, as u -> infinity.
 FREE_CYLINDER_LIMIT = 4
 #: Index in the head: g_b as u -> infinity.
 EXCESS_HALF_SPACE_LIMIT = 6
@@ -296,6 +293,7 @@ def _relative_excess(total, mu, L, dL, ddL):
     mu : float, coefficient of friction, > 0.
     L, dL, ddL : floats, 2 kappa delta_star/mu, > 0, and its derivatives over u, dimensionless.
     """
+    # r = 2 g/(mu L); from r L = 2 g/mu, r' L + r L' = 2 g'/mu, and likewise the second derivative.
     bound = 2.0 * _inverse_width(mu, L)
     value = bound * total.second
     slope = bound * total.second_slope - value * dL / L
@@ -315,6 +313,7 @@ def asymmetry_at(pairs, mu, L, dL, ddL, cover_rows):
     if cover_rows is None:
         return OverSpeed(0.0, 0.0, 0.0)
     r = _relative_excess(pairs.total, mu, L, dL, ddL)
+    # c = -r share with share = 1/(1 + (2 r)^6); over_r and twice_over_r are its derivatives in r.
     square = 4.0 * r.value * r.value
     power = square * square * square
     share = 1.0 / (1.0 + power)
@@ -370,8 +369,10 @@ def cylinder_at(total, position, u, cover_rows):
     """Return f_c and g_c as :class:`PairOverSpeed`; ``total``: of :func:`total_at`; other arguments
     as of :func:`pairs_at`, ``cover_rows`` not None.
     """
-    part = cover_rows[CYLINDER_PART]  # interpolated over the thickness it has rounding
-    if part > -0.5:
+    # 0, 1 or -1; interpolated over the thickness it has rounding, so that it is compared with
+    # +-0.5.
+    part = cover_rows[CYLINDER_PART]
+    if part > -0.5:  # One body alone has a layer: all is the cylinder's, or nothing.
         zero = PairOverSpeed(0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
         return _weighted_sum(zero, 1.0 if part > 0.5 else 0.0, total)
     if position.row < 0:
@@ -388,7 +389,8 @@ def reduced_creep(creep, asymmetry):
     asymmetry : float, c, |c| < 1/2.
     Returns a float: at least 1 in modulus where the whole contact slips, 1 at its onset.
     """
-    # Both are computed, so that a loop becomes vector instructions.
+    # The root of c d^2 + d = creep that is creep for c = 0, in the form without cancellation.  Both
+    # cases are computed, so that a loop becomes vector instructions.
     within = 2.0 * creep / (1.0 + np.sqrt(max(1.0 + 4.0 * asymmetry * creep, 0.0)))
     full_slip = abs(creep) >= abs(asymmetry + np.copysign(1.0, creep))
     return creep - asymmetry if full_slip else within
@@ -420,6 +422,7 @@ def creep_of(d, asymmetry, cover_rows):
     """
     if cover_rows is None:
         return CreepCurve(d, 1.0, 0.0, 0.0, 0.0)
+    # Beyond |d| = 1 d^2 is continued by its tangent there, 2 d within - within^2.
     within = min(max(d, -1.0), 1.0)
     bend = within * (2.0 * d - within)
     return CreepCurve(
@@ -479,10 +482,12 @@ def shear_reaction(pairs, kappa, mu, L, dL, cover_rows):
             cylinder_excess_slope=0.0,
         )
     total, cylinder = pairs
-    base = _weighted_sum(total, -1.0, cylinder)
+    base = _weighted_sum(total, -1.0, cylinder)  # f_b and g_b
+    # Divisors of the module's equations, 2 kappa and 2 kappa + f_b + f_c, inverted.
     on_base = 0.5 / kappa
     on_cylinder = 1.0 / (2.0 * kappa + total.first)
     on_cylinder_slope = -on_cylinder * on_cylinder * total.first_slope
+    # g/s is r of the module: the limiter is (1 + r^4)^(-1/4).
     ratio = _relative_excess(total, mu, L, dL, 0.0)
     cube = ratio.value * ratio.value * ratio.value
     rest = 1.0 / (1.0 + cube * ratio.value)
@@ -528,7 +533,7 @@ def moment_change(Q, mu, reaction):
     mu : float, coefficient of friction, > 0.
     reaction : :class:`Reaction` at the speed.
     """
-    used = abs(Q) / mu
+    used = abs(Q) / mu  # Q (a + e |Q|/mu) has the derivative a + 2 e |Q|/mu in Q
     return MomentChange(
         half_space=-Q * (reaction.half_space + reaction.half_space_excess * used),
         cylinder=-Q * (reaction.cylinder + reaction.cylinder_excess * used),
@@ -598,6 +603,8 @@ def slopes_of_cover(over_u, over_D, D, position, u, L, dL, state, cover_rows):
     """
     if cover_rows is None:
         return over_u, over_D
+    # With D = L |d|, s = sign d and E = 2 kappa |delta - delta_0|/mu = D + s c D^2/L:
+    # dE/dD = 1 + 2 c d at fixed u, and at fixed E dD/du = s d^2 (c L' - c' L)/(1 + 2 c d).
     c = asymmetry_at(pairs_at(position, u, cover_rows), state.mu, L, dL, 0.0, cover_rows)
     d = (-D if state.V < 0.0 else D) / L
     over_creep = over_D / (1.0 + 2.0 * c.value * d)
@@ -621,6 +628,7 @@ def slope_over_speed(dQ_dV, dQ_ddelta, free_slope, cover_rows):
     """
     if cover_rows is None:
         return dQ_dV
+    # d delta_0/dV = (du/dV)/(2 kappa) d(2 kappa delta_0)/du, with du/dV = kappa for V > 0.
     return dQ_dV - 0.5 * dQ_ddelta * free_slope
 
 
@@ -681,12 +689,13 @@ def reduced_kinematics(d, u, L, dL, ddL, asymmetry, cover_rows):
     cover_rows : vector of the numbers that only a cover has, as in the module; None for
     half-spaces.
     """
-    uL_slope = L + u * dL
-    uL_curvature = 2.0 * dL + u * ddL
+    uL_slope = L + u * dL  # A
+    uL_curvature = 2.0 * dL + u * ddL  # its derivative over u
     if cover_rows is None:
         return ReducedKinematics(d, L, dL, 0.0, d, 1.0, uL_curvature * d)
     c = asymmetry
     creep = creep_of(d, c.value, cover_rows)
+    # d(u S)/du = A (d + c d^2) + u L c' d^2, divided by A; ``bend`` is its derivative.
     aside = u * c.slope * L / uL_slope
     return ReducedKinematics(
         value=creep.value,
@@ -704,6 +713,8 @@ def reduced_kinematics(d, u, L, dL, ddL, asymmetry, cover_rows):
 def creep_turn(creep, rate, cover_rows):
     """Return what d^2 in the creepage adds to the slope of V d' in d, times dS/dd, a float; -0.0 of
     half-spaces, which a compiler leaves out of sums.
+
+    The equation of d has dS/dd V d' on its left side: its derivative in d contains d^2S/dd^2 V d'.
 
     creep : :class:`ReducedKinematics`.
     rate : float, V d', dimensionless.
@@ -744,6 +755,7 @@ def _interpolate(source, marks, first, to, out, count):
     count : int, number of numbers.
     Returns nothing.
     """
+    # Numbers of the law at one node: head and rows, then the head and the rows of a cover.
     law_size = (
         (marks[ROW_COUNT] + 1) * ROW_SIZE + COVER_FRONT_SIZE + COVER_ROW_SIZE * marks[ROW_COUNT]
     )
@@ -775,7 +787,7 @@ def select_cover(n, source):
     source = record_at(source)
     marks = integers_at(source.marks, PARTS_PER_ROW)
     index = select_index(n, source.cover_index, source.state_count, marks)
-    if index >= 0:
+    if index >= 0:  # Another cover than before, whose data are to be written.
         octaves = integers_at(source.octaves, 2 * source.cover_count)
         marks[_LAWS] = octaves[2 * index]
         count = octaves[2 * index + 1]

@@ -5,9 +5,10 @@ With the rise r of the temperature above ambient, K, they are the zeros of
 
     f(r) = power kappa M(u) - r,    log2 u = x_hot + slope/(ambient - pole + r)
 
-where u = kappa V a_T, and kappa M without traction is a function of u alone.  log2 a_T of the laws
-of Williams, Landel and Ferry and of Arrhenius is slope/(theta - pole) plus a constant, which is
-part of x_hot.
+where u = kappa V a_T, with the time-temperature shift a_T of the speed, and kappa M without
+traction is a function of u alone.  log2 a_T of the laws of Williams, Landel and Ferry and of
+Arrhenius is slope/(theta - pole) plus a constant, with the temperature theta = ambient + r in
+degrees Celsius; the constant is part of x_hot.
 """
 
 from typing import Any, NamedTuple
@@ -27,14 +28,16 @@ _ABSOLUTE = 1e-15
 class HeatRequest(NamedTuple):
     """States of one law, vectors of one length (n,), and nodes of its curve.
 
-    x_hot : log2 of kappa V a_T in the limit of an infinite temperature, finite.
-    ambient : degrees Celsius, above the pole.
-    power : loss over kappa M and conductance, K, >= 0.
-    hottest : temperature up to which zeros are looked for, degrees Celsius.
+    x_hot : log2 of kappa V a_T in the limit of an infinite temperature, finite, (n,).
+    ambient : ambient temperature, degrees Celsius, above the pole, (n,).
+    power : loss over kappa M and conductance, K, >= 0, (n,).
+    hottest : temperature up to which zeros are looked for, degrees Celsius, (n,).
     pole : of the shift, degrees Celsius, a number.
     slope : of log2 a_T over 1/(theta - pole), K, > 0, a number.
-    curve : kappa M at log2 u = k/density - farthest, (2 farthest density + 1,).
-    density, farthest : ints, of the curve.
+    curve : kappa M at the nodes log2 u = k/density - farthest, k = 0, 1, ..., dimensionless, (2
+        farthest density + 1,).
+    density : int, nodes of the curve in a unit of log2 u.
+    farthest : int, largest |log2 u| of the curve.
     """
 
     x_hot: Any
@@ -57,10 +60,11 @@ def _rest(n, r, request, law):
     request : :class:`HeatRequest`, the states.
     law : law of the material.
     """
-    above = request.ambient[n] - request.pole + r
+    above = request.ambient[n] - request.pole + r  # temperature above the pole, K
     u = np.exp2(request.x_hot[n] + request.slope / above)
     functions = length_and_moment(locate_row(u, law), u, law)
     du_dr = -np.log(2.0) * u * request.slope / (above * above)
+    # kappa M = u m scale, and d(kappa M)/du = d_um (law_functions.LengthAndMoment).
     return (
         request.power[n] * u * functions.scale * functions.m - r,
         request.power[n] * functions.d_um * du_dr - 1.0,
@@ -86,7 +90,7 @@ def _find_zero(n, low, high, r, falling, request, law):
         else:
             high = r
         new = r - value / slope
-        if not low <= new <= high:
+        if not low <= new <= high:  # outside of the bracket, or NaN
             new = 0.5 * (low + high)
         step = abs(new - r)
         r = new
@@ -148,8 +152,8 @@ def heat_loop(law, request, number, out, is_stable):
     A pair is found where |f| has a minimum at a node near which a parabola reaches 0 and f has the
     other sign at the extremum; zeros at which f only touches 0 are not found.
 
-    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the
-    head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of M/V or, beyond the
+    last row, the head are read.
     request : :class:`HeatRequest`.
     number, out, is_stable : (m,) each, ints, floats, bools, of which the first are written: index
         of the state, rise, K, and whether f falls there; ordered by state, and of a state by rise
@@ -158,33 +162,40 @@ def heat_loop(law, request, number, out, is_stable):
     """
     count = 0
     density = request.density
-    offset = request.farthest * density
+    offset = request.farthest * density  # index in the curve of log2 u = 0
     for n in range(request.x_hot.size):
         x_hot = request.x_hot[n]
         above = request.ambient[n] - request.pole
-        most = request.hottest[n] - request.ambient[n]
+        most = request.hottest[n] - request.ambient[n]  # largest rise, K
+        # Nodes k, with log2 u = k/density, from a little below that of the largest rise to a little
+        # above that of no rise.
         first = max(int(density * (x_hot + request.slope / (above + most))) - 3, -offset)
         last = min(int(density * (x_hot + request.slope / above)) + 4, offset)
+        # f and the rise at the last node (old, low) and at the one before it (older, cold).
         older = 0.0
         old = 0.0
         low = -above
         cold = -above
         for k in range(last, first - 1, -1):  # from cold to hot
+            # The rise of this u; where no temperature has it, or one far beyond the hottest, a rise
+            # above the largest.
             distance = k / density - x_hot
             r = 2.0 * most + 1.0
             if distance > 0.0:
                 r = min(request.slope / distance - above, r)
             f = request.power[n] * request.curve[k + offset] - r
             if k < last and (f > 0.0) != (old > 0.0):
-                start = low + old / (old - f) * (r - low)
+                start = low + old / (old - f) * (r - low)  # zero of the chord
                 zero = _find_zero(n, low, r, start, old > 0.0, request, law)
                 count = _write(n, zero, old > 0.0, count, request, number, out, is_stable)
             elif k < last - 1 and (old > 0.0) == (older > 0.0):
+                # |f| is least at the last node; the second difference bounds by how much the
+                # extremum of a parabola through the three nodes may lie nearer to 0.
                 near = abs(old) <= min(abs(older), abs(f))
                 if near and abs(old) < abs(older - 2.0 * old + f):
                     up = old > 0.0
                     turn = _find_turn(n, cold, r, up, request, law)
-                    if turn == turn:
+                    if turn == turn:  # not NaN
                         for side in range(2):
                             begin = cold if side == 0 else turn
                             end = turn if side == 0 else r

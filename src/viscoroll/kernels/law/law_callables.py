@@ -1,18 +1,12 @@
 """The law of one scene as a function of C and of jitted code.
 
-The law of one scene as a C function: ``int law(double V, double omega, double out[10],
-void *scene)``.
+The function of C, ``int law(double V, double omega, double out[10], void *scene)``, is compiled
+once; ``scene`` is its user data, a :data:`SCENE`.  It writes Q, M, and the parts of M in half-space
+and cylinder into ``out``; then, where the scene asks for slopes, dQ/dV at fixed omega, dQ/domega
+and the slopes of the parts over V and over omega.  It returns 0, or another number with NaN in
+``out``.  It writes nothing else: any number of threads may call it.
 
-The function is compiled once; ``scene`` is its user data, a :data:`SCENE`.  It writes Q, M, and the
-parts of M in half-space and cylinder into ``out``; then, where the scene asks for slopes, dQ/dV at
-fixed omega, dQ/domega and the slopes of the parts over V and over omega.  It returns 0, or another
-number with NaN in ``out``.  It writes nothing
-else: any number of
-threads may call it.
-
-The law of one scene for jitted code: a value that is called, the address of the user data of a C
-function.
-
+For jitted code a law is a value that is called: the address of the user data of its C function.
 All such laws have one numba type, so that a user's function that is given a law is compiled once
 for all of them.  The functions with a decorator of numba's are called by numba when it compiles
 such a function.
@@ -84,8 +78,7 @@ def _half_space_law(V, omega, out, scenes):
         :func:`_evaluate` (without slopes numbers 4 and 5 keep their values and those after them
         have no meaning), and to a SCENE record.
     Returns the status, an int: 0; or 1, with all results NaN, if the dimensionless V or omega is
-    not finite or kappa
-    |V| exceeds MAX_U.
+    not finite or kappa |V| exceeds MAX_U.
     """
     return _evaluate(V, omega, out, record_at(scenes), None)
 
@@ -101,8 +94,7 @@ def _cover_law(V, omega, out, scenes):
         have no meaning), and to a SCENE record, whose ``cover_rows`` is the address of
         COVER_FRONT_SIZE + COVER_ROW_SIZE (row_count - 1) doubles that exist during the call.
     Returns the status, an int: 0; or 1, with all results NaN, if the dimensionless V or omega is
-    not finite or kappa
-    |V| exceeds MAX_U.
+    not finite or kappa |V| exceeds MAX_U.
     """
     scene = record_at(scenes)
     cover_rows = floats_at(
@@ -131,8 +123,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
 
     If ``scene.unlike`` is 0, each body has half of M and of its slope.  At V = 0 M is 0 but for
     that by traction on a cover; there omega other than 0 is full slip, with the slopes of Q 0.  At
-    V = omega = 0
-    dQ/domega and dQ/dV are infinite, but 0 in full slip (a cover).
+    V = omega = 0 dQ/domega and dQ/dV are infinite, but 0 in full slip (a cover).
     """
     out = carray(pointer, RESULTS)
     rows = floats_at(scene.rows, scene.row_count * ROW_SIZE)
@@ -148,7 +139,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     V = caller_V / scene.V
     omega = caller_omega / scene.omega
     u = scene.kappa * abs(V)
-    if not (u <= MAX_U and abs(V) < np.inf and abs(omega) < np.inf):
+    if not (u <= MAX_U and abs(V) < np.inf and abs(omega) < np.inf):  # False for NaN too
         return refuse(out)
     state = State(kappa=scene.kappa, mu=scene.mu, V=V, creep=omega, creep_is_omega=True)
     position = locate_row(u, law)
@@ -160,6 +151,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     D = signed_creep(functions.L, free_creep, c, state, law)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
+    # What the traction changes in the moments: nothing of half-spaces.
     change = traction_on_moments(pairs, functions, out[0], state, cover_rows)
     out[1] = factor * functions.m + (change.half_space + change.cylinder)
     out[2] = out[3] = 0.5 * out[1]
@@ -180,6 +172,7 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
         out[5] = out[5] * scene.Q / scene.omega
         for n in range(6, 8):
             out[n] = out[n] * scene.M / scene.V
+    # Loads in the units of the caller; the slopes are already.
     out[0] *= scene.Q
     for n in range(1, 4):
         out[n] *= scene.M
@@ -269,8 +262,8 @@ class LawType(types.Callable):
         context : numba's typing context, not used.
         args, kws : tuple and dict of numba's types of the positional and of the named arguments; a
             type of integers, floats or literal integers is allowed, and converted to double.
-        Returns the signature, (double, double) -> named tuple of eight doubles; None for arguments
-        of another number, name or type, which numba reports as an error of type.
+        Returns the signature, (double, double) -> named tuple of RESULTS doubles; None for
+        arguments of another number, name or type, which numba reports as an error of type.
         """
         try:
             kinds = _SIGNATURE.bind(*args, **kws).args
@@ -303,8 +296,7 @@ class Jitted:
     law is not defined.
 
     The units of V, omega and the results are those of the scene's user data.  Python may call it
-    too.  It cannot be
-    pickled: that raises TypeError.
+    too.  It cannot be pickled: that raises TypeError.
 
     Parameters
     ----------
@@ -346,9 +338,9 @@ class Jitted:
     def ctypes(self) -> tuple[Any, ctypes.c_void_p]:
         """The C function and its user data, for ctypes; each keeps this law alive.
 
-        Returns a tuple: a function of ctypes (V, omega, pointer to eight doubles that it writes,
+        Returns a tuple: a function of ctypes (V, omega, pointer to RESULTS doubles that it writes,
         address of the user data) -> status, which releases the GIL; a ``c_void_p`` of the user data
-        with slopes.  The status is 0, or another int where the law is not defined and all eight
+        with slopes.  The status is 0, or another int where the law is not defined and all these
         doubles are NaN.
         """
         function = ctypes.CFUNCTYPE(*_C_TYPES)(self.function_address)
@@ -410,9 +402,9 @@ def _lower_call(context, builder, signature, arguments):
     the call.
     arguments : values of LLVM: the law, which is the address of its user data, and the doubles V
         and omega, in the units of the user data.
-    Returns a value of LLVM: the eight results as a :class:`LoadsAndSlopes`, in the units of the
+    Returns a value of LLVM: the RESULTS results as a :class:`LoadsAndSlopes`, in the units of the
     user data.  The status of the C function is not read: a state at which the law is not defined
-    has NaN in all eight.
+    has NaN in all of them.
     """
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)

@@ -1,17 +1,36 @@
 """Functions of one speed, from the rows of the law, and the speeds at which they equal a load.
 
-The functions of the law, evaluated from its rows and, beyond the last row, by the fast limit.
+The functions are polynomials in the rows of the law and, beyond the last row, the fast limit:
 
-    record.select_material(law, n)          ``law`` is now that of motion or state n
-    position = locate_row(x, law)           row of x = u = kappa |V|, or of x = v = 1/F(eta) = 2 u/(L - D)
+    law_record.select_material(law, n)      ``law`` is now that of motion or state n
+    position = locate_row(x, law)           row of x = u, or of x = v
     length_and_moment(position, u, law)     L and M/V with their slopes
     H_over_F2(position, v, law)             H/F^2 and its slope over v
 
-``law`` is a :class:`law_record.Law` whatever made its rows, so that its readers are compiled once.
+Terms of this file:
+
+- u = kappa |V|: dimensionless speed, >= 0.  L = lam (1 + epsilon) = 2 kappa delta_star/mu.
+- D = 2 kappa |delta|/mu: creepage, of a cover less that of free rolling; D < L in partial slip.
+- zeta, eta: half the transit time of the contact and of its stick zone, divided by the unit of time
+  of the law, which is T_epsilon of one relaxation time and T_ref of a series.  F(z) = z + g(z) and
+  H(z) = z^2 + 2 z h(z) with functions g and h of the material (:mod:`.material_series`): Eq. (10)
+  is F(eta) = (L - D)/(2 u), and v = 1/F(eta), >= 0.
+- Fast limit: the expansion of the functions for large u or v, used beyond the last row.  Its
+  numbers in the head of the rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j
+  (ln 2 T_j - 0.5772), with the strengths J_j and times T_j of the creep modes.  A cover has 1/L^2,
+  L, 0 and a number for C in their place, with L in its limit u -> infinity, so that the same
+  formulas hold.
+- M: rolling moment divided by P R, the normal load times the radius of the cylinder; kappa = R/l0.
+- Load curve: kappa (M - gain V) as a function of u, with ``gain`` the slope over V of a force plus
+  torque that rises or falls with the speed.  A load is kappa times a force plus torque that does
+  not depend on the speed: kappa (M - gain V) = load is one equation between two nodes between
+  which its left side is monotone, as kappa M is a function of u alone.
+
+``law`` is a :class:`.law_record.Law` whatever made its rows, so that its readers are compiled once.
 The law of one material (``LawTable.record``) has all its rows, and all threads share it.  The law
-of
-one alpha for each state (``materials.law.per_element.record_of_alphas``) or one material for each
-(``record_of_materials``) belongs to one thread, which makes it for a block of states or motions.
+of one alpha for each state (:func:`.laws_per_element.record_of_alphas`) or one material for each
+(:func:`.laws_per_element.record_of_materials`) belongs to one thread, which makes it for a block of
+states or motions.
 
 Such a law has one material selected at a time.  ``select_material`` gives a new material the next
 version number and writes its head; nothing else is touched.  A part of a row bears the version that
@@ -22,34 +41,7 @@ on its material alone, not on what was read before.  Select the material before 
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
-
-The speeds at which kappa (M(V) - gain V) equals a load, over arrays.
-
-Here M is the rolling moment divided by P R, the normal load times the radius of the cylinder, V > 0
-the speed, kappa = R/l0 the slenderness, and gain the slope over V of a force plus torque that rises
-or falls with the speed.  A "load" of this file is kappa times a force plus torque that does not
-depend on the speed.
-
-kappa M is one function of u = kappa V, so that kappa (M - gain V) = load is one equation between
-two nodes between which its left side is monotone.
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-Terms of this file:
-
-- u = kappa |V|: dimensionless speed, >= 0.  L = lam (1 + epsilon) = 2 kappa delta_star/mu.
-- D = 2 kappa |delta|/mu: creepage, of a cover less that of free rolling; D < L in partial slip.
-- zeta, eta: half the transit time of the contact and of its stick zone, divided by the unit of time
-  of the law, which is T_epsilon of one relaxation time and T_ref of a series.  F(z) = z + g(z) and
-  H(z) = z^2 + 2 z h(z) with functions g and h of the material (:mod:`.law`): Eq. (10) is F(eta) =
-  (L - D)/(2 u), and v = 1/F(eta), >= 0.
-- Fast limit: the expansion of the functions for large u or v, used beyond the last row.  Its
-  numbers in the head of the
-  rows: alpha, lam_fast = alpha^(-1/2), W = sum J_j/T_j, C = sum J_j/T_j (ln 2 T_j - 0.5772).  A
-  cover has 1/L^2, L, 0 and a number for C in their place, with L in its limit u -> infinity, so
-  that the same formulas hold.
-"""  # noqa: E501
+"""
 
 from typing import Any, NamedTuple
 
@@ -130,10 +122,13 @@ def locate_octave(x, e0):
     infinite x is beyond the rows of every law; a NaN is in row 0 or beyond all rows, by its sign
     bit; t of both is NaN.
     """
+    # The biased exponent of x in its bits: x = m 2^(e0 + row) with m in [1/2, 1).
     row = (float_to_bits(x) >> 52) - _EXPONENT_OF_HALF - e0
     # -1 in row 0, else 0: by arithmetic, since a branch would be mispredicted on scattered speeds
     slow = (row - 1) >> 63
     row &= ~slow
+    # 2^(2 - e0 - row), of row 0 2^-e0; t = 4 m - 3, of row 0 x 2^-e0: the bits of 3 become those of
+    # 0 there.
     dt_dx = bits_to_float((_EXPONENT_OF_4 - e0 - row + 2 * slow) << 52)
     return row, x * dt_dx - bits_to_float(_BITS_OF_3 & ~slow), dt_dx
 
@@ -143,8 +138,8 @@ def locate_row(x, law):
     """Return the :class:`RowPosition` of u or v in the rows of a law.
 
     x : float, u or v, dimensionless, >= 0.
-    law : :class:`Law`, with its material selected, of whose ``marks`` e0 and the number of rows are
-    read.
+    law : :class:`.law_record.Law`, with its material selected, of whose ``marks`` e0 and the number
+    of rows are read.
     Returns the position; its row is :data:`FAST_LIMIT` = -1 beyond the last row, also for infinity.
     A NaN has t NaN, in row 0 or in FAST_LIMIT by its sign bit.
     """
@@ -171,7 +166,7 @@ def _fast_terms(u, body, law):
     u : float, kappa |V|, dimensionless, > 0 and finite.
     body : int, index in the head of the rows: FAST_TOTAL for both bodies, FAST_HALF_SPACE or
         FAST_CYLINDER for one.  W of it is at this index, C at the next one.
-    law : :class:`Law` of the material, of which the head of ``rows`` is read.
+    law : :class:`.law_record.Law` of the material, of which the head of ``rows`` is read.
 
     Returns (z, shift, part), floats, dimensionless: z = lam_fast/(2 u), which is zeta in the limit;
     shift = (alpha z/2) (C - W ln z); part = alpha z W/8.  With W and C of both bodies shift is
@@ -192,8 +187,8 @@ def length_and_moment(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is read for ``d_um`` alone.
-    law : :class:`Law` of the material, of which the polynomials of L and M/V or, beyond the last
-        row, the head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of L and M/V or, beyond
+        the last row, the head are read.
 
     Returns floats.  ``m`` is M/V itself in the rows, with ``scale`` 1; beyond the last row it is
     M/V divided by z = lam_fast/(2 u), with ``scale`` z.  ``d_um``, d(u M/V)/du, is not divided by
@@ -203,10 +198,12 @@ def length_and_moment(position, u, law):
     if in_fast_limit(position):
         lam = law.rows[LAM_FAST]
         z, shift, part = _fast_terms(u, FAST_TOTAL, law)
+        # As z falls like 1/u, u d(shift)/du = -(shift - 4 part) and u d(part)/du = -part.
         decrease = shift - 4.0 * part
         dL = -(lam / u) * decrease
         ddL = lam / u * (2.0 * decrease - 4.0 * part) / u
         moment = fast_moment(shift, u, law.cover_rows)
+        # d(u z m)/du with u z constant: z u dm/du.
         return LengthAndMoment(
             L=lam * (1.0 + shift),
             dL=dL,
@@ -231,7 +228,8 @@ def moment_factor(position, u, scale, state):
     u : float, kappa |V|, dimensionless, >= 0; not read in the rows.
     scale : float, ``scale`` of the :class:`LengthAndMoment` at u: 1, or z in the fast limit; not
     read in the rows.
-    state : :class:`State`, of which V (with its sign) and, beyond the last row, kappa are read.
+    state : :class:`.law_record.State`, of which V (with its sign) and, beyond the last row, kappa
+        are read.
     Returns a float with the sign of V, dimensionless: V itself in the rows, 0 at V = 0.
     """
     return np.copysign(scale * u / state.kappa, state.V) if in_fast_limit(position) else state.V
@@ -243,8 +241,8 @@ def lam_and_epsilon(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite; in the rows it is not read.
-    law : :class:`Law` of the material, of which the polynomials of lam and epsilon or, beyond the
-        last row, the head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of lam and epsilon or,
+        beyond the last row, the head are read.
     Returns (lam, epsilon), floats, dimensionless: length divided by l0, from 1 down to alpha^(-1/2)
     for half-spaces; shift in half contact lengths, 0 at u = 0 and for elastic half-spaces, and -> 0
     for u -> infinity.
@@ -262,9 +260,8 @@ def body_moments(position, u, law):
 
     position : :class:`RowPosition` of u, in which the polynomials are evaluated.
     u : float, kappa |V|, dimensionless, >= 0 and finite.
-    law : :class:`Law` of the material, not one of the axis of alpha (:mod:`.alpha_axis`), which has
-        no rows of these
-        parts: there each is half of M/V.
+    law : :class:`.law_record.Law` of the material, not one of the axis of alpha
+        (:mod:`.alpha_axis`), which has no rows of these parts: there each is half of M/V.
 
     Returns (m_half_space, m_cylinder, slope of the half-space, slope of the cylinder), floats,
     dimensionless; the first two are divided by ``scale`` of the :class:`LengthAndMoment` at u,
@@ -297,7 +294,7 @@ def free_creep_and_slopes(u, law):
     It is :func:`.cover_law.free_creep_at` for callers that have not located u.
 
     u : float, kappa |V|, dimensionless, >= 0.
-    law : :class:`Law` of the material, of which marks and ``cover_rows`` are read.
+    law : :class:`.law_record.Law` of the material, of which marks and ``cover_rows`` are read.
     Returns (value, first derivative, second derivative), floats, dimensionless, of either sign; 0.0
     each of half-spaces, at no cost.
     """
@@ -311,7 +308,8 @@ def limits_at_rest(kappa, law):
     The departure from rest and the exponential decay of a motion are decided with them.
 
     kappa : float, slenderness R/l0, dimensionless, > 0; not read for half-spaces.
-    law : :class:`Law` of the material, of which, if it is a cover, L and delta_0 in row 0 are read.
+    law : :class:`.law_record.Law` of the material, of which, if it is a cover, L and delta_0 in row
+        0 are read.
     Returns (L, delta_0), floats, dimensionless: L > 0, delta_0 of either sign; for half-spaces
     (1.0, -0.0), of which a compiler leaves the second out of sums.
     """
@@ -331,7 +329,8 @@ def _half_space_eta_over_F(y, law):
     slope over y.
 
     y : float, F(eta) = 1/v, dimensionless, >= 0.
-    law : :class:`Law` of the material, of whose head alpha, W and C of both bodies are read.
+    law : :class:`.law_record.Law` of the material, of whose head alpha, W and C of both bodies are
+        read.
 
     Returns (eta/F, -d(eta/F)/dy), floats, dimensionless.  At y = 0 the first is 1; the second
     is -alpha W/2 there, which is a placeholder, as the slope is infinite for W > 0.  Its users
@@ -353,8 +352,8 @@ def eta_over_F(position, v, law):
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material, of which the polynomials of eta/F or, beyond the last row,
-        the head and ``cover_rows`` are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of eta/F or, beyond the
+        last row, the head and ``cover_rows`` are read.
     Returns a float, dimensionless: for half-spaces it is in (0, 1], and 1 at v = 0 and at infinity;
     for a cover it is lam/L of the speed at which v = 2 u/L.
     """
@@ -369,8 +368,8 @@ def H_over_F2(position, v, law):
 
     position : :class:`RowPosition` of v, in which the polynomial is evaluated.
     v : float, 1/F(eta), dimensionless, >= 0, which may be infinite; in the rows it is not read.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 or, beyond the last row,
-    the head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 or, beyond the
+    last row, the head are read.
 
     The traction is |Q|/mu = 1 - w^2 H/F^2 at v = 2 u/w, with w = 2 kappa (delta_star - |delta -
     delta_0|)/mu.
@@ -398,8 +397,8 @@ def H_over_F2_secants(position, near, v, x, law):
     v : float, 1/F(eta), dimensionless, >= 0.
     x : float, ratio of v to the other argument, less 1, dimensionless, in [0, 1]; 0 gives the
     slopes at v.
-    law : :class:`Law` of the material, of which the polynomials of H/F^2 or, beyond the last row,
-    the head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of H/F^2 or, beyond the
+    last row, the head are read.
 
     Returns (value, slope, mean slope of the value, mean slope of the slope), floats, all over v,
     dimensionless.  At x = 0, where both ends are v, the mean slopes are the slope and the second
@@ -409,7 +408,7 @@ def H_over_F2_secants(position, near, v, x, law):
     if in_fast_limit(position):
         return *H_over_F2(position, v, law), *_fast_secants(v, x, law)
     dt = position.dt_dx
-    end = near.t if near.row == position.row else -1.0
+    end = near.t if near.row == position.row else -1.0  # -1: the begin of the row of v
     value, secant, slope, slope_secant = evaluate_secants(
         law.rows, ensure_part(H_OVER_F2, position.row, law), position.t, end
     )
@@ -419,7 +418,7 @@ def H_over_F2_secants(position, near, v, x, law):
         near_dt = near.dt_dx
         start = ensure_part(H_OVER_F2, near.row, law)
         _, near_secant, _, near_slope_secant = evaluate_secants(law.rows, start, 1.0, near.t)
-        # fraction of the interval that lies in the row of v
+        # Fraction of the interval, of length v x/(1 + x), that lies in the row of v.
         part = min((position.t + 1.0) * (1.0 + x) / (dt * v * x), 1.0)
         secant = part * secant + (1.0 - part) * near_secant * near_dt
         slope_secant = part * slope_secant + (1.0 - part) * near_slope_secant * near_dt * near_dt
@@ -434,7 +433,8 @@ def _fast_secants(v, x, law):
     v : float, 1/F(eta), dimensionless, > 0, which may be infinite.
     x : float, ratio of v to the other argument, less 1, dimensionless, >= 0; 0 gives the slopes at
     v.
-    law : :class:`Law` of the material, of whose head alpha, W and C of both bodies are read.
+    law : :class:`.law_record.Law` of the material, of whose head alpha, W and C of both bodies are
+        read.
     Returns (mean slope of H/F^2, mean slope of d(H/F^2)/dv), floats, over v, dimensionless; at x =
     0 they are the slope and the second derivative at v; both are 0 for elastic bodies and at v =
     infinity.
@@ -445,9 +445,14 @@ def _fast_secants(v, x, law):
     near_y = y * (1.0 + x)
     eta, d_eta = _half_space_eta_over_F(y, law)
     near_eta, near_d_eta = _half_space_eta_over_F(near_y, law)
+    # H/F^2 = alpha e^2 with e = eta/F, and de/dv = y^2 d_eta.  ``secant`` and ``slope_secant`` are
+    # the mean slopes over v of e and of de/dv.  Between near_y = y (1 + x) and y, 1/y - 1/near_y =
+    # x/near_y, ln near_y - ln y = ln(1 + x), and the mean slope of y ln y is ln near_y + ln(1 +
+    # x)/x.
     mean = W * (np.log1p(x) / x if x > 0.0 else 1.0)
     secant = y * near_y * (near_d_eta + 0.5 * alpha * (W - mean))
     slope_secant = near_y * (0.5 * alpha * near_y * near_y * mean - y * (y + near_y) * d_eta)
+    # Mean slopes of a product: those of its factors, each times the value of the other at one end.
     return alpha * (eta + near_eta) * secant, 2.0 * alpha * (
         eta * slope_secant + near_d_eta * near_y * near_y * secant
     )
@@ -488,8 +493,8 @@ def _find_crossing(load, n, curve, law):
     checked.
     n : int, index of the lower node, from 0 to the number of nodes - 2.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
-    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the
-    head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of M/V or, beyond the
+    last row, the head are read.
     Returns u = kappa V, a float, > 0, dimensionless, from u of node n to that of node n + 1.  Where
     the load equals an extremum at the node n + 1 to rounding (EXTREMUM_RTOL), it is that node;
     where it equals one at the node n to rounding, it is that node to about the square root of
@@ -505,6 +510,7 @@ def _find_crossing(load, n, curve, law):
     rise = curve.value[n + 1] - curve.value[n]
     if curve.is_extremum[n + 1] and abs(load - curve.value[n + 1]) <= EXTREMUM_RTOL * abs(load):
         return high
+    # First guess: fraction of the interval in ln u.  ``top`` is the u of an extremum at a node.
     part = (load - curve.value[n]) / rise
     top = 0.0
     if curve.is_extremum[n]:  # beside an extremum the curve is a parabola
@@ -524,7 +530,7 @@ def _find_crossing(load, n, curve, law):
             high = u
         step = (load - value) / slope
         new = u * np.exp(step)
-        if not low <= new <= high:
+        if not low <= new <= high:  # Outside the bracket, or NaN: its middle in ln u, and go on.
             new = np.sqrt(low) * np.sqrt(high)
             step = 1.0
         old = u
@@ -538,8 +544,8 @@ def _find_crossing(load, n, curve, law):
 def crossing_loop(law, curve, load, node, out, start, stop):
     """Find u = kappa V where kappa (M(V) - gain V) equals each load.
 
-    law : :class:`Law` of the material, of which the polynomials of M/V or, beyond the last row, the
-    head are read.
+    law : :class:`.law_record.Law` of the material, of which the polynomials of M/V or, beyond the
+    last row, the head are read.
     curve : :class:`LoadCurve`: nodes u, kappa (M - gain V) there, whether it is an extremum, gain.
     load : values of kappa (M - gain V), (n,), dimensionless, each between the values at its two
     nodes; not checked.

@@ -1,19 +1,17 @@
-"""Records of a law and of contact states, and the layout of their arrays.
-
-Records of contact states: what the law is given, and which quantities are written where.
-
-The record of a law that every kernel reads, and the layout of its arrays: the one place where
+"""Records of a law and of contact states, and the layout of their arrays: the one place where
 columns have names.
 
-``rows`` holds one head, as long as a row, and then the rows.  A row has :data:`ROW_SIZE` numbers in
-:data:`PARTS_PER_ROW` parts of :data:`PART_SIZE`; the constants from :data:`LENGTH_MOMENT` to
-:data:`ETA_OVER_F` are offsets in a row.  Two functions whose powers are interleaved
-(:mod:`simd`) take two neighbouring parts.
+A state is what the law is given; a request says which quantities are written where.
+
+A law has two arrays.  ``rows`` holds one head, as long as a row, and then the rows.  A row has
+:data:`ROW_SIZE` numbers in :data:`PARTS_PER_ROW` parts of :data:`PART_SIZE`; the constants from
+:data:`LENGTH_MOMENT` to :data:`ETA_OVER_F` are offsets in a row.  Two functions whose powers are
+interleaved (:mod:`.simd`) take two neighbouring parts.
 
 ``marks`` holds one head, as long as a row has parts, and then for every part of every row the
 version of the material that it was made for: the number of the selection of a material, which
 grows.  The rows of one material are complete.  Of many materials a part is made when it is first
-read; who reads it need not know which (:mod:`law_functions`).
+read; who reads it need not know which (:mod:`.law_functions`).
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
@@ -92,6 +90,8 @@ def element(values, n):
     n : int, index of the state, >= 0; not checked.
     Returns ``values[n]``; of an array of length 1 its only element, whatever n is.
     """
+    # Index 0 of length 1 by a product, without a branch; unsigned, as numba would test signed
+    # indices for negative ones.
     return values[np.uint64(n * (values.size > 1))]
 
 
@@ -142,7 +142,7 @@ def slip_and_creepage(state):
     omega = 0 and else infinite with the sign of omega.
     """
     V = state.V
-    creep = state.creep
+    creep = state.creep  # delta or omega
     if not state.creep_is_omega:
         return -creep if V < 0.0 else creep, creep
     slip = creep - V
@@ -208,7 +208,7 @@ class Law(NamedTuple):
         that makes the part; 0 if all rows are complete.
     source : address of the record that these two kernels read, SOURCE of their module; 0 if all
         rows are complete.
-    cover_rows : vector of the numbers that only a cover has (:mod:`cover_law`); None of
+    cover_rows : vector of the numbers that only a cover has (:mod:`.cover_law`); None of
         half-spaces, whose kernels are compiled without.
     table : vector of the law as a table of one scene (:mod:`.coupled_splines`), which is then the
         law; None without, and kernels are compiled without.

@@ -2,16 +2,17 @@
 and the parts of m.
 
 With E(t) = 1 + sum E_i exp(-a_i t) and J(t) = 1 - sum J_j exp(-b_j t), the two forms of one
-material,
+material, a_i = 1/tau_i and b_j = 1/T_j, z half the transit time of the contact, and the ratios of
+Bessel functions r = I1/I0, k = K0/K1 and i2 = I2/I0 (:mod:`.bessel_ratios`),
 
-    Q_ji = sqrt(J_j b_j E_i a_i)/(a_i - b_j)      orthogonal: Q^T t = e, t_j = sqrt(J_j T_j), e_i = sqrt(E_i tau_i)
-    r_i = r(a_i z)   k_j = k(b_j z)               the ratios of one relaxation time (:mod:`.bessel_ratios`)
+    t_j = sqrt(J_j T_j)   e_i = sqrt(E_i tau_i)
+    Q_ji = sqrt(J_j b_j E_i a_i)/(a_i - b_j)      orthogonal: Q^T t = e
+    r_i = r(a_i z)   k_j = k(b_j z)               the ratios of one relaxation time
     (1/r + Q^T k Q) y = e      f = Q y      X_i = e_i y_i/r_i
     h = sum e_i y_i      g = sum t_j k_j f_j      m = g + lam^2 sum X_i i2(a_i z)
 
-Here z is half the transit time of the contact, r = I1/I0, k = K0/K1 and i2 = I2/I0 are ratios of
-Bessel functions, a_i
-= 1/tau_i and b_j = 1/T_j, lam^-2 = 1 + 2 h/z, and m is M/V.
+where r and k stand for diagonal matrices in the fourth line, lam^-2 = 1 + 2 h/z, and m is M/V
+(docs/theory_materials.md, Any linear viscoelastic material).
 
 All sums but the last are of positive terms.  What a creep mode has in m, all of them positive as
 well,
@@ -19,16 +20,17 @@ well,
     m_j = t_j [k_j f_j + sum_i Q_ji v_i]      v_i = lam^2 X_i u_i/e_i
     u_i = i2_i + sum_l X_l a_i a_l (i2_i - i2_l)/(a_i + a_l)
 
-makes the parts of two bodies that deform unlike each other: the contact sees their sum, one series.
+makes the parts of two bodies that deform unlike each other: the contact sees their sum, one series
+(docs/theory_materials.md, Two bodies).
 
-Every number is a vector of four (:mod:`.simd`).  The four are values at four places z,
-or, where ``jets`` is True, a **jet** at one place: value, d/dz, d/ds, d2/dz ds.  The parameter s is
+Every number is a vector of four (:mod:`.simd`).  The four are values at four places z, or, where
+``jets`` is True, a **jet** at one place: value, d/dz, d/ds, d2/dz ds.  The parameter s is
 subtracted from all rates a_i and b_j while E_i a_i, J_j b_j and Q stay what they are
-(:mod:`modes`).
+(:mod:`.modes`).
 
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-"""  # noqa: E501
+All quantities are dimensionless (docs/symbols.md), times divided by the unit of time of the series;
+an argument of which no shape is stated is a number.
+"""
 
 from typing import Any, NamedTuple
 
@@ -196,6 +198,7 @@ def multiply(jets, p, q):
     """
     if not jets:
         return p * q
+    # The product rule: value, d/dz, d/ds and d2/dz ds of p q.
     p0, p1, p2, p3 = unpack(p)
     q0, q1, q2, q3 = unpack(q)
     return pack(
@@ -216,6 +219,7 @@ def reciprocal(jets, p):
     inverse = 1.0 / p
     if not jets:
         return inverse
+    # With w = 1/p: dw = -w^2 dp, and d2w/dz ds = w^2 (2 w p_z p_s - p_zs).
     w, _, _, _ = unpack(inverse)
     _, dz, ds, dzds = unpack(p)
     return pack(w, -w * w * dz, -w * w * ds, w * w * (2.0 * w * dz * ds - dzds))
@@ -255,6 +259,8 @@ def _factorize(matrix, count):
     Returns nothing.  It is not tested that D is positive: a 0 in it gives infinities and NaNs.
     """
     row_size = LANES * count
+    # Column i of what is left: 1/D is stored, and from each later row L times column i subtracted;
+    # LANES (n count + i) is the place of element (n, i).
     for i in range(0, row_size, LANES):
         inverse = 1.0 / load(matrix, i * count + i)
         store(matrix, i * count + i, inverse)
@@ -305,6 +311,7 @@ def solve_modes(jets, series, work):
     the third leaves none.
     """
     count = series.a.size
+    # Row i of the matrix, up to its diagonal; ``kf`` holds column i of k Q until it is written.
     for i in range(count):
         for j in range(count):
             store(work.kf, LANES * j, series.Q[j, i] * load(work.k, LANES * j))
@@ -326,7 +333,7 @@ def solve_modes(jets, series, work):
         store(work.y, LANES * i, broadcast(0.0))
     _factorize(work.matrix, count)
     for turn in range(3 if jets else 1):
-        if turn > 0:
+        if turn > 0:  # The right side is the residual e - (1/r + Q^T k Q) y, as jets.
             for i in range(count):
                 total = multiply(jets, load(work.inverse_r, LANES * i), load(work.y, LANES * i))
                 for j in range(count):
@@ -363,6 +370,7 @@ def _split_moment(jets, lam2, series, work):
     """
     count = series.a.size
     half_space = cylinder = broadcast(0.0)
+    # ``right`` becomes v_i: u is u_i, and ``y`` holds X.
     for i in range(count):
         own = u = load(work.i2, LANES * i)
         a = series.a[i]
@@ -402,8 +410,8 @@ def evaluate_functions(jets, z, series, work):
     multiplied by one factor that makes their sum m; of a jet they have no slopes in s.
     """
     solve_modes(jets, series, work)
-    unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)
-    g = h = pressed = broadcast(0.0)
+    unit = pack(1.0, 0.0, 0.0, 0.0) if jets else broadcast(1.0)  # the number 1
+    g = h = pressed = broadcast(0.0)  # ``pressed`` is sum X_i i2_i
     for i in range(series.a.size):
         at = LANES * i
         ey = multiply(jets, _strength(jets, series.e[i], series.a[i]), load(work.y, at))

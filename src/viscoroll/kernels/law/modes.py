@@ -1,55 +1,51 @@
-"""The law from the modes of a material: functions that rows are fitted to, and stresses.
+"""The law from the modes of a material: functions that rows are fitted to, N, and stresses.
 
-What the rows of one material are fitted to: the functions of :mod:`material_series` with slopes
-over ln(1/z), and N.
+Letters (docs/theory_materials.md): z is half the transit time of the contact or of its stick zone,
+zeta or eta; a_i = 1/tau_i and b_j = 1/T_j are the rates of relaxation and of creep, E_i the
+strengths of relaxation, alpha the instantaneous divided by the long-time modulus; g, h and X_i are
+functions of z, r = I1/I0, k = K0/K1 and i2 = I2/I0 ratios of Bessel functions
+(:mod:`.material_series`, :mod:`.bessel_ratios`).  V > 0, kappa = R/l0; lam = 2 kappa V zeta is the
+contact length divided by l0, beta = eta/zeta.
+
+**What rows are fitted to** are the functions of :mod:`.material_series` with slopes over ln(1/z),
+and N.
 
 N of M = M(V) + N(V) V', the first-order term of unsteady rolling where speed changes slowly, has a
-closed form: with y
-= sum X_i i2(a_i z), theta = 2 H/H' and ' = d/dz,
+closed form (docs/theory_materials.md, Slowly changing speed): with y = sum X_i i2(a_i z), H = z^2 +
+2 z h, theta = 2 H/H', T_mean = sum E_i tau_i and ' = d/dz,
 
     W = H g - 2 z (h - z h') g - z H g' + z^2 (y - z y')
     U = H g_s - g H_s + z^2 (y_s + T_mean g)
     N = -[(3/2) U - (theta/2) U' + (theta g' - g) W]/H
 
-z is half the transit time of the contact, a_i = 1/tau_i and b_j = 1/T_j are the rates of the modes,
-E_i the strengths of relaxation, g, h and X_i functions of z (:mod:`.material_series`), H = z^2 + 2
-z h, and T_mean = sum E_i tau_i.  _s is the derivative in s at s = 0, where s is subtracted from all
-rates
-a_i and b_j (:mod:`.material_series`).  (Divided by 1 + T_mean s, which makes the long-time modulus
-1 again, h and y gain T_mean times themselves and g nothing: hence the last term of U.)  Unit of N:
-that of
+An index s is the derivative in s at s = 0, where s is subtracted from all rates a_i and b_j
+(:mod:`.material_series`).  (Divided by 1 + T_mean s, which makes the long-time modulus 1 again, h
+and y gain T_mean times themselves and g nothing: hence the last term of U.)  Unit of N: that of
 time squared.
 
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
+**Pressure and shear** along the contact, Eqs. (11)-(14), in a form where nothing cancels.  As
+printed the integrals start at the rear edge and lose a factor exp(2 alpha zeta).  Here, with Y
+measured from the middle of the contact as a time, p(z) = r(alpha z) k(z), c = 1 - 1/alpha, B =
+c/(1 + p), cos phi = Y/z,
 
-Pressure and shear along the contact, Eqs. (11)-(14), in a form where nothing cancels.
-
-As printed the integrals start at the rear edge and lose a factor exp(2 alpha zeta).  Here, with Y
-measured from the middle of the contact, p(z) = r(alpha z) k(z), B = c/(1 + p), cos phi = Y/z,
-
-    S(Y; z) = sqrt(z^2 - Y^2) + alpha z B Int_0^phi (r(alpha z) + cos t) exp(-alpha (z cos t - Y))
-    dt
+    S(Y; z) = sqrt(z^2 - Y^2)
+              + alpha z B Int_0^phi (r(alpha z) + cos t) exp(-alpha (z cos t - Y)) dt
     p/E'    = V/(4 pi) S(Y; zeta)
-    |tau|/E' = mu V/(4 pi) [S(Y; zeta) - S(Y - (zeta - eta); eta)]      second term in the stick zone
+    |tau|/E' = mu V/(4 pi) [S(Y; zeta) - S(Y - (zeta - eta); eta)]    (second term: stick zone)
 
 Inside, lengths are in half contacts: u = 1 - Y/z from the front edge, w = 1 + Y/z from the rear
 edge (each passed on its own: 2 - u would spoil a small w), S/z instead of S.  V zeta = lam/(2
 kappa) then removes the speed from the formulas, and V = 0 is zeta = inf: Hertz.
 
-With D(t) = cos t - cos phi the integrand is (w - (1 - r) + D) exp(-a D), a = alpha z.  Only the
+With D(t) = cos t - cos phi and a = alpha z the integrand is (w - (1 - r) + D) exp(-a D).  Only the
 part of [0, phi] with a D <= 38 counts; one Gauss-Legendre rule on it serves every a.  Against 40
 digits S is within 3e-15 of its peak and 2e-14 of itself for a from 1e-8 to 1e8, alpha from 1.01 to
-1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term is a sum over
-the modes, with the weight a_i X_i (:mod:`material_series`) in place of alpha B.
-
-Here c = 1 - 1/alpha, r = I1/I0 and k = K0/K1; V > 0, lam = 2 kappa V zeta is the contact length
-divided by l0, and eta
-= beta zeta belongs to the stick zone.
+1e4 (28 nodes; 24 leave about 1e-11 of the peak).  Of several modes the second term of S is a sum
+over the modes, with the weight a_i X_i in place of alpha B and a_i in place of alpha elsewhere.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
-"""  # noqa: E501
+"""
 
 from typing import Any, NamedTuple
 
@@ -96,6 +92,7 @@ def _evaluate_asymptotic(terms, x):
     infinity.
     """
     w = 1.0 / x
+    # Sums of a_n x^-n, -n a_n x^-(n + 1) and n (n + 1) a_n x^-(n + 2), by Horner's scheme in 1/x.
     value = slope = second_derivative = 0.0
     for n in range(terms.size - 1, 0, -1):
         value = value * w + terms[n]
@@ -130,9 +127,9 @@ def _write_ratio_jets(z, series, work):
 
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series; at
         infinity values are 1 and derivatives over s are NaN.
-    series : :class:`Series`, of which the rates a and b are read.
-    work : :class:`Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2`` are written, four
-        numbers a mode, as of :func:`_jet`.  Returns nothing.
+    series : :class:`.material_series.Series`, of which the rates a and b are read.
+    work : :class:`.material_series.Workspace` of the series, whose ``inverse_r``, ``k`` and ``i2``
+        are written, four numbers a mode, as of :func:`_jet`.  Returns nothing.
     """
     for i in range(series.a.size):
         a = series.a[i]
@@ -140,11 +137,11 @@ def _write_ratio_jets(z, series, work):
         x = a * z
         r, complement = ratio_r(x)
         dr = slope_r(x, r, complement)
-        ddr = (r / x - dr) / x - 2.0 * r * dr
+        ddr = (r / x - dr) / x - 2.0 * r * dr  # derivative of r' = 1 - r/x - r^2
         if x >= _ASYMPTOTIC:
             r, dr, ddr = _evaluate_asymptotic(_SERIES_R, x)
         i2 = ratio_i2(x, r)
-        if x < 4.0:
+        if x < 4.0:  # i2' = r - (2/x + r) i2, by I2' = I1 - 2 I2/x and I0' = I1
             di2 = r - (2.0 / x + r) * i2
             ddi2 = dr - 2.0 * (di2 - i2 / x) / x - di2 * r - i2 * dr
         else:  # of 1 - 2 r/x
@@ -153,7 +150,7 @@ def _write_ratio_jets(z, series, work):
         x = b * z
         k, complement = ratio_k(x)
         dk = slope_k(x, k, complement)
-        ddk = 2.0 * k * dk + (dk - k / x) / x
+        ddk = 2.0 * k * dk + (dk - k / x) / x  # derivative of k' = k^2 + k/x - 1
         if x >= _ASYMPTOTIC:
             k, dk, ddk = _evaluate_asymptotic(_SERIES_K, x)
         store(work.inverse_r, LANES * i, reciprocal(True, _jet(a, z, (r, dr, ddr))))
@@ -168,8 +165,8 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
 
     z : float, zeta, half transit time of the contact, > 0, in the unit of time of the series;
         infinite for V = 0.
-    series : :class:`Series` of at least one mode, with ascending rates a and b, which are read, and
-        the strengths e.
+    series : :class:`.material_series.Series` of at least one mode, with ascending rates a and b,
+        which are read, and the strengths e.
     of_g, of_h, of_y : jets of g, h and sum X_i i2_i at z (:mod:`.material_series`), vectors of
         four: value, d/dz, d/ds, d2/dz ds; not read where a limit is returned.
 
@@ -177,13 +174,13 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
     creep time on it is the limit V -> 0, -sum E_i tau_i^2; below z = 1e-9 times the shortest
     relaxation time it is that of fast rolling, z^2 sum E_i/4.  It is 0 for alpha = 1.
     """
-    T_mean = relaxed = strength = 0.0
+    T_mean = relaxed = strength = 0.0  # sums of E_i tau_i, E_i tau_i^2 and E_i
     for i in range(series.a.size):
         square = series.e[i] * series.e[i]
         T_mean += square
         relaxed += square / series.a[i]
         strength += square * series.a[i]
-    if not z * series.b[0] < _SLOW:
+    if not z * series.b[0] < _SLOW:  # true of z = inf too
         return -relaxed
     if z * series.a[series.a.size - 1] < _FAST:
         return 0.25 * strength * z * z
@@ -214,9 +211,9 @@ def set_alpha_of_state(n, alpha, series):
     n : int, index of the state, from 0 to the number of states - 1; not checked.
     alpha : instantaneous divided by long-time stiffness, >= 1, (1,) for all states or (states,);
         empty: the series is complete and nothing is written.
-    series : :class:`Series` of one mode with b = 1 and Q = 1, of which a[0] = alpha and e[0] =
-        t[0] = sqrt((alpha - 1)/alpha) are written; any series if ``alpha`` is empty.  Returns
-        nothing.
+    series : :class:`.material_series.Series` of one mode with b = 1 and Q = 1, of which a[0] =
+        alpha and e[0] = t[0] = sqrt((alpha - 1)/alpha) are written; any series if ``alpha`` is
+        empty.  Returns nothing.
     """
     if alpha.size > 0:
         one_alpha = element(alpha, n)
@@ -228,11 +225,11 @@ def set_alpha_of_state(n, alpha, series):
 def modes_loop(series, alpha, work, z, out):
     """Evaluate the functions of a series, their slopes and N at many z.
 
-    series : :class:`Series` of at least one mode: rates and strengths; of one mode, and
-        overwritten, if ``alpha`` is not empty.
+    series : :class:`.material_series.Series` of at least one mode: rates and strengths; of one
+        mode, and overwritten, if ``alpha`` is not empty.
     alpha : instantaneous divided by long-time stiffness, >= 1, of a series of one mode, (1,) for
         all z or (n,); empty: the series is complete.
-    work : the :class:`Workspace` of the series, scratch.
+    work : the :class:`.material_series.Workspace` of the series, scratch.
     z : values of zeta > 0, (n,), in the unit of time of the series.  Where z is infinite, values
         and N are the limits at rest, and slopes are NaN.
     out : (9, n), written.  Rows 0 to 3: g/z, h/z, m of the half-space, m of the cylinder (m = M/V,
@@ -311,8 +308,10 @@ def _memory_integral(u, w, a, r_complement):
     the part of [0, phi] where a (cos t - cos phi) exceeds 38 is left out.
     """
     rear = w < 1.0 and a * w < 1.0
-    sine = np.sqrt(u * w)
-    edge = w if rear else u
+    sine = np.sqrt(u * w)  # sin phi, as cos phi = 1 - u = w - 1
+    edge = w if rear else u  # from the rear edge near it, else from the front edge
+    # phi, or pi - phi near the rear edge, by tan(phi/2) = sqrt(u/w); ``span`` is the length of the
+    # interval of integration.
     angle = 2.0 * np.arctan2(np.sqrt(edge), np.sqrt(u if rear else w))
     span = angle
     if not rear and a * u > _DEEP:
@@ -333,8 +332,9 @@ def _memory_integral(u, w, a, r_complement):
 
 
 def new_memory_weights(series) -> MemoryWeights:
-    """Return :class:`MemoryWeights` for ``series``, a :class:`Series`, whose number of modes is
-    read; they belong to no z yet: z is NaN, and the other arrays are not initialized.
+    """Return :class:`MemoryWeights` for ``series``, a :class:`.material_series.Series`, whose
+    number of modes is read; they belong to no z yet: z is NaN, and the other arrays are not
+    initialized.
     """
     n = series.a.size
     return MemoryWeights(np.empty(n), np.empty(n), np.full(1, np.nan), new_workspace(n))
@@ -348,7 +348,7 @@ def unit_shape(u, w, z, series, weights):
         u + w = 2.  One of them is <= 0 outside the contact.
     z : float, half transit time of the contact, or of the stick zone, > 0, in the unit of time of
         the series; inf is the elastic limit V = 0.
-    series : :class:`Series`: rates and strengths of the modes; it may have none.
+    series : :class:`.material_series.Series`: rates and strengths of the modes; it may have none.
     weights : :class:`MemoryWeights`, the strengths of the modes at z.  If they belong to another z,
         they are computed and written here; a caller that changes ``series`` has to set their z to
         NaN.
@@ -382,8 +382,8 @@ def unit_shape(u, w, z, series, weights):
 def stress_loop(series, alpha, whole, stick, points, p, tau):
     """Compute pressure and shear stress at n points of the contact.
 
-    series : :class:`Series`: rates and strengths of the modes; of one mode, and overwritten, if
-        ``alpha`` is not empty.
+    series : :class:`.material_series.Series`: rates and strengths of the modes; of one mode, and
+        overwritten, if ``alpha`` is not empty.
     alpha : instantaneous divided by long-time stiffness, >= 1, of a series of one mode, (1,) or
         (n,); empty: the series is complete.
     whole, stick : :class:`MemoryWeights` of the series for the contact and for the stick zone,
@@ -396,6 +396,7 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
         beta = 1 it is 0 but for rounding.  Returns nothing.
     """
     for i in range(p.size):
+        # The series changes with alpha: the strengths of the modes at the last z no longer hold.
         if alpha.size > 1 and i > 0 and alpha[i] != alpha[i - 1]:
             whole.z[0] = stick.z[0] = np.nan
         set_alpha_of_state(i, alpha, series)
@@ -403,11 +404,17 @@ def stress_loop(series, alpha, whole, stick, points, p, tau):
         epsilon = element(points.epsilon, i)
         beta = element(points.beta, i)
         zeta = element(points.zeta, i)
+        # The middle of the contact is epsilon half lengths, epsilon lam/2, ahead of the axis: with
+        # y = 2 x/lam, Y/zeta = y - epsilon, u = 1 - Y/zeta and w = 1 + Y/zeta.
         y = 2.0 * element(points.x, i) / lam
         u = (1.0 - y) + epsilon
         w = (1.0 + y) - epsilon
+        # p/E' = V zeta/(4 pi) (S/zeta) with V zeta = lam/(2 kappa).
         scale = lam / (8.0 * np.pi * element(points.kappa, i))
         p[i] = scale * unit_shape(u, w, zeta, series, whole)
+        # The second term of |tau|, (V eta/(4 pi)) (S/eta) with eta = beta zeta: the stick zone has
+        # the same front edge, and half length beta, so that its u is u/beta.  Behind it, and for
+        # beta = 0, the term is 0; a NaN of u passes on.
         stuck = 0.0
         if not u >= 2.0 * beta:
             stuck = beta * unit_shape(u / beta, 2.0 - u / beta, beta * zeta, series, stick)

@@ -1,40 +1,28 @@
 """The contact law as the paper prints it, by root solves, to which tables are compared.
 
-The two Bessel ratios once more, by textbook methods that share nothing with ``ratios.npy``.
+Eqs. (6), (8)-(10), (15), (16) and two Brent-Dekker roots, over arrays of states; rows and signs as
+in :mod:`.law_record`.  It is independent of :mod:`.law_functions` in the Bessel ratios, in the
+algebra and in the root finder: the baseline that the explicit law is timed against and checked
+against.  The one liberty taken is that Eqs. (6) and (10) are divided by I0 K1, so that only r =
+I1/I0 and k = K0/K1 occur and nothing overflows.
+
+The two Bessel ratios are evaluated once more, by textbook methods that share nothing with
+``ratios.npy``, an independent check of :mod:`.bessel_ratios`:
 
     ratio_i(x) = I1(x)/I0(x)        ratio_k0k1(z) = K0(z)/K1(z)
 
-This is what the paper's direct method (:mod:`printed_law`) is built on, and an independent check of
-:mod:`ratios`.  Only ratios occur, so nothing overflows; each step count is fixed by the
-argument before the loop starts, so there is no convergence test to fail.  Against 40 digits on 4800
-arguments from 5e-324 to 1.8e308: at most 2.7 ULP (``ratio_i``, near 25) and 3.6 ULP
-(``ratio_k0k1``, below 1), in 20 to 200 ns.
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-The contact law as the paper prints it: Eqs. (6), (8)-(10), (15), (16) and two Brent-Dekker
-roots.
-
-Independent of :mod:`.law` in the Bessel ratios, in the algebra and in the root finder: the
-baseline that the explicit law is timed against and checked against.  The one liberty taken is that
-Eqs. (6) and (10) are divided by I0 K1, so that only r = I1/I0 and k = K0/K1 occur and nothing
-overflows.
+Each step count is fixed by the argument before the loop starts, so there is no convergence test to
+fail.  Against 40 digits on 4800 arguments from 5e-324 to 1.8e308: at most 2.7 ULP (``ratio_i``,
+near 25) and 3.6 ULP (``ratio_k0k1``, below 1), in 20 to 200 ns.
 
 The printed forms lose digits in corners where the explicit ones do not.  Differences from
-:mod:`.law`, measured over alpha = T_epsilon/T_sigma in [1, 1e4], kappa V in [1e-3, 1e3], s =
-delta/delta_star in [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15, Q
-1.1e-13 mu, M 2e-13/kappa; the docstrings say where relative digits go.
+:mod:`.law_functions`, measured over alpha in [1, 1e4], kappa V in [1e-3, 1e3], s = delta/delta_star
+in [1e-6, 1 - 1e-6]: lam 7e-16 relative, delta_star 4e-16 relative, beta 3e-15, Q 1.1e-13 mu, M
+2e-13/kappa; the docstrings say where relative digits go.
 
 Letters: kappa = R/l0, mu the coefficient of friction, alpha = T_epsilon/T_sigma; lam, length of the
 contact over l0, epsilon, its shift in half contact lengths; zeta = lam/(2 kappa V), half the
 transit time in T_epsilon; beta, stick zone over contact length; delta, creepage.
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-The contact law as printed, over arrays of states; rows and signs as in
-:mod:`.law_record`.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
@@ -207,7 +195,7 @@ def _residual(equation, x, data):
     """
     if equation == _EQ_6:
         kappa_V, alpha, _, _ = data
-        zeta = x / (2.0 * kappa_V)
+        zeta = x / (2.0 * kappa_V)  # Eq. (7)
         r = ratio_i(alpha * zeta)
         k = ratio_k0k1(zeta)
         return (1.0 - x * x) * (1.0 + k * r) + 2.0 / zeta * (1.0 / alpha - 1.0) * (x * x) * r
@@ -256,9 +244,9 @@ def brent(equation, data, low, high, floor):
         half_interval = 0.5 * (c - b)
         if abs(half_interval) <= tolerance or fb == 0.0:
             return b, OK
-        if abs(e) < tolerance or abs(fa) <= abs(fb):
+        if abs(e) < tolerance or abs(fa) <= abs(fb):  # bisection
             d = e = half_interval
-        else:
+        else:  # step p/q: secant of two points, or inverse quadratic interpolation of three
             s = fb / fa
             if a == c:
                 p = 2.0 * half_interval * s
@@ -271,6 +259,8 @@ def brent(equation, data, low, high, floor):
             if p > 0.0:
                 q = -q
             p = abs(p)
+            # The step is taken if it stays well inside the bracket and is below half of the step
+            # before the last one.
             if 2.0 * p < min(3.0 * half_interval * q - abs(tolerance * q), abs(e * q)):
                 e = d
                 d = p / q
@@ -301,10 +291,9 @@ def direct_contact_length(kappa_V, alpha):
 
     With c = 1 - 1/alpha, r = I1/I0 at alpha zeta, k = K0/K1 at zeta, p = k r, and i2 = I2/I0 = 1 -
     2 r/(alpha zeta), the residual is c (i2 + p) >= 0 at lam = alpha^(-1/2), and -2 c r/zeta <= 0 at
-    lam = 1, each with the zeta of its
-    lam: the two always enclose the root.  lam^-2 - 1 costs epsilon its relative digits where
-    epsilon -> kappa V c is small (4e-9 at kappa V = 1e-8, alpha = 11), but 1 + epsilon, which is
-    what Eqs. (9) and (10) need, none.
+    lam = 1, each with the zeta of its lam: the two always enclose the root.  lam^-2 - 1 costs
+    epsilon its relative digits where epsilon -> kappa V c is small (4e-9 at kappa V = 1e-8, alpha =
+    11), but 1 + epsilon, which is what Eqs. (9) and (10) need, none.
     """
     lam, status = brent(_EQ_6, (kappa_V, alpha, 0.0, 0.0), 1.0 / np.sqrt(alpha), 1.0, 0.0)
     zeta = lam / (2.0 * kappa_V)
@@ -335,8 +324,7 @@ def direct_stick(delta_abs, kappa, mu, lam, epsilon, zeta, alpha):
     kappa, mu : floats, slenderness R/l0 and coefficient of friction, dimensionless, > 0.
     lam, epsilon, zeta : floats of the contact, Eqs. (6)-(8): length divided by l0, in
         [alpha^(-1/2), 1]; shift in half contact lengths, >= 0; half the transit time divided by
-        T_epsilon, > 0 and finite
-        (V = 0, where it is not, has beta = 1 - |delta|/delta_star).
+        T_epsilon, > 0 and finite (V = 0, where it is not, has beta = 1 - |delta|/delta_star).
     alpha : float, T_epsilon/T_sigma, dimensionless, >= 1.
     Returns (beta, status): a float in [0, 1], found to 1e-16 + 4e-16 beta, and an int, OK (0) or
     NOT_CONVERGED (1) (:func:`brent`).
@@ -418,8 +406,8 @@ def direct_state(alpha, n, request):
 
     At V = 0: lam = 1, zeta = inf, epsilon = M = 0, beta = 1 - s and |Q| = mu s (2 - s), with
     s = |delta|/delta_star; delta, if omega is given, is 0 for omega = 0 and else infinite.  In full
-    slip, |delta| >= delta_star: beta = 0 and
-    |Q| = mu.  M has the sign of V, Q that of omega - V; 0 where that is 0.
+    slip, |delta| >= delta_star: beta = 0 and |Q| = mu.  M has the sign of V, Q that of omega - V; 0
+    where that is 0.
     """
     to = request.to
     state = read_state(request.states, n)

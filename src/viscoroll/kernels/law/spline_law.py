@@ -1,19 +1,16 @@
-"""The law of a grid by tensor splines, at one point and as a function of C.
+"""The law of a grid by tensor splines, at one point, and that of a table at states.
 
-A tensor spline over V, delta and alpha at one point: its value and its slopes.
-
-A spline is one vector of doubles: a head, its three axes, its coefficients.  An axis is a head, the
-edges of its intervals, and for each interval the basis splines that are not 0 there, as polynomials
-of the distance from its left edge.  An axis may run in the logarithm of its coordinate.  An axis on
-which the field does not depend has no interval, and one basis spline, which is 1.
+**A tensor spline** over V, delta and alpha at one point: its value and its slopes.  A spline is one
+vector of doubles: a head, its three axes, its coefficients.  An axis is a head, the edges of its
+intervals, and for each interval the basis splines that are not 0 there, as polynomials of the
+distance from its left edge.  An axis may run in the logarithm of its coordinate.  An axis on which
+the field does not depend has no interval, and one basis spline, which is 1.
 ``viscoroll.laws.law_grid`` writes the vector.
 
-The law of a table (:mod:`.coupled_splines`) at states: many at a time, and as a C function like
-:mod:`.law_callables`.
-
-Loads are odd in (V, omega), so that the table is read at |V|; V = 0.0 and V = -0.0 count as V > 0.
-In full slip Q does not depend on the creep.  Symbols are those of :mod:`.coupled_splines`; all is
-dimensionless but what is said to be in units of a caller.
+**The law of a table** (:mod:`.coupled_splines`) at states: many at a time, and as a C function like
+:mod:`.law_callables`.  Loads are odd in (V, omega), so that the table is read at |V|; V = 0.0 and V
+= -0.0 count as V > 0.  In full slip Q does not depend on the creep.  Symbols are those of
+:mod:`.coupled_splines`; all is dimensionless but what is said to be in units of a caller.
 """
 
 from typing import Any, NamedTuple
@@ -141,9 +138,10 @@ def _locate(spline, name, x):
     if _number_at(spline, axis + IS_LOG) > 0.0:
         slope = 1.0 / x
         x = np.log(x)
+    # Outside of the axis, or NaN.
     if not _number_at(spline, axis + EDGES) <= x <= _number_at(spline, axis + EDGES + count):
         return AxisPosition(axis, interval, np.nan, slope)
-    while count > 1:
+    while count > 1:  # bisection; ``count`` intervals are left
         middle = count >> 1
         interval += middle * np.int64(x >= _number_at(spline, axis + EDGES + interval + middle))
         count -= middle
@@ -164,6 +162,7 @@ def _basis(spline, position, n):
     vector.  Value and slope are NaN outside of the axis.
     """
     axis = position.axis
+    # Index of the constant coefficient: behind head and count + 1 edges of the axis.
     at = (
         (position.interval * TERMS + n) * TERMS
         + EDGES
@@ -199,6 +198,7 @@ def evaluate(spline, V, delta, alpha):
     over_V = _locate(spline, V_AXIS, V)
     over_delta = _locate(spline, DELTA_AXIS, delta)
     over_alpha = _locate(spline, ALPHA_AXIS, alpha)
+    # 0, or NaN where a coordinate is outside of its axis.
     value = dV = ddelta = dalpha = 0.0 * (over_V.t + over_delta.t + over_alpha.t)
     for k in range(_integer_at(spline, over_alpha.axis + ORDER)):
         c, dc, plane = _basis(spline, over_alpha, k)
@@ -254,8 +254,11 @@ _HALVINGS = 53
 
 
 class Load(NamedTuple):
-    """A load of a state: its value; dV, its slope over V at fixed creepage; ddelta, that over the
-    creepage.
+    """A load of a state: Q or a rolling moment, dimensionless, with its slopes.
+
+    value : the load.
+    dV : slope over V at fixed creepage.
+    ddelta : slope over the creepage at fixed V.
     """
 
     value: float
@@ -267,8 +270,10 @@ class TablePlace(NamedTuple):
     """Where a state lies in a table.
 
     sign : that of V, 1.0 or -1.0, in which loads are odd.
-    u : kappa |V|.  speed : its :class:`.coupled_splines.Weights`.
-    state : :class:`.coupled_splines.Place` of its creep.  cell : :class:`.coupled_splines.Cell`.
+    u : kappa |V|.
+    speed : :class:`.coupled_splines.Weights` of u.
+    state : :class:`.coupled_splines.Place` of its creep.
+    cell : :class:`.coupled_splines.Cell`, the four nodes around it.
     """
 
     sign: float
@@ -282,7 +287,9 @@ class TablePlace(NamedTuple):
 def _place(V, D, kappa, table):
     """Return the :class:`TablePlace` of a state.
 
-    V : speed of the axis.  D : 2 kappa delta.  kappa : slenderness.
+    V : float, speed of the axis, dimensionless, of any sign.
+    D : float, 2 kappa delta, which may be infinite.
+    kappa : float, slenderness R/l0.
     table : vector of :mod:`.coupled_splines`.
     """
     u = kappa * abs(V)
@@ -297,12 +304,15 @@ def _place(V, D, kappa, table):
 def _load(name, factor, kappa, at, table):
     """Return a field times a factor as a :class:`Load`, which is odd in V.
 
-    name : TRACTION, HALF_SPACE or CYLINDER.
-    factor : mu of Q, 1/kappa of a moment.
-    kappa : slenderness.
-    at, table : :class:`TablePlace`, and the vector of :mod:`.coupled_splines`.
+    name : int, TRACTION, HALF_SPACE or CYLINDER.
+    factor : float, mu of Q, 1/kappa of a moment.
+    kappa : float, slenderness.
+    at : :class:`TablePlace` of the state.
+    table : vector of :mod:`.coupled_splines`.
     """
     found = field_at(name, at.state.w, at.cell, table)
+    # With u = kappa |V| and D = 2 kappa delta; the slope over V has twice the sign of V, which is
+    # 1.
     return Load(
         at.sign * factor * found.value,
         factor * kappa * (found.du + found.dw * at.state.dw_du),
@@ -312,7 +322,11 @@ def _load(name, factor, kappa, at, table):
 
 @inline_kernel
 def _traction(mu, at, table):
-    """Return Q, at most mu LIMIT; arguments as of :func:`_load`, ``mu``: friction."""
+    """Return the traction Q, a float, dimensionless, limited to +-mu LIMIT.
+
+    mu : float, coefficient of friction.
+    at, table : as of :func:`_load`.
+    """
     limit = table[LIMIT]
     found = value_at(TRACTION, at.cell, table)
     found = at.state.sigma * limit if at.state.w >= 1.0 and limit < np.inf else found
@@ -339,8 +353,9 @@ def _at_fixed_omega(load, V, delta):
     """Return (slope of a load over V at fixed omega, that over omega), floats; infinite at V = 0
     where it depends on the creepage.
     """
-    if load.ddelta == 0.0:
+    if load.ddelta == 0.0:  # Also at V = 0, where the quotients below are NaN.
         return load.dV, 0.0
+    # delta = omega/V - 1: d delta/dV = -(1 + delta)/V at fixed omega, d delta/d omega = 1/V.
     return load.dV - load.ddelta * (1.0 + delta) / V, load.ddelta / V
 
 
@@ -350,6 +365,7 @@ def look_up(table, u, D):
 
     table : vector of :mod:`.coupled_splines`, with all fields.
     u, D : kappa |V| and 2 kappa delta of each, (n,).
+    Columns are the fields TRACTION to WORK + 1 of :mod:`.coupled_splines`.
     """
     out = np.empty((u.size, FRICTION))
     for n in range(u.size):
@@ -378,7 +394,10 @@ def _write_state(table, given, n, request):
     """Write the requested fields of one state.
 
     table : vector of :mod:`.coupled_splines`, with all fields.
-    given : :class:`.law_record.State`.  n : its number.  request : :class:`.law_record.Request`.
+    given : :class:`.law_record.State`, of numbers.
+    n : int, its number.
+    request : :class:`.law_record.Request`, whose ``out`` is written, dimensionless.
+    Returns nothing.
     """
     to = request.to
     kappa = given.kappa
@@ -396,6 +415,7 @@ def _write_state(table, given, n, request):
     if to.beta >= 0:
         stick = value_at(STICK, at.cell, table)
         write_field(to.beta, min(max(stick, 0.0), 1.0), n, request)
+    # delta_star is the distance of the onset on the side of the state from free rolling.
     if max(to.delta_star, to.delta_0) >= 0:
         free = edge_at(FREE, at.u, at.speed, table).value
         onset = edge_at(ONSET + np.int64(D >= free), at.u, at.speed, table).value
@@ -446,6 +466,7 @@ def _write_slopes(table, given, at, delta, n, request):
     write_field(to.dQ_ddelta, Q.ddelta, n, request)
     write_field(to.dM_ddelta, M.ddelta, n, request)
     fixed = given.creep_is_omega
+    # The slope over V is at fixed omega where the state has omega, else at fixed creepage.
     for load, over_V, over_omega in (
         (Q, to.dQ_dV, to.dQ_domega),
         (M, to.dM_dV, to.dM_domega),
@@ -476,7 +497,7 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     slip = caller_omega / scene.omega - V
     kappa = scene.kappa
     u = kappa * abs(V)
-    if not (u <= table[MOST] and abs(slip) < np.inf):
+    if not (u <= table[MOST] and abs(slip) < np.inf):  # too fast, or not finite
         return refuse(out)
     delta = slip / V if V != 0.0 else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
     at = _place(V, 2.0 * kappa * delta, kappa, table)
@@ -498,8 +519,12 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
 def _slopes_to_caller(scene, V, delta, at, table, out):
     """Write the slopes of a state in the units of the caller into ``out``, (RESULTS,).
 
-    scene : TABLE record.  V : dimensionless.  delta : creepage.  at : :class:`TablePlace`.
+    scene : TABLE record, of which kappa, mu and the units are read.
+    V, delta : floats, speed, dimensionless, and creepage.
+    at : :class:`TablePlace` of the state.
     table : vector of :mod:`.coupled_splines`.
+    out : vector of RESULTS numbers, of which 4 to 9 are written.
+    Returns nothing.
     """
     kappa = scene.kappa
     Q = _sloped_traction(scene.mu, kappa, at, table)
@@ -556,6 +581,8 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
         high = 1.0
         d = 0.0
         found = 0.0
+        # Steps 0 and 1 evaluate both onsets, d = -1 and 1; a load beyond them ends the search
+        # there.
         for step in range(_HALVINGS + 2):
             d = -1.0 if step == 0 else 1.0 if step == 1 else 0.5 * (low + high)
             sigma = 1.0 if d >= 0.0 else -1.0

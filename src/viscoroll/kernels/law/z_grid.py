@@ -1,33 +1,32 @@
 """Rows for one series or pair after another, from a grid of z that all rows of a material share.
 
-At the nodes z = 2^(n/10) the formulas of the modes (:mod:`material_series`) give lam and eta/F =
-z/(z + g), and with them a point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The
-polynomial
-in ln u or ln v through the 36 points around an octave (:mod:`simd`) is evaluated at
-the nodes of that octave.  The polynomial of the slow row goes through points at Chebyshev nodes of
-1/z and is one in t.  No root is solved for and no slope is needed.  A row depends on its material
-alone, not on the rows that were made before.
-
-A part is the place of one function in a row, PART_SIZE numbers, of which a pair of functions takes
-two.  Marks are integers beside the rows: some for the law as a whole, then for each part of each
-row the version of the material for which it was computed.
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-Terms of this file:
+Terms of this file (g, h and the formulas of the modes are those of :mod:`.material_series`):
 
 - z: half the transit time of the contact or of its stick zone, in the unit of time of the material.
 - u = kappa |V|, dimensionless speed, and v = 1/F(eta) of a stick zone with the half transit time
-  eta (:mod:`.law`).  Functions of u: L = 2 kappa delta_star/mu, M/V and its parts, lam (length of
-  the contact divided by l0), epsilon (shift in half contact lengths); of v: H/F^2 and eta/F.
+  eta (:mod:`.law_functions`).  Functions of u: L = 2 kappa delta_star/mu, M/V and its parts, lam
+  (length of the contact divided by l0), epsilon (shift in half contact lengths); of v: H/F^2 and
+  eta/F.
 - Row 0, the slow row, spans 0 <= u, v < 2^e0 with t = u 2^-e0 or v 2^-e0; row n > 0 is the octave
   that ends at 2^(e0 + n), with t in [-1, 1).
+- Part: the place of one function in a row, PART_SIZE numbers; a pair of functions takes two.
 - Head: numbers of the law as a whole, in front of its rows, and likewise in front of the marks of
   its parts.
+- Marks: integers beside the rows, some for the law as a whole, then for each part of each row the
+  version of the material for which it was computed.
 - Selected material: that of which the law holds the rows at present; each new one gets the next
   version number.
 - J_j, T_j: strengths and times of the creep modes of a material.
+
+At the nodes z = 2^(n/10) the formulas of the modes give lam and eta/F = z/(z + g), and with them a
+point of every function over u = lam/(2 z) and over v = (eta/F)/z.  The polynomial in ln u or ln v
+through the 36 points around an octave (:mod:`.simd`) is evaluated at the nodes of that octave.  The
+polynomial of the slow row goes through points at Chebyshev nodes of 1/z and is one in t.  No root
+is solved for and no slope is needed (docs/internals_law.md, Series and pairs).  A row depends on
+its material alone, not on the rows that were made before.
+
+All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
+number.
 """
 
 import math
@@ -174,7 +173,7 @@ class Grid(NamedTuple):
     """The grid of the selected material, and the rows that are made from it.
 
     rows : vector of the law with its head, up to the part that is made and one more, written.
-    scratch : vector of :mod:`simd`.
+    scratch : vector of :mod:`.simd`.
     functions : (node_count, 12), values at the nodes in the order of _L to _LN_ETA_OVER_F; the last
         36 nodes are the points of the slow row.
     node_count : int.
@@ -217,7 +216,7 @@ def grid_size(count: int, alpha: float) -> int:
 
 
 def work_size(nodes: int) -> int:
-    """Return the number of doubles of the scratch of a grid: that of :mod:`simd`,
+    """Return the number of doubles of the scratch of a grid: that of :mod:`.simd`,
     then twelve functions at each node; an int.
 
     nodes : int, number of nodes, as of :func:`grid_size`.
@@ -313,7 +312,7 @@ def _make_functions(part, row, grid):
     over_v = part >= H_OVER_F2
     slow = row == 0
     scratch = grid.scratch
-    first = part // PART_SIZE
+    first = part // PART_SIZE  # column of the (first) function in the grid
     count = 1 if over_v else 2
     if slow:
         _collect_slow_points(first, count, over_v, grid)
@@ -326,12 +325,13 @@ def _make_functions(part, row, grid):
         evaluate_at_nodes(_SLOW_NODES if slow else _LN_NODES, which, scratch)
         if slow:
             limit = _slow_limit(function, grid)
-        elif _is_times_u(function):
+        elif _is_times_u(function):  # Values at the nodes are divided by u again.
             scale = math.ldexp(1.0, int(-grid.e0 - row))
             for k in range(TERMS):
                 scratch[NODE_VALUES + k] *= _INVERSE_NODES[k] * scale
         to_powers(slow, limit, scratch)
         shift = 1 if slow and function == _EPSILON else 0  # the polynomial is that of epsilon/t
+        # Coefficients of a pair are interleaved by two: c0 c1 of one, c0 c1 of the other, c2 c3 ...
         to = (row + 1) * ROW_SIZE + part + 2 * which
         grid.rows[to] = 0.0
         for k in range(shift, TERMS):
@@ -425,6 +425,8 @@ def _fill_block(first, grid):
         lam = 1.0 / inverse_lam
         root_of_H_over_F2 = eta_over_F * inverse_lam
         u = 0.5 * lam * inverse_z
+        # ``shift`` is g/z, which is epsilon, F = z (1 + g/z), H = z^2 (1 + 2 h/z) and lam =
+        # z/sqrt(H).
         node = grid.functions[first + c]
         node[_L] = lam * (1.0 + shift)
         node[_M] = u * (half_space + cylinder)
@@ -493,6 +495,8 @@ def _collect_points(row, first, count, over_v, grid):
         values as the grid has them, so that M/V, its parts and lam are multiplied by u.  Nodes that
         hold values of another material are computed.  Returns nothing.
     """
+    # The node next to the middle of the octave: first by steps of half the distance in ln u or ln
+    # v, then one by one.
     middle = -0.5 * NODES_PER_OCTAVE * _STEP
     node = -NODES_PER_OCTAVE * (grid.e0 + row) - grid.lowest
     steps = NODES_PER_OCTAVE

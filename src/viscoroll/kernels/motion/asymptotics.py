@@ -1,17 +1,18 @@
 """Closed-form ends of a motion: steady rolling under a constant drive, and exponential decay at low
 speed.
 
-With P = p' and B = V d' of :mod:`rhs`, partial slip is
+With P = p' and B = V d' of :mod:`rhs`, and p_V and p_d the derivatives of p in V and d, partial
+slip is
 
     V' = (P - p_d B/V)/p_V      d' = B/V
 
 An equilibrium is stable where the Jacobian of (V', d') has a negative trace and a positive
 determinant.  A motion within a small fraction of the tolerance of a stable equilibrium stays there
 as long as the drive is constant.  In full slip V has equilibria of its own, while omega is constant
-or linear in time.  Steps could not follow either for
-long: the rounding of P, times the length of a step, exceeds the tolerance.
+or linear in time.  Steps could not follow either for long: the rounding of P, times the length of a
+step, exceeds the tolerance.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
@@ -74,8 +75,7 @@ _NEAR_ROUNDING = 1e-14
 #: node 0, which are stored; p is only about dp/dV times V.
 _EQUILIBRIUM_CHECK = 2.0
 #: V divided by rtol and by the moderate speed, below which V decays exponentially: M/V then differs
-#: from its limit at V
-#: = 0 by about 1e-4 rtol, as M is linear in V up to terms of the order kappa V.
+#: from its limit at V = 0 by about 1e-4 rtol, as M is linear in V up to terms of the order kappa V.
 _COASTING_SPEED = 1e-4
 #: |d| divided by rtol, below which V decays exponentially: the part j k L d V of p is then below
 #: rtol V for j k up to 100.
@@ -131,11 +131,13 @@ def _equilibrium_full_slip(state, rates, regime, noise, tolerance):
     of it that ``noise`` explains; the State after the step, reached or not, with omega unchanged.
     (False, state) where V has no equilibrium.
     """
+    # Feedback of omega on V' or on omega', or a V' that does not decrease with V (or is NaN).
     if rates.dp_rate_dd != 0.0 or rates.drate_dd != 0.0 or not rates.dp_rate_dV < 0.0:
         return False, state
+    # omega approaches V, or 0 under a brake: the regime will end.
     if regime.sigma * rates.weighted_rate < 0.0 or regime.spin_sign * rates.weighted_rate < 0.0:
         return False, state
-    V_off = rates.p_rate / rates.dp_rate_dV
+    V_off = rates.p_rate / rates.dp_rate_dV  # distance of V from its equilibrium; p is V here
     return abs(V_off) <= tolerance * state.V - noise / rates.dp_rate_dV, State(
         state.V - V_off, state.omega_or_d
     )
@@ -175,6 +177,8 @@ def find_equilibrium(state, regime, noise, step_state, work):
     p_rate_d = (
         rates.dp_rate_dd + load.inverse_inertia * (gains.force_omega + gains.torque_omega) * p_d
     )
+    # V' and d' of the module with their derivatives, the elements of the Jacobian: x_y is dx'/dy.
+    # Terms with the rates themselves are left out, as these vanish at the equilibrium.
     d_rate = rates.weighted_rate / V
     d_V = rates.drate_dV / V
     d_d = rates.drate_dd / V
@@ -184,6 +188,8 @@ def find_equilibrium(state, regime, noise, step_state, work):
     determinant = V_V * d_d - V_d * d_V
     if not (V_V + d_d < 0.0 < determinant):
         return False, state
+    # Newton's step, by Cramer's rule: the distances of V and d from the equilibrium, and what an
+    # error ``noise`` of p', noise/p_V of V', changes in them (times d_d and d_V below).
     V_off = (V_rate * d_d - d_rate * V_d) / determinant
     d_off = (d_rate * V_V - V_rate * d_V) / determinant
     rounding = abs(noise / (rates.dp_dV * determinant))
@@ -284,6 +290,7 @@ def _energies_of_decay(decay, work):
     works of a feedback that brakes are negative; the last is 0, as no brake acts.
     """
     half_space, cylinder, force, torque = low_speed_limits(work)
+    # The integral of V^2 over tau is V_0^2/(2 rate): a power of c V^2 takes c/rate times V_0^2/2.
     force_work = force / decay.rate
     torque_work = torque / decay.rate
     if by_value(work.scene.law).cover_rows is not None:
@@ -299,8 +306,7 @@ def coast_to_end(state, regime, step_state, work):
     delta_0 proportional to V.
 
     Of half-spaces the rate is (M - f - q)/(V inertia) with M, f and q, the rolling moment and the
-    feedback, in the limit
-    V -> 0 and inertia = 1 + j + gamma N, with gamma N the added mass;
+    feedback, in the limit V -> 0 and inertia = 1 + j + gamma N, with gamma N the added mass;
     :func:`.motion_law.free_decay` has it for covers too.  delta_0 is the creepage of free rolling
     for V -> 0, 0 for half-spaces.
 
@@ -326,8 +332,8 @@ def coast_to_end(state, regime, step_state, work):
     omega_over_V = 1.0 + delta_0
     free = free_decay(work)
     rate = free.rate
-    # V and omega decay together: Q = 4 kappa (delta - delta_0)/L balances the difference of the
-    # moments.
+    # V and omega decay together: Q balances the difference of the moments.  ``creep`` is delta -
+    # delta_0, from Q = 2 mu d = 4 kappa (delta - delta_0)/L for small d.
     creep = state.V * free.torque_difference / (4.0 * scene.kappa * free.inertia) * L
     largest_speed = max(state.V, abs(state.V * (omega_over_V + creep)))
     tau = work.output_tau
@@ -338,6 +344,7 @@ def coast_to_end(state, regime, step_state, work):
     energies = _energies_of_decay(free, work)
     for column in range(step_state.next_output, tau.size):
         moves = tau[column] <= end
+        # exp(-rate time) - 1 without cancellation for short times; ``decay`` is the exponential.
         expm1_decay = np.expm1(-rate * (min(tau[column], end) - step_state.tau))
         decay = (
             1.0 + expm1_decay
@@ -352,6 +359,7 @@ def coast_to_end(state, regime, step_state, work):
         )
         code = PARTIAL_SLIP if moves else AT_REST
         write_column(column, speeds, code, (force * direction * V, torque * direction * V), work)
+        # Integral of V over t = tau/gamma, and V^2/2 lost so far, V_0^2 (1 - decay^2)/2.
         distance = -direction * state.V * expm1_decay / (rate * scene.gamma)
         energy = 0.5 * state.V * state.V * (-expm1_decay * (1.0 + decay) if moves else 1.0)
         write_quadrature(column, 0, distance, work)

@@ -1,21 +1,14 @@
-"""Collocation of one step: nodes, matrices, interpolants, and the rows of its workspace.
+"""Collocation of one step: nodes, matrices, interpolants, and the layout of its workspace.
 
-Radau IIA collocation on [-1, 1], with the left end as node 0: nodes, matrices, interpolants.
+Collocation is Radau IIA on [-1, 1] (E. Hairer, G. Wanner, *Solving Ordinary Differential Equations
+II*, Springer 1996, Sect. IV.5), with the left end as node 0.  A row holds the values at the eight
+nodes of a step: eight numbers, two vectors of four.  A matrix is stored by its eight columns, one
+after the other.  In the names of rows and matrices D stands for the second unknown, omega or d.
 
-A row holds the values at the eight nodes of a step: eight numbers, two vectors of four.  A matrix
-is stored by its eight columns, one after the other.  Positions on a step are v = 1 + t in [0, 2].
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
-Layout of the workspace of one motion: rows of numbers at the nodes of a step, and functions of
-records.
-
-The nodes of a step are stored by rows of ROW_LENGTH numbers in ``Workspace.nodes``: row ROW_X holds
-x at node i in ``nodes[ROW_X + i]``; node 0 is the left end of the step.  In the names of rows and
-matrices D stands for the second unknown, omega or d (:mod:`records`).
-
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
-
-- tau: time gamma t.
-- v: position on a step, 0 at its left end and 2 at its right end.
+- tau: time gamma t of a motion.
+- t: position on a step in [-1, 1], and v = 1 + t: 0 at its left end and 2 at its right end.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
   holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
   Radau nodes.
@@ -74,7 +67,7 @@ def _divide_by_linear(powers: np.ndarray) -> np.ndarray:
     polynomial that does not vanish at -1 is dropped.
     """
     found = np.zeros_like(powers[1:])
-    quotient = 0.0
+    quotient = 0.0  # coefficient of the quotient, from the highest power down
     for k in range(len(powers) - 1, 0, -1):
         found[k - 1] = quotient = powers[k] - quotient
     return found
@@ -178,10 +171,12 @@ def _eliminate(i, matrix):
     i: int, 1 ... N, number of the step and index of the row and column of its pivot; row and column
     of node 0 are left out.
     matrix: pointer to ROW_LENGTH^2 numbers, column by column; columns 1 ... N are changed, their
-    entries of node 0 stay
-    0.  A pivot of 0 leaves inf and NaN.  Returns nothing.
+    entries of node 0 stay 0.  A pivot of 0 leaves inf and NaN.  Returns nothing.
     """
     column = ROW_LENGTH * i
+    # With element a_rk in row r and column k, the new column i is a_ri/a_ii, but 1/a_ii at r = i.
+    # From each other column k, in which a_ik is set to 0, a_ik times the new column i is
+    # subtracted.
     pivot = broadcast(1.0 / matrix[column + i])
     off_low = load(_OFF_DIAGONAL, column)
     off_high = load(_OFF_DIAGONAL, column + LANES)

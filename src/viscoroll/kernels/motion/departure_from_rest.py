@@ -1,24 +1,23 @@
 """Departure from rest: at V = omega = 0 the cylinder stays, rolls off in partial slip, or slides
 off in full slip.
 
-Rolling off in the direction with V' > 0, d is the root of the right side of the equation of d
-(:mod:`rhs`) in the limit V -> 0, where L = 1 and H(v) = 1 (:mod:`rhs`):
+In rolling off, in the direction with V' > 0, d = delta/delta_star is the root of the right side of
+the equation of d of :mod:`rhs` in the limit V -> 0, where L = 1 and H(v) = 1.  With the traction Q
 
     2 kappa (omega' - V')/mu = d V'      Q = mu sign(d) (2 |d| - d^2)
 
 (of a cover with L (d + c d^2) + 2 kappa delta_0/mu in place of d on the right, with the asymmetry c
-of :mod:`.cover_law`).
+of :mod:`.cover_law`).  V' and omega' follow from Q by Eq. (22), where the rolling moment is 0.
 
 The left side less the right side decreases with d where mu <= 2 kappa: for |d| < 1 there is one
 root, or slip is full from the start.  Where mu > 2 kappa it decreases only from d = -2 kappa/mu on,
 where omega' = 0, and under a force close to the limit of friction the departure is not unique.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - L = 2 kappa delta_star/mu and delta_0, the creepage of free rolling, in the limit V -> 0: 1 and 0
   for half-spaces.
-- d = delta/delta_star, of a cover d + c d^2 = (delta - delta_0)/delta_star; Q: traction; M: rolling
-  moment, 0 at V = 0.
+- d of a cover: d + c d^2 = (delta - delta_0)/delta_star.
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
   under a brake; whether the brake holds omega at 0.
@@ -59,8 +58,7 @@ SLIDES_OFF = 2
 #: Code of a departure: two motions satisfy the equations, the departure is not unique.
 AMBIGUOUS = 3
 #: Largest number of Newton iterations for d: a step outside the bracket bisects it, and 200
-#: bisections of [-1, 1] reach
-#: |d| = 1e-60.
+#: bisections of [-1, 1] reach |d| = 1e-60.
 _MAX_ITERATIONS = 200
 #: Newton's iteration for d ends at this relative change, below the unit of rounding: d changes no
 #: more.
@@ -113,8 +111,10 @@ def _pull(d, scene):
 
     d: float, in [-1, 1].
     scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
+    Returns (force, torque, derivative of the force, derivative of the torque), floats,
+    dimensionless: Q and Q of half-spaces; of a cover Q times the factors of :func:`_leverage`.
     """
-    used = abs(d) * (2.0 - abs(d))
+    used = abs(d) * (2.0 - abs(d))  # |Q|/mu
     Q = scene.mu * d * (2.0 - abs(d))
     dQ_dd = 2.0 * scene.mu * (1.0 - abs(d))
     on_axis, on_spin, axis_dQ, spin_dQ = _leverage(used, scene)
@@ -137,9 +137,10 @@ def _residual_of_d(d, load, scene):
     V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (load.torque - spin) + load.prescribed_omega_rate
     L, delta_0 = rest_limits(scene, np.copysign(1.0, d))
-    inverse_k = 2.0 * scene.kappa / scene.mu / L
+    inverse_k = 2.0 * scene.kappa / scene.mu / L  # 1/(k L) of rhs
     creep = creep_at_rest(d, scene)
-    d_total = creep.value + delta_0 * inverse_k
+    d_total = creep.value + delta_0 * inverse_k  # right side of the equation, divided by L V'
+    # Derivative of the residual in d: of the term with omega' - V', then of that with d_total V'.
     slope = -(load.inverse_inertia * spin_dd + load.inverse_mass * axis_dd) * inverse_k
     slope = slope - creep.slope * V_rate - d_total * load.inverse_mass * axis_dd
     return (omega_rate - V_rate) * inverse_k - d_total * V_rate, slope, V_rate
@@ -204,6 +205,9 @@ def _effective_load(load, spin_sign, scene):
     and added mass they stay too.  The field ``brake`` stays although its torque is in ``torque``.
     """
     force, torque, V_rate, omega_rate, brake, inverse_mass, inverse_inertia, gains = load
+    # With n/2 = half_n, V' = inverse_mass (Q + force - n V'/2) + V_rate is solved for V'; where V
+    # is prescribed, inverse_mass = 0, nothing changes.  In omega' = inverse_inertia (torque - Q -
+    # n V'/2) + omega_rate this V' is inserted, and the factor of Q, inertia_ratio, is taken out.
     half_n = 0.5 * added_inertia(0.0, scene)[0]
     mass_ratio = 1.0 / (1.0 + half_n * inverse_mass)
     inertia_ratio = 1.0 + half_n * mass_ratio * inverse_mass
@@ -276,6 +280,7 @@ def solve_d_at_departure(load, spin_sign, scene):
     d_zero = _d_at_zero_omega(scene)  # The residual decreases above this d.
     if d_zero > -1.0:
         residual, _, V_rate = _residual_of_d(d_zero, load, scene)
+        # omega is held at 0: by the brake, or prescribed to stay 0.
         if load.inverse_inertia == 0.0 and load.prescribed_omega_rate == 0.0:
             return V_rate > 0.0, d_zero
         if residual > 0.0:
@@ -291,7 +296,7 @@ def solve_d_at_departure(load, spin_sign, scene):
         residual, slope, V_rate = _residual_of_d(d, load, scene)
         low, high = (d, high) if residual > 0.0 else (low, d)
         d_next = d - residual / slope
-        if not low < d_next < high:
+        if not low < d_next < high:  # Outside the bracket, or NaN.
             d_next = 0.5 * (low + high)
         if abs(d_next - d) <= _D_TOLERANCE * abs(d):
             break
@@ -317,6 +322,9 @@ def _traction_at_rest(force, scene):
     reaction = reaction_at_rest(scene)
     factor = 1.0 + reaction.half_space
     excess = reaction.half_space_excess / scene.mu
+    # The root of Q (factor + excess Q) = |force| that is |force|/factor for a small excess.  Where
+    # no Q balances the force the square root counts as 0: Q is then at least that of the largest
+    # force that is balanced.
     Q = 2.0 * abs(force) / (factor + np.sqrt(max(factor * factor + 4.0 * excess * abs(force), 0.0)))
     return Q, Q * (1.0 - (reaction.cylinder + reaction.cylinder_excess * Q / scene.mu))
 
@@ -334,6 +342,7 @@ def _traction_of_torque_at_rest(torque, scene):
     reaction = reaction_at_rest(scene)
     factor = 1.0 - reaction.cylinder
     excess = -reaction.cylinder_excess / scene.mu
+    # The root of Q (factor + excess Q) = |torque|, as in :func:`_traction_at_rest`.
     return (
         2.0
         * abs(torque)
@@ -380,8 +389,9 @@ def holding_margin(load, scene):
     Q, torque = _traction_at_rest(load.force, scene)
     if load.inverse_inertia == 0.0:
         return mu - Q
+    # Modulus of the torque that is left for the brake.
     rest = abs(np.copysign(torque, load.force) + load.torque)
-    # of half-spaces loads in balance cancel to 0
+    # Of half-spaces loads in balance cancel to exactly 0; of a cover to rounding.
     noise = 0.0 if by_value(scene.law).cover_rows is None else _HOLDING_ROUNDING * torque
     margin = min(mu - Q, brake - (rest if rest > _NEGLIGIBLE_FORCE + noise else 0.0))
     return balance_of_table(load, scene.kappa, mu, margin, by_value(scene.law).table)
@@ -471,6 +481,7 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
         axis, spin, _, _ = _pull(sigma, scene)
         V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
         torque = load.torque - spin
+        # The brake acts against the spin that the torque causes, or holds omega at 0.
         spin_sign = np.sign(torque) if braked and abs(torque) > load.brake else 0.0
         locked = braked and spin_sign == 0.0
         omega_rate = (
@@ -558,7 +569,7 @@ def depart_from_rest(tau, segment, work):
                 spin_sign=spin_sign,
                 locked=locked,
             )
-            if scene.mu <= 2.0 * scene.kappa:
+            if scene.mu <= 2.0 * scene.kappa:  # The residual decreases: there is no other root.
                 return kind, departure, d_start
     stick_zone_slip = 0.0 if kind == STAYS_AT_REST else 0.5 * scene.mu / scene.kappa
     slides = _slide_from_rest(tau_drive, segment, braked, stick_zone_slip, work)

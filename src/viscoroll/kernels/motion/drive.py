@@ -1,10 +1,10 @@
 """The drive at a time: force, torque, brake and prescribed speed, polynomials on each segment.
 
-A segment is a row of numbers (COL_* of :mod:`records`): its start, the scale of its time and the
+A segment is a row of numbers (COL_* of :mod:`.records`): its start, the scale of its time and the
 coefficients of five polynomials of x = (tau - start) scale - 1, which runs from -1 to 1 over the
 segment.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
@@ -298,6 +298,8 @@ def continues_smoothly(segment, drive):
     terms = n_coefficients(row)
     for function in range(N_NODE_FUNCTIONS):
         size = jump = kink = 0.0
+        # Values and slopes in tau at x = 1 of the segment less those at x = -1 of the next one,
+        # where the power n of x is (-1)^n and its slope -n (-1)^n.
         for n in range(terms):
             column = COL_COEFFICIENTS + function * terms + n
             left = row[column]
@@ -326,7 +328,7 @@ def is_constant(segment, drive):
     drive: Drive, of which ``segments`` is read.
     """
     row = drive.segments[segment]
-    variation = 0.0
+    variation = 0.0  # sum of the moduli of all coefficients of x and its powers
     terms = n_coefficients(row)
     for n in range(N_NODE_FUNCTIONS * terms):
         variation += abs(row[COL_COEFFICIENTS + n]) if n % terms > 0 else 0.0

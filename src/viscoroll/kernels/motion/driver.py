@@ -1,15 +1,11 @@
-"""Integration of one motion from regime to regime, and of many motions.
+"""Integration of one motion from regime to regime, and of many motions: the entry from Python.
 
-Integration of a motion, free or driven, from regime to regime and from segment to segment of the
-drive.
+A motion, free or driven, is integrated from regime to regime and from segment to segment of the
+drive.  A regime changes only at a located event, or where the drive jumps and the cylinder is at
+rest or held by its brake.  Of many motions each has its own start and, where given, its own scene
+and drive.
 
-A regime changes only at a located event, or where the drive jumps and the cylinder is at rest or
-held by its brake.
-
-Many motions, each with its own start and, where given, its own scene and drive: the entry from
-Python.
-
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
@@ -145,6 +141,7 @@ def _advance_at_rest(step_state, work):
       sliding, so that the motion is not unique; State of zeros, REGIME_AT_REST; the StepState at
       the present time, with one trial step more; an output at that time is written.
     """
+    # d of partial slip; 0 in full slip, where it stands for omega.
     kind, regime, d = depart_from_rest(step_state.tau, step_state.segment, work)
     if kind == ROLLS_OFF or kind == SLIDES_OFF:
         return kind, State(0.0, d), regime, set_step_length(0.0, 0, step_state)
@@ -266,6 +263,8 @@ def relax_creep(state, regime, step_state, work):
     load = current_load(regime, step_state, work)
     rates = current_rates(state, regime, step_state, work)
     n = added_inertia(state.V, work.scene)[0]
+    # p = inertia V + inverse_mass omega with n of ``state``, n V for the integral of n over V; V
+    # follows from it with omega = V (1 + delta).
     inertia = load.inverse_inertia + load.inverse_mass * load.inverse_inertia * n
     p = inertia * state.V + load.inverse_mass * rates.omega
     d = 0.0
@@ -283,6 +282,7 @@ def relax_creep(state, regime, step_state, work):
     step_state = set_step_length(_STEP_AFTER_RELAXATION * step_state.tau, 0, step_state)
     if low > -1.0 and high < 1.0:
         return True, state, regime, step_state
+    # One end of the bracket never moved: V d' has no zero with |d| < 1, and slip is full.
     omega = state.V * (1.0 + creepage(state.V, regime.sigma, work.scene))
     return True, State(state.V, omega), change_slip(regime, True, regime.sigma), step_state
 
@@ -402,7 +402,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
     With the last four, outputs beyond the end of the integration are not written.
     """
     event = NO_EVENT
-    relaxed_at = -1.0
+    relaxed_at = -1.0  # tau of the last relaxation of d within rounding; -1 before one
     code = regime_code(regime) if moving else -1
     while step_state.next_output < work.output_tau.size:
         if step_state.n_steps >= work.options.max_steps:
@@ -414,7 +414,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             return ADDED_MASS_EXHAUSTED, write_due_outputs(state, regime, step_state, work)
         event = NO_EVENT
         direction = regime.direction
-        last_state = step_state
+        last_state = step_state  # with the time at which a cylinder that stays at rest came to rest
         if _is_below_rest_speed(moving, state, regime, step_state, work):
             event = BELOW_REST_SPEED
         elif not moving:
@@ -434,6 +434,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             return CAME_TO_REST, _come_to_rest(code, state, regime, step_state, work)
         stick_formed = event == STICK_EDGE and regime.full_slip
         if event == STEP_FAILED:
+            # Where d relaxes faster than time resolves it is set to its equilibrium, once at a
+            # time.
             if step_state.tau <= relaxed_at or not _relaxes_within_rounding(
                 state, regime, step_state, work
             ):
@@ -443,6 +445,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             continue
         if event != NO_EVENT and not added_mass_exhausted(event, state, regime, work):
             moving, state, regime = apply_event(event, state, regime, step_state, work)
+            # At d = 0 the law is smooth but for its second derivative, so that the length of the
+            # step stays; else it is chosen anew.
             step_state = set_step_length(
                 step_state.h if event == DELTA_ZERO else 0.0, 0, step_state
             )
@@ -466,22 +470,22 @@ def integrate_motion(V0, omega0, record):
     (:func:`.motion_law.speeds_after_sliding`).  V0 counts as 0 up to 1e-150 of |omega0|.  From V =
     omega = 0 the cylinder stays at rest until the drive moves it.
 
-    V0, omega0: float, initial speeds of either sign, dimensionless.
+    V0, omega0: float, initial speeds of either sign, in units of R/T_epsilon and 1/T_epsilon.
     record: Workspace, by value; ``nodes`` are 0 on entry, but for the row of ones, and the matrices
-    are 0.  Outputs, switches and ends of steps are written; outputs beyond an early end keep their
-    values.
+    are 0.  Outputs (units as of :func:`motion_loop`), switches and ends of steps are written;
+    outputs beyond an early end keep their values.
     Returns (status, number of trial steps, number of regime changes, t of the onset of stick, t of
     coming to rest): the status is COMPLETED (0), CAME_TO_REST (1), STEP_LIMIT (2), STEP_TOO_SMALL
-    (3), NOT_UNIQUE (4) or ADDED_MASS_EXHAUSTED (5) of :mod:`records`, an int as the number of trial
-    steps; all others are floats.  Reversals of direction are no regime changes; the times are
-    dimensionless, tau/gamma, NaN where the event does not occur.  The onset is the first time at
-    which a stick zone forms in full slip; a start or a departure from rest in partial slip is none.
-    Coming to rest is that below the rest threshold, NaN without one.
+    (3), NOT_UNIQUE (4) or ADDED_MASS_EXHAUSTED (5) of :mod:`.records`, an int as the number of
+    trial steps; all others are floats.  Reversals of direction are no regime changes; the times t =
+    tau/gamma are in units of T_epsilon, NaN where the event does not occur.  The onset is the first
+    time at which a stick zone forms in full slip; a start or a departure from rest in partial slip
+    is none.  Coming to rest is that below the rest threshold, NaN without one.
     """
     work = by_reference(record)
     nodes = work.nodes
     step_state = StepState(tau=0.0, next_output=0, segment=0, n_steps=0, n_accepted=0, h=0.0)
-    nodes[ONSET_TIME] = nodes[REST_TIME] = np.nan
+    nodes[ONSET_TIME] = nodes[REST_TIME] = np.nan  # NaN where the event does not occur
     state = State(0.0, 0.0)
     regime = REGIME_AT_REST
     stick_formed = False
@@ -509,7 +513,7 @@ class Drives(NamedTuple):
     """Drives of many motions.
 
     segments : (m, k, columns) over t, m = 1 for all motions or one for each; columns as COL_* of
-        :mod:`records`, with times and slopes in t, not in tau
+        :mod:`.records`, with times and slopes in t, not in tau
     gains : (4, 1) or (4, n), dimensionless, in the order of :class:`Gains`
     prescribed : NOT_PRESCRIBED, PRESCRIBED_OMEGA or PRESCRIBED_V, the same for all
     """
@@ -540,7 +544,7 @@ def _drive_of_motion(drives, gamma, i, segments):
     drives: Drives, over t; one for all motions, or one for each.
     gamma: float, tau = gamma t, dimensionless, above 0.
     i: int, index of the motion.
-    segments: (k, columns), written: k segments over tau, columns as COL_* of :mod:`records`, k and
+    segments: (k, columns), written: k segments over tau, columns as COL_* of :mod:`.records`, k and
     columns as in ``drives.segments``.
     Returns the Gains of the motion, those of the last one given if there are fewer; they are not
     converted.
@@ -563,17 +567,18 @@ def motion_loop(batch, drives, t, options, rows, out, info, notes):
     """Integrate all motions of a batch.
 
     Batch, Drives and Options come as plain tuples: numba needs microseconds to find the type of a
-    record.
+    record.  Times are in units of T_epsilon, V in R/T_epsilon, omega in 1/T_epsilon; the T_epsilon
+    of a series of relaxation times is the unit of time of its law.
 
     batch: fields of a :class:`Batch`: law, moments_differ, and kappa, mu, gamma, j, V0 and omega0,
     arrays (1,) or (n,), of n motions; n is the length of the second axis of ``out``.
     drives: fields of :class:`Drives`, over t: segments, gains, prescribed.
-    t: (k,), output times, dimensionless, increasing, k >= 1, the first at least 0.
-    options: fields of :class:`Options`: rtol, rest_speed (0: no rest threshold), max_steps of a
-    motion.
-    rows: (q,) int, requested output rows, unchecked: V 0, omega 1, x 2, angle 3, delta 4, regime 5,
-    force 6, torque 7, work of force 8 and of torque 9, losses in the brake 10, in slip 11, in
-    rolling 12.
+    t: (k,), output times, increasing, k >= 1, the first at least 0.
+    options: fields of :class:`Options`: rtol, rest_speed (a V and omega; 0: no rest threshold),
+    max_steps of a motion.
+    rows: (q,) int, requested output rows, unchecked: V 0 (unit R/T_epsilon), omega 1 (1/T_epsilon),
+    x 2 (R), angle 3 (rad), delta 4 (1), regime 5 (code), force 6 (P), torque 7 (P R), work of force
+    8 and of torque 9, losses in the brake 10, in slip 11, in rolling 12 (m (R/T_epsilon)^2).
     out: (q, n, k), [quantity, motion, time], filled; NaN at times that a motion did not reach.
     info: (n, 5), [motion, INFO_COLUMNS], filled: status (COMPLETED 0, CAME_TO_REST 1, STEP_LIMIT 2,
     STEP_TOO_SMALL 3, NOT_UNIQUE 4, ADDED_MASS_EXHAUSTED 5), trial steps, regime changes, and t of

@@ -1,7 +1,7 @@
 """Events: their functions, whose zeros end a regime, and their location on the dense output of a
 step.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
   delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
@@ -48,8 +48,7 @@ from .motion_law import creepage, omega_and_delta, stick_edge_function
 from .rhs import rhs_and_forces_at_node
 
 #: A step ends at an event where the function of the event is below this times rtol, relative to the
-#: scale of the
-#: function: a hundredth of the tolerance.
+#: scale of the function: a hundredth of the tolerance.
 _EVENT_TOLERANCE = 1e-2
 #: Smallest such tolerance that rounding allows, relative to the scale of the function: some units
 #: of rounding.
@@ -133,6 +132,7 @@ def evaluate_event_functions(step, regime, work):
     others.  Returns nothing.
     """
     nodes = work.nodes
+    # A tuple, not a reference: LLVM would read its fields again after each number that is stored.
     scene = by_value(work.scene)
     rest = work.options.rest_speed
     for i in range(N + 1):
@@ -170,8 +170,9 @@ def _first_negative_node(event, last, nodes):
     and a NaN is passed over; one at node 0 makes the result 0.
     """
     smallest, largest = row_range(event, nodes)
-    if not smallest < 0.0:
+    if not smallest < 0.0:  # The usual case, and a NaN at node 0.
         return 0
+    # Whether the function has been positive at a node so far.
     positive = nodes[event] > _START_ROUNDING * max(largest, 0.0)
     for i in range(1, last + 1):
         value = nodes[event + i]
@@ -224,7 +225,7 @@ def _find_interpolant_zero(start, low, high, nodes):
     """
     f_low = start + evaluate_dense_output(low, nodes, ROW_DENSE_EVENT)
     f_high = start + evaluate_dense_output(high, nodes, ROW_DENSE_EVENT)
-    if not f_low > 0.0:
+    if not f_low > 0.0:  # True for NaN too.
         return low
     if f_high > 0.0:
         return high
@@ -296,7 +297,7 @@ def find_first_event(step, regime, work):
     Returns (event, v in [0, 2]), an int and a float; (NO_EVENT, 2.0) for none.
     """
     event = NO_EVENT
-    last = N
+    last = N  # node after the zero of the first event so far: a later one cannot be first
     v = 2.0
     nodes = work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
@@ -337,7 +338,8 @@ def find_missed_event(step, regime, work):
     """
     nodes = work.nodes
     for candidate in range(STICK_EDGE, ROW_DRIVE, ROW_LENGTH):
-        # The equations of partial slip continue into full slip: a missed edge does no harm there.
+        # The rest threshold is asked for where a regime begins.  The equations of partial slip
+        # continue into full slip: a missed edge does no harm there.
         excluded = candidate == BELOW_REST_SPEED or (
             candidate == STICK_EDGE and not regime.full_slip
         )
@@ -403,6 +405,7 @@ def refine_event(event, v, regime, work):
     threshold.
     Returns the position v, a float in [0, 2]; for all other events ``v`` unchanged.
     """
+    # Twice OMEGA_ZERO, as numba needs tuples of one length.
     if event not in (
         (STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)
     ):
@@ -411,7 +414,7 @@ def refine_event(event, v, regime, work):
     difference -= _event_function(event, v - _SECANT_OFFSET, regime, work)
     for _ in range(_SECANT_STEPS):
         correction = _event_function(event, v, regime, work) * (2.0 * _SECANT_OFFSET) / difference
-        if not abs(correction) < _MAX_SECANT_MOVE:
+        if not abs(correction) < _MAX_SECANT_MOVE:  # True for NaN too.
             break
         v = min(max(v - correction, 0.0), 2.0)
     return v

@@ -1,16 +1,9 @@
 """The layout of a flow map, and the contact states from which it is made.
 
-Layout of a flow map: polynomials of 24 powers, one for each octave of their variable, as in the
-rows of the law.
-
-Times are tau = gamma t.  Motions are mirrored so that omega > V in full slip and V > 0 in partial
-slip.  All tables form one vector; pairs of functions are interleaved
-(:mod:`.simd`).
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-Contact states from which a flow map is made.
+A flow map (docs/internals_motion.md, Flow map) consists of polynomials of 24 powers, one for each
+octave of their variable, as in the rows of the law.  All tables form one vector; pairs of functions
+are interleaved (:mod:`.simd`).  Motions are mirrored so that omega > V in full slip and V > 0 in
+partial slip.  Times are tau = gamma t.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
@@ -96,8 +89,7 @@ class FlowTables(NamedTuple):
     Attributes
     ----------
     slide : two tables, V > 0 and V < 0 in full slip, over kappa |V|: (T = integral of dV/V' from
-        rest, delta_star
-        |V|), X = integral of V dT.
+        rest, delta_star |V|), X = integral of V dT.
     after : two tables, T > 0 and T < 0, over kappa mu |T|: |V|.
     onset : two tables by the sign of V at onset, over kappa |I|/(1 + j), I = V - j omega - 2 mu T:
         (V, T), X at onset.
@@ -121,6 +113,7 @@ class FlowTables(NamedTuple):
     layer: Any
 
 
+#: Shapes of the tables.
 SHAPES = FlowTables(
     slide=(2, HIGH - LOW, 3 * TERMS),
     after=(2, HIGH - LOW, TERMS),
@@ -130,7 +123,9 @@ SHAPES = FlowTables(
     asymptote=(2, OCTAVES, 6 * TERMS),
     layer=(2, OCTAVES, LAYER_HIGH - LAYER_LOW, 5, BLOCK),
 )
+#: Index in the vector at which each table begins.
 STARTS = FlowTables(*(sum(map(prod, SHAPES[:n])) for n in range(len(SHAPES))))
+#: Number of doubles of the vector.
 SIZE = sum(map(prod, SHAPES))
 
 
@@ -176,9 +171,13 @@ def states(V, delta, kappa, mu, law, out):
     for i in range(V.size):
         u = kappa * V[i]
         found = length_and_moment(locate_row(u, law), u, law)
-        edge = 0.5 * mu / kappa * found.L
+        edge = 0.5 * mu / kappa * found.L  # delta_star, Eq. (9)
+        # L (1 - |delta|/delta_star); in full slip 1e-300 in place of 0 keeps v finite or inf, not
+        # NaN.
         w = found.L * max(1.0 - abs(delta[i]) / edge, 1e-300)
         v = 2.0 * u / w
+        # |Q| = mu (1 - w^2 H(v)), with H = H/F^2 and v = 2 u/w: dQ/dw = -2 mu w (H - v H'/2), and
+        # dw/d delta = -2 kappa/mu for delta > 0.
         value, slope = H_over_F2(locate_row(v, law), v, law)
         out[DELTA_STAR, i] = edge
         out[MOMENT, i] = V[i] * found.scale * found.m

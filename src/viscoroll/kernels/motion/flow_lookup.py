@@ -9,9 +9,9 @@ number.
 
 Terms of this file:
 
-- Flow: record of the flow map of one scene: ``table``, the vector of all its tables, of layout.SIZE
-  numbers; kappa, mu, j; ``first``, the exponent from which kappa V at onset is tabulated;
-  ``slow_rate``.
+- Flow: record of the flow map of one scene: ``table``, the vector of all its tables, of
+  flow_layout.SIZE numbers; kappa, mu, j; ``first``, the exponent from which kappa V at onset is
+  tabulated; ``slow_rate``.
 - Times are tau = gamma t.  Distances and angles are integrals over tau: gamma times x and gamma
   times the angle.
 - Level: SPEEDS (0): V and delta or omega alone; PATH (1): distance and angle too; LOSS (2): slip
@@ -102,14 +102,14 @@ def full_slip_integrals(V, level, flow):
     from the map.
 
     V : float, speed of the axis in the mirrored frame (omega > V), of either sign or 0, kappa |V| <
-        2^layout.HIGH, which is not checked.
+        2^flow_layout.HIGH, which is not checked.
     level : SPEEDS, PATH or LOSS: the distance is read from the table from PATH on.
     flow : Flow, of the scene; ``table``, kappa and mu are read.
 
     Returns (T, X, limit): time tau from V = 0 to V, with the sign of V; distance times gamma
     between rest and V, >= 0; delta_star |V|, the least omega - V of full slip, >= 0.  For kappa |V|
-    < 2^layout.LOW, below the table, they are their limits as V -> 0, (V/mu, V^2/(2 mu), mu |V|/(2
-    kappa)), at every level.  In the table X is 0 at level SPEEDS.
+    < 2^flow_layout.LOW, below the table, they are their limits as V -> 0, (V/mu, V^2/(2 mu), mu
+    |V|/(2 kappa)), at every level.  In the table X is 0 at level SPEEDS.
     """
     speed = abs(V)
     row, t, _ = locate_octave(flow.kappa * speed, flow_layout.LOW)
@@ -125,12 +125,12 @@ def full_slip_integrals(V, level, flow):
 def speed_at_slide_time(T, flow):
     """Return V in full slip, in the mirrored frame, at a time before or after V = 0.
 
-    T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^layout.HIGH, which is
-    not checked.
+    T : float, time gamma t since V = 0, negative before it; kappa mu |T| < 2^flow_layout.HIGH,
+    which is not checked.
     flow : Flow, of the scene; ``table``, kappa and mu are read.
 
-    Returns V, a float, with the sign of T; for kappa mu |T| < 2^layout.LOW, below the table, its
-    limit mu T for small T.
+    Returns V, a float, with the sign of T; for kappa mu |T| < 2^flow_layout.LOW, below the table,
+    its limit mu T for small T.
     """
     row, t, _ = locate_octave(flow.kappa * flow.mu * abs(T), flow_layout.LOW)
     if row == 0:
@@ -178,8 +178,12 @@ def read_onset(I, level, flow):
     speed, >= 0, but 0 at level SPEEDS.  All three are 0 where the onset is outside the tables, for
     I = 0 and for an I that is NaN too.
     """
+    # By Eq. (22), (V - j omega)' = 2 Q = 2 mu in tau, and T' = 1: I is constant.  At the onset
+    # omega - V = delta_star |V|, so that I = (1 - j) V - j delta_star |V| - 2 mu T(V) is a function
+    # of V there.  As T -> V/mu for V -> 0 and delta_star is small, it is close to -(1 + j) V at low
+    # speed: x is then close to kappa |V|, and V has the sign opposite to that of I.
     x = flow.kappa * abs(I) / (1.0 + flow.j)
-    if not LOWEST <= x < HIGHEST:
+    if not LOWEST <= x < HIGHEST:  # True for NaN too.
         return 0.0, 0.0, 0.0
     row, t, _ = locate_octave(x, flow_layout.LOW)
     at = STARTS.onset + (row - 1 + (0 if I < 0.0 else _SPEED_OCTAVES)) * _ONSET
@@ -200,10 +204,10 @@ def _locate_on_manifold(slow_log):
     Inside the table the factor is 1.  Below it the position is that of the lowest slow logarithm,
     and the factor is exp(slow_log - lowest), by which these quantities fall; it may underflow to 0.
     """
-    if slow_log >= 0.0:
+    if slow_log >= 0.0:  # Octaves of 1 + slow_log; below 0 bins of one width.
         row, t, _ = locate_octave(1.0 + slow_log, 0)
         return STARTS.slow + (flow_layout.SLOW_BINS + row - 1) * _SLOW, t, 1.0
-    share = 1.0
+    share = 1.0  # the factor
     if slow_log < _LOWEST_SLOW_LOG:
         share = np.exp(slow_log - _LOWEST_SLOW_LOG)
         slow_log = _LOWEST_SLOW_LOG
@@ -289,7 +293,7 @@ def remaining_slip_loss(slow_log, table):
 def manifold_at_speed(v, table):
     """Return (slow logarithm, delta) on the slow manifold at a speed, floats, each of either sign.
 
-    v : float, kappa V, from LOWEST to below 2^layout.HIGH; it is not checked.
+    v : float, kappa V, from LOWEST to below 2^flow_layout.HIGH; it is not checked.
     table : vector of all tables, ``table`` of Flow.
     """
     row, t, _ = locate_octave(v, flow_layout.LOW)
@@ -313,8 +317,8 @@ def read_asymptote(family, v, level, flow):
     slip: its asymptote.
 
     family : PLUS if omega > V at the onset, MINUS if omega < V, with V > 0.
-    v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES); it is not
-    checked.
+    v : float, kappa V at the onset, from 2^first to below 2^(first + flow_layout.OCTAVES); it is
+    not checked.
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene; ``table`` and ``first`` are read.
 
@@ -360,7 +364,7 @@ def locate_in_layer(family, v, u, flow):
     """Return the position of a motion in the table of the boundary layer.
 
     family : PLUS or MINUS.
-    v : float, kappa V at the onset, from 2^first to below 2^(first + layout.OCTAVES).
+    v : float, kappa V at the onset, from 2^first to below 2^(first + flow_layout.OCTAVES).
     u : float, layer coordinate, from 2^LAYER_LOW to below 2^LAYER_HIGH.
     flow : Flow, of the scene; ``first`` is read.
 
@@ -385,7 +389,8 @@ def _evaluate_in_t(p, t):
     t : float, argument.
     """
     square = t * t
-    per = broadcast(square * square)
+    per = broadcast(square * square)  # t^4, the ratio of the powers of successive vectors
+    # a to d: sums of the coefficients of the powers 4 n, 4 n + 1, 4 n + 2 and 4 n + 3, times t^4n.
     a, b, c, d = unpack(fma4(fma4(p[2], per, p[1]), per, p[0]))
     return fma(square, fma(t, d, c), fma(t, b, a))
 
@@ -406,12 +411,15 @@ def layer_value_and_slopes(table, column, at, t, s):
     """
     at += column * flow_layout.BLOCK
     per = broadcast(s)
+    # Horner's scheme in s, of vectors of the coefficients in t: ``value`` of the polynomial,
+    # ``rise`` of its derivative in s.
     value = _powers(table, at + flow_layout.BLOCK - LAYER_TERMS)
     rise = value
     for m in range(LAYER_TERMS - 2, 0, -1):
         value = fma4(value, per, _powers(table, at + m * LAYER_TERMS))
         rise = fma4(rise, per, value)
     value = fma4(value, per, _powers(table, at))
+    # Derivative in t, by Horner's scheme of numbers.
     powers = (*unpack(value[0]), *unpack(value[1]), *unpack(value[2]))
     slope = 11.0 * powers[11]
     for k in range(10, 0, -1):

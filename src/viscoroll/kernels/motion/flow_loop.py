@@ -1,12 +1,7 @@
-"""Many motions of one scene from its flow map.
+"""Many motions of one scene, looked up in its flow map.
 
-Flow map, starts in partial slip: the search for the onset of partial slip that the start would
-have come from.
-
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-Look up many motions of one scene in its flow map.
+Of a start in partial slip the onset of partial slip that it would have come from is searched
+first.  The map is explained in docs/internals_motion.md, Flow map.
 
 All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
 number.
@@ -115,11 +110,15 @@ def _initial_u(size, slow, turns):
     """
     traction = np.copysign(1.0 - (1.0 - abs(slow)) ** 2, slow)
     a = np.sqrt(1.0 - traction)
+    # From r = 0 at the onset, E = ln((a + r)/(a - r))/a; r = 1 at the split.  1e-14 keeps the
+    # logarithms finite where the start is on the manifold.
     if size > 0.0:
         r = 1.0 - size
         E = np.log((a + r) / max(a - r, 1e-14)) / a
         split = np.log((a + 1.0) / max(a - 1.0, 1e-14)) / a if turns else 1.0
         return _LOWEST_U + (1.0 - _LOWEST_U) * E / split if E < split else 1.0 + E - split
+    # Beyond delta = 0 the traction is r^2 - 1, and r falls from 1 to b, its value on the manifold:
+    # dr/dE = -(r^2 - b^2)/2.
     r = 1.0 + size
     b = max(1.0 + slow, 1e-3)
     return 1.0 + np.log((1.0 - b) / (1.0 + b) * (r + b) / max(r - b, 1e-14)) / b
@@ -175,6 +174,7 @@ def find_onset(V, delta, edge, flow):
     family, sign = (PLUS, 1.0) if gap > 0.0 else (MINUS, -1.0)
     turns = read_asymptote(family, v, SPEEDS, flow).split != 1.0
     u = _initial_u(sign * delta / edge, sign * slow / edge, turns)
+    # Iterates: v0 = kappa V at the onset, ln_v0 = ln(v0/v), and u.
     v0 = v
     ln_v0 = 0.0
     change = np.inf
@@ -185,14 +185,18 @@ def find_onset(V, delta, edge, flow):
         creep, creep_t, creep_s = layer_value_and_slopes(flow.table, LAYER_CREEP, at, t, s)
         if change < _CONVERGED:
             break
+        # Distance from the manifold over that of the state, whose logarithm is to be 0.  Where the
+        # table has passed the manifold (or NaN) u is brought nearer to the onset.
         away = (creep - slow) / gap
         if not away > 0.0:
             u = 0.5 * (u + _LOWEST_U)
             continue
-        # slopes in ln v0 and u: s and t are 4 m - 3 with the mantissa m of v0 and of u
+        # Slopes in ln v0 and u: s and t are 4 m - 3 with the mantissa m of v0 and of u.
         per_v = t + 3.0
         per_u = (s + 3.0) / u
         inverse_difference = 1.0 / (creep - slow)
+        # The two residuals, ln of V over that of the state and ln of ``away``, and the matrix
+        # (a b, c d) of their slopes in ln v0 and u.
         first = ln_v0 + ln_V
         second = np.log(away)
         a = 1.0 + ln_t * per_v
@@ -205,6 +209,7 @@ def find_onset(V, delta, edge, flow):
         v0 = _clamp(v * np.exp(ln_v0 - shift), lowest, 0.99 * highest)
         ln_v0 = ln_v0 - shift
         u = u - step
+        # The errors that are left are about the squares of these: of delta gap second^2.
         change = abs(shift) + abs(second) * np.sqrt(abs(gap))
     split = read_asymptote(family, v0, SPEEDS, flow).split
     E = (u - _LOWEST_U) / (1.0 - _LOWEST_U) * split if u < 1.0 else u - 1.0 + split
@@ -298,6 +303,7 @@ def _start_in_full_slip(frame, V, omega, start, level, flow):
     """
     mu = flow.mu
     (T, X) = start
+    # V - j omega = w + 2 mu tau while sliding, and its integral is x - j angle = tau (w + mu tau).
     w = V - flow.j * omega
     V_on, T_on, X_on = read_onset(w - 2.0 * mu * T, level, flow)
     v = flow.kappa * abs(V_on)
@@ -332,11 +338,11 @@ def _start_in_partial_slip(V0, omega0, edge, level, flow):
     level : SPEEDS, PATH or LOSS: quantities to compute.
     flow : Flow, of the scene; ``table``, ``first`` and kappa are read.
 
-    Returns (:class:`StickOnset` at a time tau <= 0; its :class:`Asymptote`; whether the map covers
-    the motion, without which the other two have no meaning).  Distance, angle and slip loss of the
-    onset are minus those from there to the start, not mirrored; below level PATH all are 0, below
-    LOSS the loss.  A start on the slow manifold has its onset at practically tau = 0 and no
-    boundary layer.
+    Returns (:class:`StickOnset` at a time tau <= 0; its :class:`.records.Asymptote`; whether the
+    map covers the motion, without which the other two have no meaning).  Distance, angle and slip
+    loss of the onset are minus those from there to the start, not mirrored; below level PATH all
+    are 0, below LOSS the loss.  A start on the slow manifold has its onset at practically tau = 0
+    and no boundary layer.
     """
     frame = 1.0 if V0 > 0.0 else -1.0
     family, v, E, covered = find_onset(abs(V0), (omega0 - V0) / V0, edge, flow)
@@ -390,8 +396,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
         below it.
     flow : Flow, of the scene; ``table``, kappa, mu and j are read.
     out : outputs (ROWS, times), written but for the row ROLLING_LOSS, in the frame of the caller;
-        delta is +inf where V
-        = 0.  Columns with ``tau_out`` >= ``until`` stay.
+        delta is +inf where V = 0.  Columns with ``tau_out`` >= ``until`` stay.
     Returns the index of the next column to write, int; it is the number of times where no output is
     left.
     """
@@ -401,6 +406,7 @@ def _write_full_slip(at, tau_out, until, slide, level, flow, out):
     while at < tau_out.size and tau_out[at] < until:
         tau = tau_out[at]
         V = speed_at_slide_time(T0 + tau, flow)
+        # From V - j omega = w + 2 mu tau and its integral over tau.
         omega = (V - (w + 2.0 * mu * tau)) * per_j
         x = angle = 0.0
         if level >= PATH:
@@ -433,7 +439,7 @@ def _write_partial_slip(at, tau_out, until, stick, asymptote, level, flow, out):
     tau_out : output times tau = gamma t, ascending, (times,).
     until : float, last time tau; an output at that time is written.
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
-    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    asymptote : :class:`.records.Asymptote`: the motion on the slow manifold that it approaches.
     level : SPEEDS, PATH or LOSS: quantities beyond it are those of ``stick`` at all times, which
         have no meaning then.
     flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
@@ -491,7 +497,7 @@ def _follow_partial_slip(at, tau_out, stick, asymptote, request, flow, out):
     at : int, first column to write; nothing is written if it is the number of columns.
     tau_out : output times tau = gamma t, ascending, (times,), at least one.
     stick : :class:`StickOnset`: frame, speed, time and path at the onset.
-    asymptote : :class:`Asymptote`: the motion on the slow manifold that it approaches.
+    asymptote : :class:`.records.Asymptote`: the motion on the slow manifold that it approaches.
     request : :class:`.records.Request`: level; rest, the value of max(|V|, |omega|) below which a
         motion is at rest, 0 for none; rest_slow_log, the slow logarithm at that value.
     flow : Flow, of the scene; ``table``, ``first``, kappa and ``slow_rate`` are read.
@@ -561,7 +567,7 @@ def look_up_motion(V0, omega0, tau_out, request, flow, out):
     if abs(V0) < request.rest and abs(omega0) < request.rest:
         _write_rest(0, 0.0, 0.0, 0.0, out)
         return CAME_TO_REST, np.nan, 0.0
-    if not kappa * abs(V0) < HIGHEST:
+    if not kappa * abs(V0) < HIGHEST:  # True for NaN too.
         return NOT_COVERED, np.nan, np.nan
     frame = 1.0 if omega0 >= V0 else -1.0
     V = frame * V0
@@ -644,6 +650,7 @@ def look_up_motions(flow, motions, result, start, stop):
         omega = element(omega0, i)
         result.status[i], onset, rest_time = look_up_motion(V, omega, tau, request, flow, one)
         if level >= LOSS:
+            # Kinetic energy (V^2 + j omega^2)/2 lost since the start, as products of differences.
             for m in range(t.size):
                 V_now = one[_V, m]
                 omega_now = one[_OMEGA, m]

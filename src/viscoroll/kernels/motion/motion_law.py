@@ -1,22 +1,18 @@
-"""The contact law at a state of a motion, with the added mass.
+"""The contact law at a state of a motion: rolling moments, creepage, slip, added mass.
 
-Added mass: N of M = M(V) + N V', the rolling moment while the speed changes slowly, and the
-factor gamma N.
+All is read off the rows of the law (:mod:`.law_functions`) at u = kappa |V|; nothing here depends
+on the drive.  An argument of which no shape is stated is a number.
 
-Moments are divided by P R, speeds by R/T_epsilon, times by T_epsilon: N is in units of P
-T_epsilon^2.  A law of steady rolling has no N; its added mass is 0.  A law with N has it as
-polynomials over octaves of u = kappa |V| (``Law.N_rows``: for each row N and its integral over u, a
-pair; after the rows the constants of the integral).  That of a cover has NaN in its place.
+Added mass: N of M = M(V) + N V', the rolling moment M while the speed V changes slowly, with V' in
+t (docs/theory_materials.md, Slowly changing speed).  M is divided by P R, V by R/T_epsilon, t by
+T_epsilon, so that N is in units of P T_epsilon^2.  With V' in tau the factor is n = gamma N.  A law
+of steady rolling has no N; its added mass is 0.  A law with N has it as polynomials over octaves of
+u, in ``N_rows`` of :class:`.law_record.Law`: for each row N and its integral over u from the place
+where the argument t of the row is 0; then, for each row and the range beyond the last one, the
+integral from infinity to that place; then the same from u = 0 (:func:`.row_layout.pack_unsteady`).
+That of a cover is NaN.
 
-All quantities are dimensionless (docs/symbols.md); an argument of which no shape is stated is a
-number.
-
-The contact law at a state of a motion: rolling moments, creepage, slip, added mass.
-
-Everything is read off rows of the law (:mod:`.law_functions`) at u = kappa |V|; nothing here
-depends on the drive.
-
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
   delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
@@ -66,8 +62,8 @@ from .table_law import (
 # --- Added mass ---
 
 #: Added mass gamma N at V = 0, in units of the mass, at or below which V = 0 is not reached: a
-#: motion in partial slip ends where gamma N falls to -1, if not before (``added_mass_margin`` of
-#: the kernels of motion), far from -4.
+#: motion in partial slip ends where gamma N falls to -1, if not before
+#: (:func:`added_mass_margin`), far from -4.
 _HEAVY = -4.0
 
 
@@ -77,8 +73,8 @@ def _evaluate_N(u, law):
     evaluated.
 
     u : float, kappa |V|, dimensionless, >= 0, finite.
-    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.  Read are
-        ``N_rows``, e0 and the number of rows in ``marks``, and alpha in ``rows``.
+    law : :class:`.law_record.Law` of the material, with polynomials of N; those of a cover are NaN.
+         Read are ``N_rows``, e0 and the number of rows in ``marks``, and alpha in ``rows``.
 
     Returns (row, N, integral, slope).  row: int, index of the row from 0, or the number of rows
     where u lies beyond the last one and N has its fast limit (alpha - 1)/(16 alpha u^2).  N: float,
@@ -92,6 +88,7 @@ def _evaluate_N(u, law):
     if row < count:
         N, integral, slope, _, _, _ = evaluate_pair(law.N_rows, row * 2 * TERMS, t)
         return row, N, integral, slope * dt_dx
+    # N = (alpha - 1)/(16 alpha u^2): its integral from infinity is -N u, its slope -2 N/u.
     integral = -(alpha - 1.0) / (16.0 * alpha * u)
     return count, -integral / u, integral, 2.0 * integral / (u * u)
 
@@ -104,7 +101,7 @@ def _evaluate_added_mass(law, V, kappa, gamma):
     The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4 there), at
     infinity.
 
-    law : :class:`Law` of the material, with polynomials of N; those of a cover are NaN.
+    law : :class:`.law_record.Law` of the material, with polynomials of N; those of a cover are NaN.
     V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
@@ -115,10 +112,12 @@ def _evaluate_added_mass(law, V, kappa, gamma):
     """
     count = law.marks[ROW_COUNT]
     row, N, integral, slope = _evaluate_N(kappa * abs(V), law)
-    # the integral starts at V = 0 if that is reached, where no digits may cancel; else at infinity
+    # The integral starts at V = 0 if that is reached, where no digits may cancel; else at infinity.
+    # N_rows[0] is N at u = 0, the first coefficient of row 0; ``start`` is the index of the first
+    # constant of the integral, of those from infinity or of those from u = 0.
     start = count * 2 * TERMS + (count + 1 if gamma * law.N_rows[0] > _HEAVY else 0)
     integral += law.N_rows[start + row]
-    if V < 0.0:  # continued from V = 0
+    if V < 0.0:  # N is even: the integral less its value at V = 0, N_rows[start], is odd.
         integral = 2.0 * law.N_rows[start] - integral
     return gamma * N, gamma * np.copysign(kappa, V) * slope, gamma * integral / kappa
 
@@ -132,8 +131,8 @@ def added_mass(law, V, kappa, gamma):
     nothing else.  The integral begins at V = 0 or, where a motion cannot reach V = 0 (gamma N <= -4
     there), at infinity.
 
-    law : :class:`Law` of the material: polynomials of each octave; ``N_rows`` is empty for steady
-        rolling, where nothing else is read.
+    law : :class:`.law_record.Law` of the material: polynomials of each octave; ``N_rows`` is empty
+        for steady rolling, where nothing else is read.
     V : float, speed of the axis, of either sign, finite, dimensionless; N is even in V.
     kappa : float, slenderness R/l0, dimensionless, > 0.
     gamma : float, P T_epsilon^2/(m R), Eq. (4), dimensionless.
@@ -153,7 +152,8 @@ def added_mass(law, V, kappa, gamma):
 def unsteady_loop(law, kappa, V, out):
     """Write N of n states into an array.
 
-    law : :class:`Law` that has N (``N_rows`` is not empty); marks, rows and ``N_rows`` are read.
+    law : :class:`.law_record.Law` that has N (``N_rows`` is not empty); marks, rows and ``N_rows``
+        are read.
     kappa, V : slenderness, > 0, and speed, of either sign, finite, dimensionless, of length 1 or n.
     out : (n,) floats, written: N in units of P T_epsilon^2.  Of a cover it is NaN in the rows of
         the law, and without meaning beyond the last row.  Returns nothing.
@@ -207,14 +207,15 @@ def evaluate_moments(u, scene):
     either body at a V of any sign is V times its quotient.
     """
     law = by_value(scene.law)
-    index = locate_row(u, law)
+    index = locate_row(u, law)  # position of u in the rows
     law_at_u = length_and_moment(index, u, law)
-    m = law_at_u.scale * law_at_u.m
+    m = law_at_u.scale * law_at_u.m  # M/V of both bodies together
     half_space = cylinder = 0.5 * m
     half_space_slope = cylinder_slope = 0.5 * law_at_u.d_um
     if scene.moments_differ:
         half_space, cylinder, half_space_slope, cylinder_slope = body_moments(index, u, law)
-        # The scale is 1, or less in the fast limit.
+        # The parts are divided by the scale of M/V, as m of the law is, and their sum differs from
+        # it by rounding: they are scaled to the sum m.  Of elastic bodies m is 0.
         scale = m / (half_space + cylinder) if m > 0.0 else 1.0
         half_space *= scale
         cylinder *= scale
@@ -308,9 +309,10 @@ def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, functions, scene):
 def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
     """Return the power that friction takes, and that which the bodies take, at a state.
 
-    The load's power V M_half_space + omega M_cylinder + (omega - V) Q is their sum.  The bodies
-    take V^2 and omega V times the moments over V without traction; of half-spaces friction takes
-    (omega - V) Q.
+    Their sum, V M_half_space + omega M_cylinder + (omega - V) Q, is the loss of kinetic energy per
+    unit of tau without a drive, by V V' + j omega omega' of Eq. (22).  The bodies take V and omega
+    times the moments without traction.  Friction takes (omega - V) Q and, on a cover, V and omega
+    times what the traction changes in the moments (:func:`_change_of`).
 
     V, omega, Q, M_half_space, M_cylinder: floats, the state, dimensionless, with the moments under
     traction.
@@ -379,8 +381,8 @@ def rest_limits(scene, sigma=1.0):
     half-spaces.
 
     L = 2 kappa delta_star/mu is above 0; delta_0 of a cover has either sign.  Departure from rest
-    and exponential decay are decided with these limits; :func:`.evaluate.limits_at_rest` gives them
-    for a law.
+    and exponential decay are decided with these limits; :func:`.law_functions.limits_at_rest` gives
+    them for a law.
 
     scene: Scene, of which kappa and ``law`` are read, and mu of a table.
     sigma: float, side of d, 1.0 or -1.0, on which L of a table depends; its delta_0 is the creepage
@@ -435,7 +437,13 @@ def free_decay(work):
     With a_b and a_c, the factors of Q by which shear acts back on M
     (:class:`.cover_law.Reaction`), 0 of half-spaces, and delta_0 the creepage of free rolling,
     V' = (1 + a_b) Q - M_half_space + f and j (1 + delta_0) V' = q - (1 - a_c) Q - M_cylinder, with
-    moments without traction and feedback f and q in proportion to V.
+    moments without traction and feedback f and q in proportion to V.  Q is eliminated: with a = 1 +
+    a_b, b = 1 - a_c and J = j (1 + delta_0)
+
+        (b + a J) V' = -b (M_half_space - f) - a (M_cylinder - q)
+        (b + a J) Q = J (M_half_space - f) - M_cylinder + q
+
+    Added mass, half of n V' in either moment, adds n to the factor of V'.
 
     work: Workspace, of the motion; its Scene and the gains of its feedback are read.
     """
@@ -468,19 +476,20 @@ def speeds_after_sliding(V, omega, scene):
     scene : Scene, of which ``law``, kappa, mu and j are read.
     """
     L, delta_0 = rest_limits(scene)
-    free = 1.0 + delta_0
+    free = 1.0 + delta_0  # omega/V of free rolling
     j = scene.j
     if by_value(scene.law).cover_rows is None:
         V = (V + j * omega) / (1.0 + j * free)
         return V, V * free
     reaction = reaction_at_rest(scene)
-    limit = 0.5 * L * scene.mu / scene.kappa
+    limit = 0.5 * L * scene.mu / scene.kappa  # delta_star
     c = asymmetry_at_rest(scene)
-    side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0  # a product of both would be 0
-    left = np.inf
+    # Sign of the creepage less delta_0; a product of the two least speeds would underflow to 0.
+    side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0
+    left = np.inf  # |d| at which the integral over d begins; above 1 in full slip
     if V != 0.0:
         left = abs(reduced_creep(side * abs(omega - free * V) / (limit * abs(V)), c))
-    if left > 1.0:
+    if left > 1.0:  # Full slip: V b + j omega a is kept until omega/V is that of |d| = 1.
         left = 1.0
         on_axis = 1.0 + reaction.half_space + reaction.half_space_excess
         on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess
@@ -494,15 +503,19 @@ def speeds_after_sliding(V, omega, scene):
         on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * q
         creep = creep_of(side * d, c, by_value(scene.law).cover_rows)
         y = free + limit * creep.value
-        dy = side * limit * creep.slope
+        dy = side * limit * creep.slope  # slope of y over |d|
+        # |d| falls from ``left`` to 0, which turns the sign of -a/(b/j + a y).
         V *= np.exp(left * weight * dy * on_axis / (on_spin / j + on_axis * y))
     return V, V * free
 
 
 @inline_kernel
 def _width(V, sigma, scene):
-    """Return the :class:`.table_law.Width` at a speed V of either sign on the side sigma, without
-    derivatives.
+    """Return the :class:`.table_law.Width` at a speed V of either sign on the side sigma, of which
+    only L and ``middle`` are to be read.
+
+    Its derivatives are 0 of a law of rows, where they are not evaluated, and those of the table of
+    a law with one.
     """
     u = scene.kappa * abs(V)
     law = by_value(scene.law)

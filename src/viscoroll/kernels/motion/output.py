@@ -1,10 +1,15 @@
 """Outputs of a motion: V, omega, delta and the regime; force and torque; quadratures (distance,
 angle, energies).
 
-Row of outputs: V 0, omega 1, x 2, angle 3, delta 4, regime 5, force 6, torque 7, work of force 8
-and of torque 9, losses in the brake 10, in slip 11, in rolling 12.
+Rows of the outputs, with their units (T_epsilon is the unit of time of the law):
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+- V 0 in R/T_epsilon, omega 1 in 1/T_epsilon, x 2 in R, angle 3 in rad;
+- delta 4, dimensionless, and the code of the regime 5 (:mod:`.records`);
+- force 6 in P, torque 7 in P R;
+- work of the force 8 and of the torque 9, losses in the brake 10, in slip 11 and in rolling 12, in
+  m (R/T_epsilon)^2.
+
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
@@ -210,7 +215,7 @@ def _write_state(column, state, segment, regime, work):
     force = 0.0
     torque = 0.0
     omega, delta = omega_and_delta(state, regime, work.scene)
-    if work.with_forces:
+    if work.with_forces:  # An evaluation of the right-hand side, which is left out otherwise.
         load = evaluate_load(work.output_tau[column], segment, regime, work)
         rates = evaluate_rhs(state, load, regime, work.scene)
         force, torque, _ = required_forces(state.V, omega, rates, load, regime, work.scene.j)
@@ -282,6 +287,7 @@ def _evaluate_integrands(regime, work):
     ROW_INTEGRANDS on are written, also those that are 0 as nothing drives.  Returns nothing.
     """
     nodes = work.nodes
+    # A tuple, not a reference: LLVM would read its fields again after each number that is stored.
     values = by_value(work)
     direction_over_gamma = regime.direction / values.scene.gamma
     for i in range(N + 1):
@@ -351,6 +357,8 @@ def accept_step(end, v, step, regime, step_state, work):
     tau = work.output_tau
     column = step_state.next_output
     is_last = end == last_output_tau(work)
+    # Whether an output is written now; only then, or at an end inside the step, are integrals
+    # needed at a position: the coefficients of their interpolants are fitted.
     due = column < tau.size and (tau[column] < end or is_last)
     n_quadratures = N_FREE_QUADRATURES if step.undriven else N_QUADRATURES
     n_quadratures = n_quadratures if work.with_quadratures else 0
@@ -362,7 +370,7 @@ def accept_step(end, v, step, regime, step_state, work):
                 ROW_INTEGRANDS + ROW_LENGTH * n, ROW_DENSE_QUADRATURES + ROW_LENGTH * n, work.nodes
             )
     while column < tau.size and (tau[column] < end or is_last):
-        v_output = min(dense_position(tau[column], step), 2.0)
+        v_output = min(dense_position(tau[column], step), 2.0)  # 2 may be passed by rounding.
         _write_state(column, dense_state(v_output, work.nodes), step.segment, regime, work)
         for n in range(N_QUADRATURES if work.with_quadratures else 0):
             increase = _quadrature_at(n, v_output, step, work.nodes) if n < n_quadratures else 0.0

@@ -1,7 +1,7 @@
 """Integration within one regime, step after step, to an event or to the end of a segment of the
 drive.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
@@ -177,8 +177,10 @@ def _find_crossed_event(step, remaining, regime, work):
 def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     """Solve a trial step; on an event shorten it until it ends there, at most _MAX_TRIALS times.
 
-    A step with too large an error, on which the regime ends, contains a kink of the law; the
-    shorter step that ends at the kink may be accurate.
+    A step on which the regime ends may be inaccurate because the law has a kink at the event.  It
+    gets one shorter trial, which ends at the event: if that one is inaccurate too, the length is
+    the reason, and the caller chooses it by the error.  An accurate step across an event without a
+    kink is kept whole, and the regime ends at a position v on it.
 
     step: Step, the trial step; all fields are read.
     remaining: float, time in tau to the end of the segment.
@@ -191,37 +193,45 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
     - event: code of the event that ends the regime, NO_EVENT for none;
     - v: position at which the regime ends: on the step, or 2, its right end;
     - Step: the last one tried, whose solution is at the nodes;
-    - error: its error divided by its tolerance; the caller rejects a step above 1, whatever the
-      event.  It is inf where Newton's iteration did not converge; at least 10, or NaN, where no
-      trial ended at the event or the error of one was above 1e6; at most 1 where the event was
-      missed by the shortest step that time resolves;
+    - error: its error divided by its tolerance (:func:`estimate_error`); the caller rejects a step
+      above 1, whatever the event.  Four cases are other than the estimate: inf where Newton's
+      iteration did not converge; at most 1 where the regime had ended before the first node of the
+      shortest step that time resolves; at least 10 where the trials were given up with NO_EVENT;
+      NaN, or the estimate itself, where they were given up for an error that is NaN or above 1e6;
     - dense_step: the Step whose dense output is stored now: the last one whose iteration converged,
       or the one passed if none did.
     """
     nodes = work.nodes
-    event = NO_EVENT
+    event = NO_EVENT  # the event at which the step should end, kept from trial to trial
     error = np.inf
+    # Largest length of the next trial: the rest of the segment until an event has been crossed,
+    # from then on the length of the last trial that crossed it.
     upper = remaining
     for _ in range(_MAX_TRIALS):
         if not solve_step(step, nodes[ROW_RELAXATION], dense_step, regime, work):
             return NO_EVENT, 2.0, step, np.inf, dense_step
         error = estimate_error(step, regime, work)
         dense_step = step
-        if not error <= _MAX_ERROR_FOR_EVENTS:
+        if not error <= _MAX_ERROR_FOR_EVENTS:  # True for NaN too.
             break
         evaluate_event_functions(step, regime, work)
         first_event, v = _find_crossed_event(step, remaining, regime, work)
         # In partial slip the motion ends at V = 0: the equations have no continuation.
         V_negative = row_range(ROW_V, nodes)[0] < 0.0
         missed_event = find_missed_event(step, regime, work)
+        # The regime ended before the first node.  Time does not resolve a shorter step: this one is
+        # accepted, whatever its error, so that the next regime begins.
         if missed_event != NO_EVENT and step.h <= SHORTEST_STEP * (step.tau + remaining):
             return missed_event, 2.0, step, min(error, 1.0), dense_step
+        # A missed event, or V < 0 without an event that was positive before: nothing on this step
+        # locates the end of the regime, and the caller shortens it.
         if missed_event != NO_EVENT or (
             first_event == NO_EVENT and V_negative and not regime.full_slip
         ):
             break
         if first_event != NO_EVENT:
             event = first_event
+        # A step aimed at V = 0 may end just before it, without a change of sign.
         elif (
             event == NO_EVENT
             and targets_V_zero
@@ -229,6 +239,8 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
             and nodes[ROW_V + N] < _V_ZERO_DROP * nodes[ROW_V]
         ):
             event = V_ZERO
+        # Without an event the step is complete; a step shortened to an event is, if the function
+        # of the event has fallen to 0 at its end.
         if event == NO_EVENT or (
             first_event == NO_EVENT and ends_at_event(event, nodes, work.options.rtol)
         ):
@@ -237,15 +249,23 @@ def solve_trial_step(step, remaining, targets_V_zero, dense_step, regime, work):
         has_kink = V_negative and (
             not regime.full_slip or first_event == STICK_EDGE or first_event == BELOW_REST_SPEED
         )
+        # Without a kink the law of the regime continues smoothly past the event, and the dense
+        # output of an accurate step gives its position: the step need not end there.  At V = 0 it
+        # must, as |V| in the law has a kink there.
         if first_event != NO_EVENT and error <= 1.0 and not has_kink and first_event != V_ZERO:
             if v > _EARLY_EVENT or not regime.full_slip:
                 return event, refine_event(event, v, regime, work), step, error, dense_step
             v *= _BEYOND_EARLY_EVENT
         if first_event == NO_EVENT:
+            # An earlier trial crossed the event, this shorter one ends before it: the function is
+            # extrapolated.  If it has no zero near, the step counts as one without an event, with
+            # its own error, and the next step meets the event.
             v = locate_zero(event, 0, nodes)
-            if v >= NOT_FOUND:  # The event is not near the step.
+            if v >= NOT_FOUND:
                 return NO_EVENT, 2.0, step, error, dense_step
         h = min(step.h * 0.5 * v, upper)
+        # An inaccurate step is shortened only while ``upper`` is the rest of the segment, so that
+        # one shorter trial follows; the other two conditions leave no different length to try.
         if not (error <= 1.0 or upper == remaining) or not 0.0 < h < np.inf or h == step.h:
             break
         upper = step.h if first_event != NO_EVENT else upper
@@ -286,13 +306,15 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
     drive = work.drive
     end = segment_end(segment, work)
     h = step_state.h
-    n_rejected = 0
-    last_h = 0.0
-    last_error = 1.0
+    n_rejected = 0  # trial steps rejected at the present left end
+    last_h = 0.0  # length of the last accepted step; 0: none
+    last_error = 1.0  # its error divided by its tolerance
     h = max(h, SHORTEST_STEP * step_state.tau) if h > 0.0 else h
     undriven = is_undriven(segment, drive)
+    # An equilibrium V > 0 needs a drive; without one the end is the exponential decay.
     constant = is_constant(segment, drive) and not is_unloaded(segment, drive)
-    # The rounding error of p' contains that of Q = mu in full slip.
+    # Rounding error of p', up to which p' = 0 counts as an equilibrium: in full slip p' contains
+    # Q = +-mu.
     noise = drive_rounding(segment, drive) + (ROUNDING * work.scene.mu if regime.full_slip else 0.0)
     dense_step = Step(
         tau=step_state.tau, h=0.0, segment=segment, initial_slope_known=False, undriven=undriven
@@ -307,7 +329,7 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
             )
             if steady:
                 return NO_EVENT, state, regime, step_state
-        if h == 0.0:
+        if h == 0.0:  # The length is not chosen yet.
             h = max(
                 first_step_length(stick_formed, step_state, regime, work),
                 SHORTEST_STEP * step_state.tau,
@@ -322,12 +344,14 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
             undriven=undriven,
         )
         step, targets_V_zero = _end_at_V_zero(step, remaining, state, regime, work)
+        # After a rejection the length is that of the error, shorter than the time to V = 0.
         targets_V_zero = targets_V_zero and n_rejected == 0
         event, v, step, error, dense_step = solve_trial_step(
             step, remaining, targets_V_zero, dense_step, regime, work
         )
         h_tried = h
         h = next_step_length(step, error, n_rejected, last_h, last_error)
+        # An accepted step that the end of the segment has cut is no reason for a shorter next one.
         h = max(h, h_tried) if error <= 1.0 and step.h == remaining else h
         step_state = set_step_length(h, 1, step_state)
         n_rejected += 1
@@ -336,7 +360,8 @@ def integrate_regime(stick_formed, state, regime, step_state, work):
                 continue
             if not error <= _ACCEPTED_AT_SHORTEST:
                 return STEP_FAILED, state, regime, step_state
-            h = step.h
+            h = step.h  # Accepted although it could not be shortened: the next is as long.
+        # tau + (end - tau) may differ from ``end`` by rounding.
         tau = end if v == 2.0 and step.h == remaining else step.tau + step.h * 0.5 * v
         step_state = accept_step(tau, v, step, regime, step_state, work)
         state = (

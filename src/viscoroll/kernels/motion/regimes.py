@@ -1,7 +1,7 @@
 """Regimes: the regime of a start, and the one that follows an event or begins with a segment of the
 drive.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
@@ -60,8 +60,8 @@ _START_ON_EDGE = 2e-14
 
 @kernel
 def _torque_at_locked_wheel(state, regime, step_state, work):
-    """Return the torque that would accelerate a wheel with omega = 0, and the largest torque of the
-    brake against it.
+    """Return the torque that would accelerate the cylinder at omega = 0, and the largest torque of
+    the brake against it.
 
     state: State, with omega = 0.
     regime: Regime, at that state; all fields are read.
@@ -99,7 +99,7 @@ def change_brake(regime, spin_sign, locked):
 @kernel
 def brake_holds_omega(state, regime, step_state, work):
     """Return whether the brake can hold omega at 0 against the torque that would accelerate the
-    wheel; a bool.
+    cylinder; a bool.
 
     It can if the modulus of that torque (:func:`_torque_at_locked_wheel`) is at most the largest
     torque of the brake; without a brake, only if it is exactly 0.
@@ -123,8 +123,8 @@ def release_brake(state, regime, step_state, work):
     step_state: StepState, with the time and its segment.
     work: Workspace, of which Scene and Drive are read.
     Returns ``regime`` with two fields set: ``locked`` to False; ``spin_sign`` to the sign of the
-    torque of :func:`_torque_at_locked_wheel` that accelerates the wheel from omega = 0 (1, -1, or 0
-    for no torque) where the segment has a brake anywhere on it, to 0 where it has none.
+    torque of :func:`_torque_at_locked_wheel` that accelerates the cylinder from omega = 0 (1, -1,
+    or 0 for no torque) where the segment has a brake anywhere on it, to 0 where it has none.
     """
     torque, _ = _torque_at_locked_wheel(state, regime, step_state, work)
     spin_sign = np.sign(torque) if has_brake(step_state.segment, work.drive) else 0.0
@@ -151,6 +151,7 @@ def comes_to_rest(state, regime, step_state, work):
     Returns a bool; True at equality with a threshold, and so where V is exactly 0.
     """
     prescribed = work.drive.prescribed == PRESCRIBED_OMEGA
+    # An omega prescribed to be 0 at this time acts like a brake that holds it.
     omega_zero = (
         prescribed and prescribed_speed(step_state.tau, step_state.segment, work.drive) == 0.0
     )
@@ -217,6 +218,7 @@ def impose_prescribed_speed(state, regime, step_state, work):
         return State(state.V, speed), regime
     if drive.prescribed == PRESCRIBED_OMEGA:
         omega = current_rates(state, regime, step_state, work).omega
+        # At fixed d omega is nearly proportional to V, unless it is far below V.
         factor = max(speed / omega, 0.0) if omega > _OMEGA_FOLLOWED * state.V else 1.0
         return State(state.V * factor, state.omega_or_d), regime
     if full_slip and speed < 0.0:
@@ -274,6 +276,7 @@ def apply_event(event, state, regime, step_state, work):
     if event == DELTA_ZERO:
         return True, state, change_slip(regime, False, -sigma)
     if event == V_ZERO:
+        # In partial slip omega = V (1 + delta) is 0 too: what follows is a departure from rest.
         if not full_slip or state.omega_or_d == 0.0:
             return False, state, regime
         return True, State(0.0, -state.omega_or_d), reverse_direction(regime)
@@ -294,7 +297,7 @@ def enter_segment(state, regime, step_state, work):
     start of the motion, whose given speeds stay; full slip at V = 0 with V' < 0 gets the opposite
     direction, so that V grows in it; the state of the brake is set.  On a segment with a brake it
     holds omega if omega is 0 and the brake is strong enough; else it acts against the sign of omega
-    or, where omega is 0, against the torque that accelerates the wheel.  On a segment without a
+    or, where omega is 0, against the torque that accelerates the cylinder.  On a segment without a
     brake ``spin_sign`` is 0 and ``locked`` False.
 
     state: State, at the end of the segment before, or the start of the motion.
@@ -328,10 +331,9 @@ def initial_regime(V, omega, step_state, work):
     considered later.
 
     It is partial slip where the excess slip (:func:`.motion_law.excess_slip`; omega - V for
-    half-spaces) is below delta_star
-    |V| in modulus, Eq. (9), full slip where it is above.  Where both differ by rounding, up to
-    2e-14 of the larger speed, it is partial slip with d = +-1 if |d| would fall from there, else
-    full slip.  From V = 0 it is full slip.
+    half-spaces) is below delta_star |V| in modulus, Eq. (9), full slip where it is above.  Where
+    both differ by rounding, up to 2e-14 of the larger speed, it is partial slip with d = +-1 if |d|
+    would fall from there, else full slip.  From V = 0 it is full slip.
 
     If nothing drives and both speeds are below 1e-150, they are replaced first by those of the free
     rolling in which sliding ends (:func:`.motion_law.speeds_after_sliding`).
@@ -351,7 +353,7 @@ def initial_regime(V, omega, step_state, work):
     omega = direction * omega
     slip = excess_slip(omega - V, V, work.scene)
     sigma = 1.0 if slip >= 0.0 else -1.0
-    limit = critical_creepage(V, sigma, work.scene) * V
+    limit = critical_creepage(V, sigma, work.scene) * V  # excess slip at which full slip begins
     state = State(V, omega)
     regime = Regime(full_slip=True, direction=direction, sigma=sigma, spin_sign=0.0, locked=False)
     if V == 0.0:
@@ -361,7 +363,7 @@ def initial_regime(V, omega, step_state, work):
     stick_regime = Regime(
         full_slip=False, direction=direction, sigma=sigma, spin_sign=0.0, locked=False
     )
-    if on_edge:
+    if on_edge:  # The stick zone grows if |d| falls: the sign of V d' decides.
         on_edge = (
             sigma * current_rates(stick_state, stick_regime, step_state, work).weighted_rate < 0.0
         )

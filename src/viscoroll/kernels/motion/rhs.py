@@ -1,38 +1,41 @@
 """Right-hand side of a motion in unknowns in which the law is explicit and that pass V = 0.
 
-All derivatives are exact, but that of p' in d in partial slip leaves out the feedback of omega
-(:class:`Rates`).
+The unknowns are V and omega in full slip, V and d = delta/delta_star in partial slip, there in a
+direction with V >= 0.  On rows of the law (:mod:`.law_functions`), with k = mu/(2 kappa), u = kappa
+V, delta_star = k L(u), L' = dL/du, w = (1 - |d|) L, s = sign d and H(v) the function
+:func:`.law_functions.H_over_F2`, partial slip is
 
-In full slip they are V and omega; in partial slip V and d = delta/delta_star, in a direction with V
->= 0.  On rows of the law (:mod:`.law`), with k = mu/(2 kappa), u = kappa V, delta_star = k L(u),
-w = (1 - |d|) L, s = sign d and H(v) the function :func:`.law_functions.H_over_F2`,
+    omega = V (1 + k L d)      Q = s mu [1 - w^2 H(2 u/w)]
+    V d' = [(omega' - V')/k - d (L + u L') V']/L
 
-    omega = V (1 + k L d)      Q = s mu [1 - w^2 H(2 u/w)]      V d' = [(omega' - V')/k - d (L + u L') V']/L
+The last equation is the derivative of the first in tau, as d(V delta_star)/dV = k (L + u L').  Both
+of its sides stay finite as V -> 0, where d is the root of its right side.  For |d| > 1 the law is
+continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V < 0 as odd functions.
 
 On a cover of finite thickness delta = delta_0(u) + k L (d + c(u) d^2): delta_0 V is added to omega,
 and the slopes of delta_0 and c to the factors of V' and d' in the last equation
 (:mod:`.cover_law`); half-spaces are compiled without them.
 
-Both sides of the last equation stay finite as V -> 0, where d is the root of its right side.
-For |d| > 1 the law is continued by Q = s mu, for d beyond 0 by its own branch, in full slip for V <
-0 as odd functions.
-
-In partial slip a law may add N V' to M, half of it in either body: with n = gamma N the equations
-are
+In partial slip a law may add N V' to M, half of it in either body: with n = gamma N, the applied
+force f and torque q, the equations of bodies of one material are
 
     (1 + n/2) V' = Q - M/2 + f      j omega' = -Q - M/2 - n V'/2 + q
 
 and the integral of n over V is added to p, so that p' stays the same.
 
-p = inverse_inertia V + inverse_mass omega, proportional to V + j omega, is collocated in place of
-V: p' does not depend on Q, and on d only by feedback.  dp/dd = inverse_mass V k L is small:
-Newton's matrix splits into one of p and one of d (:mod:`step`).  Where friction is so strong that
-dp/dV may vanish, p is V.
+p = inverse_inertia V + inverse_mass omega (fields of the Load), proportional to V + j omega, is
+collocated in place of V in partial slip: p' does not depend on Q, and on d only by feedback.  dp/dd
+= inverse_mass V k L is small: Newton's matrix splits into one of p and one of d (:mod:`step`).
+Where friction is so strong that dp/dV may vanish, and in full slip, p is V.
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+All derivatives are exact, but that of p' in d in partial slip leaves out the feedback of omega
+(:class:`Rates`).
 
-- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
-  delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
+
+- A prime: slope in tau = gamma t, but for L'.
+- State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d in
+  partial slip; both in the direction of the Regime, in which V is at least 0.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
   under a brake; whether the brake holds omega at 0.
 - StepState: progress of the integration: tau reached, index of the next output, segment, numbers of
@@ -41,13 +44,11 @@ Terms of this file, dimensionless (fields of the records in :mod:`records`):
   V or omega, largest torque of the brake, inverse_mass (1, or 0 where V is prescribed),
   inverse_inertia (1/j, or 0 where omega is prescribed or held by the brake) and the gains of the
   feedback.
-- p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in
-  full slip (:mod:`rhs`).  p' is its slope in tau.
 - Scene: the law of the materials, kappa = R/l0, mu, gamma and j = J/(m R^2) of one motion.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
   holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
   Radau nodes.
-"""  # noqa: E501
+"""
 
 from __future__ import annotations
 
@@ -196,8 +197,8 @@ def partial_slip_rates(V, d, load, regime, scene):
     0 all values are finite.
 
     Locals, in the symbols of the module: stick = 1 - |d|, w = (1 - |d|) L, v = 2 u/w, D = |d| L,
-    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with what a cover adds,
-    x_V and x_d: derivatives of x in V and d.
+    dVdelta_star = d(V delta_star)/dV / k = L + u L', d_total: d with what a cover adds, rate = V
+    d'; dx_dV and dx_dd: partial derivatives of x in V at fixed d, and in d at fixed V.
 
     V: float, speed of the axis in the direction of the regime, dimensionless.
     d: float, delta/delta_star; of a cover d + c d^2 = (delta - delta_0)/delta_star; dimensionless.
@@ -217,6 +218,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     u = scene.kappa * abs(V)
     du_dV = scene.kappa if V >= 0.0 else -scene.kappa
     functions = evaluate_moments(u, scene)
+    # L of the law; below, of a table, that of the side of d.  dL and ddL: its derivatives in u.
     L = functions.L
     dL = functions.dL
     ddL = functions.ddL
@@ -228,15 +230,19 @@ def partial_slip_rates(V, d, load, regime, scene):
     if w > 0.0:
         v = 2.0 * u / w
         index = locate_row(v, law)
-        value, slope = H_over_F2(index, v, law)
-        w_slope = value - 0.5 * v * slope
+        value, slope = H_over_F2(index, v, law)  # H and dH/dv
+        w_slope = value - 0.5 * v * slope  # d(w^2 H)/dw at fixed u, divided by 2 w, as v = 2 u/w
         Q *= 1.0 - w * w * value
-        if unlikely(abs(d) < _SMALL_D):  # A mean slope of H gives Q without cancellation.
+        # As 1 = L^2 H(v_0) with v_0 = 2 u/L, 1 - w^2 H(v) = L^2 H(v_0) - (L - D)^2 H(v), with v -
+        # v_0 = v D/L and H(v_0) = H(v) - secant v D/L: each term then has the factor D, so that
+        # nothing cancels.
+        if unlikely(abs(d) < _SMALL_D):
             D = abs(d) * L
             value, _, secant, _ = H_over_F2_secants(
                 index, locate_row(2.0 * u / L, law), v, D / w, law
             )
             Q = math.copysign(mu, d) * D * ((2.0 * L - D) * value - v * L * secant)
+        # Of Q = sign mu (1 - w^2 H(2 u/w)) with w = stick L(u) and dw/dd = -sign L.
         dQ_dV = -2.0 * sign * mu * w * (w_slope * stick * dL + slope) * du_dV
         dQ_dd = 2.0 * mu * w * L * w_slope
     width = width_at(
@@ -256,6 +262,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     domega_dd = k * V * creep.width
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
+    # Traction and moments by the rows of the law; of a law with a table that table replaces them.
     on_rows = loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, functions, scene)
     moments = table_state(V, d, sign, scene.kappa, mu, on_rows, law.table)
     Q = moments.Q
@@ -268,6 +275,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     inverse_product = inverse_mass * inverse_inertia
     dforce_dV = gains.force_V + gains.force_omega * domega_dV
     dtorque_dV = gains.torque_V + gains.torque_omega * domega_dV
+    # p' = inverse_inertia V' + inverse_mass omega', in which Q cancels.
     p = inverse_inertia * V + inverse_mass * omega
     dp_dV = inverse_inertia + inverse_mass * domega_dV
     dp_dd = inverse_mass * domega_dd
@@ -286,6 +294,7 @@ def partial_slip_rates(V, d, load, regime, scene):
     dV_rate_dd = inverse_mass * (dQ_dd - moments.half_space_dd + gains.force_omega * domega_dd)
     dtorque_dd = gains.torque_omega * domega_dd
     n, dn_dV, n_integral = added_inertia(V, scene)
+    # Added mass: V' is divided by 1 + n/2, and both moments get n V'/2, which changes omega' only.
     if n != 0.0:
         mass_ratio = 1.0 / (1.0 + 0.5 * inverse_mass * n)
         V_rate *= mass_ratio
@@ -299,14 +308,16 @@ def partial_slip_rates(V, d, load, regime, scene):
         p = p + inverse_product * n_integral
         dp_dV = dp_dV + inverse_product * n
     omega_rate = inverse_inertia * (torque - Q - M_cylinder) + load.prescribed_omega_rate
+    # The equation of V d'; of a cover its divisor is d(L (d + c d^2))/dd in place of L.
     # Reciprocals are formed once: the processor takes longer for a division than for five products.
     inverse_k = 1.0 / k
     inverse_L = 1.0 / creep.width
     rate = inverse_L * (inverse_k * (omega_rate - V_rate) - d_total * dVdelta_star * V_rate)
     domega_rate_dV = inverse_inertia * (dtorque_dV - dQ_dV - moments.cylinder_dV)
     domega_rate_dd = inverse_inertia * (dtorque_dd - dQ_dd - moments.cylinder_dd)
+    # Derivative in V, at fixed V' and V d', of d_total dVdelta_star V' + creep.width V d'.
     dL_term = du_dV * ((creep.bend + cover.bend) * V_rate + creep.dwidth * rate)
-    if unlikely(has_strong_friction(load, regime, scene)):
+    if unlikely(has_strong_friction(load, regime, scene)):  # V is collocated in place of p.
         p = V
         p_rate = V_rate
         dp_dV = 1.0
@@ -368,6 +379,7 @@ def full_slip_rates(V, omega, load, regime, scene):
     gains = load.gains
     du_dV = scene.kappa if V >= 0.0 else -scene.kappa
     on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)
+    # Full slip is the edge d = sigma of a table.
     moments = table_state(
         V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table
     )

@@ -1,40 +1,45 @@
-"""One step: predictor and Newton's iteration.
+"""One step: predictor, and solution by Radau IIA collocation with a simplified Newton iteration.
 
-Predictor: the values of the unknowns at the nodes from which Newton's iteration of a step
-starts.
+The predictor gives the values of the unknowns at the nodes from which the iteration starts.
 
-Solution of one step by Radau IIA collocation of p and of the second unknown, with a simplified
-Newton iteration.
+Collocation is written with the slopes of the interpolants, so that the equation of the second
+unknown d may be multiplied by V, which vanishes where a step ends at V = 0.  With p collocated in
+place of V (:mod:`rhs`), D the differentiation matrix in t on [-1, 1], h half the length of the step
+in tau, and b = V d', the equations at the nodes are
 
-Collocation is written with the slopes of the interpolants, so that the equation of d may be
-multiplied by V, which vanishes where a step ends at V = 0.  At the nodes, with D the
-differentiation matrix and h half the length,
+    h p' - D p = 0      h b - V (D d) = 0
 
-    (D - h diag(p'_V/p_V)) dp = h p' - D p       [diag(V) D - diag(h b_d + c p_d/p_V)] dd = h b - V (D d) - c dp/p_V
+An index V or d stands for a partial derivative, p'_V that of p'.  With c = D d - h b_V, Newton's
+updates dp of p and dd of d solve
 
-b = V d', c = D d - h b_V, dV = (dp - p_d dd)/p_V: two N x N systems an iteration.  Their inverses
-are kept while updates are small.  In full slip p is V, the second unknown omega, and 1 stands for
-the V that multiplies its equation.  Where friction is strong p is V too, but d enters its rate by
-F = h dV'/dd, as omega does by feedback: with S the second matrix,
+    (D - h diag(p'_V/p_V)) dp = h p' - D p
+    [diag(V) D - diag(h b_d + c p_d/p_V)] dd = h b - V (D d) - c dp/p_V
+
+and dV = (dp - p_d dd)/p_V: two N x N systems an iteration, as p' depends on d only by feedback,
+which is neglected.  Their inverses are kept while updates are small.  In full slip p is V, the
+second unknown omega, and 1 stands for the V that multiplies its equation.  Where friction is strong
+p is V too, but d enters its rate by F = h dV'/dd, as omega does by feedback: with S the matrix of
+the second system, dd is eliminated,
 
     [D - h diag(dV'/dV) + diag(F) S^-1 diag(c)] dV = h V' - D V + F S^-1 (h b - V (D d))
 
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - State: V, the speed of the axis, and ``omega_or_d``, the second unknown: omega in full slip, d =
   delta/delta_star in partial slip; both in the direction of the Regime, in which V is at least 0.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
   under a brake; whether the brake holds omega at 0.
-- Step: one collocation step: tau at its left end, its length h in tau, its segment of the drive.
+- Step: one collocation step: tau at its left end, its length h in tau (in ``Step.h``; the h of the
+  equations is half of it), its segment of the drive.
 - v: position on a step, 0 at its left end and 2 at its right end.
 - p: the unknown collocated in place of V, proportional to V + j omega in partial slip; V itself in
-  full slip (:mod:`rhs`).  p' is its slope in tau.
+  full slip.  p' is its slope in tau.
 - Workspace: Scene, Drive and options of one motion, its output arrays, and ``nodes``: row ROW_X
   holds x at node i of a step in ``nodes[ROW_X + i]``; node 0 is the left end, nodes 1 ... N are the
   Radau nodes.
 - Rates: the right-hand side at a State and its derivatives (:mod:`rhs`).
-"""  # noqa: E501
+"""
 
 from __future__ import annotations
 
@@ -120,6 +125,7 @@ def predict(step, relaxation, dense_step, regime, work):
     ROW_SPEED); V and the second unknown are written at nodes 1 ... N, in partial slip with V >= 0
     and |d| <= 1.  Returns nothing.
     """
+    # Whether the dense output may serve: not for a step far shorter from the same left end.
     usable = step.tau > dense_step.tau or step.h > _SHORTER_STEP * dense_step.h
     if (
         usable
@@ -198,6 +204,7 @@ def _predict_relaxation(step, relaxation, regime, nodes):
     )
     for i in range(1, N + 1):
         time = step.h * NODE_FRACTIONS[i]
+        # With x' = r + relaxation (x - x_0), x - x_0 = r (exp(relaxation time) - 1)/relaxation.
         effective_time = (
             np.expm1(relaxation * time) / relaxation if relaxation * time < -1e-8 else time
         )
@@ -233,6 +240,8 @@ def _predict_from_rest(step, regime, work):
     V_rate_end = rates.V_rate if regime.full_slip else max(rates.p_rate / rates.dp_dV, 0.0)
     for i in range(1, N + 1):
         time = NODE_FRACTIONS[i] * step.h
+        # The integral of a rate that changes linearly from r_0 to r_1 over the step is (r_0 +
+        # (r_1 - r_0) fraction/2) time; the name half_h stands for half the fraction of the step.
         half_h = 0.5 * NODE_FRACTIONS[i]
         change = (
             nodes[ROW_WEIGHTED_RATE] + half_h * (rates.weighted_rate - nodes[ROW_WEIGHTED_RATE])
@@ -297,6 +306,7 @@ def _evaluate_residuals(refactor, step, regime, work):
     where V is 0 in partial slip.
     Returns nothing.
     """
+    # A tuple, not a reference: LLVM would read its fields again after each number that is stored.
     values = by_value(work)
     nodes = work.nodes
     half_h = 0.5 * step.h
@@ -383,6 +393,7 @@ def _newton_iteration(refactor, coupled, step, regime, work):
     else:
         _evaluate_residuals(False, step, regime, work)
     if coupled:
+        # F S^-1 (h b - V (D d)) of the module; ROW_P_UPDATE holds S^-1 (...) until it is solved.
         multiply_matrix(d_matrix, ROW_D_RESIDUAL, 0.0, nodes, ROW_P_UPDATE, nodes)
         for i in range(1, ROW_LENGTH):
             nodes[ROW_P_RESIDUAL + i] += nodes[ROW_FEEDBACK + i] * nodes[ROW_P_UPDATE + i]
@@ -442,6 +453,8 @@ def solve_step(step, relaxation, dense_step, regime, work):
     predict(step, relaxation, dense_step, regime, work)
     last_change = np.inf
     refactor = True
+    # Whether p' depends on the second unknown: by strong friction, in full slip by feedback of
+    # omega on V'.
     coupled = has_strong_friction(load_at_node(0, regime, work), regime, work.scene)
     if regime.full_slip:
         coupled = work.drive.gains.force_omega != 0.0
@@ -452,7 +465,7 @@ def solve_step(step, relaxation, dense_step, regime, work):
             contraction = min(
                 _FIRST_CONTRACTION, _QUADRATIC_CONTRACTION * change + _REFACTOR_CONTRACTION
             )
-        if not (change < 1e6 and contraction < 2.0):
+        if not (change < 1e6 and contraction < 2.0):  # Divergence, or a NaN.
             return False
         if change * contraction <= stop:
             fit_dense_output(ROW_V, ROW_DENSE_V, nodes)

@@ -1,14 +1,11 @@
 """The error of a step, and the length of the next one.
 
-Error estimate of a step, its scales and tolerances.
+The error of the dense output is estimated by two numbers: the defect at the left end, which is the
+difference between the right-hand side and the extrapolated slope of the interpolant, and the last
+coefficient of the interpolant.  Lengths are chosen for the first step of a regime and for the step
+after an accepted or rejected one.
 
-The error of the dense output is estimated by the defect at the left end, the difference between the
-right-hand side and the extrapolated slope of the interpolant, and by the last coefficient of the
-interpolant.
-
-Step lengths: the first step of a regime, the next step after an accepted or rejected one.
-
-Terms of this file, dimensionless (fields of the records in :mod:`records`):
+Terms of this file, dimensionless (fields of the records in :mod:`.records`):
 
 - tau: time gamma t.
 - Regime: full or partial slip; direction of V, 1 or -1; sigma, the sign of the slip; sign of omega
@@ -179,9 +176,9 @@ def error_scales(step, regime, work):
 def _defect_at_start(row, slope_row, initial_slope, nodes):
     """Return the defect of an interpolant at the left end of a step.
 
-    It is the slope there by the right-hand side, less the slope of the interpolant extrapolated
-    from nodes 1 ... N, times 2, the length of the step in t, which here is the position on the
-    step, in [-1, 1].
+    With t the position on the step, in [-1, 1], it is the slope there by the right-hand side less
+    the slope of the interpolant, extrapolated from nodes 1 ... N; both slopes are in t.  The
+    difference is multiplied by 2, the length of the step in t.
 
     row: int, index in ``nodes`` of the value at node 0 of the row; the values at all nodes are
     read.
@@ -300,17 +297,21 @@ def estimate_error(step, regime, work):
     scale_V, scale_d = error_scales(step, regime, work)
     dV_dp = abs(nodes[ROW_DV_DP + N])
     error = _defect_at_start(ROW_P, ROW_P_SLOPE, nodes[ROW_P_RATE] * half_h, nodes)
+    # Friction is strong only where k = mu/(2 kappa) > 0.8 (1 + 1/j) or, with omega given, > 0.8:
+    # mu > kappa is necessary, and cheap to test.
     if unlikely(work.scene.mu > work.scene.kappa):
         error = max(error - _strong_friction_rounding(regime, work) * step.h, 0.0)
-    error *= dV_dp
+    error *= dV_dp  # From here on an error of V; ``variation`` too.
     variation = _variation_of_p_rate(half_h, nodes) * dV_dp + work.options.rtol * scale_V
+    # The result is multiplied by _DEFECT_FACTOR < 1.  This factor, between 1 and its inverse, takes
+    # the reduction back in proportion to the defect relative to the variation.
     error *= min(max(_UNRESOLVED_DEFECT * error / variation, 1.0), 1.0 / _DEFECT_FACTOR)
     # The defect may be small by chance where the last Chebyshev coefficient is not.
     error = max(error, _LAST_COEFFICIENT_FACTOR * abs(work.nodes[ROW_DENSE_V + N - 1]))
     # Shorter steps do not reduce the change of V by the rounding of the drive.
     rounding = 0.0 if step.undriven else drive_rounding(step.segment, work.drive)
     error = max(error - step.h * rounding, 0.0) / scale_V
-    if nodes[ROW_SPEED] == 0.0:
+    if nodes[ROW_SPEED] == 0.0:  # From rest V must be accurate relative to itself at an output.
         error /= _relative_speed_at_first_output(step, work)
     elif not step.undriven:  # Speeds that grow are accurate relative to those at the left end.
         error *= np.sqrt(max(nodes[ROW_SPEED + N] / nodes[ROW_SPEED], 1.0))
@@ -405,6 +406,7 @@ def _time_to_reach_V(V_change, step_state, regime, work):
     Returns a float, at least 0: the time at which V has its maximum if V does not reach V_change,
     which is 0 if V' falls from 0; a very large number or inf if V' and its slope are 0.
     """
+    # Time until the drive is evaluated again.
     lookahead = _LOOKAHEAD * (segment_end(step_state.segment, work) - step_state.tau)
     V_rate = work.nodes[ROW_V_RATE]
     load = evaluate_load(step_state.tau + lookahead, step_state.segment, regime, work)
@@ -412,12 +414,15 @@ def _time_to_reach_V(V_change, step_state, regime, work):
     rates = evaluate_rhs(
         State(0.0, d if d != 0.0 else work.nodes[ROW_OMEGA_OR_D]), load, regime, work.scene
     )
+    # At V = 0 and fixed d, p' = dp/dV V'.
     V_rate_slope = (rates.p_rate / rates.dp_dV - V_rate) / lookahead
     V_rate = max(V_rate, 0.0)
+    # V_rate t + V_rate_slope t^2/2 = V_change, solved for the smaller t > 0 in the form without
+    # cancellation.
     discriminant = V_rate**2 + 2.0 * V_rate_slope * V_change
     if discriminant < 0.0:  # V does not reach V_change: the step ends at its maximum.
         return -V_rate / V_rate_slope
-    # At d = 1 both rates may be 0.
+    # At d = 1 both rates may be 0: 1e-300 makes the time very large then, not a division by 0.
     return 2.0 * V_change / (V_rate + np.sqrt(discriminant) + 1e-300)
 
 
@@ -449,7 +454,7 @@ def first_step_length(stick_formed, step_state, regime, work):
     if regime.full_slip:
         largest_speed = nodes[ROW_SPEED]
         largest_rate = max(V_rate, rate)
-        if not (largest_speed > 0.0 and largest_rate > 0.0):
+        if not (largest_speed > 0.0 and largest_rate > 0.0):  # Nothing to compare, or NaN.
             return np.inf
         h = _FIRST_CHANGE * largest_speed / largest_rate
         return min(h, (V + moderate_speed(scene)) / V_rate) if V_rate > 0.0 else h
@@ -458,10 +463,18 @@ def first_step_length(stick_formed, step_state, regime, work):
         return _time_to_reach_V(V_end, step_state, regime, work)
     h = _FIRST_RELAXATION_TIMES / abs(nodes[ROW_RELAXATION])
     if stick_formed:
-        # d may change until the slip that is left feeds back on it.
+        # With x = 1 - |d|, L = 1 and H = alpha, its limit for a small stick zone, Q = +-mu (1 -
+        # alpha x^2).  By the equation of d (rhs) the term alpha x^2 changes V d' by 2 kappa (1/m +
+        # 1/J) alpha x^2 = 2 feedback alpha x^2, with 1/m and 1/J the inverse mass and inertia,
+        # whose sum is taken as at least 1.  While x grows from 0 to x_1 at the rate V x' = rate, in
+        # the time x_1 V/rate, this changes d by 2 feedback alpha x_1^3/(3 rate): by about rtol at
+        # x_1 = (rtol rate/(feedback alpha))^(1/3), d_scale.
         load = current_load(regime, step_state, work)
         feedback = scene.kappa * max(load.inverse_mass + load.inverse_inertia, 1.0)
         d_scale = (work.options.rtol * rate / (feedback * scene.law.rows[ALPHA])) ** (1.0 / 3.0)
+        # V/(4 feedback) is the relaxation time of d at d = 0 with H = 1, where the slope of 2
+        # feedback x^2 is 4 feedback.  A rate of 0 makes d_scale and the length 0; 1e-300 keeps 0/0
+        # away.
         return min(h, _ONSET_CHANGE * d_scale * V / max(rate, 1e-300), V / (4.0 * feedback))
     return min(h, _FIRST_CHANGE * V / V_rate) if V_rate > 0.0 else h
 
@@ -483,7 +496,7 @@ def time_to_V_zero(step, state, regime, work):
     V; inf for a V' of NaN.
     """
     V_rate = work.nodes[ROW_V_RATE]
-    if not V_rate < 0.0:
+    if not V_rate < 0.0:  # True for NaN too.
         return np.inf
     if regime.full_slip:
         return -state.V / V_rate
@@ -512,9 +525,11 @@ def step_length_after_relaxation(step, regime, work):
     the last node (NaN if p' is 0 too); inf where p' and dp'/dp are 0.
     """
     nodes = work.nodes
+    # ``not <`` is True for a NaN of the relaxation rate too.
     if regime.full_slip or not nodes[ROW_RELAXATION + N] * step.h < -_RELAXED_TIMES:
         return 0.0
     relative_rate = abs(nodes[ROW_P_RATE + N] * nodes[ROW_DV_DP + N] / nodes[ROW_V + N])
+    # The Newton diagonal is dp'/dp times half the length of the step.
     relative_rate = max(relative_rate, abs(2.0 * nodes[ROW_P_DIAGONAL + N] / step.h))
     return _RELAXED_CHANGE * work.options.rtol ** (1.0 / (N + 1)) / relative_rate
 
@@ -539,9 +554,9 @@ def next_step_length(step, error, n_rejected, last_h, last_error):
     Returns a float above 0, at least 0.1 times h; the end of the segment does not limit it.
     """
     h = _NEWTON_FAILURE * step.h
-    if error < 1e300:
+    if error < 1e300:  # False for inf and NaN.  1e-30 keeps an error of 0 from a division by 0.
         h = step.h * max(_MAX_SHRINKAGE, min(_MAX_GROWTH, _SAFETY * (error + 1e-30) ** (-1.0 / N)))
-    if not error <= 1.0:
+    if not error <= 1.0:  # Rejected, by NaN too.
         return min(h, (_FIRST_REJECTION if n_rejected == 0 else _LATER_REJECTION) * step.h)
     if last_h == 0.0:
         return h

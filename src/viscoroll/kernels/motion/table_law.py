@@ -1,13 +1,18 @@
 """The law of a motion as a table of one scene (:mod:`.coupled_splines`), in the unknowns of a
 motion.
 
-The second unknown of partial slip is d = sigma w, with w the place of the table on the side sigma
-of its middle creep: 2 kappa delta = D_0 + mu L d, where mu L is the distance of the onset of sigma
-from D_0.  So D_0 stands where the creepage of free rolling stands in the equations of a cover
-(:mod:`.rhs`), and L depends on sigma.
+A table holds traction and moments as functions of u = kappa |V| and of the creep D = 2 kappa delta
+at one coefficient of friction mu.  D_0(u) is its middle creep, which divides two sides, sigma = 1
+above it and -1 below it; on either side full slip begins at an onset D_sigma(u).  The place w = (D
+- D_0)/(D_sigma - D_0) is 0 at the middle creep and 1 at the onset.
 
-``table`` is None for a law without one: then functions return what their callers found on the rows,
-and nothing of a table is compiled.  All is dimensionless.
+The second unknown of partial slip is d = sigma w: 2 kappa delta = D_0 + mu L d, where mu L = sigma
+(D_sigma - D_0) is the distance of the onset of sigma from D_0.  So D_0 stands where the creepage of
+free rolling stands in the equations of a cover (:mod:`.rhs`), and L depends on sigma.
+
+``table`` is None for a law without one: then functions return what their callers found on the rows
+of the law (``rows``), and nothing of a table is compiled.  All is dimensionless: speeds in
+R/T_epsilon, Q in P, moments in P R.
 """
 
 from typing import NamedTuple
@@ -42,8 +47,11 @@ _EDGE = 1e-12
 
 
 class Width(NamedTuple):
-    """Creeps at one speed: L of one side and the middle creep D_0, each with two derivatives over
-    u.
+    """Creeps at one speed, dimensionless: L of one side and the middle creep D_0.
+
+    L, dL, ddL : L and its first two derivatives over u.
+    middle, dmiddle, ddmiddle : D_0 and its first two derivatives over u; of a law without a table
+        2 kappa delta_0, or 0 where the caller adds the creepage delta_0 of free rolling itself.
     """
 
     L: float
@@ -56,15 +64,19 @@ class Width(NamedTuple):
 
 @inline_kernel
 def free_creep_of_table(width, u, kappa, k, rows, table):
-    """Return D_0 as :class:`.cover_law.FreeCreep`.
+    """Return D_0 as :class:`.cover_law.FreeCreep`, whose delta_0 is D_0/(2 kappa) of a table.
 
-    width: :class:`Width` at u = kappa |V|.  kappa: slenderness.  k: mu/(2 kappa).
-    rows: what :func:`.cover_law.free_kinematics` gives.
+    width: :class:`Width` at u, with its derivatives.
+    u: float, kappa |V|, at least 0.
+    kappa: float, slenderness R/l0, > 0.
+    k: float, mu/(2 kappa), > 0.
+    rows: what :func:`.cover_law.free_kinematics` gives, the result without a table.
     table: vector of :mod:`.coupled_splines`, or None.
     """
     if table is None:
         return rows
     factor = 0.5 / kappa
+    # delta_0; d(V delta_0)/dV over k d(u L)/du; d^2(u delta_0)/du^2 over k.
     return FreeCreep(
         factor * width.middle,
         factor * (width.middle + u * width.dmiddle) / (k * (width.L + u * width.dL)),
@@ -102,13 +114,17 @@ class Loads(NamedTuple):
 def width_at(u, sigma, mu, rows, table):
     """Return the :class:`Width` at a speed on one side of D_0.
 
-    u : float, kappa |V|.  sigma : side, 1.0 or -1.0.  mu : friction.
-    rows : Width that the rows give.  table : vector of :mod:`.coupled_splines`, or None.
+    u : float, kappa |V|, at least 0.
+    sigma : float, side, 1.0 or -1.0.
+    mu : float, coefficient of friction, > 0.
+    rows : Width that the rows give, the result without a table.
+    table : vector of :mod:`.coupled_splines`, or None.
     """
     if table is None:
         return rows
     speed = locate_speed(u, table)
     middle = edge_at(MIDDLE, u, speed, table)
+    # The onset of sigma = -1 is stored first, that of 1 after it.
     onset = edge_at(ONSET + np.int64(sigma > 0.0), u, speed, table)
     factor = sigma / mu
     return Width(
@@ -123,8 +139,10 @@ def width_at(u, sigma, mu, rows, table):
 
 @inline_kernel
 def table_state(V, d, sigma, kappa, mu, rows, table):
-    """Return the :class:`Loads` of a state, ``rows`` of a law without a table; arguments as of
-    :func:`_loads`.
+    """Return the :class:`Loads` of a state by the table, or ``rows`` of a law without one.
+
+    V, d, sigma, kappa, mu, table: as of :func:`_loads`; ``table`` may be None.
+    rows: :class:`Loads` that the rows of the law give.
     """
     if table is None:
         return rows
@@ -135,13 +153,16 @@ def table_state(V, d, sigma, kappa, mu, rows, table):
 def _loads(V, d, sigma, kappa, mu, table):
     """Return the :class:`Loads` of a state of a table; full slip where sigma d >= 1.
 
-    V : float, speed of the axis, of either sign.  d : float, second unknown of the module.
-    sigma : side of D_0, 1.0 or -1.0.  kappa, mu : slenderness and friction.
+    V : float, speed of the axis, of either sign.
+    d : float, second unknown of the module, of either sign.
+    sigma : float, side of D_0, 1.0 or -1.0.
+    kappa, mu : floats, slenderness and coefficient of friction, > 0.
     table : vector of :mod:`.coupled_splines`.
-    In full slip at V < 0 it is that of the opposite direction, in which slip has the opposite sign.
+    In full slip at V < 0 it is that of the opposite direction, in which slip has the opposite sign:
+    the table is read on the other side, and loads and moments change their signs.
     """
     w = sigma * d
-    sign = 1.0
+    sign = 1.0  # -1 where the state is read in the opposite direction
     if w >= 1.0 and V < 0.0:
         sign = -1.0
         sigma = -sigma
@@ -152,6 +173,7 @@ def _loads(V, d, sigma, kappa, mu, table):
     Q = field_at(TRACTION, w, cell, table)
     half_space = field_at(HALF_SPACE, w, cell, table)
     cylinder = field_at(CYLINDER, w, cell, table)
+    # The table holds Q/mu and kappa times the moments; dw/dd = sigma at fixed V.
     turned = mu * sign
     moment = sign / kappa
     return Loads(
@@ -188,8 +210,9 @@ def _pull(d, kappa, mu, table):
     """Return (Q - M_half_space, Q + M_cylinder, their derivatives in d) at V = 0 of a table.
 
     d: float, at most 1 in modulus.
-    kappa, mu: slenderness and friction.
+    kappa, mu: floats, slenderness and coefficient of friction.
     table: vector of :mod:`.coupled_splines`.
+    Returns four floats, dimensionless.
     """
     found = _loads(0.0, d, np.copysign(1.0, d), kappa, mu, table)
     return (
@@ -207,16 +230,19 @@ def balance_of_table(load, kappa, mu, rows, table):
     It begins to roll in a direction if, with friction in balance with the force, the torque is
     above what friction takes in rolling: also where bodies are elastic some slip remains in free
     rolling of a cover.
+
     load: Load at rest, of which force, torque and brake are read.
-    kappa, mu: slenderness and friction.
-    rows: float, the margin that the rows give.
+    kappa, mu: floats, slenderness and coefficient of friction.
+    rows: float, the margin that the rows give, the result without a table.
     table: vector of :mod:`.coupled_splines`, or None.
-    Returns the smaller margin of both directions, less than 0 where no friction balances the force.
+    Returns the smaller margin of both directions plus the torque of the brake, a float,
+    dimensionless; less than 0 where no friction balances the force.
     """
     if table is None:
         return rows
     margin = np.inf
     for direction in (1.0, -1.0):
+        # d at which Q - M_half_space, which grows with d, balances the force, by bisection.
         low = -1.0
         high = 1.0
         for _ in range(_HALVINGS):
@@ -226,7 +252,7 @@ def balance_of_table(load, kappa, mu, rows, table):
             else:
                 high = d
         d = 0.5 * (low + high)
-        if abs(d) >= 1.0 - _EDGE:
+        if abs(d) >= 1.0 - _EDGE:  # The bisection ran to an end: no d balances the force.
             return min(mu - abs(load.force), -_EDGE)
         on_spin = _pull(d, kappa, mu, table)[1]
         margin = min(margin, on_spin - direction * load.torque)
@@ -253,16 +279,19 @@ def friction_by_shear(V, omega, Q, kappa, mu, rows, table):
     """
     if table is None:
         return rows
-    if table[FIELD_COUNT] <= FRICTION:
+    if table[FIELD_COUNT] <= FRICTION:  # Only graded tables have the slip loss.
         return rows
     u = kappa * abs(V)
     slip = omega - V
-    D = 2.0 * kappa * slip / V if V > 0.0 else np.copysign(np.inf, slip)
+    D = 2.0 * kappa * slip / V if V > 0.0 else np.copysign(np.inf, slip)  # creep 2 kappa delta
     speed = locate_speed(u, table)
     state = place_of(D, u, speed, table)
     cell = cell_at(speed, locate_creep(state.w, state.sigma, table), table)
+    # Slip loss; the field is 2 kappa times it per unit of V.
     friction = 0.5 * V / kappa * max(value_at(FRICTION, cell, table), 0.0)
     if state.w > 1.0:
+        # In full slip the field is that of the onset: mu times the speed by which the slip exceeds
+        # that of the onset is added.
         onset = edge_at(ONSET + np.int64(state.sigma > 0.0), u, speed, table).value
         friction += mu * state.sigma * (slip - 0.5 * V * onset / kappa)
     return friction - slip * Q
