@@ -344,7 +344,7 @@ class Cylinder(Methods):
             values[name] = read_only(
                 check_array(called, values[name], unit=SI, above=low, high=high)
             )
-        broadcast_shape(**{name: np.asarray(values[name]) for name in numbers})
+        broadcast_shape(**{name: values[name] for name in numbers})
         check_choice("plane", plane, "strain", "stress")
         for name, value in values.items():
             object.__setattr__(self, name, value)
@@ -369,7 +369,7 @@ class Cylinder(Methods):
         """
         if thickness is None:
             return
-        broadcast_shape(thickness=np.asarray(thickness), R=np.asarray(self.R))
+        broadcast_shape(thickness=thickness, R=self.R)
         if (np.asarray(thickness) > self.R).any():
             found = f"of the layer on the cylinder is {format_value(thickness)} m"
             raise described_error("thickness", found, f"at most R = {format_value(self.R)} m")
@@ -497,10 +497,7 @@ class Cylinder(Methods):
         True
         """
         cosine = slope_tan_cos(slope)[1]
-        broadcast_shape(
-            slope=np.asarray(cosine),
-            **{name: np.asarray(value) for name, value in self.numbers.items()},
-        )
+        broadcast_shape(slope=cosine, **self.numbers)
         return self.replace(load=self.load * cosine)
 
     def _summary(self) -> tuple[str, list[SummaryRow]]:

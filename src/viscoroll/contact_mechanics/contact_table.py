@@ -40,6 +40,7 @@ from ..core import (
     OutOfTableError,
     ParameterError,
     block_reader,
+    broadcast_rows,
     broadcast_shape,
     check_choice,
     check_names,
@@ -427,10 +428,7 @@ def evaluate_law(
             N[:] = evaluate_by_modes(alpha, zeta[0]).N
 
     if count <= states.TOGETHER and record:
-        numbers = np.empty((len(arrays), *(shape or (1,))))
-        for row, array in zip(numbers, arrays, strict=True):
-            row[...] = array
-        numbers = numbers.reshape(len(arrays), count)
+        numbers = broadcast_rows(arrays, shape)
         numbers.flags.writeable = False  # as all arrays that kernels read (block_reader)
         evaluate_block(0, count, *numbers)
         return out

@@ -447,9 +447,7 @@ class Parameters(Roller):
         """
         cosine = slope_tan_cos(slope)[1]
         sizes = self.numbers | ({} if self.cover is None else {"thickness": self.cover.thickness})
-        broadcast_shape(
-            slope=np.asarray(cosine), **{name: np.asarray(value) for name, value in sizes.items()}
-        )
+        broadcast_shape(slope=cosine, **sizes)
         changes = {
             "kappa": self.kappa / np.sqrt(cosine),
             "gamma": None if self.gamma is None else self.gamma * cosine,

@@ -30,7 +30,6 @@ All is dimensionless; a law is a :class:`LawTable` with ``coupled`` rows.
 
 from __future__ import annotations
 
-import math
 from functools import partial
 from typing import Any, NamedTuple
 
@@ -43,6 +42,7 @@ from ..core import (
     Floats,
     Integers,
     ParameterError,
+    broadcast_rows,
     broadcast_shape,
     check_array,
     described_error,
@@ -146,14 +146,10 @@ def loads_of(
     if V is not None:
         arrays["V"] = check_array("V", V)
         refuse_overflow(np.asarray(scene.kappa), arrays["V"], FASTEST)
-    shape = broadcast_shape(**{name: np.asarray(each) for name, each in arrays.items()})
+    shape = broadcast_shape(**arrays)
     arrays["force"] = push + arrays.pop("slope")
-    rows = np.empty((len(arrays), *(shape or (1,))))
-    for row, array in zip(rows, arrays.values(), strict=True):
-        row[...] = array
-    return Loads(
-        shape, Gains(*of_force, *of_torque), given, *rows.reshape(len(arrays), math.prod(shape))
-    )
+    rows = broadcast_rows(arrays.values(), shape)
+    return Loads(shape, Gains(*of_force, *of_torque), given, *rows)
 
 
 def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any, float, float]:

@@ -510,7 +510,7 @@ def validity(
         scaled = {name: divide_by_unit(name, array, scale[name]) for name, array in given.items()}
     speed = scaled["V"]
     spin = scaled.get("omega")
-    broadcast_shape(**given, **{name: np.asarray(value) for name, value in scene.numbers.items()})
+    broadcast_shape(**given, **scene.numbers)
     law = scene.uncoupled  # no table is made for a report
     if scene.cover is None:
         free = FreeRolling.of_scene(law, speed)

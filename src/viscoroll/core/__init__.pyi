@@ -1,16 +1,13 @@
 """What other rooms take from this one, a line each, for type checkers, and for ``__init__.py``."""
 
 from .blocks import block_reader as block_reader
+from .blocks import broadcast_rows as broadcast_rows
 from .blocks import broadcast_vector as broadcast_vector
 from .blocks import cancel_with as cancel_with
 from .blocks import run_blocks as run_blocks
 from .blocks import thread_count as thread_count
 from .checks import ArrayLike as ArrayLike
 from .checks import Booleans as Booleans
-from .checks import DataArray as DataArray
-from .checks import DataFrame as DataFrame
-from .checks import Dataset as Dataset
-from .checks import Figure as Figure
 from .checks import Floats as Floats
 from .checks import Integers as Integers
 from .checks import NDArray as NDArray
@@ -57,6 +54,10 @@ from .errors import suggest_arguments as suggest_arguments
 from .errors import suggestion as suggestion
 from .errors import unknown_name_error as unknown_name_error
 from .errors import warn_of_model as warn_of_model
+from .files import DataArray as DataArray
+from .files import DataFrame as DataFrame
+from .files import Dataset as Dataset
+from .files import Figure as Figure
 from .files import as_file_error as as_file_error
 from .files import as_path as as_path
 from .files import as_section_error as as_section_error

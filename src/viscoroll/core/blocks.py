@@ -11,7 +11,7 @@ from __future__ import annotations
 import os
 import threading
 from collections import deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Collection, Iterable
 from concurrent.futures import CancelledError, Executor, Future, ThreadPoolExecutor
 from contextlib import suppress
 from typing import Any
@@ -67,6 +67,16 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
         return vector
 
     return read_block
+
+
+def broadcast_rows(arrays: Collection[Any], shape: tuple[int, ...]) -> Floats:
+    """Return arrays and numbers of doubles that broadcast to a shape, as rows of one array, (rows,
+    states); of the shape () there is one state.
+    """
+    rows = np.empty((len(arrays), *(shape or (1,))))
+    for row, array in zip(rows, arrays, strict=True):
+        row[...] = array
+    return rows.reshape(len(arrays), -1)
 
 
 def broadcast_vector(array: NDArray, shape: tuple[int, ...]) -> NDArray:

@@ -1,7 +1,6 @@
 """Checks of arguments, and the types of arrays that they give.
 
-Types of arrays and results, and of the numbers that callers may give, for type checkers: no
-library is imported for them.
+Types of arrays, and of the numbers that callers may give, for type checkers.
 
 Checks of numbers that callers give: they become float64 in the unit of the argument, or raise
 ParameterError.
@@ -33,10 +32,6 @@ Integers: TypeAlias = NDArray[np.int64]
 Booleans: TypeAlias = NDArray[np.bool_]
 
 if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-    from pandas import DataFrame
-    from xarray import DataArray, Dataset
-
     Reals: TypeAlias = NDArray[np.floating[Any] | np.integer[Any]]
 
     class SupportsArray(Protocol):
@@ -53,7 +48,7 @@ if TYPE_CHECKING:
         | Sequence[Sequence[float]]
     )
 else:
-    Numbers = DataArray = DataFrame = Dataset = Figure = Any
+    Numbers = Any
 
 
 # --- Checks of numbers that callers give ---
@@ -270,10 +265,11 @@ def check_number(
     return float(array)
 
 
-def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
+def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     """Return the common shape of arrays, by numpy's rule of broadcasting.
 
-    arrays: arrays of numpy by the name that an error states; those without axes fit every shape.
+    arrays: arrays of numpy and numbers by the name that an error states; what has no axes fits
+        every shape.
     Returns the shape, a tuple of ints; () if no array has axes, or none is given.
 
     Raises
@@ -281,11 +277,11 @@ def broadcast_shape(**arrays: NDArray) -> tuple[int, ...]:
     ParameterError
         If they do not broadcast; the message lists the shapes.
     """
-    shapes = {array.shape for array in arrays.values()} - {()}
+    shapes = {*map(np.shape, arrays.values())} - {()}
     try:
         return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
-        found = ", ".join(f"{name} {a.shape}" for name, a in arrays.items() if a.ndim)
+        found = ", ".join(f"{name} {np.shape(a)}" for name, a in arrays.items() if np.ndim(a))
         allowed = "equal, or broadcast as in numpy"
         raise ParameterError(
             "shapes", found, allowed, f"shapes {found} do not fit together: must be {allowed}"
@@ -306,7 +302,7 @@ def divide_by_unit(name: str, values: NDArray, unit: Any) -> Any:
     try:
         return values / unit
     except ValueError:
-        broadcast_shape(**{name: np.asarray(values), "cylinders": np.asarray(unit)})
+        broadcast_shape(**{name: values, "cylinders": unit})
         raise
 
 

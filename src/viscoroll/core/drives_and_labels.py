@@ -299,7 +299,7 @@ def make_dimensionless(name: str, value: Any, scale: Scale) -> Any:
             "gain on omega": value.omega,
             "cylinders": unit * scale["V"] * scale["omega"],
         }
-        broadcast_shape(**{label: np.asarray(size) for label, size in sizes.items()})
+        broadcast_shape(**sizes)
         gains = value.V * scale["V"] / unit, value.omega * scale["omega"] / unit
         return Feedback(make_dimensionless(name, value.value, scale), *gains)
     if callable(value):

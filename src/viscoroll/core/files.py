@@ -21,11 +21,18 @@ from contextlib import contextmanager, suppress
 from dataclasses import is_dataclass
 from os import PathLike
 from pathlib import Path
-from typing import Any, TypeVar, get_args, get_type_hints
+from typing import TYPE_CHECKING, Any, TypeVar, get_args, get_type_hints
 
 from ..kernels.numerics.cache_folder import read_private, write_private
-from .checks import Dataset
 from .errors import FileError, ParameterError, suggestion
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+    from xarray import DataArray, Dataset
+else:
+    #: Types of results, for type checkers alone: no library is imported for them.
+    DataArray = DataFrame = Dataset = Figure = Any
 
 # --- Files that are written whole, and read if they are as they were written ---
 

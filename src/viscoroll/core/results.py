@@ -12,8 +12,9 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from .checks import DataFrame, Dataset, Figure, NDArray
+from .checks import NDArray
 from .drives_and_labels import Labels, dataset_axes, state_axes
+from .files import DataFrame, Dataset, Figure
 from .scale import attributes
 
 #: Rows of a summary in a notebook: more do not fit a screen.

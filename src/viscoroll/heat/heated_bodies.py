@@ -38,6 +38,7 @@ from ..core import (
     ModelWarning,
     ParameterError,
     ViscorollError,
+    broadcast_rows,
     broadcast_shape,
     check_array,
     check_array_extent,
@@ -464,20 +465,17 @@ def heat_states(
         )
         raise described_error("vertical_shift", "is given", allowed)
     several = scene.material_array
-    index = 0.0 if several is None else np.arange(float(len(several)))
+    index: Any = 0.0 if several is None else np.arange(float(len(several)))
     cylinder: Any = roller
     arrays |= {
-        "R": np.asarray(cylinder.R),
-        "load": np.asarray(cylinder.load),
-        "kappa": np.asarray(scene.kappa),
-        "mu": np.asarray(scene.mu),
-        "material": np.asarray(index),
+        "R": cylinder.R,
+        "load": cylinder.load,
+        "kappa": scene.kappa,
+        "mu": scene.mu,
+        "material": index,
     }
     shape = broadcast_shape(**arrays)
-    rows = np.empty((len(arrays), *(shape or (1,))))
-    for row, array in zip(rows, arrays.values(), strict=True):
-        row[...] = array
-    flat = dict(zip(arrays, rows.reshape(len(arrays), math.prod(shape)), strict=True))
+    flat = dict(zip(arrays, broadcast_rows(arrays.values(), shape), strict=True))
     names = ("R", "load", "kappa", "mu", "material", "ambient", "conductance")
     loads = None
     if driven is not None or covered:

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from itertools import product
 from os import PathLike
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -232,11 +232,20 @@ def read_relaxation(
         relaxation=relaxation,
         temperature=None if temperature is None else float(np.median(temperature)),
         mode=mode,
-        source=Path(path).name.encode(errors="replace").decode(),
-        columns={column.name: column.heading for column in taken},
-        units={column.name: column.unit for column in taken},
         notes=tuple(notes),
+        **_origin(path, taken),
     )
+
+
+def _origin(path: Any, taken: list[Column]) -> dict[str, Any]:
+    """Return source, headings and units of the columns that are taken from a file, as fields of a
+    record.
+    """
+    return {
+        "source": Path(path).name.encode(errors="replace").decode(),
+        "columns": {column.name: column.heading for column in taken},
+        "units": {column.name: column.unit for column in taken},
+    }
 
 
 # --- Storage and loss modulus over frequency from a text file ---
@@ -391,10 +400,8 @@ def read_dma(
         loss=loss,
         temperature=temperature,
         mode=mode,
-        source=Path(path).name.encode(errors="replace").decode(),
-        columns={column.name: column.heading for column in taken},
-        units={column.name: column.unit for column in taken},
         notes=tuple(notes),
+        **_origin(path, taken),
         strain=strain,
     )
     _refuse_mixed_sweeps(table, record)

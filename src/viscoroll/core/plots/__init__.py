@@ -14,9 +14,9 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import DataArray, Dataset, Figure, NDArray
+from ..checks import NDArray
 from ..errors import FileError, ParameterError
-from ..files import as_path, replace_file
+from ..files import DataArray, Dataset, Figure, as_path, replace_file
 from ..scale import MEASURED, SYMBOLS
 
 # --- Common parts of all figures ---

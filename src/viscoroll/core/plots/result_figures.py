@@ -13,8 +13,9 @@ from typing import Any
 
 import numpy as np
 
-from ..checks import Dataset, Figure, NDArray
+from ..checks import NDArray
 from ..errors import ParameterError
+from ..files import Dataset, Figure
 from . import (
     LINES,
     axis_label,
