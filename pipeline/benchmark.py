@@ -168,6 +168,7 @@ def _root_solves(V, omega, to, scenes):
     out[4] = (Q_V - Q) / h
     out[5] = (Q_omega - Q) / h
     out[6] = out[7] = 0.5 * (M_V - M) / h
+    out[8] = out[9] = 0.0  # M of half-spaces depends on V alone
     return 0
 
 

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 import viscoroll as vr
+from viscoroll.kernels.law.law_callables import RESULTS
 from viscoroll.laws.law_table import make_table
 from viscoroll.motion import flow
 
@@ -31,7 +32,7 @@ def starts(random: np.random.Generator, count: int) -> NDArray:
     return random.uniform(-2.0, 2.0, (2, count))
 
 
-def ensemble(scene: vr.Scene, start: NDArray, t, fields: tuple[str, ...] = ("V", "omega"), **how):
+def ensemble(scene: vr.Scene, start: NDArray, t, fields=("V", "omega"), **how):
     """A call on one thread, by the integrator unless told."""
     given = {"method": "integrate", "threads": 1} | how
     return partial(vr.ensemble, scene, *start, t, fields=fields, **given)
@@ -71,7 +72,7 @@ def bound_law(sizes):
         law = vr.law(scene)
         numbers = list(zip(V[:few].tolist(), omega[:few].tolist()))
         (function, data) = law.ctypes
-        out = (ctypes.c_double * 8)()
+        out = (ctypes.c_double * RESULTS)()
 
         def contact(v, w, slopes, scene=scene):
             return vr.contact(

@@ -45,14 +45,14 @@ def neighbours(x: NDArray) -> NDArray:
     return (x.view(np.int64)[..., None] + _NEIGHBOURS).view(np.float64)
 
 
-def contact(way: str, alpha, kappa, mu, V: NDArray, delta: NDArray, fields: tuple[str, ...]):
+def contact(way, alpha, kappa, mu, V, delta, fields):
     """contact() that way."""
     if way != "one alpha":
         alpha = np.broadcast_to(alpha, np.broadcast_shapes(np.shape(V), np.shape(delta)))
     return vr.contact(vr.Scene(alpha, kappa, mu), V, delta=delta, fields=fields)
 
 
-def falls(way: str, alpha, kappa, mu, V: NDArray, delta: NDArray) -> dict[str, NDArray]:
+def falls(way, alpha, kappa, mu, V, delta) -> dict[str, NDArray]:
     """Falls in ULP along the last axis, on which delta rises, or V where delta is 0; what rises is
     negative.
     """
