@@ -318,7 +318,7 @@ def state_rows(contacts: Contacts, V: Floats, delta: Floats) -> Floats:
     rows[Field.DELTA] = delta
     rows[2:] = contacts.fields(V, delta, *_ROWS)
     speed = V
-    if np.count_nonzero(V < _LEAST_SPEED):
+    if np.minimum.reduce(V, initial=_LEAST_SPEED) < _LEAST_SPEED:
         speed = np.maximum(V, _LEAST_SPEED)
         rows[Field.DQ_DV :] = contacts.fields(speed, delta, *_ROWS[Field.DQ_DV - 2 :])
     rows[list(_OVER_CREEP)] *= speed

@@ -277,7 +277,7 @@ def broadcast_shape(**arrays: Any) -> tuple[int, ...]:
     ParameterError
         If they do not broadcast; the message lists the shapes.
     """
-    shapes = {*map(np.shape, arrays.values())} - {()}
+    shapes = {getattr(array, "shape", ()) for array in arrays.values()} - {()}
     try:
         return np.broadcast_shapes(*shapes) if len(shapes) > 1 else shapes.pop() if shapes else ()
     except ValueError:
