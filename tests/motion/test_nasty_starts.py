@@ -86,6 +86,12 @@ def test_finite_in_bounded_steps(name, method):
         values = getattr(here, field)
         assert np.isfinite(values).all(), (field, start[~np.isfinite(values).all(axis=1)])
         assert np.array_equal(values, -getattr(there, field)), field
+    # resistance may feed a cylinder that spins against its way
+    rolling = np.minimum.accumulate(here.V * here.omega, axis=1) >= 0.0
+    rolling &= (start[:, 0] * start[:, 1] >= 0.0)[:, None]
+    energy = here.V**2 + scene.j * here.omega**2
+    first = (start**2) @ [1.0, scene.j]
+    assert (energy <= (1.0 + tol.MOTION_DEFAULT) * first[:, None])[rolling].all()
     if scene.alpha > 1.5:
         assert (np.abs(here.V[:, -1]) < tol.PROVEN_SUBNORMAL).all()
         np.testing.assert_array_equal(here.x[:, -1], here.x[:, -2])
