@@ -276,7 +276,7 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         d_cylinder = d_cylinder - (on_spin - 1.0) * dQ_dV
         # slopes of Q over omega, and over V at fixed omega, times ``slow``
         b = dQ_ddelta / np.maximum(V, 1.0)
-        a = slow * dQ_dV - np.where(slips, 0.0, b * (1.0 + delta))
+        a = slow * dQ_dV - np.multiply(b, 1.0 + delta, out=0.0 * b, where=b != 0.0)
         axis = on_axis * a + slow * (gains.force_V - d_half_space)
         det = on_spin * d_half_space + on_axis * d_cylinder
         det = b * (det - (on_spin * gains.force_V + on_axis * gains.torque_V))
@@ -297,8 +297,8 @@ def _eigenvalues(answers: Floats, gains: Gains, j: Floats) -> Floats:
         root = root / unit / slow
         return np.array(
             [
-                np.where(real, np.minimum(larger, other), half),
-                np.where(real, np.maximum(larger, other), half),
+                np.minimum(larger, other, out=1.0 * half, where=real),
+                np.maximum(larger, other, out=1.0 * half, where=real),
                 np.where(real, 0.0, root),
             ]
         )
