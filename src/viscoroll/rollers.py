@@ -201,7 +201,7 @@ class Cylinder(Methods):
 
     The functions of the package, and its methods of the same names, take and give SI units, per m
     of its length.  Arguments that carry another unit are converted, or refused
-    (``docs/howto/contact.md``).  :meth:`rollers` is its dimensionless counterpart; ``scale`` gives
+    (``docs/howto/contact.md``).  :meth:`scene` gives its dimensionless counterpart; ``scale`` gives
     the SI unit of each quantity of that scene.
 
     Parameters
@@ -596,7 +596,7 @@ class Cylinder(Methods):
         T_sigma give the number alpha = T_epsilon/T_sigma, an array where T_sigma is one; an array
         T_epsilon gives a series for each cylinder.  Materials give a series, :class:`Bodies` or a
         :class:`Cover`; a law that was given stays.
-        Raises ParameterError as :meth:`rollers` states.
+        Raises ParameterError as :meth:`scene` states.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None
         if law is not None and isinstance(law.material, Cover):

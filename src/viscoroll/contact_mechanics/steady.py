@@ -518,7 +518,9 @@ def _loads_at_rest(law: LawTable, loads: Loads, neutral: bool) -> Integers:
 
     law : table of the material.
     loads : the loads, dimensionless.  Chosen are those with V = 0 where V was given, else those
-        with force + torque = 0 at rest, whether or not the friction suffices.
+        in equilibrium at rest (:func:`is_balanced_at_rest`): of half-spaces force + torque = 0, of
+        a cover the balance with its traction.  Whether friction suffices is considered only on a
+        table of the coupled solution.
     neutral : whether every speed is steady without a load, as for elastic bodies; without a given V
         rest is then chosen only where |torque| exceeds mu, so that the friction does not suffice,
         which the result has to say.
