@@ -201,9 +201,7 @@ def run_blocks(
     if progress is not None:
         from tqdm import tqdm
 
-        # without a terminal a bar would fill a file
-        settings = {"delay": 1.0, "leave": False, "disable": None}
-        edges = tqdm(edges, desc=progress, total=blocks, **settings)
+        edges = tqdm(edges, desc=progress, total=blocks, delay=1.0, leave=False)
     with ThreadPoolExecutor(max(workers, 1)) as pool:
         _submit_all(pool, work, edges, _BLOCKS_IN_QUEUE * workers)
 
