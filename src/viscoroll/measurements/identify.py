@@ -488,8 +488,8 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     }
     table = named_table(path, headings.values(), section.decimal or None, section.encoding or None)
     headings |= _said(table, {name for name in headings if name not in section.columns})
-    columns = {name: find_column(table, heading) for name, heading in headings.items()}
-    present = [name for name, column in columns.items() if column is not None]
+    places = {name: find_column(table, heading) for name, heading in headings.items()}
+    present = {name: place for name, place in places.items() if place is not None}
     for name in (*kind.COORDINATES, *section.columns, *section.units):
         if name not in present:
             raise missing_column(
@@ -498,9 +498,9 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
     others = [
         repr(heading)
         for n, heading in enumerate(table.headings)
-        if heading and n not in columns.values()
+        if heading and n not in present.values()
     ]
-    if others and not set(present) & set(kind.QUANTITIES):
+    if others and not present.keys() & set(kind.QUANTITIES):
         name = kind.QUANTITIES[0]
         problem = f"has no column {' or '.join(kind.QUANTITIES)}, but {', '.join(others)}"
         advice = (
@@ -512,10 +512,10 @@ def _columns(path: Path, kind: type[Record], section: Any) -> dict[str, Any]:
         text = f"{path.name}: unused columns: {', '.join(others)}"
         warn_of_model(text)
     found = {}
-    for name in present:
+    for name, place in present.items():
         unit = kind.unit(name)
         if name == "omega":
-            _refuse_unclear_turns(table, columns[name], section.units.get(name, ""))
+            _refuse_unclear_turns(table, place, section.units.get(name, ""))
         try:
             found[name] = column_in_unit(table, headings[name], unit, section.units.get(name, ""))
         except ParameterError as error:
@@ -550,16 +550,16 @@ def _said(table: Table, names: set[str]) -> dict[str, str]:
     return {name: first for name, (first, *_) in found.items()}
 
 
-def _refuse_unclear_turns(table: Table, index: int | None, unit: str) -> None:
+def _refuse_unclear_turns(table: Table, index: int, unit: str) -> None:
     """Raise FileError for an angular velocity in 1/min or such: of turns, or of radians; and for
     turns without a unit.
 
     table, index : :class:`.text_table.Table` and column; an angular one in 1/s is in rad/s.
     unit : unit that the user gives, "" for that of the file.
     """
-    heading = table.headings[index or 0]
-    turns = "rotational speed" in {each.name for each in meanings(heading, table.units[index or 0])}
-    stated = {each.unit for each in readings(heading, table.units[index or 0])}
+    heading = table.headings[index]
+    turns = "rotational speed" in {each.name for each in meanings(heading, table.units[index])}
+    stated = {each.unit for each in readings(heading, table.units[index])}
     units = ({unit} if unit else stated).difference(NO_UNIT)
     doubtful = "no unit" if turns and not units else ""
     for each in units:
