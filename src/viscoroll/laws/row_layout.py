@@ -381,7 +381,8 @@ def _pack_cover(cover: CoverRows) -> Floats:
     L, lam, L_slope, lam_slope = *limits[:2], *slopes[:2]
     share = lam / L, 2.0 * (lam_slope * L - lam * L_slope) / L**3
     _, free_base, free, excess_base, excess, *tilts = cover.creep
-    part = float(not free_base.any()) if not (free_base.any() and free.any()) else -1.0
+    on_base = free_base.any()
+    part = -1.0 if on_base and free.any() else float(not on_base)
     front = [
         *np.stack([limits, slopes], axis=1)[1:].ravel(),
         *share,
