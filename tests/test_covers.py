@@ -5,9 +5,8 @@ elements: make prove.
 import ctypes
 import dataclasses
 import json
-import shutil
-import subprocess
 
+import c_code
 import numpy as np
 import pytest
 import tolerances as tol
@@ -416,16 +415,14 @@ C_FIELDS = (
 C_FIELDS += ("dQ_dV", "dQ_domega", "dM_dV")
 
 
-@pytest.mark.skipif(shutil.which("cc") is None, reason="not installed: cc")
+@c_code.needs_cc
 @on_each
 def test_the_header_of_C_is_the_contact(tmp_path, scene):
     """In rows and behind them, forwards and backwards, below and above full slip, with slopes; N is
     NaN.
     """
     vr.tables.export(vr.tables.law(scene.material), tmp_path / "cover.h")
-    (tmp_path / "states.c").write_text(C_STATES)
-    command = "cc -std=c99 -Wall -Wextra -Werror -O2 -shared -fPIC states.c -lm -o states.so"
-    subprocess.run(command.split(), cwd=tmp_path, check=True)
+    states = c_code.compiled(tmp_path, "states", C_STATES).states
     speeds = 10.0 ** np.linspace(-6.0, 14.0, 61)
     V, part = (
         each.ravel()
@@ -436,9 +433,7 @@ def test_the_header_of_C_is_the_contact(tmp_path, scene):
     slip = omega - V
     out = np.empty((V.size, len(C_FIELDS)))
     pointers = (ctypes.c_void_p(array.ctypes.data) for array in (V, slip, out))
-    ctypes.CDLL(str(tmp_path / "states.so")).states(
-        V.size, ctypes.c_double(KAPPA), ctypes.c_double(MU), *pointers
-    )
+    states(V.size, ctypes.c_double(KAPPA), ctypes.c_double(MU), *pointers)
     known = vr.contact(scene, V, omega=omega, slopes=True, fields=C_FIELDS)
     for name, values in zip(C_FIELDS, out.T, strict=True):
         scale = (
