@@ -48,7 +48,6 @@ from .drive_functions import (
     undriven,
 )
 from .motion_arguments import (
-    LEAST_ON_TABLE,
     LOSSES,
     ROWS,
     STATES,
@@ -56,7 +55,6 @@ from .motion_arguments import (
     controls,
     refuse_end,
     require_single,
-    start_speeds,
     with_scales,
 )
 
@@ -199,8 +197,6 @@ def make_problem(
         prepared = prepare_drive(
             drive.over(scale), V0, omega0=omega0, end=last, rtol=rtol, resolve=spacing
         )
-        if scene.tabulated and not driven:
-            start_speeds(prepared.V0, prepared.omega0, LEAST_ON_TABLE)
         functions = prepared.functions
         if functions is not None:  # a step ends at every corner
             limits = (*limits[:2], limits[2] + functions.corners)

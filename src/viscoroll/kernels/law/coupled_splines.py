@@ -88,8 +88,9 @@ JET = 4
 
 #: 1 - w below which a place counts as this far from the onset: slopes there are 0 to rounding.
 _ONSET_DISTANCE = 1e-24
-#: |t| below which a place counts as this far from D_0: slopes there are those of D_0 to rounding.
-_MIDDLE_DISTANCE = 1e-9
+#: |t| below which a place counts as this far from D_0: 1/|t| stays finite, and fields, which are
+#: quadratic in t there, are those of D_0 exactly.
+_MIDDLE_DISTANCE = 1e-170
 
 
 class Weights(NamedTuple):
@@ -132,13 +133,15 @@ class Interval(NamedTuple):
 
     first : int, number of the left node.
     h, inverse : length of the interval, and its inverse.
-    s : part of the interval to the left of the coordinate; beyond 0 to 1 outside of the nodes.
+    s, r : parts of the interval to the left and to the right of the coordinate, each without loss
+        of digits where it is small; beyond 0 to 1 outside of the nodes.
     """
 
     first: int
     h: float
     inverse: float
     s: float
+    r: float
 
 
 @inline_kernel
@@ -155,9 +158,12 @@ def _interval(begin, count, step, x, table):
     h = table[np.uint64(step)]
     if h > 0.0:  # Equal steps: the interval follows from the coordinate.
         inverse = table[np.uint64(step + 1)]
-        y = (x - table[np.uint64(begin)]) * inverse
-        first = np.int64(min(max(y, 0.0), count - 1.5))  # at most count - 2, the last interval
-        return Interval(first, h, inverse, y - first)
+        # Steps from the node in the middle, which is t = 0 of a graded table: the distance from it
+        # has all its digits.
+        middle = count >> 1
+        y = (x - table[np.uint64(begin + middle)]) * inverse
+        left = np.floor(min(max(y, -np.float64(middle)), count - 1.5 - middle))
+        return Interval(middle + np.int64(left), h, inverse, y - left, left + 1.0 - y)
     # Else it is found by bisection: ``low`` is its left node, ``span`` the intervals left.
     low = np.int64(0)
     span = count - 1
@@ -166,8 +172,9 @@ def _interval(begin, count, step, x, table):
         low += half * np.int64(x >= table[np.uint64(begin + low + half)])
         span -= half
     left = table[np.uint64(begin + low)]
-    h = table[np.uint64(begin + low + 1)] - left
-    return Interval(low, h, 1.0 / h, (x - left) / h)
+    right = table[np.uint64(begin + low + 1)]
+    h = right - left
+    return Interval(low, h, 1.0 / h, (x - left) / h, (right - x) / h)
 
 
 @inline_kernel
@@ -180,7 +187,7 @@ def _cubic(first, at, dx):
     """
     h = at.h
     s = at.s
-    r = 1.0 - s
+    r = at.r
     slope = 6.0 * s * r * dx * at.inverse  # derivative of a1, and minus that of a0
     return Weights(
         first=first,
@@ -270,10 +277,12 @@ def locate_creep(w, sigma, table):
     t = 1.0 - rest  # |t|
     slope = 1.0  # d|t|/dw
     # With root = (1 - w)^(1/3), |t| = sqrt(1 - root^2) has the slope 1/(3 |t| root).  Both are kept
-    # from 0, so that the slope is finite.
+    # from 0, so that the slope is finite.  1 - root^2 = w (1 + root)/(1 + root + root^2) has all
+    # digits of w.
     if table[GRADED] > 0.0:
         root = np.cbrt(max(rest, _ONSET_DISTANCE))
-        t = max(np.sqrt(max(1.0 - root * root, 0.0)), _MIDDLE_DISTANCE)
+        square = min(max(w, 0.0), 1.0) * (1.0 + root) / (1.0 + root + root * root)
+        t = max(np.sqrt(square), _MIDDLE_DISTANCE)
         slope = 1.0 / (3.0 * t * root)
     if rest == 0.0:
         t = 1.0

@@ -61,10 +61,11 @@ from .collocation import (
     set_step_length,
 )
 from .drive import current_load, is_unloaded, rest_threshold, store_drive
-from .motion_law import free_decay, low_speed_limits, rest_limits
+from .motion_law import free_decay, low_speed_feedback, rest_limits
 from .output import accept_step, record_switch, write_column, write_quadrature
 from .rhs import current_rates
 from .step_control import moderate_speed
+from .table_law import sticks_at_rest
 
 #: A motion has reached an equilibrium at this relative distance of V divided by rtol: the distance
 #: adds nothing that counts to the errors of the steps before.
@@ -265,11 +266,11 @@ def is_coasting(state, regime, step_state, work):
     rtol = work.options.rtol
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
+    scene = work.scene
     return (
-        by_value(work.scene.law).table
-        is None  # that of a table comes to rest by the slip that remains
+        abs(state.omega_or_d) < _COASTING_D * rtol
+        and sticks_at_rest(scene.kappa, scene.mu, by_value(scene.law).table)
         and free_decay(work).rate > 0.0
-        and abs(state.omega_or_d) < _COASTING_D * rtol
         and is_unloaded(step_state.segment, work.drive)
     )
 
@@ -279,9 +280,8 @@ def _energies_of_decay(decay, work):
     """Return the works and losses while V decays exponentially to 0, each divided by V^2/2 at the
     start.
 
-    The loss in slip is of higher order and counts as 0.  Of half-spaces the loss in rolling is the
-    kinetic energy plus the works of the feedback; of a cover, which rolls freely with the creepage
-    delta_0, it follows from the moments.
+    The loss in slip is of higher order and counts as 0: the loss in rolling is the kinetic energy
+    plus the works of the feedback.
 
     decay: :class:`.motion_law.FreeDecay`, of which the rate, above 0, is read.
     work: Workspace, of the motion; its Scene and the gains of its feedback are read.
@@ -289,15 +289,13 @@ def _energies_of_decay(decay, work):
     brake), floats, dimensionless, in the order of quadratures 2 ... 6 of :func:`write_quadrature`;
     works of a feedback that brakes are negative; the last is 0, as no brake acts.
     """
-    half_space, cylinder, force, torque = low_speed_limits(work)
+    force, torque = low_speed_feedback(work)
+    omega_over_V = 1.0 + rest_limits(work.scene)[1]
     # The integral of V^2 over tau is V_0^2/(2 rate): a power of c V^2 takes c/rate times V_0^2/2.
     force_work = force / decay.rate
-    torque_work = torque / decay.rate
-    if by_value(work.scene.law).cover_rows is not None:
-        omega_over_V = 1.0 + rest_limits(work.scene)[1]
-        rolling = (half_space + cylinder * omega_over_V) / decay.rate
-        return 0.0, rolling, force_work, torque_work * omega_over_V, 0.0
-    return 0.0, 1.0 + work.scene.j + force_work + torque_work, force_work, torque_work, 0.0
+    torque_work = torque / decay.rate * omega_over_V
+    kinetic = 1.0 + work.scene.j * omega_over_V * omega_over_V
+    return 0.0, kinetic + force_work + torque_work, force_work, torque_work, 0.0
 
 
 @kernel
@@ -327,14 +325,12 @@ def coast_to_end(state, regime, step_state, work):
     """
     scene = work.scene
     direction = regime.direction
-    _, _, force, torque = low_speed_limits(work)
-    L, delta_0 = rest_limits(scene)
+    force, torque = low_speed_feedback(work)
+    delta_0 = rest_limits(scene)[1]
     omega_over_V = 1.0 + delta_0
     free = free_decay(work)
     rate = free.rate
-    # V and omega decay together: Q balances the difference of the moments.  ``creep`` is delta -
-    # delta_0, from Q = 2 mu d = 4 kappa (delta - delta_0)/L for small d.
-    creep = state.V * free.torque_difference / (4.0 * scene.kappa * free.inertia) * L
+    creep = state.V * free.creep  # delta - delta_0
     largest_speed = max(state.V, abs(state.V * (omega_over_V + creep)))
     tau = work.output_tau
     rest_speed = rest_threshold(step_state.segment, work)

@@ -44,10 +44,11 @@ from .motion_law import (
     added_inertia,
     asymmetry_at_rest,
     creep_at_rest,
+    pull_at_rest,
     reaction_at_rest,
     rest_limits,
 )
-from .table_law import balance_of_table, pull_of_table
+from .table_law import balance_of_table
 
 #: Code of a departure: the cylinder stays at rest for a time.
 STAYS_AT_REST = 0
@@ -79,50 +80,6 @@ _NEGLIGIBLE_FORCE = 1e-75
 
 
 @inline_kernel
-def _leverage(used, scene):
-    """Return how much of the traction acts on the axis and on the cylinder at V = 0, the moments
-    that it makes included.
-
-    With the factors a and excesses e of base and cylinder (:class:`.cover_law.Reaction`), V'
-    contains Q (1 + a_b + e_b |Q|/mu), and j omega' contains -Q (1 - a_c - e_c |Q|/mu).
-
-    used: float, |Q|/mu, in [0, 1].
-    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read.
-    Returns (the factor on the axis, that on the cylinder, derivatives in Q of Q times each),
-    floats, dimensionless; all are 1 of half-spaces.
-    """
-    if by_value(scene.law).cover_rows is None:
-        return 1.0, 1.0, 1.0, 1.0
-    reaction = reaction_at_rest(scene)
-    on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * used
-    on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * used
-    return (
-        on_axis,
-        on_spin,
-        on_axis + reaction.half_space_excess * used,
-        on_spin - reaction.cylinder_excess * used,
-    )
-
-
-@inline_kernel
-def _pull(d, scene):
-    """Return what friction does at V = 0: force on the axis, torque against the spin, and their
-    derivatives in d.
-
-    d: float, in [-1, 1].
-    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
-    Returns (force, torque, derivative of the force, derivative of the torque), floats,
-    dimensionless: Q and Q of half-spaces; of a cover Q times the factors of :func:`_leverage`.
-    """
-    used = abs(d) * (2.0 - abs(d))  # |Q|/mu
-    Q = scene.mu * d * (2.0 - abs(d))
-    dQ_dd = 2.0 * scene.mu * (1.0 - abs(d))
-    on_axis, on_spin, axis_dQ, spin_dQ = _leverage(used, scene)
-    rows = Q * on_axis, Q * on_spin, axis_dQ * dQ_dd, spin_dQ * dQ_dd
-    return pull_of_table(d, scene.kappa, scene.mu, rows, by_value(scene.law).table)
-
-
-@inline_kernel
 def _residual_of_d(d, load, scene):
     """Evaluate the equation of d at V = 0, of the module: its left side less its right side,
     divided by L.
@@ -133,7 +90,7 @@ def _residual_of_d(d, load, scene):
     Returns (residual, its slope in d, V'), floats, dimensionless; V' is in the direction of
     ``load``, of either sign.
     """
-    axis, spin, axis_dd, spin_dd = _pull(d, scene)
+    axis, spin, axis_dd, spin_dd = pull_at_rest(d, scene)
     V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (load.torque - spin) + load.prescribed_omega_rate
     L, delta_0 = rest_limits(scene, np.copysign(1.0, d))
@@ -184,7 +141,7 @@ def _spin_against_brake(load, scene):
     load = _effective_load(load, 0.0, scene)
     if d_zero <= -1.0:
         return 1.0, False
-    torque = load.torque - _pull(d_zero, scene)[1]
+    torque = load.torque - pull_at_rest(d_zero, scene)[1]
     return np.sign(torque), abs(torque) <= load.brake
 
 
@@ -478,7 +435,7 @@ def _slide_from_rest(tau, segment, braked, stick_zone_slip, work):
     )
     for sigma in (1.0, -1.0):
         L, free_creep = rest_limits(scene, sigma)
-        axis, spin, _, _ = _pull(sigma, scene)
+        axis, spin, _, _ = pull_at_rest(sigma, scene)
         V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
         torque = load.torque - spin
         # The brake acts against the spin that the torque causes, or holds omega at 0.

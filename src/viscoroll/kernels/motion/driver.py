@@ -29,7 +29,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from ..law.law_record import select_material
-from ..numerics.intrinsics import by_reference, copy, data_pointer, fill
+from ..numerics.intrinsics import by_reference, by_value, copy, data_pointer, fill
 from ..numerics.jit import kernel
 from ..records import (
     ADDED_MASS_EXHAUSTED,
@@ -107,6 +107,7 @@ from .regimes import (
     rest_code,
 )
 from .rhs import current_rates
+from .table_law import sticks_at_rest
 
 # --- Integration of a motion, free or driven ---
 
@@ -465,7 +466,8 @@ def integrate_motion(V0, omega0, record):
     """Integrate the equations of motion of V and omega, Eq. (22) of the paper, with a drive from
     t = 0 to the last output time.
 
-    Where something drives or will, two speeds below 1e-75 count as 0; where nothing does, two
+    Two speeds below 1e-75 count as 0 where something drives or will, or where slip remains in free
+    rolling at rest, by which the cylinder stops at once; elsewhere two
     speeds below 1e-150 are replaced by those of the free rolling in which sliding ends
     (:func:`.motion_law.speeds_after_sliding`).  V0 counts as 0 up to 1e-150 of |omega0|.  From V =
     omega = 0 the cylinder stays at rest until the drive moves it.
@@ -491,7 +493,9 @@ def integrate_motion(V0, omega0, record):
     stick_formed = False
     largest_speed = max(abs(V0), abs(omega0))
     moving = largest_speed >= _NEGLIGIBLE_SPEED or (
-        largest_speed > 0.0 and is_undriven(0, work.drive)
+        largest_speed > 0.0
+        and is_undriven(0, work.drive)
+        and sticks_at_rest(work.scene.kappa, work.scene.mu, by_value(work.scene.law).table)
     )
     if moving:
         V0 = V0 if abs(V0) > ZERO_V_RATIO * abs(omega0) else 0.0

@@ -82,6 +82,9 @@ _MAX_SECANT_MOVE = 0.1
 #: beyond d = 0.  Without it rounding makes endless events on the slow manifold, where d falls like
 #: V.
 BRANCH_OVERLAP = 1e-8
+#: The same of a table, whose branches have different slopes, by the errors of its splines: they
+#: change the rate of free decay by up to 2e-3, and |d| falls below 1e-8 where V does.
+TABLE_BRANCH_OVERLAP = 1e-12
 
 
 @inline_kernel
@@ -113,7 +116,7 @@ def evaluate_event_functions(step, regime, work):
 
     - V_ZERO: V.
     - STICK_EDGE: :func:`stick_edge_function`.
-    - DELTA_ZERO: sigma d + 1e-8, in partial slip only.
+    - DELTA_ZERO: sigma d + 1e-8, of a table + 1e-12, in partial slip only.
     - OMEGA_ZERO: spin_sign omega in full slip; spin_sign (1 + delta) in partial slip, where omega =
       V (1 + delta) is 0 at V = 0 too, which is another event; spin_sign where V is not above 0
       there.
@@ -135,13 +138,14 @@ def evaluate_event_functions(step, regime, work):
     # A tuple, not a reference: LLVM would read its fields again after each number that is stored.
     scene = by_value(work.scene)
     rest = work.options.rest_speed
+    overlap = BRANCH_OVERLAP if scene.law.table is None else TABLE_BRANCH_OVERLAP
     for i in range(N + 1):
         V = nodes[ROW_V + i]
         omega_or_d = nodes[ROW_OMEGA_OR_D + i]
         nodes[V_ZERO + i] = V
         nodes[STICK_EDGE + i] = stick_edge_function(V, omega_or_d, regime, scene)
         if not regime.full_slip:
-            nodes[DELTA_ZERO + i] = regime.sigma * omega_or_d + BRANCH_OVERLAP
+            nodes[DELTA_ZERO + i] = regime.sigma * omega_or_d + overlap
         if regime.spin_sign != 0.0 or (step.undriven and rest > 0.0):
             omega, delta = omega_and_delta(State(V, omega_or_d), regime, scene)
             # In partial slip omega = V (1 + delta): V = 0 is another event, delta = -1 is this one.

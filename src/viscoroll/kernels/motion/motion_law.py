@@ -54,9 +54,12 @@ from ..numerics.jit import inline_kernel, kernel
 from ..numerics.simd import TERMS, evaluate_pair
 from .table_law import (
     Loads,
+    SlowLaw,
     Width,
     asymmetry_of_table,
     friction_by_shear,
+    pull_of_table,
+    slow_law_of_table,
     width_at,
 )
 
@@ -401,35 +404,73 @@ def rest_limits(scene, sigma=1.0):
 
 
 @kernel
-def low_speed_limits(work):
-    """Return moments, force and torque divided by V in the limit V -> 0 of free rolling, omega = V
-    (1 + delta_0).
+def low_speed_feedback(work):
+    """Return force and torque of the feedback divided by V in the limit V -> 0 of free rolling,
+    omega = V (1 + delta_0), dimensionless; positive where they drive, 0 without feedback.
 
     work: Workspace, of the motion; its Scene and the gains of its feedback are read, not its force
     and torque over time.
-    Returns (M_half_space, M_cylinder, force of feedback, torque of feedback), each divided by V,
-    floats, dimensionless.  The moments are at least 0, and 0 where alpha = 1; force and torque are
-    positive where they drive, and 0 without feedback.
     """
-    functions = evaluate_moments(0.0, work.scene)
     gains = work.drive.gains
     omega_over_V = 1.0 + rest_limits(work.scene)[1]
     force = gains.force_V + gains.force_omega * omega_over_V
-    torque = gains.torque_V + gains.torque_omega * omega_over_V
-    return functions.half_space, functions.cylinder, force, torque
+    return force, gains.torque_V + gains.torque_omega * omega_over_V
 
 
 class FreeDecay(NamedTuple):
     """Exponential decay of V in slow free rolling, V' = -rate V, dimensionless.
 
     rate : its rate per unit of tau, below 0 where the feedback drives.
-    inertia : factor of V' in the equation of the decay.
-    torque_difference : inertia times traction divided by V.
+    Q : traction divided by V.
+    creep : creepage less delta_0, divided by V.
     """
 
     rate: float
-    inertia: float
-    torque_difference: float
+    Q: float
+    creep: float
+
+
+@inline_kernel
+def _slow_law(sigma, scene):
+    """Return the :class:`.table_law.SlowLaw` of a scene.
+
+    sigma: float, side of d, 1.0 or -1.0, on which that of a table depends.
+    scene: Scene, of which ``law`` and, of a cover or a table, kappa and mu are read.
+    """
+    functions = evaluate_moments(0.0, scene)
+    reaction = reaction_at_rest(scene)
+    rows = SlowLaw(
+        half_space=functions.half_space,
+        cylinder=functions.cylinder,
+        reaction_half_space=reaction.half_space,
+        reaction_cylinder=reaction.cylinder,
+        creep_V=0.0,
+        creep_Q=rest_limits(scene)[0] / (4.0 * scene.kappa),  # Q = 2 mu d for small d
+        Q_V=0.0,
+    )
+    return slow_law_of_table(sigma, scene.kappa, scene.mu, rows, by_value(scene.law).table)
+
+
+@inline_kernel
+def _decay_on_side(sigma, work):
+    """Return (:class:`FreeDecay`, whether d lies on the side sigma) by the law of this side;
+    arguments as of :func:`_slow_law` and :func:`free_decay`.
+    """
+    scene = work.scene
+    slow = _slow_law(sigma, scene)
+    force, torque = low_speed_feedback(work)
+    spin_inertia = scene.j * (1.0 + rest_limits(scene)[1])
+    on_axis = 1.0 + slow.reaction_half_space
+    on_spin = 1.0 - slow.reaction_cylinder
+    inertia = on_spin + spin_inertia * on_axis + added_inertia(0.0, scene)[0]
+    if on_axis == 1.0 and on_spin == 1.0:  # half-spaces
+        rate = (slow.half_space + slow.cylinder - force - torque) / inertia
+    else:
+        axis_loss = on_spin * (slow.half_space - force)
+        rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
+    Q = (spin_inertia * (slow.half_space - force) - slow.cylinder + torque) / inertia
+    decay = FreeDecay(rate=rate, Q=Q, creep=slow.creep_V + slow.creep_Q * Q)
+    return decay, sigma * (Q - slow.Q_V) >= 0.0
 
 
 @kernel
@@ -446,22 +487,58 @@ def free_decay(work):
         (b + a J) V' = -b (M_half_space - f) - a (M_cylinder - q)
         (b + a J) Q = J (M_half_space - f) - M_cylinder + q
 
-    Added mass, half of n V' in either moment, adds n to the factor of V'.
+    Added mass, half of n V' in either moment, adds n to the factor of V'.  A law by a table has
+    slopes over d on each side of d = 0; those of the side on which d lies are taken.
 
     work: Workspace, of the motion; its Scene and the gains of its feedback are read.
     """
-    half_space, cylinder, force, torque = low_speed_limits(work)
-    scene = work.scene
-    reaction = reaction_at_rest(scene)
-    spin_inertia = scene.j * (1.0 + rest_limits(scene)[1])
-    on_axis = 1.0 + reaction.half_space
-    on_spin = 1.0 - reaction.cylinder
-    inertia = on_spin + spin_inertia * on_axis + added_inertia(0.0, scene)[0]
+    decay, consistent = _decay_on_side(1.0, work)
+    return decay if consistent else _decay_on_side(-1.0, work)[0]
+
+
+@inline_kernel
+def _leverage(used, scene):
+    """Return how much of the traction acts on the axis and on the cylinder at V = 0, the moments
+    that it makes included.
+
+    With the factors a and excesses e of base and cylinder (:class:`.cover_law.Reaction`), V'
+    contains Q (1 + a_b + e_b |Q|/mu), and j omega' contains -Q (1 - a_c - e_c |Q|/mu).
+
+    used: float, |Q|/mu, in [0, 1].
+    scene: Scene, of which ``law`` and, of a cover, kappa and mu are read.
+    Returns (the factor on the axis, that on the cylinder, derivatives in Q of Q times each),
+    floats, dimensionless; all are 1 of half-spaces.
+    """
     if by_value(scene.law).cover_rows is None:
-        rate = (half_space + cylinder - force - torque) / inertia
-    else:
-        rate = (on_spin * (half_space - force) + on_axis * (cylinder - torque)) / inertia
-    return FreeDecay(rate, inertia, spin_inertia * (half_space - force) - cylinder + torque)
+        return 1.0, 1.0, 1.0, 1.0
+    reaction = reaction_at_rest(scene)
+    on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * used
+    on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * used
+    return (
+        on_axis,
+        on_spin,
+        on_axis + reaction.half_space_excess * used,
+        on_spin - reaction.cylinder_excess * used,
+    )
+
+
+@inline_kernel
+def pull_at_rest(d, scene):
+    """Return what friction does at V = 0: force on the axis, torque against the spin, and their
+    derivatives in d.
+
+    d: float, in [-1, 1].
+    scene: Scene, of which mu and ``law`` and, of a cover, kappa are read.
+    Returns (force, torque, derivative of the force, derivative of the torque), floats,
+    dimensionless: Q and Q of half-spaces; of a cover Q times the factors of :func:`_leverage`; of a
+    table Q - M_half_space and Q + M_cylinder.
+    """
+    used = abs(d) * (2.0 - abs(d))  # |Q|/mu
+    Q = scene.mu * d * (2.0 - abs(d))
+    dQ_dd = 2.0 * scene.mu * (1.0 - abs(d))
+    on_axis, on_spin, axis_dQ, spin_dQ = _leverage(used, scene)
+    rows = Q * on_axis, Q * on_spin, axis_dQ * dQ_dd, spin_dQ * dQ_dd
+    return pull_of_table(d, scene.kappa, scene.mu, rows, by_value(scene.law).table)
 
 
 @kernel
@@ -470,46 +547,58 @@ def speeds_after_sliding(V, omega, scene):
     dimensionless.
 
     It ends within a time of the order of the speeds, in which nothing but the traction acts: a Q on
-    the axis and b Q on the cylinder, with a = 1 + a_b + e_b q, b = 1 - a_c - e_c q, q = |Q|/mu
-    (:class:`.cover_law.Reaction`), 1 of half-spaces.  In full slip, q = 1, V b + j omega a is
-    constant.  From |d| = 1 to 0, q = |d| (2 - |d|), d(ln V)/dy = -a/(b/j + a y) with y = omega/V, a
-    function of d, which has the rule of Gauss with four points.
+    the axis and b Q on the cylinder, functions of d (:func:`pull_at_rest`), Q and Q of half-spaces.
+    In full slip, |d| = 1, V b + j omega a is constant.  From |d| = 1 to 0, d(ln V)/dy = -a/(b/j + a
+    y) with y = omega/V, a function of d, which has the rule of Gauss with four points.
 
     V, omega : floats, of either sign, not both 0.
-    scene : Scene, of which ``law``, kappa, mu and j are read.
+    scene : Scene, of which ``law``, kappa, mu and j are read; of a table one with
+        :func:`.table_law.sticks_at_rest`.
     """
-    L, delta_0 = rest_limits(scene)
-    free = 1.0 + delta_0  # omega/V of free rolling
+    law = by_value(scene.law)
+    free = 1.0 + rest_limits(scene)[1]  # omega/V of free rolling
     j = scene.j
-    if by_value(scene.law).cover_rows is None:
+    if law.cover_rows is None and law.table is None:
         V = (V + j * omega) / (1.0 + j * free)
         return V, V * free
-    reaction = reaction_at_rest(scene)
-    limit = 0.5 * L * scene.mu / scene.kappa  # delta_star
     c = asymmetry_at_rest(scene)
     # Sign of the creepage less delta_0; a product of the two least speeds would underflow to 0.
     side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0
+    limit = _limit_at_rest(side, scene)
     left = np.inf  # |d| at which the integral over d begins; above 1 in full slip
     if V != 0.0:
         left = abs(reduced_creep(side * abs(omega - free * V) / (limit * abs(V)), c))
+    if left == 0.0:
+        return V, omega
     if left > 1.0:  # Full slip: V b + j omega a is kept until omega/V is that of |d| = 1.
         left = 1.0
-        on_axis = 1.0 + reaction.half_space + reaction.half_space_excess
-        on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess
-        kept = V * on_spin + j * omega * on_axis
-        side = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
-        V = kept / (on_spin + j * on_axis * (free + limit * (side + c)))
+        on_axis, on_spin, _, _ = pull_at_rest(side, scene)
+        kept = side * (V * on_spin + j * omega * on_axis)
+        turned = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
+        if turned != side:  # V passes through 0, from where on a and b are those of the other side.
+            kept /= abs(on_axis)
+            on_axis, on_spin, _, _ = pull_at_rest(turned, scene)
+            kept *= abs(on_axis)
+            side = turned
+            limit = _limit_at_rest(side, scene)
+        V = kept / (abs(on_spin) + j * abs(on_axis) * (free + limit * (side + c)))
     for place, weight in _GAUSS:
-        d = left * place
-        q = d * (2.0 - d)
-        on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * q
-        on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * q
-        creep = creep_of(side * d, c, by_value(scene.law).cover_rows)
+        d = side * left * place
+        on_axis, on_spin, _, _ = pull_at_rest(d, scene)
+        creep = creep_of(d, c, law.cover_rows)
         y = free + limit * creep.value
         dy = side * limit * creep.slope  # slope of y over |d|
         # |d| falls from ``left`` to 0, which turns the sign of -a/(b/j + a y).
         V *= np.exp(left * weight * dy * on_axis / (on_spin / j + on_axis * y))
     return V, V * free
+
+
+@inline_kernel
+def _limit_at_rest(side, scene):
+    """Return |delta - delta_0| at the onset of full slip in the limit V -> 0, a float > 0; of a
+    table that of one side, 1.0 or -1.0.
+    """
+    return 0.5 * rest_limits(scene, side)[0] * scene.mu / scene.kappa
 
 
 @inline_kernel

@@ -223,6 +223,70 @@ def _pull(d, kappa, mu, table):
     )
 
 
+class SlowLaw(NamedTuple):
+    """Loads in the limit V -> 0 near free rolling, dimensionless: with the traction Q, M_half_space
+    = V half_space - reaction_half_space Q, M_cylinder alike, and the creepage exceeds that of free
+    rolling at rest, delta_0, by creep_V V + creep_Q Q.
+
+    Q_V : quotient Q/V at d = 0; Q is larger where d > 0.
+    """
+
+    half_space: float
+    cylinder: float
+    reaction_half_space: float
+    reaction_cylinder: float
+    creep_V: float
+    creep_Q: float
+    Q_V: float
+
+
+@inline_kernel
+def slow_law_of_table(sigma, kappa, mu, rows, table):
+    """Return the :class:`SlowLaw` of a table on one side of D_0.
+
+    Near V = 0 and d = 0 the table is linear in both, and d is eliminated in favour of Q.
+
+    sigma: float, side, 1.0 or -1.0, on which slopes over d depend.
+    kappa, mu: floats, slenderness and coefficient of friction.
+    rows: SlowLaw of the rows of the law, the result without a table.
+    table: vector of :mod:`.coupled_splines` with :func:`sticks_at_rest`, or None.
+    """
+    if table is None:
+        return rows
+    at = _loads(0.0, 0.0, sigma, kappa, mu, table)
+    width = width_at(0.0, sigma, mu, Width(1.0, 0.0, 0.0, 0.0, 0.0, 0.0), table)
+    # d = (Q - Q_dV V)/Q_dd; 2 kappa delta = D_0 + mu L d, where D_0 is linear in u = kappa V.
+    half_space = at.half_space_dd / at.Q_dd
+    cylinder = at.cylinder_dd / at.Q_dd
+    creep = 0.5 * mu * width.L / (kappa * at.Q_dd)
+    return SlowLaw(
+        half_space=at.half_space_dV - half_space * at.Q_dV,
+        cylinder=at.cylinder_dV - cylinder * at.Q_dV,
+        reaction_half_space=-half_space,
+        reaction_cylinder=-cylinder,
+        creep_V=0.5 * width.dmiddle - creep * at.Q_dV,
+        creep_Q=creep,
+        Q_V=at.Q_dV,
+    )
+
+
+@inline_kernel
+def sticks_at_rest(kappa, mu, table):
+    """Return whether no slip remains in free rolling in the limit V -> 0, a bool; True without a
+    table.
+
+    Then Q and M are 0 exactly at d = 0.  Else a freely rolling cylinder comes to rest by the loss
+    in slip.
+
+    kappa, mu: floats, slenderness and coefficient of friction.
+    table: vector of :mod:`.coupled_splines`, or None.
+    """
+    if table is None:
+        return True
+    found = _loads(0.0, 0.0, 1.0, kappa, mu, table)
+    return found.Q == 0.0 and found.half_space + found.cylinder == 0.0
+
+
 @inline_kernel
 def balance_of_table(load, kappa, mu, rows, table):
     """Return the margin by which a cylinder at rest keeps still under a load; below 0 it moves.
