@@ -651,6 +651,9 @@ TABLE_HEADER = 1e-11
 #: Creepage of free rolling of an elastic cover, h/l0 = 0.5, nu = 0.5, times 2 kappa: 0.165 of
 #: boundary elements.
 TABLE_FREE = 1e-3
+#: V/V0 of free motions on a table from speeds at which it is linear, found by steps or in closed
+#: form: rtol 1e-10, and the rule with four points for the sliding at the start, 3e-8
+TABLE_SLOW = 1e-7
 #: A grid of 200 by 401 nodes in place of the rows, in V and omega at the end of motions; seen 1e-8.
 GRID_MOTION = 1e-6
 

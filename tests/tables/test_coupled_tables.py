@@ -164,12 +164,29 @@ def test_grids_of_other_programs_roll(tmp_path):
 
 
 @pytest.mark.filterwarnings("ignore::viscoroll.ModelWarning")
-def test_free_motions_too_slow_for_a_table_are_refused(scene):
-    """Below 1e-11 the slip is lost in rounding: speeds were wrong; the fast law rolls there."""
-    with pytest.raises(vr.ParameterError, match="must be 0, or at least 1e-11"):
-        scene.roll(1e-20, 0.0, 1.0)
-    fast = scene.replace(material=BELT, coupled=False)
-    assert 0.0 < fast.roll(1e-200, 0.0, 1.0).V[0] < 1e-200
+@pytest.mark.parametrize("omega_over_V", [1.0, 1.2, 0.0, -10.0])
+def test_the_slowest_free_motions_are_all_alike(scene, omega_over_V):
+    """Where nothing slips in free rolling at rest, the equations are linear at low speed: V/V0 does
+    not depend on V0, and the losses take what kinetic energy has gone.
+    """
+    t = [1e-3, 1.0, 10.0]
+    slow = [
+        scene.roll(V0, omega_over_V * V0, t, rtol=1e-10) for V0 in (1e-13, 1e-20, 1e-149, 1e-250)
+    ]
+    ratios = np.array([[each.V / each.V[0], each.omega / each.V] for each in slow])
+    close(ratios, np.broadcast_to(ratios[0], ratios.shape), tol.TABLE_SLOW)
+    late = slow[1]
+    kinetic = 0.5 * (late.V**2 + scene.j * late.omega**2)
+    gone = np.diff(kinetic) + np.diff(late.loss_friction + late.loss_rolling)
+    close(gone / kinetic[0], np.zeros(2), tol.TABLE_SLOW, scale=1.0)
+
+
+def test_a_cover_that_slips_in_free_rolling_stops_at_once_from_the_least_speeds():
+    scene = vr.Scene(material=law_of(BOTH_SLIP, 0.2), kappa=4.0, mu=0.2, gamma=1.0)
+    for V0 in (1e-20, 1e-200):
+        late = scene.roll(V0, V0, [1.0])
+        assert late.V[0] == late.omega[0] == 0.0
+        assert late.status >= 0
 
 
 def test_unlike_half_spaces_have_a_table():

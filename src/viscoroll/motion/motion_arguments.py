@@ -44,9 +44,6 @@ RTOL_RANGE = (1e-12, 1e-2)
 #: Smallest and largest start speed, dimensionless: beyond them intermediate results leave the range
 #: of doubles.
 SPEED_RANGE = (1e-300, 1e100)
-#: Smallest start speed of a free motion on a table, dimensionless: M of a table at rest is 0 to
-#: rounding alone, by which V/V0 is off by 4e-7 at 1e-12, by a hundredth at 1e-17.
-LEAST_ON_TABLE = 1e-11
 #: Largest step limit: a motion takes some hundreds of steps.
 MOST_STEPS = 10_000_000
 
@@ -137,18 +134,16 @@ def controls(
     return float(rtol), threshold, check_integer("max_steps", max_steps, 1, MOST_STEPS)
 
 
-def start_speeds(V0: ArrayLike, omega0: ArrayLike, low: float = SPEED_RANGE[0]) -> tuple[Any, Any]:
+def start_speeds(V0: ArrayLike, omega0: ArrayLike) -> tuple[Any, Any]:
     """Return start speeds, checked; they are not broadcast.
 
     V0, omega0: start speeds, dimensionless, numbers or arrays (n,).
-    low: least start speed that is not 0.
     Returns (V0, omega0): as they are where both are of type float and not both 0; else both as
     float64 arrays in their own shapes, () for a number.
     Raises ParameterError unless both are numeric, finite and at most 1e100 in magnitude, the larger
-    of |V0| and
-    |omega0| of each motion is 0 or at least ``low``, and the shapes broadcast.
+    of |V0| and |omega0| of each motion is 0 or at least 1e-300, and the shapes broadcast.
     """
-    high = SPEED_RANGE[1]
+    low, high = SPEED_RANGE
     # each by itself: max() of a NaN and another may be the other
     if (
         type(V0) is float

@@ -462,13 +462,15 @@ def _decay_on_side(sigma, work):
     spin_inertia = scene.j * (1.0 + rest_limits(scene)[1])
     on_axis = 1.0 + slow.reaction_half_space
     on_spin = 1.0 - slow.reaction_cylinder
-    inertia = on_spin + spin_inertia * on_axis + added_inertia(0.0, scene)[0]
+    n = added_inertia(0.0, scene)[0]
+    inertia = on_spin + spin_inertia * on_axis + n
     if on_axis == 1.0 and on_spin == 1.0:  # half-spaces
         rate = (slow.half_space + slow.cylinder - force - torque) / inertia
     else:
         axis_loss = on_spin * (slow.half_space - force)
         rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
-    Q = (spin_inertia * (slow.half_space - force) - slow.cylinder + torque) / inertia
+    Q = (spin_inertia + 0.5 * n) * (slow.half_space - force)
+    Q = (Q - (1.0 + 0.5 * n) * (slow.cylinder - torque)) / inertia
     decay = FreeDecay(rate=rate, Q=Q, creep=slow.creep_V + slow.creep_Q * Q)
     return decay, sigma * (Q - slow.Q_V) >= 0.0
 
@@ -487,7 +489,8 @@ def free_decay(work):
         (b + a J) V' = -b (M_half_space - f) - a (M_cylinder - q)
         (b + a J) Q = J (M_half_space - f) - M_cylinder + q
 
-    Added mass, half of n V' in either moment, adds n to the factor of V'.  A law by a table has
+    Added mass of half-spaces, half of n V' in either moment, adds n to the factor of V', and n/2 to
+    J and to the factor 1 of M_cylinder - q in the second line.  A law by a table has
     slopes over d on each side of d = 0; those of the side on which d lies are taken.
 
     work: Workspace, of the motion; its Scene and the gains of its feedback are read.
