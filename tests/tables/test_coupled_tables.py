@@ -171,7 +171,7 @@ def test_the_slowest_free_motions_are_all_alike(scene, omega_over_V):
     """
     t = [1e-3, 1.0, 10.0]
     slow = [
-        scene.roll(V0, omega_over_V * V0, t, rtol=1e-10) for V0 in (1e-13, 1e-20, 1e-149, 1e-250)
+        scene.roll(V0, omega_over_V * V0, t, rtol=1e-10) for V0 in (1e-20, 1e-60, 1e-149, 1e-250)
     ]
     ratios = np.array([[each.V / each.V[0], each.omega / each.V] for each in slow])
     close(ratios, np.broadcast_to(ratios[0], ratios.shape), tol.TABLE_SLOW)

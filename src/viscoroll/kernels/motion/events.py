@@ -84,7 +84,7 @@ _MAX_SECANT_MOVE = 0.1
 BRANCH_OVERLAP = 1e-8
 #: The same of a table, whose branches have different slopes, by the errors of its splines: they
 #: change the rate of free decay by up to 2e-3, and |d| falls below 1e-8 where V does.
-TABLE_BRANCH_OVERLAP = 1e-12
+TABLE_BRANCH_OVERLAP = 1e-14
 
 
 @inline_kernel
@@ -116,7 +116,7 @@ def evaluate_event_functions(step, regime, work):
 
     - V_ZERO: V.
     - STICK_EDGE: :func:`stick_edge_function`.
-    - DELTA_ZERO: sigma d + 1e-8, of a table + 1e-12, in partial slip only.
+    - DELTA_ZERO: sigma d + 1e-8, of a table + 1e-14, in partial slip only.
     - OMEGA_ZERO: spin_sign omega in full slip; spin_sign (1 + delta) in partial slip, where omega =
       V (1 + delta) is 0 at V = 0 too, which is another event; spin_sign where V is not above 0
       there.
