@@ -648,6 +648,8 @@ TABLE_ENERGY = 1e-6
 TABLE_LOSS = 1e-9
 #: The header of C of a table beside its kernels: rounding of the place in creep.
 TABLE_HEADER = 1e-11
+#: Its slopes, relative: the place in creep of a state near D_0 is a difference of creeps.
+TABLE_HEADER_SLOPE = 1e-9
 #: Creepage of free rolling of an elastic cover, h/l0 = 0.5, nu = 0.5, times 2 kappa: 0.165 of
 #: boundary elements.
 TABLE_FREE = 1e-3

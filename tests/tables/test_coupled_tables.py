@@ -248,9 +248,11 @@ C_TABLE = """#include "belt.h"
 void states(double kappa, int count, const double *V, const double *slip, double *out) {
   for (int n = 0; n < count; n++) {
     vr_state s = vr_table_contact(&belt, kappa, V[n], slip[n]);
+    vr_slopes d = vr_table_slopes(&belt, kappa, V[n], slip[n]);
     double all[] = {s.Q, s.M_half_space, s.M_cylinder, s.lam, s.epsilon, s.beta, s.delta_0,
-                    s.delta_star};
-    for (int k = 0; k < 8; k++) out[8 * n + k] = all[k];
+                    s.delta_star, d.dQ_dV, d.dQ_domega, d.dM_dV, d.dM_half_space_dV,
+                    d.dM_cylinder_dV, d.dM_half_space_domega, d.dM_cylinder_domega};
+    for (int k = 0; k < 15; k++) out[15 * n + k] = all[k];
   }
 }
 """
@@ -262,9 +264,15 @@ def test_header_of_c_gives_the_states_of_the_table(law, scene, tmp_path):
     states = c_code.compiled(tmp_path, "belt", C_TABLE).states
     V = np.array([-3.0, -1e-9, -0.0, 0.0, 1e-5, 1e-3, 0.1, 0.3, 7.0, 1e4, 0.2, 0.2])
     slip = V * np.array([0.01, 0.03, 1.0, 1.0, 0.02, -0.01, 0.0, 0.015, 0.5, 0.0, -0.03, 0.02])
-    out = np.empty((V.size, 8))
+    out = np.empty((V.size, 15))
     arrays = [ctypes.c_void_p(each.ctypes.data) for each in (V, slip, out)]
     states(ctypes.c_double(4.0), V.size, *arrays)
-    found = scene.contact(V, omega=V + slip)
     names = ("Q", "M_half_space", "M_cylinder", "lam", "epsilon", "beta", "delta_0", "delta_star")
-    close(out, np.stack([found[name] for name in names], axis=-1), tol.TABLE_HEADER)
+    found = scene.contact(V, omega=V + slip, fields=names)
+    close(out[:, :8], np.stack([found[name] for name in names], axis=-1), tol.TABLE_HEADER)
+    moving = V != 0.0
+    names = ("dQ_dV", "dQ_domega", "dM_dV", "dM_half_space_dV", "dM_cylinder_dV")
+    names += ("dM_half_space_domega", "dM_cylinder_domega")
+    found = scene.contact(V[moving], omega=(V + slip)[moving], fields=names)
+    for name, slope in zip(names, out[moving, 8:].T, strict=True):
+        close(slope, found[name], tol.TABLE_HEADER_SLOPE, what=name)

@@ -41,8 +41,7 @@ def export(table: Dataset, path: str | PathLike[str]) -> None:
     table : dataset of :func:`law_dataset`, :func:`grid_build` or :func:`tables.load`.
     path : file to write, whose suffix, also in capitals, selects the format; a file of that name is
         replaced.  For a law and a grid: .nc (netCDF-4), or .cdf (netCDF-3, for readers without
-        HDF5).  For a law: .h (C99 and C++: table and evaluator in one header, of a table of the
-        coupled solution for its states without slopes) or .json.  For a
+        HDF5).  For a law: .h (C99 and C++: table and evaluator in one header) or .json.  For a
         grid: .csv, .txt (Modelica: CombiTable2D, CombiTimeTable) or .mat (MATLAB, Simulink).
 
     Raises
