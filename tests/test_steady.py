@@ -292,6 +292,29 @@ def test_feedback_on_omega_of_covers_misses_none():
         vr.steady(scene, force=vr.Feedback(0.01, omega=0.1), torque=vr.Feedback(0.0, omega=-0.1))
 
 
+def test_feedback_on_omega_of_a_table_misses_none():
+    """As above, with both loads, one load or the other dependent on omega."""
+    rng = np.random.default_rng(4)
+    x = np.geomspace(1e-6, 1e4, 1001)
+    scene = series_scene(vr.Cover(TWO, nu=0.3, thickness=1.0, on="base"), mu=0.2).replace(
+        coupled=None
+    )
+    for n in range(4):
+        gains = rng.uniform(-0.5, 0.5, 4) * (1.0, n != 1, 1.0, n != 2)
+        if gains[1] * gains[3] < 0.0:
+            gains[1] *= -1.0
+        force = vr.Feedback(rng.uniform(-0.1, 0.1), V=gains[0], omega=gains[1])
+        torque = vr.Feedback(rng.uniform(-0.1, 0.1), V=gains[2], omega=gains[3])
+        s = vr.steady(scene, force=force, torque=torque)
+        for off in residuals(scene, s):
+            assert (np.abs(off) <= tol.STEADY_SCAN * (1.0 + np.abs(s.omega))).all()
+        assert (s.loss.slip >= 0.0).all()
+        sticks = (s.beta > 0.0) & (np.abs(s.V) > x[0])
+        assert sticks.sum() == sum(brute_of_cover(scene, force, torque, V) for V in (x, -x)), n
+    with pytest.raises(vr.ParameterError, match="nearly cancel"):
+        vr.steady(scene, force=vr.Feedback(0.01, omega=0.1), torque=vr.Feedback(0.0, omega=-0.1))
+
+
 def brute_of_cover(scene, force, torque, V):
     """Equilibria with a stick zone between speeds V of one sign."""
 

@@ -517,10 +517,12 @@ class Contacts(NamedTuple):
         """Return delta_0 at V > 0, (n,), the creepage of free rolling, at which Q = 0; it does not
         depend on mu.
 
-        Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it; the float
-        0.0 of half-spaces.
+        Returns the creepage, dimensionless: (n,) of a cover, whose pressure strains it, and of a
+        table; the float 0.0 of half-spaces.
         """
-        return 0.0 if self.law.cover is None else self.fields(V, 0.0, "delta_0")[0]
+        if self.law.cover is None and self.law.coupled is None:
+            return 0.0
+        return self.fields(V, 0.0, "delta_0")[0]
 
 
 def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:

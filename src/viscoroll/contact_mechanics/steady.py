@@ -46,7 +46,6 @@ from ..core import (
     Integers,
     Numbers,
     ParameterError,
-    described_error,
     make_dimensionless,
     strip_labels,
 )
@@ -56,10 +55,14 @@ from .model_warnings import warn_of_contact
 from .parameters import Roller, refuse_arrays, resolve_model, scale_of
 from .rolling_resistance import LEAST_LOAD, MOST_LOAD, branches, find_zeros, speed_nodes
 from .steady_loads import (
+    Gains,
     Loads,
     find_speeds,
     is_balanced_at_rest,
     loads_of,
+    loads_without_omega,
+    moments_of_losses,
+    search_nodes,
     shear_at,
 )
 from .steady_result import Diagnosis, Steady, pack_result
@@ -148,16 +151,25 @@ class _ScanProblem(NamedTuple):
         """
         force, torque = self.loads_at(free.V, free.V)
         of_force, of_torque = self.load_rows[:, 2]
-        if self.contacts.law.cover is None:
+        law = self.contacts.law
+        if law.coupled is not None:
+            gains = Gains(force_omega=of_force, torque_omega=of_torque)
+            Q, half_space, cylinder = loads_without_omega(
+                self.contacts, free.V, force, torque, gains
+            )
+        elif law.cover is not None:
+            shear = shear_at(self.contacts, free.V)
+            on_axis = free.M_half_space - force
+            on_spin = torque - free.M_cylinder
+            Q = shear.traction_of_both(on_axis, on_spin, of_force, of_torque)
+            by_base, by_cylinder = shear.moments(Q)
+            half_space = free.M_half_space + by_base
+            cylinder = free.M_cylinder + by_cylinder
+        else:
             return (free.M - (force + torque)) / (of_force + of_torque)
-        shear = shear_at(self.contacts, free.V)
-        on_axis = free.M_half_space - force
-        on_spin = torque - free.M_cylinder
-        Q = shear.traction_of_both(on_axis, on_spin, of_force, of_torque)
-        by_base, by_cylinder = shear.moments(Q)
         if abs(of_force) > abs(of_torque):
-            return (on_axis + by_base - Q) / of_force
-        return (by_cylinder + Q - on_spin) / of_torque
+            return (half_space - force - Q) / of_force
+        return (cylinder + Q - torque) / of_torque
 
     def residual(self, x: Floats, slip: Floats) -> Floats:
         """Return R = Q - M_half_space + force, 0 in equilibrium, at x = log2(kappa V) and slip =
@@ -203,12 +215,15 @@ def scan_states(law: LawTable, loads: Loads) -> States:
         contacts = Contacts(law, loads.kappa[n], loads.mu[n])
         for sign in (1.0, -1.0):
             problem = _ScanProblem(contacts, np.hstack([sign * at_rest, gained]))
-            by_speed = law.cover is not None or problem.load_rows[:, 2].sum()
+            is_layer = law.cover is not None or law.coupled is not None
+            by_speed = is_layer or problem.load_rows[:, 2].sum()
             x, slip = _scan_speed(problem) if by_speed else _scan_slip(problem)
             rows = _polish(problem, np.exp2(x) / contacts.kappa, slip)
             count = rows.shape[1]
             free = None
-            if law.cover is not None:
+            if law.coupled is not None:
+                free = moments_of_losses(contacts, rows[Field.V], rows[Field.DELTA])
+            elif law.cover is not None:
                 rolling = problem.free_rolling(np.log2(contacts.kappa * rows[Field.V]))
                 free = np.stack([rolling.M_half_space, rolling.M_cylinder])
             parts.append(
@@ -238,13 +253,14 @@ def _spinning_at_rest(contacts: Contacts, loads: Loads, n: int) -> list[States]:
     gains = loads.gains
     total = loads.force[n] + loads.torque[n]
     gain = gains.force_omega + gains.torque_omega
-    if contacts.law.cover is not None or not (gain and total):
+    law = contacts.law
+    if law.cover is not None or law.coupled is not None or not (gain and total):
         return []
     omega = -total / gain
     side = math.copysign(1.0, omega)
     if side * contacts.mu + loads.force[n] + gains.force_omega * omega != 0.0:
         return []
-    slowest = np.exp2(speed_nodes(contacts.law)[:1]) / contacts.kappa
+    slowest = np.exp2(speed_nodes(law)[:1]) / contacts.kappa
     rows = state_rows(contacts, slowest, 1.0 / slowest)
     spinning = States.of(loads, np.array([n]), np.array([side]), rows)
     spinning.rows[[Field.V, Field.DELTA, Field.M_HALF_SPACE, Field.M_CYLINDER, Field.OMEGA], 0] = (
@@ -272,7 +288,7 @@ def _scan_speed(problem: _ScanProblem) -> tuple[Floats, Floats]:
         free = problem.free_rolling(x)
         return problem.slip(free) - free.slips[which]
 
-    nodes = speed_nodes(problem.contacts.law)
+    nodes = search_nodes(problem.contacts.law)
     nodes = np.unique(
         np.concatenate([nodes, *(find_zeros(partial(beyond, which=n), nodes) for n in range(3))])
     )
@@ -487,10 +503,6 @@ def steady(
         speed = loads.V[moving]
         rolling = states_at(law, loads, load=moving, sign=np.sign(speed), V=np.abs(speed))
     elif gained_by_omega:
-        if law.coupled is not None:
-            raise described_error(
-                "a gain on omega", "is given", "left out for a table of the coupled solution"
-            )
         rolling = scan_states(law, loads)
     else:
         rolling = _states_under_load(law, loads)

@@ -251,11 +251,7 @@ class Shear(NamedTuple):
         factor = of_torque * (1.0 + self.half_space) + of_force * (1.0 - self.cylinder)
         excess = of_torque * self.half_space_excess - of_force * self.cylinder_excess
         if np.any(np.abs(factor) <= 2.0 * np.abs(excess)):
-            raise described_error(
-                "gains on omega of force and torque",
-                f"{of_force:g} and {of_torque:g} nearly cancel",
-                "a sum farther from 0 for a layer, on which they leave the traction open",
-            )
+            raise _cancelling_error(of_force, of_torque)
         side = np.sign(factor)
         rest = side * (of_torque * on_axis + of_force * on_spin)
         return _solve_quadratic(np.abs(factor), side * excess / self.contacts.mu, rest)
@@ -356,14 +352,11 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
     Returns (index of the load; sign of V, 1.0 or -1.0; |V|, > 0), one entry for each crossing,
     (crossings,) each.
     """
+    nodes = search_nodes(law)
     if law.coupled is None:
-        nodes = speed_nodes(law)
         noise = _BALANCE_ROUNDING * (np.abs(loads.force) + np.abs(loads.torque))
         torque_left = _torque_left_of_cover
     else:
-        low = np.log2(law.coupled.u[0]) - _FAR_OCTAVES
-        high = np.log2(law.coupled.u[-1]) + _FAR_OCTAVES
-        nodes = np.linspace(low, high, int(_DENSITY * (high - low)))
         noise = np.full(loads.mu.size, _NOISE)
         torque_left = _torque_left_on_table
     load = []
@@ -378,6 +371,27 @@ def find_speeds(law: LawTable, loads: Loads) -> tuple[Integers, Floats, Floats]:
             signs.append(np.full(zeros.size, sign))
             speeds.append(np.exp2(zeros) / kappa)
     return np.concatenate(load), np.concatenate(signs), np.concatenate(speeds)
+
+
+def _cancelling_error(of_force: float, of_torque: float) -> ParameterError:
+    """Return the error of dimensionless gains on omega, of force and torque, that nearly cancel."""
+    return described_error(
+        "gains on omega of force and torque",
+        f"{of_force:g} and {of_torque:g} nearly cancel",
+        "a sum farther from 0 for a layer, on which they leave the traction open",
+    )
+
+
+def search_nodes(law: LawTable) -> Floats:
+    """Return log2(kappa V) of the speeds between which steady speeds are sought, ascending, (n,):
+    of a table 6 an octave, 40 octaves beyond its nodes to both sides; else those of
+    :func:`.rolling_resistance.speed_nodes`.
+    """
+    if law.coupled is None:
+        return speed_nodes(law)
+    low = np.log2(law.coupled.u[0]) - _FAR_OCTAVES
+    high = np.log2(law.coupled.u[-1]) + _FAR_OCTAVES
+    return np.linspace(low, high, int(_DENSITY * (high - low)))
 
 
 def _torque_left_of_cover(contacts: Contacts, load: Loads, x: Floats) -> Floats:
@@ -444,6 +458,11 @@ _DENSITY = 6
 _NOISE = 1e-14
 #: speed at which slopes at rest are taken, divided by the first node: there the law is linear in u
 _SLOW = 1e-3
+#: sum of the gains on omega over the sum of their moduli, at or below which they nearly cancel: the
+#: moments change with the creepage by up to some tenths of the traction
+_CANCELLED = 0.3
+#: bisections between the onsets of full slip, to rounding
+_HALVINGS = 54
 
 
 def balance(
@@ -468,6 +487,44 @@ def balance(
     out = np.empty((V.size, 2))
     balance_loop(table, kappa, mu, kappa * V, np.ascontiguousarray(load), spin, out)
     return out[:, 0] / (2.0 * kappa), out[:, 1].copy()
+
+
+def loads_without_omega(
+    contacts: Contacts, V: Floats, on_axis: Floats, on_spin: Floats, gains: Gains
+) -> tuple[Floats, Floats, Floats]:
+    """Return the traction and the moments on a table at which the balances of axis and cylinder
+    hold after omega, on which force and torque depend, is eliminated.
+
+    With gains f_w and q_w on omega these are q_w (Q - M_half_space + f) + f_w (Q + M_cylinder - q)
+    = 0, where f and q are the loads at any omega: an equation for the creepage, solved by bisection
+    between the onsets of full slip.
+
+    contacts : a table of the coupled solution, at a kappa and a mu, numbers.
+    V : speeds > 0, dimensionless, (n,).
+    on_axis, on_spin : force and torque, divided by P and by P R, at omega = 0 or any other speed,
+        (n,) each.
+    gains : :class:`Gains`, of which those on omega are read.
+    Returns (Q, M_half_space, M_cylinder), (n,) each; where friction does not suffice, the moments
+    are those of the onset of full slip, and Q is what the equation then requires.
+    Raises ParameterError where the gains nearly cancel, so that several creepages may balance.
+    """
+    total = gains.torque_omega + gains.force_omega
+    if abs(total) <= _CANCELLED * (abs(gains.torque_omega) + abs(gains.force_omega)):
+        raise _cancelling_error(gains.force_omega, gains.torque_omega)
+    axis = gains.torque_omega / total
+    spin = gains.force_omega / total
+    wanted = spin * on_spin - axis * on_axis
+    low, high = contacts.fields(V, 0.0, "delta_minus", "delta_plus")
+    for _ in range(_HALVINGS):
+        delta = 0.5 * (low + high)
+        fields = fields_at(contacts, V, delta)
+        Q = contacts.mu * fields["Q_over_mu"]
+        half_space = fields["M_half_space"] / contacts.kappa
+        cylinder = fields["M_cylinder"] / contacts.kappa
+        left = wanted - (Q - axis * half_space + spin * cylinder)
+        low = np.where(left > 0.0, delta, low)
+        high = np.where(left > 0.0, high, delta)
+    return Q + left, half_space, cylinder
 
 
 def fields_at(contacts: Contacts, V: Floats, delta: Floats) -> dict[str, Floats]:
