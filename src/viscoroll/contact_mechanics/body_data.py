@@ -320,8 +320,8 @@ class BodyData:
 
     @cached_property
     def in_metres(self) -> bool:
-        """Whether no length looks like one in mm: a large radius or layer beside which the contact
-        of this load is short.
+        """Whether lengths seem to be in m; False where a radius or the thickness of a layer looks
+        like one in mm: it is large, and the contact length of this load is short beside it.
         """
         limits = [(self.R, _LARGE_R, _SHORT_OVER_R)]
         if self.pair is not None:
@@ -335,10 +335,12 @@ class BodyData:
 
     @cached_property
     def soft_for_load(self) -> bool:
-        """Whether the peak pressure on a single cover at rest, as that of an ellipse, exceeds the
-        modulus E/(1 - nu^2) of long times: kappa lam below 1/4.
+        """Whether the peak pressure on a cover at rest exceeds the modulus E/(1 - nu^2) of long
+        times.
 
-        On half-spaces the contact is then longer than the radius, which :attr:`small_at_rest` says.
+        An elliptic pressure has the peak 2 P/(pi a) on the half length a, which exceeds the modulus
+        where kappa lam is below 1/4.  False for half-spaces, on which the contact is then longer
+        than the radius (:attr:`small_at_rest`), and for many covers.
         """
         if not isinstance(self.scene.material, Cover) or self.scene.material.shape:
             return False

@@ -1,18 +1,14 @@
-"""Tables of states with pressure and shear solved together, and their files.
+"""Tables of states with pressure and shear solved together (the coupled solution), and their files.
 
-Tables of the coupled solution: rows of states over speed and creep, at nodes where cubic splines
-hold them.
+A table has a row of states at each of several speeds, at nodes of creep between which splines are
+cubic.  Speeds run from a thousandth of the slowest rate of the bodies to ten times the fastest, in
+equal steps of ln u, with the elastic limits at both ends; creeps from one onset of full slip over
+the creep at which slip of the other sign opens to the other onset, in equal steps of the graded
+place t (:mod:`.coupled_splines`).
 
-Speeds run from a thousandth of the slowest rate of the bodies to ten times the fastest, in equal
-steps of ln u, with the elastic limits at both ends; creeps from one onset of full slip over the
-creep at which slip of the other sign opens to the other onset, in equal steps of the graded place t
-(:mod:`.coupled_splines`).
-
-Tables of the coupled solution that are made at first use, and their files beside the compiled
-kernels.
-
-A table depends on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load and
-radius change it only through that ratio.
+Tables are made at first use, and their files are kept beside the compiled kernels.  A table depends
+on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load and radius change
+it only through that ratio.
 """
 
 from __future__ import annotations
@@ -123,7 +119,7 @@ def tabulate(
         check_integer("nodes", count, 4, 1000)
     if check_integer("nodes", across, 9, 1001) % 2 == 0:
         raise ParameterError(
-            "nodes", across, "an odd number of nodes of creepage, as they are symmetric"
+            "nodes", across, "an odd number: the nodes of creepage are symmetric about 0"
         )
     u = speed_nodes(pair, count)
     t = np.linspace(-1.0, 1.0, across)
@@ -240,10 +236,11 @@ def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Float
     """
     if not states.converged.all():
         n = int(np.argmin(states.converged))
-        where = f"kappa |V| = {u:.6g}, 2 kappa delta = {creeps[n]:.6g}, mu = {mu:g}"
-        raise ConvergenceError(
-            f"coupled solution: no state was found at {where} (status {int(states.status[n])})"
+        where = (
+            f"kappa |V| = {u:.6g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = "
+            f"{creeps[n]:.6g}"
         )
+        raise ConvergenceError(f"coupled solution: no contact was found at {where}")
     return np.stack(states[: len(FIELDS)], axis=-1)
 
 
@@ -296,6 +293,7 @@ def measure_errors(
     worst = np.zeros((speeds.size, len(FIELDS)))
 
     def compare(n: int, _: int) -> None:
+        """Write the largest differences at the n-th speed into ``worst[n]``."""
         u = float(speeds[n])
         draw = draws[n]
         row = CoupledRow(pair, u, rows.mu, elements)

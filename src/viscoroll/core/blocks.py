@@ -211,9 +211,9 @@ def _submit_all(
 ) -> None:
     """Run all blocks on a pool, await them in order, and return when all are done.
 
-    When a failed block is awaited, no further blocks are submitted, those that have not begun are
-    cancelled, and its exception is raised, of several that failed that of the first in the order of
-    blocks; running ones are not awaited.
+    If a block fails, its exception is raised when it is awaited; of several that of the first
+    block.  Then no further blocks are submitted, those that have not begun are cancelled, and those
+    that run are not awaited.
 
     pool: :class:`concurrent.futures.Executor`, of threads.
     work: function (start, stop) -> None.

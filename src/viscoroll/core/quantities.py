@@ -1,10 +1,7 @@
-"""Inputs with units, and factors of conversion.
+"""Inputs with units: quantities of pint, astropy and unyt, arrays of xarray with an attribute
+``units``, columns of pandas with a unit in the title, durations of Python, pandas and numpy.
 
-Factors of conversion between units, by pint, which is imported at the first conversion.
-
-Inputs with units: quantities of pint, ``units`` attributes of xarray, durations of Python,
-pandas and numpy.
-
+Factors of conversion are those of pint, which is imported at the first conversion.
 :func:`to_unit` converts a value with a unit to the unit of the argument, or raises ParameterError.
 Values without a unit, and the labels of xarray and pandas, stay as they are.
 """

@@ -253,14 +253,15 @@ def _parse_rows(fields: Floats, numbers: Mapping[str, Any]) -> CoupledRows:
 
 
 def parse_axis(content: Content, path: Any) -> LawAxis:
-    """Return the law of all alpha.
+    """Return the law of one relaxation time for a range of alpha, from the content of its file.
 
     content: :class:`.checked_netcdf.Content` of a file of the kind :data:`.checked_netcdf.AXIS`,
-        verified.
+        whose checksum was verified.
     path: path of the file, for errors.
     Returns the :class:`LawAxis`, with the coefficients of the file.
-    Raises FileError for an incomplete file, and where the number of octaves or of dimensions does
-    not fit.
+    Raises FileError where a variable is missing, where the coefficients do not have the dimensions
+    of this kind, and where they are not for as many octaves of alpha as the variable ``rows``
+    lists.
     """
     with _refuse_incomplete(path):
         coefficients = _coefficients(content)

@@ -1,11 +1,9 @@
-"""Measured moduli of one or several sweeps.
+"""Measured moduli: as a file of a dynamic mechanical analysis has them (:class:`DynamicModuli`),
+and checked and sorted, as series are fitted to them.
 
-Measured moduli, checked and sorted, and whether storage and loss modulus go together.
-
-A series is fitted to a :class:`Curve` or a :class:`Relaxation`; both have the response of a mode in
-their columns.
-
-Storage and loss modulus of a dynamic mechanical analysis: :class:`DynamicModuli`.
+A series is fitted to a :class:`Curve`, storage and loss modulus, or to a :class:`Relaxation`; both
+compute what one mode contributes to their columns.  :func:`kramers_kronig` examines whether storage
+and loss modulus can be of one material.
 """
 
 from __future__ import annotations

@@ -1,10 +1,6 @@
-"""Measured moduli from the columns of a table.
-
-Storage and loss modulus from any two of storage, loss, tan delta and magnitude; a third is
-compared.
-
-What the readers of tests of materials share: a table whose columns are understood, and their
-numbers.
+"""What the readers of tests of materials share: a table whose columns are understood
+(:class:`Understood`), the numbers of these columns, and storage and loss modulus from any two of
+storage, loss, tan delta and magnitude, with which a third is compared.
 """
 
 from __future__ import annotations
@@ -184,7 +180,7 @@ def missing(table: Table, problem: str, others: Mapping[str, str]) -> FileError:
 
 
 def quoted(lines: list[str]) -> str:
-    """Return lines for a message, at most 60 characters of each, in quotes and parted by commas."""
+    """Return lines for a message, at most 60 characters of each, in quotes, separated by commas."""
     return ", ".join(f"{' '.join(line.split())!r:.60}" for line in lines)
 
 
