@@ -1,5 +1,6 @@
-"""Rollers: :class:`Scene`, dimensionless, and :class:`Cylinder`, in SI units; and the methods that
-both have (:class:`Methods`).
+"""Rollers: :class:`Scene`, dimensionless, and :class:`Cylinder`, in SI units.
+
+:class:`Methods` has the methods of both.
 """
 
 from __future__ import annotations

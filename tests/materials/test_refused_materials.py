@@ -254,7 +254,7 @@ REFUSED = [
     *each(
         lambda **more: vr.read_dma(file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), **more),
         {
-            "columns = 'abc': must be quantity -> heading": {"columns": "abc"},
+            "columns = 'abc': must be a dict, quantity -> heading": {"columns": "abc"},
             "encoding = 3: must be an encoding that Python knows": {"encoding": 3},
             "units | must be (frequency, moduli)": [
                 {"units": units} for units in (("MPa", "Hz"), "Hz", ("Hz", 1.0))

@@ -303,7 +303,7 @@ def evaluate_contact(
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and direct:
         raise ParameterError(
-            "method", "'direct'", "'table': the equations of the paper have one relaxation time"
+            "method", "'direct'", "'table': method 'direct' takes alpha, one relaxation time"
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):

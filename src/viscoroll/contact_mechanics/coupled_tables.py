@@ -240,7 +240,9 @@ def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Float
             f"kappa |V| = {u:.6g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = "
             f"{creeps[n]:.6g}"
         )
-        raise ConvergenceError(f"coupled solution: no contact was found at {where}")
+        raise ConvergenceError(
+            f"coupled solution: no contact was found at {where}; please report it"
+        )
     return np.stack(states[: len(FIELDS)], axis=-1)
 
 

@@ -74,7 +74,8 @@ def refuse_unsolved(status: Any, creeps: Any, u: float, mu: float) -> None:
             state = (
                 f"kappa |V| = {u:g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = {creep:g}"
             )
-            raise ConvergenceError(f"contact by method 'coupled': {_REASONS[int(code)]} at {state}")
+            problem = f"contact by method 'coupled': {_REASONS[int(code)]} at {state}"
+            raise ConvergenceError(f"{problem}; please report it")
 
 
 class _States:

@@ -132,8 +132,10 @@ def check_array_extent(
 
 
 def _range_words(low: float, above: float, high: float) -> str:
-    """Return a range in words, "" for all finite numbers; arguments as in
-    :func:`check_array_extent`.
+    """Return a range in words that follow "must be", as "finite and > 0".
+
+    low, above, high: bounds, as in :func:`check_array_extent`.
+    Returns "" where all finite numbers are allowed.
     """
     if high < math.inf:
         return f"in [{low:g}, {high:g}]" if low > -math.inf else f"in ({above:g}, {high:g}]"

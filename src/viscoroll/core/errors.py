@@ -467,7 +467,9 @@ def _suggesting(function: Any) -> Any:
 
     @wraps(function)
     def call(*arguments: Any, **named: Any) -> Any:
-        """Call the function; add a suggestion to its TypeError of an unknown argument name."""
+        """Call the function with ``arguments`` and ``named``, and return its result; to its
+        TypeError of an unknown argument name a suggestion is added.
+        """
         try:
             return function(*arguments, **named)
         except TypeError as error:

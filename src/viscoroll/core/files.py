@@ -183,7 +183,7 @@ def _sealed_arrays(content: bytes) -> Any:
     import numpy as np
 
     if not seal_matches(content):
-        raise ValueError("its bytes differ from the SHA-256 at their end")
+        raise ValueError("its bytes differ from the checksum (SHA-256) at their end")
     return np.load(io.BytesIO(content))
 
 
@@ -239,7 +239,7 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
         raise FileError(path, f"{problem}: it must be a {kind}, with the suffix .nc")
     if seal_matches(content) is False:
         raise FileError(
-            path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}"
+            path, f"is damaged: its bytes differ from the checksum at their end; {remedy}"
         )
     return content
 

@@ -175,7 +175,11 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
     check_ambient(np.asarray(allowed), states.curve, "allowed")
 
     def above(ln: Floats, n: Integers) -> Floats:
-        """Return the coldest equilibrium less the allowed temperature, K."""
+        """Return the coldest equilibrium less the allowed temperature, K, (m,).
+
+        ln: ln of the speed, m/s, or where V is given of the factor of the load, (m,).
+        n: indices of the states, (m,).
+        """
         if states.V is None:
             zeros = zeros_at_speed(states, n, np.exp(ln))
         else:
@@ -282,7 +286,8 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     curve = states.curve
 
     def ln_V(x: Floats) -> Floats:
-        """Return ln of the speed, m/s, of which log2 a_T is that of an equilibrium."""
+        """Return ln of the speed, m/s, whose equilibrium is at the temperature of log2 a_T = x,
+        (m,)."""
         theta = curve.temperature_of(x)
         off = given["conductance"] * (theta - given["ambient"])
 

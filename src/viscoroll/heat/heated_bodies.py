@@ -208,7 +208,8 @@ def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
 
     shift: function of a temperature in degrees Celsius, whose attribute ``range``, if it has one,
         is (lowest, highest) temperature.
-    reference: temperature of the material; None: that at which a_T is 1.
+    reference: temperature of the material, degrees Celsius; None: that at which a_T is 1.
+    Returns (temperatures, degrees Celsius, ascending and evenly spaced; a_T there), (n,) each.
     Raises ParameterError for a shift that is not defined at the reference.
     """
     low, high = getattr(shift, "range", _SAMPLED_RANGE)
@@ -302,8 +303,9 @@ class HeatStates:
         return self.body.part * rolling + self.body.slip * slip
 
     def fields(self, n: Integers, theta: Floats, V: Floats) -> dict[str, Floats]:
-        """Return the fields of a result by name, in SI units, (m,) each; arguments as in
-        :meth:`heat`.
+        """Return the fields of a result by name, in SI units, (m,) each.
+
+        n, theta, V: indices of states, temperatures and speeds, as in :meth:`heat`.
 
         ``a_T`` is NaN outside of the range of the shift, and ``loss`` where the friction does not
         suffice: the others mean nothing there.
@@ -464,6 +466,7 @@ def heat_states(
     slip_share: as in :func:`heated_body`.
     driven: force, torque and slope beside V, by name; None: the cylinder rolls freely, which of a
         cover is the torque 0.
+    Returns the :class:`HeatStates`, n states as the shape of all arguments and of the roller has.
     Raises ParameterError for values out of range, shapes that do not broadcast, several laws of
     covers or under a load, an ambient outside the range of the shift, two bodies with a temperature
     each, a vertical shift of a cover or beside an elastic body under a load.

@@ -407,10 +407,11 @@ def _under_load(
     level: the roller on no slope.
     states: the states, without V.
     driven: force, torque and slope as :func:`temperature` has them.
-    Each branch of M(V) = force + torque/R at the reference is a balance of its own, in which the
-    speed is V_0/a_T and the loss w_0/a_T.
-    Returns the fields, as :meth:`.HeatStates.fields`, and the zeros; stable are those of a stable
-    speed alone.
+    Each branch of M(V) = force + torque/R at the reference, with speed V_0 and loss w_0, is a
+    balance of its own, in which the speed is V_0/a_T and the loss w_0/a_T.
+    Returns (fields, as :meth:`.HeatStates.fields`; the zeros, of which only those of a stable speed
+    may be stable).
+    Raises ParameterError for a material with a vertical shift, and as :func:`viscoroll.steady`.
     """
     if states.body.material.vertical_shift is not None:
         allowed = "left out where the speed follows from the load: give V"

@@ -248,7 +248,7 @@ def _parse_rows(fields: Floats, numbers: Mapping[str, Any]) -> CoupledRows:
         lock_array(np.array(numbers[name], dtype=np.float64)) for name in ("u", "t", "edges")
     )
     if fields.shape != (u.size + 2, t.size, len(FIELDS)) or edges.shape != (u.size + 2, 4):
-        raise ValueError(f"functions of shape {fields.shape[:-1]}")
+        raise ValueError(f"its functions have shape {fields.shape[:-1]}")
     return CoupledRows(mu=float(numbers["mu"]), u=u, t=t, edges=edges, fields=fields)
 
 
@@ -268,7 +268,7 @@ def parse_axis(content: Content, path: Any) -> LawAxis:
         numbers = content.numbers
         rows = tuple(map(int, numbers["rows"]))
         if coefficients.ndim != len(KINDS[AXIS].dims) + 1 or len(rows) != len(coefficients):
-            raise ValueError(f"functions of shape {coefficients.shape[:-1]}")
+            raise ValueError(f"its functions have shape {coefficients.shape[:-1]}")
         return LawAxis(coefficients, rows, int(numbers["first"]), int(numbers["e0"]))
 
 

@@ -481,8 +481,11 @@ def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
 
 
 def shifts_of_toml(text: str) -> dict[str, Any]:
-    """Return ``shift`` and ``vertical_shift``, as parameters of a material, of lines as
-    :func:`shifts_as_toml` has.
+    """Return the shifts of a material that a file holds, as parameters of the material.
+
+    text: lines of TOML with the keys of :func:`shifts_as_toml`; "" without shifts.
+    Returns a dict with "shift", a :class:`WLF` or :class:`Arrhenius`, and "vertical_shift", those
+    that the text has.
     """
     found = tomllib.loads(text)
     for name, kind in (("wlf", WLF), ("arrhenius", Arrhenius)):
@@ -586,7 +589,7 @@ class Measured:
         pairs = check_array("M_error", self.M_error, low=0.0).reshape(-1, 2)
         if not (np.diff(pairs[:, 0]) > 0.0).all():
             raise described_error(
-                "M_error", "has frequencies that do not ascend", "pairs (transit frequency, +-)"
+                "M_error", "has frequencies that do not ascend", "sorted by transit frequency"
             )
         object.__setattr__(self, "M_error", tuple(map(tuple, pairs.tolist())))
         if self.strain is not None:

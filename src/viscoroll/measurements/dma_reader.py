@@ -237,8 +237,12 @@ def read_relaxation(
 
 
 def _origin(path: Any, taken: list[Column]) -> dict[str, Any]:
-    """Return source, headings and units of the columns that are taken from a file, as fields of a
-    record.
+    """Return where the numbers of a record are from, as fields of the record.
+
+    path: path of the file.
+    taken: the columns that are read.
+    Returns a dict with "source", name of the file; "columns", quantity -> heading; and "units",
+    quantity -> unit in the file.
     """
     return {
         "source": Path(path).name.encode(errors="replace").decode(),

@@ -201,7 +201,7 @@ def understand(
     for what is no table.
     """
     if not isinstance(columns, Mapping | None):
-        raise ParameterError("columns", f"{columns!r:.60}", "quantity -> heading")
+        raise ParameterError("columns", f"{columns!r:.60}", "a dict, quantity -> heading")
     named = dict(columns or {})
     known = QUANTITIES[test]
     bare = BARE[test]
@@ -247,7 +247,7 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
         if first == "time"
         else "(frequency, moduli), as ('Hz', 'MPa')"
     )
-    allowed = f"{two}, or quantity -> unit"
+    allowed = f"{two}, or a dict, quantity -> unit"
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
         raise ParameterError("units", f"{units!r:.60}", allowed)
     of_two = zip((UNITS[first], "Pa"), units or (), strict=False)
