@@ -361,7 +361,7 @@ def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
     """
     key = hashlib.sha256(f"{_digest()} {pair!r} {mu!r}".encode()).hexdigest()[:20]
     path = cache_root() / "coupled" / f"{key}.npz"
-    damaged = "coupled table is damaged ({}) and is made again"
+    damaged = "the cached table of the coupled solution is damaged ({}) and is made again"
     if (found := load_kept(path, damaged, _read)) is None:
         found = tabulate(pair, mu, progress=not is_quiet() and sys.stderr.isatty())
         arrays = {name: getattr(found, name) for name in ("mu", "u", "t", "edges", "fields")}
