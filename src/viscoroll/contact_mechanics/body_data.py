@@ -132,13 +132,17 @@ def _modulus_over_shear(nu: Any, plane: str) -> Any:
 
 @lru_cache(maxsize=8)
 def _layer_shear(nu: float) -> Floats:
-    """Return the largest shear stress at the axis of a bonded layer over p_0, at the ratios
-    :data:`_THETA`.
+    """Return the largest shear stress at the axis of a bonded layer, divided by the peak p_0 of the
+    elliptic pressure on it, for the ratios :data:`_THETA` of half contact length to thickness.
 
-    The stress function of the wavenumber k is f(z) cos(kx) with f = (A + B kz) cosh kz + (C + D kz)
-    sinh kz; at z = 0 the pressure is given and the shear stress 0, at z = h both displacements are
-    0.
+    The stress function of the wave number k is f(z) cos(kx) with f = (A + B kz) cosh kz + (C + D
+    kz) sinh kz at the depth z.  The stresses are sigma_x = f'' cos(kx), sigma_z = -k^2 f cos(kx)
+    and tau = k f' sin(kx).  At z = 0 the pressure is given and tau = 0, so that C = -B; at z = h
+    both displacements are 0.  At x = 0 the shear stress is |sigma_x - sigma_z|/2 = |f'' + k^2 f|/2.
+    The elliptic pressure of half length a is the integral of p_0 J_1(ka)/k cos(kx) over k.
+
     nu: Poisson's ratio of the layer.
+    Returns a vector, one number for each ratio, dimensionless.
     """
     from scipy.special import j1
 
@@ -162,10 +166,12 @@ def _layer_shear(nu: float) -> Floats:
 
 
 def _layer_terms(s: Floats, nu: float) -> tuple[Floats, Floats]:
-    """Return the coefficients B and D of :func:`_layer_shear` for A = 1, (n,) each, dimensionless.
+    """Return the coefficients B and D of :func:`_layer_shear` for A = 1 and C = -B, by which both
+    displacements at z = h are 0.
 
     s: wave number times thickness, k h, > 0, (n,).
-    nu: Poisson's ratio.
+    nu: Poisson's ratio of the layer.
+    Returns (B, D), (n,) each, dimensionless.
     """
     cosh = np.cosh(s)
     sinh = np.sinh(s)

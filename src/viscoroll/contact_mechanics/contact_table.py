@@ -540,8 +540,11 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
 
 
 def refuse_beyond(law: LawTable, u: Any) -> None:
-    """Raise OutOfTableError where kappa |V| = ``u`` exceeds the last speed of a table ``law``, as
-    of a grid.
+    """Raise OutOfTableError where a speed exceeds the last one of a table.
+
+    law: the law; one without a table, and one whose table has the limit of fast rolling, allows
+        every speed.
+    u: kappa |V|, dimensionless, any shape; 1e-12 beyond, relative, counts as rounding.
     """
     most = law.coupled.fastest if law.coupled is not None else np.inf
     largest = float(np.max(u, initial=0.0))

@@ -578,7 +578,10 @@ class CoupledRow:
         )
 
     def free_creep(self) -> float:
-        """Return the reduced creepage 2 kappa delta of free rolling, at which Q = 0."""
+        """Return the reduced creepage 2 kappa delta of free rolling, at which Q = 0.
+
+        It is found between the onsets by Brent's method, to an error of :data:`_FREE_CREEP_ERROR`.
+        """
         return float(
             brentq(
                 lambda creep: self.states([creep]).Q_over_mu[0],

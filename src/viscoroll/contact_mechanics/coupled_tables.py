@@ -247,10 +247,11 @@ def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Float
 
 
 def _spline(t: Floats, values: Floats, place: float) -> Any:
-    """Return the clamped cubic spline of one row, on one side of its middle.
+    """Return the cubic spline of one row on one side of its middle, with slopes 0 at both ends.
 
     t, values: all nodes of the row, in [-1, 1], and the values there, (m,) each.
     place: number whose sign selects the side: t <= 0 if it is negative, else t >= 0.
+    Returns a function of t in that side, in the unit of ``values``.
     """
     from scipy.interpolate import CubicSpline
 

@@ -480,8 +480,10 @@ def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
 
 
 def refuse_other_friction(law: LawTable, mu: Any) -> None:
-    """Raise ParameterError where ``mu`` is not that of a coupled table ``law``, which holds for one
-    alone.
+    """Raise ParameterError where a table of the coupled solution has another mu than the scene.
+
+    law: the law; one without a table holds for every mu.
+    mu: coefficient of friction of the scene, a number or an array.
     """
     if (
         law.coupled is not None

@@ -323,9 +323,10 @@ def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
 
 
 def shear_at(contacts: Contacts, V: Floats) -> Shear:
-    """Return how shear acts back on the moments at speeds V >= 0, (n,), as :class:`Shear`.
+    """Return how shear acts back on the moments, as :class:`Shear`.
 
     contacts : the law, at a kappa and a mu; of half-spaces all is 0.
+    V : speeds, >= 0, dimensionless, (n,).
     """
     fields = np.zeros((4, V.size))
     if contacts.law.cover is not None:

@@ -52,9 +52,12 @@ _REASONS = {
 
 @lru_cache(maxsize=16)
 def coupled_row(pair: CoupledPair, u: float, mu: float) -> CoupledRow:
-    """Return the states of a pair at u = kappa |V| with the coefficient of friction mu, as a
-    :class:`.coupled_pair.CoupledRow`, which is kept for later calls.
+    """Return the states of a pair at one speed, which are kept for later calls.
 
+    pair: both bodies.
+    u: kappa |V|, dimensionless, >= 0 or infinite.
+    mu: coefficient of friction, > 0.
+    Returns the :class:`.coupled_pair.CoupledRow`.
     Raises ConvergenceError where full slip has no solution.
     """
     row = CoupledRow(pair, u, mu)

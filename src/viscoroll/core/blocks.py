@@ -70,8 +70,11 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
 
 
 def broadcast_rows(arrays: Collection[Any], shape: tuple[int, ...]) -> Floats:
-    """Return arrays and numbers of doubles that broadcast to a shape, as rows of one array, (rows,
-    states); of the shape () there is one state.
+    """Return arrays and numbers as the rows of one array, each broadcast to a shape and flattened.
+
+    arrays: doubles, each a number or an array that broadcasts to ``shape``.
+    shape: shape of the states; () of a single state.
+    Returns a new array (rows, states), in the order of ``arrays``.
     """
     rows = np.empty((len(arrays), *(shape or (1,))))
     for row, array in zip(rows, arrays, strict=True):

@@ -347,8 +347,11 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
 
 
 def check_text(name: str, value: Any) -> None:
-    """Raise ParameterError if the argument ``name`` has a ``value`` that is no text, or one that
-    files cannot hold.
+    """Check an argument that must be a text which files can hold.
+
+    name: name of the argument, for the error.
+    value: what a caller gave.
+    Raises ParameterError for what is no text, and for one with NUL or surrogates.
     """
     if not (
         isinstance(value, str) and value == value.replace("\0", "").encode(errors="ignore").decode()

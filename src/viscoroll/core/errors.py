@@ -448,8 +448,12 @@ def import_extra(package: str, extra: str) -> Any:
 
 
 def suggestion(name: str, candidates: Iterable[str]) -> str:
-    """Return a question for the one of ``candidates`` that is most similar to ``name``, or differs
-    by capitals alone; "" if none is.
+    """Return the question "; did you mean 'NAME'?", to be appended to a message.
+
+    name: name that is not known.
+    candidates: known names.  The one that differs from ``name`` by capitals alone is suggested,
+        else the most similar one.
+    Returns "" if none is similar.
     """
     import difflib
 
@@ -461,8 +465,10 @@ def suggestion(name: str, candidates: Iterable[str]) -> str:
 
 @cache
 def _suggesting(function: Any) -> Any:
-    """Return a function that does the same, and whose TypeError of an unknown argument names the
-    most similar one.
+    """Return a function that calls another one, and adds to its TypeError of an unknown argument
+    the name of the most similar argument.
+
+    function: function or method of the package; the result is kept for the next call.
     """
 
     @wraps(function)

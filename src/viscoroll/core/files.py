@@ -43,8 +43,11 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 
 def as_path(path: Any) -> Path:
-    """Return a path that a caller gave; raise FileError for what is none, as None, a number, bytes
-    or an open file.
+    """Return a path that a caller gave.
+
+    path: a text or an object with ``__fspath__``.
+    Raises FileError for what is no path, as None, a number, bytes or an open file, and for a text
+    with a null character.
     """
     if not isinstance(path, str | PathLike) or "\0" in str(path):
         raise FileError(

@@ -91,8 +91,9 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
 
 
 def is_unit(text: str) -> bool:
-    """Whether pint reads a text as a unit, of any dimension.  It reads "C" as coulomb, not as
-    degree Celsius.
+    """Return whether pint reads a text as a unit, of any dimension.
+
+    text: the text, as "km/h".  "C" is coulomb, not degree Celsius.
     """
     try:
         registry().parse_units(pint_spelling(text))
@@ -102,8 +103,9 @@ def is_unit(text: str) -> bool:
 
 
 def pint_spelling(unit: str) -> str:
-    """Return a ``unit`` in the spelling of pint: superscripts and signs as ASCII, powers with
-    ``**``; "1" of "".
+    """Return a unit in the spelling of pint: superscripts and signs as ASCII, powers with ``**``.
+
+    unit: unit as files and people write it, as "N/mm²"; of "" the result is "1".
     """
     text = unit.strip()
     for character, spelling in _SPELLINGS.items():

@@ -591,9 +591,12 @@ def _fit_end(
         return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
 
     def fit(values: Floats, at: Any, log_terms: int) -> Any:
-        """Fit each quantity to its ``values`` at the nodes y, (11, n), by its :func:`basis` with
-        ``log_terms``, and return the fits at the points ``at``, (points,), as (11, points), complex
-        where ``at`` is.
+        """Fit each quantity by least squares, and return the fits at other points.
+
+        values: quantities at the nodes y, (11, n).
+        at: points, (points,); complex ones give derivatives.
+        log_terms: number of terms times ln y, as in :func:`basis`.
+        Returns (11, points), complex where ``at`` is.
         """
         parts = (values[: _FREE.start], _END_DEGREE), (values[_FREE.start :], _STRAIN_DEGREE)
         return np.concatenate(

@@ -359,7 +359,12 @@ class CoupledRows:
 
     @cached_property
     def vector(self) -> Floats:
-        """Return the splines as the vector that kernels read."""
+        """The splines over speed and creep as one read-only vector, which kernels read.
+
+        It has a head, ln u, t, the edges with their slopes over ln u, and of each field at each
+        node the value, both slopes and the mixed derivative (:mod:`.coupled_splines`).  Of a graded
+        table the slip loss (:meth:`_friction`) is a further field.
+        """
         from ..kernels.law import coupled_splines as layout
 
         x = np.log(self.u)
@@ -386,8 +391,13 @@ class CoupledRows:
         return lock_array(np.concatenate([head, x, self.t, edges.ravel(), planes.ravel()]))
 
     def _slopes_along(self, x: Floats, values: Floats) -> Floats:
-        """Return slopes over x = ln u, of ``values`` (n + 2, ...), that join the limits smoothly; 0
-        in the limits.
+        """Return slopes over ln u, by cubic splines that join the limits smoothly.
+
+        x: ln u of the nodes, ascending, (n,).
+        values: values in the limit u = 0, at the nodes, and in the limit u -> infinity, (n + 2,
+            ...).
+        Returns the slopes in the shape of ``values``, 0 in both limits; the slope at an end node is
+        the difference of its value from that of the limit beside it.
         """
         from scipy.interpolate import CubicSpline
 

@@ -318,10 +318,11 @@ def law_table(
 
 
 def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
-    """Return the law of coupled rows as a :class:`LawTable`.
+    """Return the law of a table of the coupled solution as a :class:`LawTable`.
 
     material: alpha, a series, bodies or a cover, of one scene.
-    rows: :class:`.law_rows.CoupledRows` of it.
+    rows: :class:`.law_rows.CoupledRows` of it, which become ``coupled``.
+    Returns a new table, whose other functions are those of half-spaces without coupling.
     """
     total = total_series(material)
     base = law_table(total if total.E.size else 1.0)

@@ -414,8 +414,11 @@ class FromPrograms:
 
 
 def check_poisson(nu: Any, name: str = "nu") -> float:
-    """Return Poisson's ratio ``nu`` as a float in (-1, 0.5]; raises ParameterError with ``name``
-    for other values.
+    """Check Poisson's ratio, and return it as a float.
+
+    nu: what a caller gave.
+    name: name of the argument, for the error.
+    Raises ParameterError for what is no number in (-1, 0.5].
     """
     nu = check_number(name, nu)
     if not -1.0 < nu <= 0.5:

@@ -444,8 +444,11 @@ class DynamicModuli(Result):
 
 
 def rows_of(record: Any) -> list[SummaryRow]:
-    """Return the rows of the report of a record with ``columns``, ``units`` and ``notes``: columns,
-    and notes.
+    """Return the rows of a printed report on where a record is from.
+
+    record: :class:`DynamicModuli` or :class:`.dma_reader.RelaxationModulus`, of which columns,
+        units and notes are read.
+    Returns two :class:`SummaryRow`: the headings of the columns with their units, and the notes.
     """
     given = (
         f"{name} {record.columns[name]!r} in {record.units.get(name, '1')}"

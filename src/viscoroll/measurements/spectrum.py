@@ -147,8 +147,10 @@ class LeastSquares:
     """
 
     def __init__(self, data: Data, tau: Floats) -> None:
-        """Compute the matrix for ``data``, a :class:`Curve` or a :class:`Relaxation`, and times
-        ``tau`` > 0, s.
+        """Compute the matrix of the least squares.
+
+        data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
+        tau : times of the modes, s, > 0, (modes,).
         """
         columns = _relative_columns(data, 1.0, data.responses(tau))
         self.tau = tau

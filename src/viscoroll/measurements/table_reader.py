@@ -194,9 +194,9 @@ def understand(
 ) -> Understood:
     """Read the table of a file, and find the quantities of its columns.
 
-    test : "dma" or "relaxation".
     path, columns, units, decimal, encoding : as in :func:`.dma_reader.read_dma`.
-    Returns :class:`Understood`.
+    test : kind of test, which determines the quantities that are looked for: "dma" or "relaxation".
+    Returns the table with its columns, as :class:`Understood`.
     Raises ParameterError and FileError as :func:`.dma_reader.read_dma` does for these arguments and
     for what is no table.
     """

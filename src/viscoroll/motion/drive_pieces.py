@@ -266,8 +266,11 @@ class _Sampled:
         ends = values[n : n + 2].tolist()
 
         def is_before(time: float) -> bool:
-            """Return whether the value at ``time`` is nearer to that before the jump, and replace
-            the nearer one.
+            """Return whether the value at a time is nearer to that before the jump than to that
+            after it.
+
+            The nearer of the two values is replaced by it, for the next call.
+            time: between the two times, in T_ref.
             """
             value = self.value(time)
             before = abs(value - ends[0]) < abs(ends[1] - value)
