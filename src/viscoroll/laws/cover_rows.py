@@ -643,8 +643,10 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     """Return eta/F and H/F^2 of a cover at the nodes of v = 1/F(eta), and their derivatives with
     respect to ln v.
 
-    Where the stick zone has the creep limit F' = w/(2 u), w = L - 2 kappa |delta - delta_0|/mu, its
-    law is taken as that of the whole contact at the speed u' with L(u')/(2 u') = F'.  So v = 2
+    With L = 2 kappa delta_star/mu the creep limit of the whole contact, L/(2 u) in units of V
+    T_ref/R, that of the stick zone is F' = w/(2 u), w = L - 2 kappa |delta - delta_0|/mu.  The law
+    of the stick zone is taken as that of the whole contact at the speed u' with L(u')/(2 u') = F'.
+    So v = 2
     u'/L(u'), H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').  That u' is found by Newton's method in
     ln u', from u' = v, until all steps are below 1e-15, in at most 60 steps; nothing is raised if
     it takes more.

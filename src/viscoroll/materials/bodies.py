@@ -348,11 +348,12 @@ class Cover(Bodies):
     (docs/theory_covers.md), with coefficients to 1e-8 of delta_star/mu where nu = 1/2, else to
     5e-5; :func:`viscoroll.validity` states the error by it.
 
-    Q follows Eq. (15) with the cover's own contact in place of the half-space's: the stick zone of
-    creep limit F' has the traction that a full contact with that creep limit would carry at the
-    same l0/h.  Beside the exact solution without coupling Q/mu is off by at most 1, 3, 4.5 and 6.5
-    % at h/l0 = 5, 1, 0.5 and 0.2, and a third less where nu is near 1/2 (``make prove``;
-    :func:`viscoroll.validity` states it).
+    Q follows Eq. (15) with the contact of the cover in place of that of half-spaces: what the
+    stick zone takes from the traction of full slip is that of a whole contact on the same cover,
+    at the speed V' with delta_star(V')/V' = (delta_star(V) - |delta - delta_0|)/V.  Beside the
+    exact solution without coupling Q/mu is off by at most 1, 3, 4.5 and 6.5 % at h/l0 = 5, 1, 0.5
+    and 0.2, and a third less where nu is near 1/2 (``make prove``; :func:`viscoroll.validity`
+    states it).
     """
 
     nu: Any = 0.5
