@@ -485,7 +485,7 @@ def steady(
     elif gained_by_omega:
         if law.coupled is not None:
             raise described_error(
-                "a gain on omega", "is given", "left out; or give the roller coupled=False"
+                "a gain on omega", "is given", "left out with a table; or give coupled=False"
             )
         rolling = scan_states(law, loads)
     else:
