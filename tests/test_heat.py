@@ -286,7 +286,7 @@ def test_conductance_of_film_and_cover():
             lambda: with_shift(WLF, vertical_shift="entropic", thickness=0.03).temperature(
                 1.0, ambient=20.0, conductance=6.0
             ),
-            "a table of its own",
+            "another one at each temperature",
         ),
     ],
 )
@@ -307,12 +307,12 @@ def test_beyond_the_ranges_is_named():
     factors.range = (-40.0, 60.0)
     found = with_shift(factors).temperature(5.0, ambient=0.0, conductance=6.0)
     assert not found.count
-    assert found.reason.startswith("only ")
-    assert "beyond the shift's 60" in found.reason
+    assert found.reason.startswith("the only balance is at ")
+    assert "above 60, the highest temperature of the shift" in found.reason
     measured = with_shift(WLF, measured=vr.Measured(1e-3, 1e-2, 0.0))
     marked = measured.temperature(5.0, ambient=0.0, conductance=6.0)
     assert not marked.measured[0]
-    assert marked.reason.startswith("only 87.82")
+    assert marked.reason.startswith("the only balance is at 87.82")
 
 
 # --- run files ---

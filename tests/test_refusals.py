@@ -55,7 +55,7 @@ def unit(words, value=1.0):
 CONTACT = each(
     vr.contact,
     {
-        "method = 'direct': must be 'table' for slopes": {"method": "direct", "slopes": True},
+        "method = 'direct': must be 'table' for derivatives": {"method": "direct", "slopes": True},
         "method = 'direct' | one relaxation time": {"roller": RUBBER_ROLLER, "method": "direct"},
         "delta and omega are both given: give one of the two": {"omega": 1.1},
         "V is a table: must be a column of it": {"V": pd.DataFrame({"V [km/h]": [3.6, 7.2]})},
@@ -71,7 +71,7 @@ ROLLS = each(
     vr.roll,
     {
         "t = 0.002, 0.001 at rows 0, 1: must be in ascending order": {"t": [2e-3, 1e-3]},
-        "resolve = 1e-09: must be at least 2e-06: 500000 samples up to t = 1": {
+        "resolve = 1e-09: must be at least 2e-06: at most 500000 samples up to t = 1": {
             "torque": math.sin,
             "resolve": 1e-9,
             "t": 1.0,
@@ -140,7 +140,7 @@ STEADY = each(
             "V": 0.1,
             "torque": vr.Feedback(0.0, V=1.0),
         },
-        "torque is a Feedback of a Schedule or function: must be constant in time": {
+        "torque is a Feedback that varies with time: must be constant in time": {
             "torque": vr.Feedback(math.sin, V=-1.0)
         },
         "index": {"slope": FRAME["V"], "torque": FRAME["delta"].iloc[::-1]},

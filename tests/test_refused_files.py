@@ -198,7 +198,7 @@ REFUSED = [
             "file.toml | [cylinder] | give material=, or all "
             "of E, nu, T_epsilon and T_sigma": ROLLER_FILE,
             "file.toml | base = rigid": ROLLER_FILE + "[material]\nE = inf\nnu = 0.5",
-            "file.toml: line 5: [material] needs a section [cylinder]": SCENE_FILE + RUBBER_FILE,
+            "file.toml: line 5: [material] is given without [cylinder]": SCENE_FILE + RUBBER_FILE,
             "file.toml | [cylinder] | 'sideways' | plane": CYLINDER_FILE + 'plane = "sideways"',
             "file.toml | preset: 'paper' is not | paper-section-5": 'preset = "paper"',
             "file.toml | not TOML | line 1": "[scene\nalpha = 1",
@@ -243,7 +243,7 @@ REFUSED = [
                 "scale = 0.2",
                 "scale = 0.6",
             ),
-            "[material.prony] E_1: the series of the cylinder, which is a cover, has several "
+            "[material.prony] E_1: the Prony series of the cover, the cylinder, has several "
             "values: must be one for all cylinders: thickness, load and R may differ, and "
             "beside a rigid body E and nu": (
                 "on what is rigid",

@@ -52,7 +52,7 @@ def test_lengths_in_mm_give_one_warning():
     tread = vr.Material(E=2e6, nu=0.49, prony=vr.Prony([2.0, 6.0], [1e-2, 1e-4]), thickness=8.0)
     wheel = vr.Cylinder(R=79.5, m=200.0, material=tread, base=vr.Material.rigid(), mu=0.5, load=2e3)
     for call in (lambda: wheel.contact(1.0, delta=0.0), lambda: wheel.roll(1.0, 1.0 / 79.5, 0.1)):
-        with pytest.warns(vr.ModelWarning, match="divide those in mm by 1000") as said:
+        with pytest.warns(vr.ModelWarning, match="if they are in mm, divide them by 1000") as said:
             call()
         assert len(said) == 1
     drum = vr.Cylinder(R=6.0, m=2e4, material=replace(tread, thickness=None), mu=0.5, load=1e6)

@@ -1,8 +1,8 @@
 """TOML files of a roller, or of a material or pair that has a contact law.
 
 All files have one schema: a run file is a scene file in which any number may be uncertain, with a
-start and [run].  :mod:`.sections` refuses unknown keys and wrong types; the objects that a section
-describes refuse values out of range.
+start and [run].  :mod:`.core.files` refuses unknown keys and wrong types; the objects that a
+section describes refuse values out of range.
 """
 
 from __future__ import annotations
@@ -144,15 +144,16 @@ def check_sections(path: Any, content: dict[str, Any], more: Mapping[str, type |
     check_keys(path, "", content, (*SCENES, *SECTIONS, *more))
     if not content.keys() & set(SCENES):
         raise section_error(path, "", "", "one of preset, [scene] and [cylinder] is needed")
-    scenes = [name for name in ("preset", "scene") if name in content]
-    if "cylinder" in content and scenes:
-        names = " and ".join(scenes)
-        raise section_error(
-            path, "", "cylinder", f"[cylinder] and {names} are both given: give one of them"
-        )
+    words = {"preset": "preset", "scene": "[scene]"}
+    beside = " and ".join(words[name] for name in words if name in content)
+    if "cylinder" in content and beside:
+        problem = f"[cylinder] is given beside {beside}: remove [cylinder], or {beside}"
+        raise section_error(path, "", "cylinder", problem)
     for name in SECTIONS:
         if name in content and "cylinder" not in content:
-            raise section_error(path, "", name, f"[{name}] needs a section [cylinder]")
+            raise section_error(
+                path, "", name, f"[{name}] is given without [cylinder]: add a section [cylinder]"
+            )
     for name, kind in {**SCHEMA, **more}.items():
         if name in content and kind is not None:
             as_struct(path, name, content[name], kind)
@@ -227,7 +228,7 @@ def read_sections(path: str | PathLike[str]) -> dict[str, Any]:
 
 def read_law_source(path: str | PathLike[str]) -> Any:
     """Read the bodies of a file, for which a law can be tabulated by
-    :func:`viscoroll.tables.law_dataset`.
+    :func:`viscoroll.tables.law`.
 
     Parameters
     ----------

@@ -1,9 +1,6 @@
 """Rollers: :class:`Scene`, dimensionless, and :class:`Cylinder`, in SI units.
 
-A dimensionless roller, :class:`Scene`, and the methods that it shares with a cylinder,
-:class:`Methods`.
-
-A roller in SI units: :class:`Cylinder`.
+:class:`Methods` has the methods of both.
 """
 
 from __future__ import annotations
@@ -422,20 +419,19 @@ class Cylinder(Methods):
         )
 
     def replace(self, **changes: Any) -> Cylinder:
-        """Return a copy with some parameters changed; ``material`` takes the place of E to T_sigma,
-        and the reverse.
+        """Return a copy of the cylinder with some parameters changed.
 
         Parameters
         ----------
-        changes : arguments of :class:`Cylinder` by name, in SI units.  With one of E, nu, T_epsilon
-            and T_sigma the material is dropped, so that all four must be given if the cylinder had
-            a material.
+        changes : arguments of :class:`Cylinder` by name, in SI units; all others keep their values,
+            with two exceptions.  A new ``material`` removes E, nu, T_epsilon and T_sigma.  One of
+            these four removes the ``material``; all four must be given if the cylinder had one.
 
         Returns
         -------
         Cylinder
-            A new :class:`Cylinder`.  A load that was given stays; a load that was the weight is the
-            weight of the new m and g; ``load=None`` makes it the weight again.
+            The new cylinder.  A load that was given stays.  Without a given load, or with
+            ``load=None``, it is the weight m g, by the new m and g.
 
         Raises
         ------
@@ -534,10 +530,12 @@ class Cylinder(Methods):
 
     @property
     def E_prime(self) -> Any:
-        """Contact modulus E' at long times, Pa, a number or (n,): pi E/(1 - nu^2) in plane strain,
-        pi E in plane stress (Sect. 3.1 of the paper).
+        """Contact modulus E' of long times, Pa, a number or (n,), of which l0 = sqrt(32 R P/E')
+        (Sect. 3.1 of the paper).
 
-        Of two bodies 2/(1/E'_1 + 1/E'_2), on a rigid base twice that of the cylinder alone.
+        Where both bodies are of one material, E' is pi E/(1 - nu^2) in plane strain and pi E in
+        plane stress.  Of two materials, with E'_1 and E'_2 by the same formula, it is their
+        harmonic mean 2/(1/E'_1 + 1/E'_2), thus 2 E'_1 on a rigid base.
         """
         return (
             effective_modulus(self.E, self.nu, self.plane)
@@ -590,12 +588,19 @@ class Cylinder(Methods):
 
     @cached_property
     def _scene(self) -> Scene:
-        """The dimensionless :class:`viscoroll.Scene`, computed once.
+        """The dimensionless :class:`viscoroll.Scene`, made at first use and kept.
 
-        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  E, nu, T_epsilon and
-        T_sigma give the number alpha = T_epsilon/T_sigma, an array where T_sigma is one; an array
-        T_epsilon gives a series for each cylinder.  Materials give a series, :class:`Bodies` or a
-        :class:`Cover`; a law that was given stays.
+        Times are divided by ``T_ref``, lengths of the contact by ``l0``.  The law of the scene is
+        one of four:
+
+        - a given law (:class:`LawTable`) as it is;
+        - by E, nu, T_epsilon and T_sigma the number alpha = T_epsilon/T_sigma, (n,) where T_sigma
+          is an array; where T_epsilon is an array, times differ relative to T_ref too, and the law
+          is a creep series of one mode, J = 1 - T_sigma/T_epsilon and T = T_epsilon/T_ref, for each
+          cylinder;
+        - by materials of half-spaces the series of their sum, :class:`Prony` or :class:`Bodies`;
+        - by materials of which one is a layer a :class:`Cover`.
+
         Raises ParameterError as :meth:`scene` states.
         """
         law: Any = self.material if isinstance(self.material, LawTable) else None
@@ -725,7 +730,7 @@ def scene_of(
     """Return the scene of one cylinder or of many; the arguments are numbers or arrays (n,),
     unchecked.
 
-    :class:`.rollers.Rollers` calls it with an array for ``T_ref``, a unit of time for each
+    :class:`.run_rollers.Rollers` calls it with an array for ``T_ref``, a unit of time for each
     cylinder.
 
     R: radius, m.

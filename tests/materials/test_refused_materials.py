@@ -190,7 +190,7 @@ REFUSED = [
             )(-31.599),
             "thickness = 0.1 | left out for a rigid body": lambda: vr.Material.rigid(thickness=0.1),
             "resistance: V is empty: must be at least one number": lambda: vr.Resistance([], []),
-            "cylinder | has other materials: must be one with the material() of this fit": lambda: (
+            "cylinder | has other materials: must be made with material() of this fit": lambda: (
                 vr.fit_prony(*DMA).validity(ROLLER, 1.0)
             ),
         },
@@ -254,7 +254,7 @@ REFUSED = [
     *each(
         lambda **more: vr.read_dma(file("omega [rad/s], E_stor, E_loss\n1,2,3\n"), **more),
         {
-            "columns = 'abc': must be quantity -> heading": {"columns": "abc"},
+            "columns = 'abc': must be a dict, quantity -> heading": {"columns": "abc"},
             "encoding = 3: must be an encoding that Python knows": {"encoding": 3},
             "units | must be (frequency, moduli)": [
                 {"units": units} for units in (("MPa", "Hz"), "Hz", ("Hz", 1.0))
@@ -368,12 +368,10 @@ REFUSED = [
         partial(vr.fit_prony, *DMA),
         {
             "reference is given, but temperature is not": {"reference": 20.0},
-            "temperature | column": {"temperature": [[20.0]]},
+            "temperature | one for each point": {"temperature": [[20.0]]},
             "temperature rises from 20 to 25 °C in steps of at most 0.5 K: must be equal "
             "within 1 K in each": {"temperature": np.linspace(20.0, 25.0, 20)},
-            "omega has shape (20,): must be one for each temperature, of shape (0,)": {
-                "temperature": []
-            },
+            "omega has shape (20,): must be one for each point, of shape (0,)": {"temperature": []},
             "reference = 30.0: must be within [20.0, 20.0]": {
                 "temperature": 20.0,
                 "reference": 30.0,

@@ -229,7 +229,7 @@ def test_one_cover_takes_its_table_unless_asked_otherwise(law):
 )
 def test_many_covers_in_one_call_say_what_their_tables_would_take(change, tables):
     many = vr.Scene(material=BELT, kappa=4.0, mu=0.3).replace(**change)
-    with pytest.raises(vr.ParameterError, match=f"would need {tables} tables.*coupled=False"):
+    with pytest.raises(vr.ParameterError, match=f"needs {tables} tables.*coupled=False"):
         many.contact(0.1, delta=0.0)
 
 

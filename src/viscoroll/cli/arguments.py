@@ -1,9 +1,6 @@
-"""Arguments that commands have in common, and the output of results.
-
-The table of commands, and the types of their arguments: numbers, ranges, the scene, the output
-file.
-
-Output of results: their tables on standard output, or a complete file of a table or dataset.
+"""What commands have in common: the table of commands; the types of their arguments, as numbers,
+ranges, the scene, the output file; and the output of results, as a table on standard output, or as
+a complete file of a table or dataset.
 """
 
 from __future__ import annotations

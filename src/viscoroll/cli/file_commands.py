@@ -1,8 +1,5 @@
-"""Commands that make and convert files.
-
-Materials and measurements: ``viscoroll material`` and ``identify``.
-
-Files of laws and grids, and FMUs: ``viscoroll tables``, ``export`` and ``fmu``.
+"""Commands that make and convert files: of materials and measurements (``viscoroll material`` and
+``identify``), of laws and grids, and FMUs (``viscoroll tables``, ``export`` and ``fmu``).
 """
 
 from __future__ import annotations

@@ -1,10 +1,8 @@
-"""Commands of the installation: samples, compilation, problem report.
+"""Commands of the installation.
 
-``viscoroll samples``: the sample files of the documentation, in a folder of the user.
-
-``viscoroll warmup``: compilation of all kernels into the cache.
-
-``viscoroll doctor``: the contents of a problem report.
+- ``viscoroll samples`` copies the sample files of the documentation into a folder of the user.
+- ``viscoroll warmup`` compiles all kernels into the cache.
+- ``viscoroll doctor`` prints the contents of a problem report.
 """
 
 from __future__ import annotations
@@ -162,8 +160,8 @@ def doctor(arguments: Namespace) -> int:
 
 
 def _lines() -> Iterator[tuple[str, str]]:
-    """Yield (name, text) of each line of the problem report but the last, which
-    :func:`installation_commands` prints.
+    """Yield (name, text) of each line of the problem report but the last, which :func:`doctor`
+    prints.
 
     They are: "viscoroll", version and folder of the package; "python", version and program;
     "system"; "[runs]" and "[cluster]", version of the optional library, or how it is installed;

@@ -1,11 +1,9 @@
 """Commands of contact, motion, runs and figures.
 
-Contact and motion of a scene: ``viscoroll contact``, ``stress``, ``roll``, ``steady`` and
-``validity``.
-
-Run files: ``viscoroll ensemble``, ``verify`` and ``sensitivity``.
-
-``viscoroll plot``: a figure of the content of a file.
+- Contact and motion of a scene: ``viscoroll contact``, ``stress``, ``roll``, ``steady``, ``heat``
+  and ``validity``.
+- Run files: ``viscoroll ensemble``, ``verify`` and ``sensitivity``.
+- ``viscoroll plot``: a figure of the content of a file.
 """
 
 from __future__ import annotations

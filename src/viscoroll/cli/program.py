@@ -1,10 +1,8 @@
-"""The program: parser, help, exit codes.
+"""The program: its parser, the help of each command, and its exit codes: 0 success, 1 a check
+failed, 2 an error, printed in one line.
 
-Help of each command, as ``viscoroll COMMAND --help`` prints it.
-
-The first sentence is the line of the command in ``viscoroll --help``; an example follows the text.
-
-Parser and exit codes of the program: 0 success, 1 a check failed, 2 an error in one line.
+The first sentence of a help is the line of the command in ``viscoroll --help``; an example follows
+the text.
 """
 
 from __future__ import annotations

@@ -385,7 +385,7 @@ def assess_coupling(long: float, instant: float, *, like: bool, solved: bool = F
         return Assumption(True, 0.0, "Dundurs' constant is 0: shear does not change the pressure")
     sentence = f"Dundurs' constant is {long:.2g} for long times and {instant:.2g} for the instant; "
     if solved:
-        sentence += "states with traction are of a table of the coupled solution"
+        sentence += "states with traction are taken from a table of the coupled solution"
         return Assumption(True, worst, sentence)
     sentence += (
         f"up to {DUNDURS_LIMIT} in size is "

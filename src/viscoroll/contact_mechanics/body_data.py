@@ -132,13 +132,17 @@ def _modulus_over_shear(nu: Any, plane: str) -> Any:
 
 @lru_cache(maxsize=8)
 def _layer_shear(nu: float) -> Floats:
-    """Return the largest shear stress at the axis of a bonded layer over p_0, at the ratios
-    :data:`_THETA`.
+    """Return the largest shear stress at the axis of a bonded layer, divided by the peak p_0 of the
+    elliptic pressure on it, for the ratios :data:`_THETA` of half contact length to thickness.
 
-    The stress function of the wavenumber k is f(z) cos(kx) with f = (A + B kz) cosh kz + (C + D kz)
-    sinh kz; at z = 0 the pressure is given and the shear stress 0, at z = h both displacements are
-    0.
+    The stress function of the wave number k is f(z) cos(kx) with f = (A + B kz) cosh kz + (C + D
+    kz) sinh kz at the depth z.  The stresses are sigma_x = f'' cos(kx), sigma_z = -k^2 f cos(kx)
+    and tau = k f' sin(kx).  At z = 0 the pressure is given and tau = 0, so that C = -B; at z = h
+    both displacements are 0.  At x = 0 the shear stress is |sigma_x - sigma_z|/2 = |f'' + k^2 f|/2.
+    The elliptic pressure of half length a is the integral of p_0 J_1(ka)/k cos(kx) over k.
+
     nu: Poisson's ratio of the layer.
+    Returns a vector, one number for each ratio, dimensionless.
     """
     from scipy.special import j1
 
@@ -162,10 +166,12 @@ def _layer_shear(nu: float) -> Floats:
 
 
 def _layer_terms(s: Floats, nu: float) -> tuple[Floats, Floats]:
-    """Return the coefficients B and D of :func:`_layer_shear` for A = 1, (n,) each, dimensionless.
+    """Return the coefficients B and D of :func:`_layer_shear` for A = 1 and C = -B, by which both
+    displacements at z = h are 0.
 
     s: wave number times thickness, k h, > 0, (n,).
-    nu: Poisson's ratio.
+    nu: Poisson's ratio of the layer.
+    Returns (B, D), (n,) each, dimensionless.
     """
     cosh = np.cosh(s)
     sinh = np.sinh(s)
@@ -320,8 +326,8 @@ class BodyData:
 
     @cached_property
     def in_metres(self) -> bool:
-        """Whether no length looks like one in mm: a large radius or layer beside which the contact
-        of this load is short.
+        """Whether lengths seem to be in m; False where a radius or the thickness of a layer looks
+        like one in mm: it is large, and the contact length of this load is short beside it.
         """
         limits = [(self.R, _LARGE_R, _SHORT_OVER_R)]
         if self.pair is not None:
@@ -335,10 +341,12 @@ class BodyData:
 
     @cached_property
     def soft_for_load(self) -> bool:
-        """Whether the peak pressure on a single cover at rest, as that of an ellipse, exceeds the
-        modulus E/(1 - nu^2) of long times: kappa lam below 1/4.
+        """Whether the peak pressure on a cover at rest exceeds the modulus E/(1 - nu^2) of long
+        times.
 
-        On half-spaces the contact is then longer than the radius, which :attr:`small_at_rest` says.
+        An elliptic pressure has the peak 2 P/(pi a) on the half length a, which exceeds the modulus
+        where kappa lam is below 1/4.  False for half-spaces, on which the contact is then longer
+        than the radius (:attr:`small_at_rest`), and for many covers.
         """
         if not isinstance(self.scene.material, Cover) or self.scene.material.shape:
             return False

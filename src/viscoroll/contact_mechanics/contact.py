@@ -92,38 +92,50 @@ def contact(
         the angular velocity, of a Cylinder in rad/s, of a Scene multiplied by T_ref.
         At V = 0 a given ``delta`` means the limit V -> 0+; a given ``omega`` other than 0 means
         full slip, and 0 means delta = 0.
-    fields : a name or several names of fields to compute; None: the default fields.  Dimensionless
-        ones:
-        ``lam``: contact length divided by l0, the contact length at rest of half-spaces;
-        ``epsilon``: shift of the contact towards the leading edge in half contact lengths, 0 at V =
-        0;
-        ``delta_star``: critical creepage, > 0: half the distance of ``delta_minus`` and
-        ``delta_plus``;
-        ``delta``: creepage; infinite with the sign of omega at V = 0 with omega other than 0, and
-        where omega R/V exceeds the doubles;
-        ``full_slip``: whether delta is beyond ``delta_minus`` or ``delta_plus``;
-        ``beta``: length of the stick zone divided by the contact length, 0 in full slip, 1 where
-        Q = 0.  Those with a unit of their own, by which those of a Scene are divided:
-        ``zeta``: half the transit time, T_ref or s; infinite at V = 0, and where lam/V exceeds the
-        doubles;
-        ``Q``: force on the cylinder by friction, positive in the direction of a positive V, of the
-        sign of delta V, at V = 0 of delta (of a layer with delta - delta_0 for delta); P or N/m; in
-        full slip |Q| = mu P;
-        ``M``: rolling resistance moment, of the sign of V, 0 at V = 0 and of elastic bodies; P R or
-        N m/m.  Of a layer it has a part by Q too, of either sign, as shear acts back on the
-        pressure; so have lam and epsilon.  These nine are the default.  Bodies that differ, and
-        every Cylinder, add ``M_half_space`` and ``M_cylinder``, the parts of M by the losses in
-        either body; a Cylinder adds ``length``, the contact length in m, and ``C_rr`` = M/(P R),
-        the coefficient of rolling resistance; a layer adds ``delta_0``, the creepage at which Q =
-        0, caused by the strain under the pressure.
-        Fields by name alone: of a Cylinder ``M_error``, the accuracy of M by the data of its
-        materials as +-, relative, infinite outside their band, NaN where not known
-        (:meth:`viscoroll.Measured.moment_error`); ``grip``, the friction reserve 1 - |Q|/(mu P)
-        without loss of digits, 0 in full slip;
-        ``N``, the added mass of slow speed changes, in which the moment is M(V) + N dV/dt (P
-        T_ref^2 or N s^2/m), not known of layers and of arrays of materials; ``delta_minus`` and
-        ``delta_plus``, the creepages at and beyond which the whole contact slips backwards or
-        forwards, -delta_star and delta_star but for layers; and each slope below.
+    fields : a name or several names of fields to compute; None: the default fields.  A unit in
+        parentheses is that of a Scene, then that of a Cylinder; other fields are dimensionless.
+
+        Default fields of every roller:
+
+        - ``lam``: contact length divided by l0, the contact length at rest of half-spaces;
+        - ``epsilon``: shift of the contact towards the leading edge in half contact lengths, 0 at
+          V = 0;
+        - ``delta_star``: critical creepage, > 0: half the distance of ``delta_minus`` and
+          ``delta_plus``;
+        - ``delta``: creepage; infinite with the sign of omega at V = 0 with omega other than 0,
+          and where omega R/V exceeds the doubles;
+        - ``full_slip``: whether delta is beyond ``delta_minus`` or ``delta_plus``;
+        - ``beta``: length of the stick zone divided by the contact length, 0 in full slip, 1 where
+          Q = 0;
+        - ``zeta``: half the transit time (T_ref; s); infinite at V = 0, and where lam/V exceeds
+          the doubles;
+        - ``Q``: force on the cylinder by friction (P; N/m), positive in the direction of a positive
+          V, of the sign of delta V, at V = 0 of delta (of a layer with delta - delta_0 for delta);
+          in full slip its size is mu P;
+        - ``M``: rolling resistance moment (P R; N m/m), of the sign of V, 0 at V = 0 and of elastic
+          bodies.  Of a layer it has a part by Q too, of either sign, as shear acts back on the
+          pressure; so have lam and epsilon.
+
+        Further default fields of some rollers:
+
+        - ``M_half_space``, ``M_cylinder``: the parts of M by the losses in either body, of bodies
+          that differ, and of every Cylinder;
+        - ``length``: contact length, m, and ``C_rr`` = M/(P R): coefficient of rolling resistance,
+          of a Cylinder;
+        - ``delta_0``: creepage at which Q = 0, caused by the strain under the pressure, of a layer.
+
+        Fields that are computed only if they are named:
+
+        - ``delta_minus``, ``delta_plus``: creepages at and beyond which the whole contact slips
+          backwards or forwards; -delta_star and delta_star but for layers;
+        - ``grip``: friction reserve 1 - Q/(mu P) with the size of Q, without loss of digits, 0 in
+          full slip;
+        - ``N``: added mass in slow changes of speed, in which the moment is M(V) + N dV/dt (P
+          T_ref^2; N s^2/m); not known of layers and of arrays of materials;
+        - ``M_error``: of a Cylinder, accuracy of M by the data of its materials as +-, relative,
+          infinite outside their band, NaN where not known
+          (:meth:`viscoroll.Measured.moment_error`);
+        - each slope below.
     slopes : whether ``dQ_dV``, ``dQ_ddelta``, ``dQ_domega`` and ``dM_dV`` are computed in addition,
         and of bodies that differ ``dM_half_space_dV`` and ``dM_cylinder_dV``; of a layer also
         ``dM_ddelta``, ``dM_domega`` and those over omega of either body.  ``dQ_dV``, and of a layer
@@ -131,16 +143,18 @@ def contact(
         at fixed V.  In full slip the slopes of Q are 0.  Where full slip begins Q has a corner over
         V, and the slopes there are those of full slip.  In partial slip at V = 0 ``dQ_domega`` is
         infinite, and where omega = 0 was given ``dQ_dV`` is -infinite.
-    method : "table" (from the rows of the law: no equation is solved) or "direct" (the equations as
-        the paper prints them, solved by Brent-Dekker), which has no slopes, N, grip, delta_0
-        and onsets, and takes an alpha alone, no material.  Or "coupled": pressure and shear are
-        solved together by boundary elements, for any two bodies, layers or half-spaces, each rigid,
-        elastic or relaxing, of one material.  Zones of stick and slip are found, not assumed.  Its
-        fields are of these bodies at any coupling: ``delta_minus``, ``delta_plus``, and the powers
-        lost,
-        ``loss_slip``, ``loss_half_space`` and ``loss_cylinder``, whose sum is V (M + delta Q), over
-        P R/T_ref or W/m.  ``depth`` by name alone is the approach of the
-        bodies where each is a layer or rigid, over l0 or m.  It has no slopes and no N.
+    method : how the fields are computed:
+
+        - "table": from the rows of the law; no equation is solved.
+        - "direct": by the equations as the paper prints them, solved by Brent-Dekker.  It has no
+          slopes, N, grip, delta_0, delta_minus and delta_plus, and takes alpha, no material.
+        - "coupled": pressure and shear are solved together by boundary elements, and zones of
+          stick and slip are found, not assumed.  The bodies are any two, layers or half-spaces,
+          each rigid, elastic or relaxing; one pair in a call.  It has no slopes and no N.  Further
+          default fields are ``delta_minus``, ``delta_plus``, and the powers lost ``loss_slip``,
+          ``loss_half_space`` and ``loss_cylinder`` (P R/T_ref; W/m), whose sum is V (M + delta Q).
+          By name alone it has ``depth`` (l0; m), the approach of bodies each of which is a layer
+          or rigid.
 
     Returns
     -------
@@ -258,8 +272,7 @@ _loads_and_slopes = partial(tuple.__new__, LoadsAndSlopes)
 
 
 class Law:
-    """The law of a scene or a cylinder as a function of V and omega: the result of
-    :func:`bound_law`.
+    """The law of a scene or a cylinder as a function of V and omega: the result of :func:`law`.
 
     Attributes
     ----------
@@ -417,9 +430,8 @@ class Law:
         V, omega: finite, arrays of shape (), in the units of the roller.
         """
         refuse_overflow(self._kappa, V)
-        raise ParameterError(
-            "omega", f"{float(omega):g}", "smaller in magnitude: omega T_ref overflows"
-        )
+        allowed = "smaller in magnitude: omega T_ref exceeds the largest double, 1.8e308"
+        raise ParameterError("omega", f"{float(omega):g}", allowed)
 
     @property
     def jitted(self) -> Callable[[float, float], LoadsAndSlopes[float]]:

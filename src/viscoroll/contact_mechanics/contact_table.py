@@ -1,28 +1,23 @@
-"""Fields of a contact state, and their computation at many states.
-
-The fields of a contact state: which exist, which a call returns, which of them the kernels
-compute.
-
-With lengths over l0 (the contact length at rest of half-spaces), forces over the load P and moments
-over P R: ``lam`` contact length, ``zeta`` half the transit time, ``epsilon`` shift of the contact
-over half its length, ``delta`` creepage, ``delta_0`` that at which Q = 0, ``full_slip``
-whether |delta - delta_0| >= ``delta_star``, ``beta`` stick zone over contact length, ``Q`` friction
-force, ``grip`` 1 - |Q|/mu, ``M`` rolling moment, ``M_half_space`` and ``M_cylinder`` its parts,
-``N`` its factor of dV/dt, ``dA_dB`` slopes.
+"""Fields of a contact state, and their computation at many states, in blocks on threads: one law
+for all states, or an alpha or a material for each.
 
 This module alone interprets names of fields.  A call resolves its names (:func:`field_names`), asks
 the kernels for :func:`computed_fields`, tells them the row of each (:func:`kernel_rows`), and
 completes the result (:func:`complete`).
 
-The law at many states, in blocks on threads: one law for all states, or an alpha or a material
-for each.
-
 All is dimensionless, with load P, radius R, unit of time T_ref, and l0, the contact length at rest
 of half-spaces: alpha is the instantaneous divided by the long-time modulus, kappa = R/l0, mu the
 coefficient of friction, V the speed over R/T_ref, omega the angular velocity times T_ref, delta =
-(omega - V)/V the creepage.  Of the fields lam is the contact length over l0, epsilon its shift
-ahead of the axis over half the length, zeta half the transit time, Q the friction force over P, M
-the rolling moment over P R, and N its factor of dV/dt, M = M(V) + N dV/dt.
+(omega - V)/V the creepage.  The fields are
+
+- ``lam``, contact length over l0; ``epsilon``, its shift ahead of the axis over half the length;
+  ``zeta``, half the transit time; ``beta``, stick zone over contact length;
+- ``delta``; ``delta_0``, the creepage at which Q = 0; ``full_slip``, whether |delta - delta_0| >=
+  ``delta_star``;
+- ``Q``, friction force over P; ``grip``, 1 - |Q|/mu;
+- ``M``, rolling moment over P R; ``M_half_space`` and ``M_cylinder``, its parts; ``N``, its factor
+  of dV/dt, M = M(V) + N dV/dt;
+- ``dA_dB``, slope of the field A over B.
 """
 
 from __future__ import annotations
@@ -148,20 +143,19 @@ def field_names(
         names += tuple(name for name in more if name not in names)
     added: tuple[str, ...] = (FREE_CREEP,) if cover else ()
     if method == "coupled":
-        refuse_fields(
-            names, (*_ALL_SLOPES, UNSTEADY), "left out: method 'coupled' has no slopes and no N"
-        )
+        allowed = "left out: method 'coupled' computes no derivatives and no N"
+        refuse_fields(names, (*_ALL_SLOPES, UNSTEADY), allowed)
         added = (*OF_BODIES, *ONSETS, *OF_COUPLED[:-1])
     else:
         refuse_fields(names, OF_COUPLED, "left out, or computed with method='coupled'")
         if method == "direct":
             if not set(_ALL_SLOPES).isdisjoint(names):
-                allowed = "'table' for slopes: the equations of the paper give none"
+                allowed = "'table' for derivatives, which the equations of the paper do not give"
                 raise ParameterError("method", "'direct'", allowed)
             only_table = (UNSTEADY, GRIP, FREE_CREEP, *ONSETS)
             refuse_fields(only_table, names, "left out, or computed with method='table'")
         if cover:
-            allowed = "left out for a cover: N of a layer of finite thickness is not available"
+            allowed = "left out for a cover: N is not computed for a layer of finite thickness"
             refuse_fields((UNSTEADY,), names, allowed)
     return tuple(dict.fromkeys(names + added)) if added and fields is None else names
 
@@ -309,7 +303,7 @@ def evaluate_contact(
         refuse_overflow(np.asarray(scene.kappa), V, fastest)
     if scene.material is not None and direct:
         raise ParameterError(
-            "method", "'direct'", "'table': the equations of the paper have one relaxation time"
+            "method", "'direct'", "'table': method 'direct' takes alpha, one relaxation time"
         )
     material = None if direct else scene.rolling_law or scene.material_array
     if isinstance(material, Prony | Bodies):
@@ -319,7 +313,7 @@ def evaluate_contact(
     if isinstance(material, LawTable) and material.coupled is not None:
         refuse_beyond(material, scene.kappa * np.abs(V))
         if not material.coupled.graded:
-            refuse_fields(NOT_IN_GRIDS, names, "left out: a grid states Q and M alone")
+            refuse_fields(NOT_IN_GRIDS, names, "left out: a grid contains only Q and M")
     unlike = material.unlike if isinstance(material, LawTable) else isinstance(material, Bodies)
     computed = computed_fields(names, unlike)
     rows = evaluate_law(
@@ -405,8 +399,8 @@ def evaluate_law(
         elif direct:
             if loop(laws, request, stop - start):
                 raise ConvergenceError(
-                    f"contact: method='direct' did not converge for a state of elements {start} to "
-                    f"{stop - 1}"
+                    f"contact: method='direct' did not converge for one of the states {start} to "
+                    f"{stop - 1}: use method='table'"
                 )
         elif names != (UNSTEADY,):
             loop(laws, request, scratch, stop - start)
@@ -548,8 +542,11 @@ def pure_rolling_fields(law: LawTable, u: Floats, *names: str) -> Floats:
 
 
 def refuse_beyond(law: LawTable, u: Any) -> None:
-    """Raise OutOfTableError where kappa |V| = ``u`` exceeds the last speed of a table ``law``, as
-    of a grid.
+    """Raise OutOfTableError where a speed exceeds the last one of a table.
+
+    law: the law; one without a table, and one whose table has the limit of fast rolling, allows
+        every speed.
+    u: kappa |V|, dimensionless, any shape; 1e-12 beyond, relative, counts as rounding.
     """
     most = law.coupled.fastest if law.coupled is not None else np.inf
     largest = float(np.max(u, initial=0.0))
@@ -575,4 +572,5 @@ def refuse_overflow(kappa: Floats, V: Floats, fastest: float = FASTEST) -> None:
     with np.errstate(over="ignore"):
         largest = (kappa * np.abs(V)).max(initial=0.0)
     if largest > fastest:
-        raise ParameterError("kappa |V|", f"{largest:g}", f"at most {fastest:g}")
+        allowed = f"at most {fastest:g} (V in units of R/T_ref)"
+        raise ParameterError("kappa |V|", f"{largest:g}", allowed)

@@ -1,21 +1,17 @@
-"""Steady rolling with pressure and shear solved together, at one speed.
+"""Steady rolling with pressure and shear solved together: :class:`CoupledPair`, and its states at
+one speed by boundary elements (:class:`CoupledRow`).
 
-Kernels of the boundary elements at one speed: second antiderivatives of the slopes that a point
-load causes.
+**Units.**  Everything is dimensionless.  Lengths are divided by l0, the contact length at rest of
+half-spaces, kappa = R/l0, u = kappa |V|, forces are divided by the load P and moments by P R, and
+compliances by the long-time one of both bodies together.  A relaxation time T is the length u T.  A
+reduced creepage ("creep" in names) is 2 kappa delta, of the sign of omega R - V.
 
-Lengths are divided by l0 and compliances by the summed long-time one; a relaxation time T is the
-length u T at the speed u = kappa |V|.  With J* the complex compliance at wave number k, a body has
-the transforms of :mod:`.cover_solve`: pressure -> slope -i sgn(k) L J*, shear ->
-strain -i sgn(k) T J*, coupling C J*.
+**Kernels** of the elements are second antiderivatives of the slopes of a surface under a point
+load.  With J* the complex compliance at the wave number k and L, T and C the transforms of
+:mod:`.cover_solve`, a pressure makes the slope -i sgn(k) L J*, a shear the strain -i sgn(k) T J*,
+and either makes C J* of the other.
 
-Steady rolling with pressure and shear solved together: :class:`CoupledPair` and its states at
-one speed.
-
-Everything is dimensionless.  Lengths are divided by l0, the contact length at rest of half-spaces,
-kappa = R/l0, u = kappa |V|, forces are divided by the load P and moments by P R.  A reduced
-creepage ("creep" in names) is 2 kappa delta, of the sign of omega R - V.
-
-Powers per unit of V, with M_b the part of M by the slope of body b and W_b = int q u'_b dx by its
+**Powers** per unit of V, with M_b the part of M by the slope of body b and W_b = int q u'_b dx by its
 strain along x:
 
     body b loses M_b + W_b      friction loses delta Q - W_base - W_cylinder      their sum is M + delta Q
@@ -63,8 +59,11 @@ _WAVES = -25.0, 80.0, 0.12
 
 @cache
 def _fit() -> tuple[Floats, Floats]:
-    """Return (|x| of all bins, ascending in each, (BINS (DEGREE + 1),); values -> coefficients in
-    [-1, 1]).
+    """Return the nodes of the polynomials of kernels, and the matrix that fits them.
+
+    Returns (|x| of the nodes of all bins of ln|x|, ascending in each, (BINS (DEGREE + 1),); matrix
+    that makes of the values at the nodes of a bin the coefficients of powers of t, where t in [-1,
+    1] is the place of ln|x| in the bin).
     """
     nodes = np.cos(np.pi * (np.arange(DEGREE + 1) + 0.5) / (DEGREE + 1))
     logs = LOWEST + WIDTH * (np.arange(BINS)[:, np.newaxis] + 0.5 * (1.0 + nodes))
@@ -74,7 +73,12 @@ def _fit() -> tuple[Floats, Floats]:
 def _memory(X: Floats) -> Floats:
     """Return f(X) + ln|X| + gamma, with f the principal value of int_0^inf exp(-s)/(X + s) ds.
 
-    X: of any sign, not 0.  Returns an array of its shape, good to rounding relative to 1.
+    f(X) is exp(X) E_1(X) for X > 0 and -exp(X) Ei(-X) for X < 0, with the exponential integrals
+    E_1 and Ei; gamma is Euler's constant.  Up to |X| = 1 it is a power series, beyond 50 an
+    asymptotic one.
+
+    X: numbers of any sign, not 0, any shape.
+    Returns an array of its shape, whose absolute error is some units of rounding of 1.
     """
     size = np.abs(X)
     found = np.log(size) + np.euler_gamma
@@ -104,11 +108,17 @@ def _memory(X: Floats) -> Floats:
 def _half_space(
     instant: float, modes: list[tuple[float, float]], x: Floats
 ) -> tuple[Floats, Floats]:
-    """Return (normal kernel less x ln|x|/pi of the instantaneous compliance; coupling of a unit
-    local constant).
+    """Return the kernels of a half-space (module) at distances x ahead of a point load.
 
-    instant: instantaneous compliance.  modes: (strength, length u T) of each.  x: of one sign,
-    (n,).
+    Elastic, of compliance 1, the slope by a pressure is 1/(pi x), so that the kernel is (x ln|x| -
+    x)/pi; the coupling is local, and its kernel is max(x, 0).  Each creep mode adds the memory of
+    these (:func:`_memory`).
+
+    instant: instantaneous compliance.
+    modes: (strength, length u T) of each creep mode.
+    x: distances divided by l0, all > 0 or all < 0, (n,).
+    Returns (kernel of the pressure, less the term instant x ln|x|/pi, which is singular at 0;
+    kernel of the coupling for a constant C of 1), (n,) each.
     """
     normal = -instant * x / np.pi
     ramp = np.maximum(x, 0.0)
@@ -125,9 +135,11 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
     """Return what kernels of a bonded layer have in common at all speeds.
 
     nu, thickness: Poisson's ratio of the layer, and its thickness divided by l0.
-    Returns (wave numbers times l0, (m,); even and odd parts of (e^iy - 1 - iy)/y^2 at y = |x| k,
-    for all |x| of :func:`_fit`, (2, BINS, DEGREE + 1, m); weights of the three kernels, (3, m)).
-    Each bin is a matrix of its own, so that BLAS takes no threads beside those of the rows.
+    Returns (wave numbers k times l0, (m,); (1 - cos y)/y^2 and (y - sin y)/y^2 at y = |x| k, for
+    all |x| of :func:`_fit`, (2, BINS, DEGREE + 1, m); weights of the integrals over k for the
+    three kernels, L - 1, T - 1 and C, (3, m)).  The two functions of y are the even and the odd
+    part of the second antiderivative of a wave, without terms linear in x.  Each bin is a matrix
+    of its own, so that BLAS takes no threads beside those of the rows.
     """
     nodes = layer_nodes(nu)
     k = nodes.u / thickness
@@ -143,12 +155,14 @@ def _phases(nu: float, thickness: float) -> tuple[Floats, Floats, Floats]:
 
 
 def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float, float]]) -> Floats:
-    """Return what a bonded layer adds to the kernels of a half-space.
+    """Return what a bonded layer adds to the kernels of a half-space (module), by integrals over
+    the wave number with the complex compliance.
 
     nu, thickness: Poisson's ratio of the layer, and its thickness divided by l0.
     instant: instantaneous compliance, divided by the long-time one.
     modes: (strength, length u T divided by l0) of each creep mode.
-    Returns (2 signs of x, 3 kernels, n) at all |x| of :func:`_fit`, without terms linear in x.
+    Returns (2 signs of x, first +; 3 kernels: pressure, shear, coupling; n) at all |x| of
+    :func:`_fit`, without terms linear in x.
     """
     k, phases, excess = _phases(nu, thickness)
     compliance = np.full(k.size, complex(instant))
@@ -162,12 +176,16 @@ def _layer(nu: float, thickness: float, instant: float, modes: list[tuple[float,
 
 
 class BodyKernels(NamedTuple):
-    """Kernels of one body at one speed, times its share of the compliance, the coupling with the
-    sign of the body.
+    """Kernels of one body at one speed.
 
-    table : second antiderivatives as polynomials, (BINS, 2 signs, 3 kernels, DEGREE + 1).
+    All are multiplied by the body's share of the compliance of both; the coupling has the sign of
+    the body, positive on the base.
+
+    table : kernels (module) as polynomials of ln|x| in bins (:func:`_fit`), (BINS, 2 signs of x, 3
+        kernels: pressure, shear, coupling, DEGREE + 1 coefficients).
     instant : instantaneous compliance.
-    local : (modes + 1, 2): strength and length of each part of the local coupling.
+    local : (modes + 1, 2): strength of each part of the local coupling, and length u T over which
+        it decays behind the load; the first part, of length 0, is instantaneous.
     """
 
     table: Floats
@@ -179,7 +197,9 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
     """Return the kernels of one body at one speed.
 
     body: :class:`CoupledBody`.
-    u: kappa |V|, >= 0 or infinite: elastic at rest, and with the instantaneous compliance.
+    u: kappa |V|, dimensionless, >= 0 or infinite.  At 0 the body is elastic with its long-time
+        compliance, at infinity with its instantaneous one.
+    Returns the :class:`BodyKernels`.
     """
     size, fit = _fit()
     instant = 1.0 if u == 0.0 else body.instant
@@ -205,7 +225,7 @@ def body_kernels(body: Any, u: float) -> BodyKernels:
 
 
 def growth(bodies: Any, times: Floats) -> Floats:
-    """Return d ln J/d ln t of the summed compliance of bodies at times, (n,).
+    """Return d ln J/d ln t of the creep compliance J(t) of both bodies together, (n,).
 
     bodies: a :class:`CoupledBody` for each body that deforms.
     times: durations of a load, in units of T_ref, > 0, (n,).
@@ -558,7 +578,10 @@ class CoupledRow:
         )
 
     def free_creep(self) -> float:
-        """Return the reduced creepage 2 kappa delta of free rolling, at which Q = 0."""
+        """Return the reduced creepage 2 kappa delta of free rolling, at which Q = 0.
+
+        It is found between the onsets by Brent's method, to an error of :data:`_FREE_CREEP_ERROR`.
+        """
         return float(
             brentq(
                 lambda creep: self.states([creep]).Q_over_mu[0],
@@ -568,11 +591,14 @@ class CoupledRow:
         )
 
     def profile(self, creep: float) -> CoupledProfile:
-        """Return the tractions at one state.
+        """Return pressure and shear stress along the contact, at one creepage.
 
-        creep: reduced creepage 2 kappa delta, any number.
-        Returns the :class:`CoupledProfile`, of which ``status`` is not 0 where no solution was
-        found.
+        creep: reduced creepage 2 kappa delta; at or beyond the :meth:`onsets` the contact slips
+            fully.
+        Returns the :class:`CoupledProfile`: between the nodes, which the kernel places, both
+        stresses are linear, at both ends of the contact 0, and they are scaled so that the pressure
+        bears the load.  Where no solution was found ``status`` is not 0, and the numbers are
+        meaningless.
         """
         low, high = self.onsets()
         slips = not low < creep < high

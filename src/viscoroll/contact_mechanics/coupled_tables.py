@@ -1,18 +1,14 @@
-"""Tables of states with pressure and shear solved together, and their files.
+"""Tables of states with pressure and shear solved together (the coupled solution), and their files.
 
-Tables of the coupled solution: rows of states over speed and creep, at nodes where cubic splines
-hold them.
+A table has a row of states at each of several speeds, at nodes of creep between which splines are
+cubic.  Speeds run from a thousandth of the slowest rate of the bodies to ten times the fastest, in
+equal steps of ln u, with the elastic limits at both ends; creeps from one onset of full slip over
+the creep at which slip of the other sign opens to the other onset, in equal steps of the graded
+place t (:mod:`.coupled_splines`).
 
-Speeds run from a thousandth of the slowest rate of the bodies to ten times the fastest, in equal
-steps of ln u, with the elastic limits at both ends; creeps from one onset of full slip over the
-creep at which slip of the other sign opens to the other onset, in equal steps of the graded place t
-(:mod:`.coupled_splines`).
-
-Tables of the coupled solution that are made at first use, and their files beside the compiled
-kernels.
-
-A table depends on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load and
-radius change it only through that ratio.
+Tables are made at first use, and their files are kept beside the compiled kernels.  A table depends
+on mu and on the bodies, with the thickness divided by l0: kappa, gamma, j, load and radius change
+it only through that ratio.
 """
 
 from __future__ import annotations
@@ -126,7 +122,7 @@ def tabulate(
         check_integer("nodes", count, 4, 1000)
     if check_integer("nodes", across, 9, 1001) % 2 == 0:
         raise ParameterError(
-            "nodes", across, "an odd number of nodes of creepage, as they are symmetric"
+            "nodes", across, "an odd number: the nodes of creepage are symmetric about 0"
         )
     u = speed_nodes(pair, count)
     t = np.arange(-(across // 2), across // 2 + 1) / (across // 2)  # 0 exactly in the middle
@@ -267,18 +263,22 @@ def _fields(states: CoupledStates, creeps: Floats, u: float, mu: float) -> Float
     """
     if not states.converged.all():
         n = int(np.argmin(states.converged))
-        where = f"kappa |V| = {u:.6g}, 2 kappa delta = {creeps[n]:.6g}, mu = {mu:g}"
+        where = (
+            f"kappa |V| = {u:.6g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = "
+            f"{creeps[n]:.6g}"
+        )
         raise ConvergenceError(
-            f"coupled solution: no state was found at {where} (status {int(states.status[n])})"
+            f"coupled solution: no contact was found at {where}; please report it"
         )
     return np.stack(states[: len(FIELDS)], axis=-1)
 
 
 def _spline(t: Floats, values: Floats, place: float) -> Any:
-    """Return the clamped cubic spline of one row, on one side of its middle.
+    """Return the cubic spline of one row on one side of its middle, with slopes 0 at both ends.
 
     t, values: all nodes of the row, in [-1, 1], and the values there, (m,) each.
     place: number whose sign selects the side: t <= 0 if it is negative, else t >= 0.
+    Returns a function of t in that side, in the unit of ``values``.
     """
     from scipy.interpolate import CubicSpline
 
@@ -323,6 +323,7 @@ def measure_errors(
     worst = np.zeros((speeds.size, len(FIELDS)))
 
     def compare(n: int, _: int) -> None:
+        """Write the largest differences at the n-th speed into ``worst[n]``."""
         u = float(speeds[n])
         draw = draws[n]
         row = CoupledRow(pair, u, rows.mu, elements)
@@ -388,7 +389,7 @@ def _rows(pair: CoupledPair, mu: float) -> CoupledRows:
     """
     key = hashlib.sha256(f"{_digest()} {pair!r} {mu!r}".encode()).hexdigest()[:20]
     path = cache_root() / "coupled" / f"{key}.npz"
-    damaged = "coupled table is damaged ({}) and is made again"
+    damaged = "the cached table of the coupled solution is damaged ({}) and is made again"
     if (found := load_kept(path, damaged, _read)) is None:
         found = tabulate(pair, mu, progress=not is_quiet() and sys.stderr.isatty())
         arrays = {name: getattr(found, name) for name in ("mu", "u", "t", "edges", "fields")}

@@ -1,22 +1,18 @@
-"""Free rolling without integration of a motion, and its accuracy.
-
-Free rolling of one material as splines over speed: :class:`Curve`.
-
-kappa = R/l0 with the contact length at rest l0, M is the rolling moment over load and radius, and N
-its factor of dV/dt in slow changes of speed, M = M(V) + N dV/dt.
-
-Free rolling by the law of steady rolling, and where it is accurate: by the next term of M =
-M(V) + N(V) V'.
-
-N acts as an added mass.  Divided by the mass it is the unsteadiness g |N(V)| with g = gamma/(1 +
-j), which is about the relative error of V in a motion where it was no larger before
-(docs/validity.md).
-Free rolling depends on u = kappa V, on g and on the material:
-u' = -g kappa M(u); the distance is the integral of u du/(g kappa M), in units of l0.
+"""Free rolling by the law of steady rolling, without integration of a motion, and where it is
+accurate.
 
 M is the rolling moment over P R, kappa = R/l0 with the contact length at rest l0, gamma = P
-T_ref^2/(m R), j the moment of inertia over m R^2.  The own time of a material is a unit of time in
-which its slow time is near 1; u and g are in that unit.
+T_ref^2/(m R), j the moment of inertia over m R^2, and g = gamma/(1 + j).  Free rolling depends on u
+= kappa V, on g and on the material: u' = -g kappa M(u), and the distance is the integral of u du/(g
+kappa M), in units of l0.  :class:`Curve` has these integrals of one material, as splines over ln u,
+for g = 1.
+
+In slow changes of speed the moment is M(V) + N(V) dV/dt, where N acts as an added mass.  Divided by
+the mass it is the unsteadiness g |N(V)|, which is about the relative error of V in a motion in
+which it was no larger before (docs/validity.md).
+
+The own time of a material is a unit of time in which its slow time
+(:attr:`viscoroll.Prony.slow_time`) is near 1; u and g are in that unit.
 """
 
 from __future__ import annotations
@@ -325,9 +321,8 @@ class FreeRolling:
         Raises ParameterError for a cover, whose N is not known.
         """
         scene = scene.uncoupled  # a free roller has hardly any traction
-        refuse_cover(
-            scene, "free rolling is not examined, since N of M = M(V) + N dV/dt is not available"
-        )
+        why = "the added mass N in M = M(V) + N dV/dt, on which free rolling depends, is not known"
+        refuse_cover(scene, why)
         materials: Any
         unit: Any
         if scene.material_array is None:
@@ -358,8 +353,10 @@ class FreeRolling:
         )
 
     def scaled(self, scale: Scale) -> FreeRolling:
-        """Return the same states with results in m/s, s and m for a ``scale`` of a cylinder; itself
-        for a scene's.
+        """Return the same states, whose results are in m/s, s and m.
+
+        scale: units of the cylinder; with those of a scene, which is dimensionless, this object
+            itself is returned.
         """
         if not scale.si:
             return self
@@ -369,11 +366,11 @@ class FreeRolling:
         return replace(self, speed=speed, time=time, length=length, units=("m/s", "s", "m"))
 
     def take(self, index: tuple[Any, ...]) -> FreeRolling:
-        """Return the states at an ``index`` of numpy into u: a tuple of integers, one for each
-        axis, or of arrays.
+        """Return some of the states, as a new object of the same materials and units.
 
-        All fields but ``materials`` and ``units`` are broadcast to u and indexed; IndexError of
-        numpy passes.
+        index: index of numpy into u, a tuple of integers or arrays, one for each axis; the other
+            arrays are broadcast to u and indexed alike.
+        Raises IndexError of numpy.
         """
         arrays = ("index", "u", "g", "speed", "time", "length")
         return replace(

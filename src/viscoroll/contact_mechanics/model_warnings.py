@@ -63,8 +63,8 @@ _SLOW = 0.6 / 16.0 / STEADY_LIMIT
 _FASTER_THAN_WAVES = f"speeds exceed the shear wave speed (up to {WAVE_LIMIT:g} of it is allowed)"
 #: Fault of a motion or contact whose lengths were given in mm.
 _MILLIMETRES = (
-    "R is 5 m and more, or a layer thicker than 0.5 m, beside which the contact of this load is "
-    "short: lengths are in m, divide those in mm by 1000"
+    "R is at least 5 m, or a layer is thicker than 0.5 m, and the contact of this load is much "
+    "shorter: lengths must be in m; if they are in mm, divide them by 1000"
 )
 #: Fault of a motion or contact on a cover whose peak pressure exceeds the modulus.
 _SOFT = (

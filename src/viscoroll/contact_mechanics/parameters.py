@@ -392,11 +392,11 @@ class Parameters(Roller):
         several = len(self.material) if self.material_array is not None else 1  # type: ignore[arg-type]
         if several * mus.size != 1:
             found = (
-                f"would need {several * mus.size} tables of the coupled solution, of some "
-                f"{SECONDS} s on two cores each"
+                f"needs {several * mus.size} tables of the coupled solution, each of which takes "
+                f"about {SECONDS} s on two cores"
             )
             allowed = (
-                "one body and one mu in a call; or coupled=False, for the law that takes "
+                "one body and one mu in a call; or give coupled=False, for the law that takes "
                 "coupling to first order"
             )
             raise described_error("material" if several > 1 else "mu", found, allowed)
@@ -480,8 +480,10 @@ def series_in_own_time(series: Prony) -> tuple[float | Prony, float]:
 
 
 def refuse_other_friction(law: LawTable, mu: Any) -> None:
-    """Raise ParameterError where ``mu`` is not that of a coupled table ``law``, which holds for one
-    alone.
+    """Raise ParameterError where a table of the coupled solution has another mu than the scene.
+
+    law: the law; one without a table holds for every mu.
+    mu: coefficient of friction of the scene, a number or an array.
     """
     if (
         law.coupled is not None
@@ -521,10 +523,9 @@ def resolve_model(
         sentence = f"{call} takes a Scene or a Cylinder, not {roller!r:.60}"
         if isinstance(roller, LawGrid):
             sentence = (
-                f"{call} reads the rows of a law, or a grid as the material of a Scene, no "
-                "grid by itself: "
+                f"{call} takes a Scene or a Cylinder, not a grid: give the grid as the material= "
+                "of a Scene, or evaluate it by vr.law(grid) (docs/howto/law.md)"
             )
-            sentence += "vr.law(grid) gives its splines to your own integrator (docs/howto/law.md)"
         raise ParameterError("roller", type(roller).__name__, "a Scene or a Cylinder", sentence)
     if slope is not None:
         roller = roller.on_slope(slope)
@@ -555,8 +556,8 @@ def refuse_cover(scene: Parameters, why: str) -> None:
             "coupled",
             True,
             "False",
-            "shear and pressure of these bodies are coupled, and their law is a table; with such "
-            f"a table {why}: give coupled=False for the law without coupling",
+            "coupled = True: the law of these bodies is a table of the coupled solution, with "
+            f"which {why}; give coupled=False for the law that takes coupling to first order",
         )
 
 

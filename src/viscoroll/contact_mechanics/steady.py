@@ -1,10 +1,13 @@
-"""All states of steady rolling under given loads, with their stability.
+"""Steady rolling under force, torque or slope: :func:`steady`, all equilibria with their stability.
 
-Steady rolling with feedback on omega: a scan over V.
+The equations are V' = Q - M_half_space + force = 0 and j omega' = -Q - M_cylinder + torque = 0
+(over gamma t).  Their sum M(V) = force + torque determines V; Q = torque - M_cylinder then
+determines the creepage.  They are Eq. (22) of Zobova and Goryacheva, Acta Mechanica (2020), with a
+force and a torque, divided by P and P R, and with the moment M split between the two bodies.
 
-With gains f = f0 + fV V + fw omega, q = q0 + qV V + qw omega the sum of the two equations, M(V) -
-(fV + qV) V - (fw + qw) omega = f0 + q0, determines omega for every V.  The other equation has one
-unknown, V:
+**Feedback on omega** is solved by a scan over V.  With gains f = f0 + fV V + fw omega, q = q0 + qV
+V + qw omega the sum of the two equations, M(V) - (fV + qV) V - (fw + qw) omega = f0 + q0,
+determines omega for every V.  The other equation has one unknown, V:
 
     R = Q(V, omega) - M_half_space + f = 0          Q = +-mu in full slip
 
@@ -23,13 +26,6 @@ V)/V at which Q = 0, delta_star the distance from it at which full slip begins, 
 M_half_space, M_cylinder, beta and six slopes of the law, dQ_dV at fixed omega, dQ_domega,
 dM_half_space_dV and dM_cylinder_dV; :class:`.steady_states.States` have omega and the eigenvalues
 in place of the slopes.
-
-Steady rolling under force, torque or slope: :func:`steady`, all equilibria with their stability.
-
-The equations are V' = Q - M_half_space + force = 0 and j omega' = -Q - M_cylinder + torque = 0
-(over gamma t).  Their sum M(V) = force + torque determines V; Q = torque - M_cylinder then
-determines the creepage.  They are Eq. (22) of Zobova and Goryacheva, Acta Mechanica (2020), with a
-force and a torque, divided by P and P R, and with the moment M split between the two bodies.
 """
 
 from __future__ import annotations

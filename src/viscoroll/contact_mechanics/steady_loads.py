@@ -1,31 +1,22 @@
-"""Loads of steady rolling, and their balance with the moments of the law.
+"""Loads of steady rolling, checked and flattened (:class:`Loads`), and their balance with the
+moments of the law.
 
-Loads of steady rolling, checked and flattened: :class:`Loads`.
+All is dimensionless; a law is a :class:`LawTable`, the rows of one material.  P is the load that
+presses the cylinder on its base, R its radius, kappa = R/l0 with the contact length at rest l0, mu
+the coefficient of friction, and j the moment of inertia divided by m R^2.
 
-P is the load that presses the cylinder on its base, R its radius, kappa = R/l0 with the contact
-length at rest l0, mu the coefficient of friction, and j the moment of inertia divided by m R^2.
-
-How shear acts back on the rolling moments of a cover, for steady states: the traction of a load,
-and the speeds.
-
-With the factors a and excesses e of base (b) and cylinder (c) of
-:class:`.cover_law.Reaction`, the moments are M_half_space = M_b - Q (a_b + e_b |Q|/mu)
-and M_cylinder = M_c - Q (a_c + e_c |Q|/mu), with M_b and M_c those without
-traction.  Equilibrium at V > 0 under a force f and a torque q is
+**Covers**: shear acts back on the rolling moments (:class:`Shear`).  With the factors a and
+excesses e of base (b) and cylinder (c) of :class:`.cover_law.Reaction`, the moments are
+M_half_space = M_b - Q (a_b + e_b |Q|/mu) and M_cylinder = M_c - Q (a_c + e_c |Q|/mu), with M_b and
+M_c those without traction.  Equilibrium at V > 0 under a force f and a torque q is
 
     Q (1 + a_b + e_b |Q|/mu) = M_b - f        Q (1 - a_c - e_c |Q|/mu) = q - M_c
 
-All is dimensionless; a law is a :class:`LawTable`, the rows of one material.
-
-Steady states on a table of the coupled solution: the balance of axis and cylinder, at speeds and
-at rest.
-
-At V > 0 the axis is in balance where Q - M_half_space = -f, the cylinder where Q + M_cylinder = q,
-with force f and torque q.  The left sides rise with the creepage, so that one of the two gives the
-creepage at each speed, and the other one the speeds.  Where friction does not suffice, the part of
-the load that is not balanced is returned, and the state does not exist.
-
-All is dimensionless; a law is a :class:`LawTable` with ``coupled`` rows.
+**Tables of the coupled solution** (laws with ``coupled`` rows): at V > 0 the axis is in balance
+where Q - M_half_space = -f, the cylinder where Q + M_cylinder = q, with force f and torque q.  The
+left sides rise with the creepage, so that one of the two gives the creepage at each speed, and the
+other one the speeds.  Where friction does not suffice, the part of the load that is not balanced
+is returned, and the state does not exist.
 """
 
 from __future__ import annotations
@@ -166,7 +157,7 @@ def _split_feedback(name: str, value: ArrayLike | Feedback | None) -> tuple[Any,
     if not isinstance(value, Feedback):
         return check_array(name, 0.0 if value is None else value), 0.0, 0.0
     if not isinstance(value.value, float | np.ndarray):
-        raise described_error(name, "is a Feedback of a Schedule or function", "constant in time")
+        raise described_error(name, "is a Feedback that varies with time", "constant in time")
     if value.shape:
         raise described_error(
             name, f"is a Feedback with gains of shape {value.shape}", "one whose gains are numbers"
@@ -240,12 +231,15 @@ class Shear(NamedTuple):
     def traction_of_both(
         self, on_axis: Floats, on_spin: Floats, of_force: float, of_torque: float
     ) -> Floats:
-        """Return the Q of both balances without omega, (n,): ``of_torque`` times Q (1 + a_b + e_b
-        |Q|/mu) plus ``of_force`` times Q (1 - a_c - e_c |Q|/mu) is the same sum of loads.
+        """Return the Q of equilibrium, (n,), where both loads have a gain on omega, without omega.
 
-        on_axis, on_spin : moment less force on the axis, torque less moment on the cylinder, at
-            omega = 0 or at any other speed, (n,).
-        of_force, of_torque : gains on omega of force and torque.
+        With gains G_f and G_q the two equations (module) are Q (1 + a_b + e_b |Q|/mu) = r_f - G_f
+        omega and Q (1 - a_c - e_c |Q|/mu) = r_q + G_q omega.  G_q times the first plus G_f times
+        the second has no omega.
+
+        on_axis, on_spin : r_f = M_b - f and r_q = q - M_c at omega = 0, (n,); values at any other
+            omega, the same in both, give the same Q.
+        of_force, of_torque : G_f and G_q.
         Raises ParameterError where more than one Q balances.
         """
         factor = of_torque * (1.0 + self.half_space) + of_force * (1.0 - self.cylinder)
@@ -260,9 +254,8 @@ class Shear(NamedTuple):
         """Return how a small speed changes the balance of a cylinder at rest under a traction.
 
         Q : traction at rest, |Q| < mu, (n,).
-        Returns (1 + d(Q (a_b + ...))/dQ, factor of a change of Q on the axis; the same on the
-        cylinder; dM_half_space/dV
-        and dM_cylinder/dV at fixed Q), (n,) each.
+        Returns (slopes over Q of the left sides of both equations (module), that of the axis and
+        that of the cylinder; dM_half_space/dV and dM_cylinder/dV at fixed Q), (n,) each.
         """
         law, kappa, mu = self.contacts
         used = np.abs(Q) / mu
@@ -287,11 +280,12 @@ class Shear(NamedTuple):
 
 
 def _solve_quadratic(factor: Floats, excess: Floats, rest: Floats) -> Floats:
-    """Return the y with y (factor + excess |y|) = rest that is 0 where ``rest`` is; (n,),
-    dimensionless, factor > 0.
+    """Return the solution y of y (factor + excess |y|) = rest, (n,), dimensionless.
 
-    Where |rest| is above what the left side reaches the y of its maximum is returned, which is
-    beyond mu.
+    Of several it is the one that goes to 0 with ``rest``.  Where ``excess`` < 0 and |rest| is above
+    the largest value of the left side, it is the y of that value, which is beyond mu.
+
+    factor, excess, rest : coefficients, factor > 0, the others of any sign, (n,).
     """
     root = np.sqrt(np.maximum(factor * factor + 4.0 * excess * np.abs(rest), 0.0))
     return 2.0 * rest / (factor + root)
@@ -310,10 +304,12 @@ def creep_at_rest(law: LawTable) -> tuple[float, float]:
 
 
 def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
-    """Return delta - delta_0 = delta_star (d + c d^2) of d delta_star, (n,), dimensionless.
+    """Return the creepage of a cover less that of free rolling, delta - delta_0 = delta_star (d + c
+    d^2), from that of half-spaces, d delta_star (:mod:`.cover_law`); (n,), dimensionless.
 
     contacts : the law, at a kappa and a mu; of half-spaces the result is ``creep``.
-    V, creep : speeds, >= 0, and d delta_star, of either sign, (n,).
+    V : speeds, >= 0, (n,).
+    creep : d delta_star, d in [-1, 1], (n,).
     """
     if contacts.law.cover is None:
         return creep
@@ -323,9 +319,10 @@ def creep_beyond_free(contacts: Contacts, V: Floats, creep: Floats) -> Floats:
 
 
 def shear_at(contacts: Contacts, V: Floats) -> Shear:
-    """Return how shear acts back on the moments at speeds V >= 0, (n,), as :class:`Shear`.
+    """Return how shear acts back on the moments, as :class:`Shear`.
 
     contacts : the law, at a kappa and a mu; of half-spaces all is 0.
+    V : speeds, >= 0, dimensionless, (n,).
     """
     fields = np.zeros((4, V.size))
     if contacts.law.cover is not None:
@@ -378,7 +375,7 @@ def _cancelling_error(of_force: float, of_torque: float) -> ParameterError:
     return described_error(
         "gains on omega of force and torque",
         f"{of_force:g} and {of_torque:g} nearly cancel",
-        "a sum farther from 0 for a layer, on which they leave the traction open",
+        "numbers whose sum is farther from 0, else the traction on a layer is undetermined",
     )
 
 

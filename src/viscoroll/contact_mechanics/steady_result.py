@@ -57,8 +57,8 @@ class Loss:
     Attributes
     ----------
     slip : power that friction takes, at least 0: (omega - V) Q of a scene, (omega R - V) Q of a
-    Cylinder; on a cover less
-        the power that the stretch of its surface takes from it, V Q delta_0 and more.
+        Cylinder; on a cover less the power that the stretch of its surface takes, which is V Q
+        delta_0 to first order in Q.
     half_space, cylinder : power that either body dissipates, at least 0: V M_half_space and omega
         M_cylinder (of a Cylinder the first divided by R), of a cover with its moments without
         traction.  The sum of all three is the power of force and torque.

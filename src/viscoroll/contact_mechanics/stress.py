@@ -52,8 +52,12 @@ _REASONS = {
 
 @lru_cache(maxsize=16)
 def coupled_row(pair: CoupledPair, u: float, mu: float) -> CoupledRow:
-    """Return the row of a pair at u = kappa |V| with friction mu, kept for later calls.
+    """Return the states of a pair at one speed, which are kept for later calls.
 
+    pair: both bodies.
+    u: kappa |V|, dimensionless, >= 0 or infinite.
+    mu: coefficient of friction, > 0.
+    Returns the :class:`.coupled_pair.CoupledRow`.
     Raises ConvergenceError where full slip has no solution.
     """
     row = CoupledRow(pair, u, mu)
@@ -70,13 +74,22 @@ def refuse_unsolved(status: Any, creeps: Any, u: float, mu: float) -> None:
     """
     for code, creep in zip(np.asarray(status, int), creeps, strict=True):
         if code:
-            state = f"kappa |V| = {u:g}, mu = {mu:g}, 2 kappa delta = {creep:g}"
-            raise ConvergenceError(f"contact by method 'coupled': {_REASONS[int(code)]} at {state}")
+            state = (
+                f"kappa |V| = {u:g} (V in units of R/T_ref), mu = {mu:g}, 2 kappa delta = {creep:g}"
+            )
+            problem = f"contact by method 'coupled': {_REASONS[int(code)]} at {state}"
+            raise ConvergenceError(f"{problem}; please report it")
 
 
 class _States:
-    """States as vectors: kappa, mu, V, slip speed omega - V and creepage, and the rows that they
-    have in common.
+    """States of a call as vectors (n,), dimensionless, and which of them have kappa |V| and mu, a
+    row, in common.
+
+    shape : shape to which the arguments broadcast, of n elements.
+    kappa, mu, V : as in the scene, with V of any sign; sign : that of V, 1.0 of 0.
+    slip, delta : omega - V, and the creepage; infinite for omega other than 0 at V = 0.
+    u, creep : kappa |V|, and 2 kappa delta.
+    row : number of the row of each state, from 0.
     """
 
     def __init__(self, scene: Parameters, V: Floats, creep: Floats, creep_is_omega: bool) -> None:

@@ -1,14 +1,9 @@
-"""Whether a state satisfies the assumptions of the model.
+"""Which assumptions of the model a state violates: :func:`validity`.
 
-Whether the law of steady rolling may drive a motion, and down to which speed:
-:class:`Steadiness`.
-
-The assumptions of the law of a layer of finite thickness, and its stated errors:
-:func:`assess_cover`, :func:`assess_traction`.
-
-l0 is the contact length at rest that the same bodies would have as half-spaces.
-
-Which assumptions of the model a state violates: :func:`validity`.
+:class:`Steadiness` says whether the law of steady rolling may drive a motion, and down to which
+speed.  :func:`assess_cover` and :func:`assess_traction` examine the assumptions of the law of a
+layer of finite thickness, and state its errors.  l0 is the contact length at rest that the same
+bodies would have as half-spaces.
 """
 
 from __future__ import annotations
@@ -447,8 +442,8 @@ def assess_traction(scene: Parameters, V: Any) -> Assumption:
     )
     if scene.tabulated:
         sentence = (
-            "shear acts back on the pressure: states with traction are of a table of the coupled "
-            f"solution; with coupled=False {errors}"
+            "shear acts back on the pressure: states with traction are taken from a table of the "
+            f"coupled solution; with coupled=False {errors}"
         )
         return Assumption(np.full(np.shape(value), True)[()], value, sentence)
     sentence = f"shear acts back on the pressure: compared with method='coupled' {errors}"

@@ -70,8 +70,11 @@ def block_reader(array: Floats, shape: tuple[int, ...]) -> Callable[[int, int], 
 
 
 def broadcast_rows(arrays: Collection[Any], shape: tuple[int, ...]) -> Floats:
-    """Return arrays and numbers of doubles that broadcast to a shape, as rows of one array, (rows,
-    states); of the shape () there is one state.
+    """Return arrays and numbers as the rows of one array, each broadcast to a shape and flattened.
+
+    arrays: doubles, each a number or an array that broadcasts to ``shape``.
+    shape: shape of the states; () of a single state.
+    Returns a new array (rows, states), in the order of ``arrays``.
     """
     rows = np.empty((len(arrays), *(shape or (1,))))
     for row, array in zip(rows, arrays, strict=True):
@@ -211,9 +214,9 @@ def _submit_all(
 ) -> None:
     """Run all blocks on a pool, await them in order, and return when all are done.
 
-    When a failed block is awaited, no further blocks are submitted, those that have not begun are
-    cancelled, and its exception is raised, of several that failed that of the first in the order of
-    blocks; running ones are not awaited.
+    If a block fails, its exception is raised when it is awaited; of several that of the first
+    block.  Then no further blocks are submitted, those that have not begun are cancelled, and those
+    that run are not awaited.
 
     pool: :class:`concurrent.futures.Executor`, of threads.
     work: function (start, stop) -> None.

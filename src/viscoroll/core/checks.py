@@ -1,12 +1,8 @@
-"""Checks of arguments, and the types of arrays that they give.
+"""Checks of arguments, and the types of arrays and numbers, for type checkers.
 
-Types of arrays, and of the numbers that callers may give, for type checkers.
-
-Checks of numbers that callers give: they become float64 in the unit of the argument, or raise
-ParameterError.
-
-Numbers must be finite and in range, and the shapes of arrays must broadcast.  A number that has a
-unit is converted (:mod:`.quantities`).
+A number or an array that a caller gives becomes float64 in the unit of the argument, or raises
+ParameterError: it must be finite and in range, and the shapes of arrays must broadcast.  A number
+that has a unit is converted (:mod:`.quantities`).
 """
 
 from __future__ import annotations
@@ -64,10 +60,10 @@ def check_array(name: str, value: ArrayLike, **bounds: Any) -> Floats:
     ----------
     name : name of the argument, for errors.
     value : a number, an array or a list, perhaps with a unit.
-    **bounds : as in :func:`check_array_extent`, in ``unit``: ``unit`` of the argument, to which a
-        value with a unit is converted (default "1"); ``low`` and ``high``, smallest and largest
-        allowed value; ``above``, number that all values must exceed.  Without the last three all
-        finite values are allowed.
+    **bounds : unit and range, as in :func:`check_array_extent`: ``unit`` of the argument, to which
+        a value with a unit is converted (default "1"), and in that unit ``low`` and ``high``,
+        smallest and largest allowed value, and ``above``, a number that all values must exceed.
+        Without the last three all finite values are allowed.
 
     Returns
     -------
@@ -136,8 +132,10 @@ def check_array_extent(
 
 
 def _range_words(low: float, above: float, high: float) -> str:
-    """Return a range in words, "" for all finite numbers; arguments as in
-    :func:`check_array_extent`.
+    """Return a range in words that follow "must be", as "finite and > 0".
+
+    low, above, high: bounds, as in :func:`check_array_extent`.
+    Returns "" where all finite numbers are allowed.
     """
     if high < math.inf:
         return f"in [{low:g}, {high:g}]" if low > -math.inf else f"in ({above:g}, {high:g}]"
@@ -349,8 +347,11 @@ def check_integer(name: str, value: Any, low: int, high: float = math.inf) -> in
 
 
 def check_text(name: str, value: Any) -> None:
-    """Raise ParameterError if the argument ``name`` has a ``value`` that is no text, or one that
-    files cannot hold.
+    """Check an argument that must be a text which files can hold.
+
+    name: name of the argument, for the error.
+    value: what a caller gave.
+    Raises ParameterError for what is no text, and for one with NUL or surrogates.
     """
     if not (
         isinstance(value, str) and value == value.replace("\0", "").encode(errors="ignore").decode()

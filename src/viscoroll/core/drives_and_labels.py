@@ -341,12 +341,14 @@ class Labels(NamedTuple):
     coords: dict[str, Any]
 
     def axes_in_front(self, shape: tuple[int, ...], after: int = 0) -> int:
-        """Return how many axes an array has before those of the arguments, as arrays of the roller
-        give them.
+        """Return how many axes an array of results has before those of the arguments.
 
-        shape: shape of the array.
-        after: number of its axes after those of the arguments.
-        Returns -1 if the array has not the axes of the arguments there.
+        There are such axes where the parameters of the roller are arrays of more axes.
+
+        shape: shape of the array: axes in front, then those of the arguments, then ``after`` more.
+        after: number of its axes after those of the arguments, >= 0.
+        Returns their number, >= 0; -1 if the sizes of the axes at that place are not those of the
+        arguments.
         """
         front = len(shape) - len(self.shape) - after
         return front if front >= 0 and shape[front : len(shape) - after] == self.shape else -1
@@ -389,10 +391,12 @@ class Labels(NamedTuple):
         return pd.Series(values, index=self.like, name=name)
 
     def differ(self, name: str, values: Any) -> bool:
-        """Whether a coordinate or an axis has the ``name`` of an argument, but not its ``values``,
-        an array.
+        """Whether a coordinate or an axis has the name of an argument, but other values.
 
-        An axis without a coordinate differs from a number alone.
+        name: name of the argument.
+        values: its values, an array.
+        Returns False if no coordinate and no axis has that name.  An axis without a coordinate has
+        no values, and counts as different where the argument is a single number.
         """
         import xarray as xr
 
@@ -476,7 +480,7 @@ def strip_labels(given: dict[str, Any], units: HasUnits) -> tuple[dict[str, Any]
     Raises
     ------
     ParameterError
-        What :func:`.drive_arguments.convert_argument` refuses, as a unit of another dimension;
+        What :func:`convert_argument` refuses, as a unit of another dimension;
         numbers of other kinds that are not finite; labelled arrays beside plain ones (numbers and
         schedules
         may stand beside them), arrays of xarray whose common axes have different coordinates,

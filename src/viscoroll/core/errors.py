@@ -1,6 +1,4 @@
-"""Exceptions and warnings of the package.
-
-The exceptions of this package, and the meaning of a kernel's status code.
+"""Exceptions and warnings of the package, and what the status code of a motion means.
 
 - :class:`ParameterError`: a value out of its range, NaN or infinite where it must not be, an
   unknown name, inputs that do not fit together.  It is also a ``ValueError``.
@@ -13,11 +11,10 @@ The exceptions of this package, and the meaning of a kernel's status code.
 Kernels do not raise exceptions, they return a status.  Each motion has a status with a sentence
 (:class:`MotionStatus`); a contact that cannot be solved becomes a ConvergenceError.
 
-Imports of packages that only some functions need, and that an extra of the installation
-brings.
-
-Misspelt names: an unknown key or heading, and the unknown argument of a public call, of which the
-TypeError names the argument that was meant, as Python does from 3.13 on.
+The module also imports packages that only some functions need and that an extra of the
+installation brings (:func:`import_extra`), and finds the name that was meant where one is misspelt:
+a key of a file, a heading of a column, or an argument of a public call (:func:`suggestion`,
+:func:`suggest_arguments`).
 """
 
 from __future__ import annotations
@@ -451,8 +448,12 @@ def import_extra(package: str, extra: str) -> Any:
 
 
 def suggestion(name: str, candidates: Iterable[str]) -> str:
-    """Return a question for the one of ``candidates`` that is most similar to ``name``, or differs
-    by capitals alone; "" if none is.
+    """Return the question "; did you mean 'NAME'?", to be appended to a message.
+
+    name: name that is not known.
+    candidates: known names.  The one that differs from ``name`` by capitals alone is suggested,
+        else the most similar one.
+    Returns "" if none is similar.
     """
     import difflib
 
@@ -464,13 +465,17 @@ def suggestion(name: str, candidates: Iterable[str]) -> str:
 
 @cache
 def _suggesting(function: Any) -> Any:
-    """Return a function that does the same, and whose TypeError of an unknown argument names the
-    most similar one.
+    """Return a function that calls another one, and adds to its TypeError of an unknown argument
+    the name of the most similar argument.
+
+    function: function or method of the package; the result is kept for the next call.
     """
 
     @wraps(function)
     def call(*arguments: Any, **named: Any) -> Any:
-        """Call the function; add a suggestion to its TypeError of an unknown argument name."""
+        """Call the function with ``arguments`` and ``named``, and return its result; to its
+        TypeError of an unknown argument name a suggestion is added.
+        """
         try:
             return function(*arguments, **named)
         except TypeError as error:
@@ -485,13 +490,15 @@ def _suggesting(function: Any) -> Any:
 
 
 def suggest_arguments(owner: Any, names: tuple[str, ...] | None = None) -> None:
-    """Replace public functions of a module or a class of this package by such that suggest
-    arguments, once.
+    """Replace the public functions of a module or class of this package, so that their TypeError of
+    an unknown argument names the argument that was meant, as Python does itself from 3.13 on.
 
-    owner: module or class; changed, as is the module that defines a function, by whose name it is
-    pickled.
-    names: names of the functions, of the classes whose methods are replaced, and of the modules
-        whose names in ``__all__`` are; None: all.
+    A second call changes nothing.
+
+    owner: module or class, which is changed.  The module that defines a function is changed too,
+        since a function is pickled by its name there.
+    names: what to replace in ``owner``: functions by their names, the methods of classes, and of
+        modules the functions and classes in their ``__all__``.  None: all public ones.
     """
     for name in names or [name for name in vars(owner) if name == "__init__" or name[0] != "_"]:
         value = vars(owner).get(name)

@@ -43,8 +43,11 @@ _SEAL_SIZE = len(_SEAL) + hashlib.sha256().digest_size * 2 + 1
 
 
 def as_path(path: Any) -> Path:
-    """Return a path that a caller gave; raise FileError for what is none, as None, a number, bytes
-    or an open file.
+    """Return a path that a caller gave.
+
+    path: a text or an object with ``__fspath__``.
+    Raises FileError for what is no path, as None, a number, bytes or an open file, and for a text
+    with a null character.
     """
     if not isinstance(path, str | PathLike) or "\0" in str(path):
         raise FileError(
@@ -183,7 +186,7 @@ def _sealed_arrays(content: bytes) -> Any:
     import numpy as np
 
     if not seal_matches(content):
-        raise ValueError("its bytes differ from the SHA-256 at their end")
+        raise ValueError("its bytes differ from the checksum (SHA-256) at their end")
     return np.load(io.BytesIO(content))
 
 
@@ -239,7 +242,7 @@ def read_sealed(path: str | PathLike[str], max_bytes: int, kind: str, remedy: st
         raise FileError(path, f"{problem}: it must be a {kind}, with the suffix .nc")
     if seal_matches(content) is False:
         raise FileError(
-            path, f"is damaged: its bytes differ from the SHA-256 at their end; {remedy}"
+            path, f"is damaged: its bytes differ from the checksum at their end; {remedy}"
         )
     return content
 

@@ -1,10 +1,7 @@
-"""Inputs with units, and factors of conversion.
+"""Inputs with units: quantities of pint, astropy and unyt, arrays of xarray with an attribute
+``units``, columns of pandas with a unit in the title, durations of Python, pandas and numpy.
 
-Factors of conversion between units, by pint, which is imported at the first conversion.
-
-Inputs with units: quantities of pint, ``units`` attributes of xarray, durations of Python,
-pandas and numpy.
-
+Factors of conversion are those of pint, which is imported at the first conversion.
 :func:`to_unit` converts a value with a unit to the unit of the argument, or raises ParameterError.
 Values without a unit, and the labels of xarray and pandas, stay as they are.
 """
@@ -94,8 +91,9 @@ def conversion_factor(unit: str, target: str) -> tuple[float, float]:
 
 
 def is_unit(text: str) -> bool:
-    """Whether pint reads a text as a unit, of any dimension.  It reads "C" as coulomb, not as
-    degree Celsius.
+    """Return whether pint reads a text as a unit, of any dimension.
+
+    text: the text, as "km/h".  "C" is coulomb, not degree Celsius.
     """
     try:
         registry().parse_units(pint_spelling(text))
@@ -105,8 +103,9 @@ def is_unit(text: str) -> bool:
 
 
 def pint_spelling(unit: str) -> str:
-    """Return a ``unit`` in the spelling of pint: superscripts and signs as ASCII, powers with
-    ``**``; "1" of "".
+    """Return a unit in the spelling of pint: superscripts and signs as ASCII, powers with ``**``.
+
+    unit: unit as files and people write it, as "N/mm²"; of "" the result is "1".
     """
     text = unit.strip()
     for character, spelling in _SPELLINGS.items():

@@ -136,7 +136,7 @@ class Result:
         Raises
         ------
         TypeError
-            Of an :class:`.identification.Identification` and of the results of a run: they have
+            Of an :class:`viscoroll.Identification` and of the results of a run: they have
             attributes alone.
 
         Examples

@@ -1,16 +1,11 @@
-"""Units and symbols of all quantities.
-
-Units of each quantity: the one table of dimensions, and the units in which a roller counts
-(:class:`Scale`).
+"""Units and symbols of all quantities: the one table of dimensions, the units in which a roller
+counts (:class:`Scale`), and symbols, meanings and equations, read from symbols.csv.
 
 Quantities of a scene are dimensionless: each is divided by a unit that is made of the radius R, the
 time T_epsilon, the load P, the mass m, the contact length at rest l0 and the modulus E'.
 Quantities of a cylinder are in SI units, and a material may have a unit of time of its own (T_ref).
 
-Symbols of all quantities: name in code, LaTeX symbol, meaning, range, equation of the paper,
-read from symbols.csv.
-
-Files, figures and ``docs/symbols.md`` take their words from here, and the units from :mod:`.scale`.
+Files, figures and ``docs/symbols.md`` take their words and units from here.
 """
 
 from __future__ import annotations

@@ -6,8 +6,8 @@ and others.
 
 There are two models.  ``ContactElement`` gives the forces of a contact, with exact slopes, to a
 multibody model that knows the motion of the cylinder.  ``Roller`` is the cylinder itself; in
-co-simulation it has its own step-size control.  Read in this order: :mod:`fmu_build`,
-:mod:`fmu_build` (modelDescription.xml), fmu.c, :mod:`fmu_build`.
+co-simulation it has its own step-size control.  :mod:`fmu_build` writes descriptions and sources,
+and compiles fmu.c, which has the functions of the standard.
 """
 
 from .fmu_build import build

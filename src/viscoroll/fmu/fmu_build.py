@@ -1,11 +1,9 @@
-"""Functional mock-up units: variables, description, archive.
+"""Functional mock-up units (FMU): sources, description and compiled library, packed into one
+archive by :func:`build`.
 
-The variables of both models, read from variables.csv in the order of their value references,
-which start with 1.
-
-modelDescription.xml of FMI 2.0 and 3.0, and buildDescription.xml of 3.0.
-
-Sources, description and compiled library of an FMU, packed into one archive: :func:`fmu_build`.
+The variables of both models are read from variables.csv, in the order of their value references,
+which start with 1.  The description is modelDescription.xml of FMI 2.0 or 3.0, of 3.0 also
+buildDescription.xml.
 """
 
 from __future__ import annotations
@@ -380,7 +378,7 @@ def build(given: Any, path: str | PathLike[str], model: str = "Roller", version:
     check_choice("model", model, *MODELS)
     version = check_integer("version", version, 2, 3)
     if isinstance(given, LawTable) and given.coupled is not None:
-        allowed = "a law without one: FMUs do not read it, C does (tables.export to .h)"
+        allowed = "a law without one, which FMUs do not read (tables.export writes it to .h, for C)"
         raise described_error("given", "is a table of the coupled solution", allowed)
     law = tables.law(given)
     table = parse_law(dataset_content(law), path)
@@ -474,7 +472,7 @@ def _start_values(
     variables.csv.
 
     variables: variables of the model.
-    given: argument ``given`` of :func:`fmu_build`; the numbers of a Cylinder become start values,
+    given: argument ``given`` of :func:`build`; the numbers of a Cylinder become start values,
     for 1 m of its width.
     table: :class:`LawTable`, law of ``given``, which has T_ref (s) and, of SI materials, a ``pair``
     with E_prime (Pa).

@@ -138,7 +138,7 @@ def heat_limit(
     allowed = check_number("allowed", allowed, unit=SI)
     value = check_array(name, plain[name], above=0.0 if name == "load" else -math.inf)
     if name == "V" and not value.all():
-        raise described_error("V", "is 0, where no load heats,", "other than 0")
+        raise described_error("V", "is 0, where the roller does not heat", "other than 0")
     if not allowed > np.max(check_array("ambient", plain["ambient"]), initial=-math.inf):
         raise ParameterError("allowed", allowed, f"above ambient = {np.max(plain['ambient']):g}")
     arrays = {name: value} | {key: np.asarray(plain[key]) for key in ("ambient", "conductance")}
@@ -158,10 +158,14 @@ def heat_limit(
 
 
 def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ...]:
-    """Return the limit, V or the load, the temperature and whether it is a runaway, of one law,
-    arrays in the shape of the states.
+    """Return the limits of :func:`heat_limit` for states with one law.
 
-    given: ambient, conductance, and load or V; without V the speed is sought.
+    roller: the cylinder.
+    allowed: allowed temperature, degrees Celsius.
+    given: name -> array, "ambient", "conductance", and "load" (the speed is sought) or "V" (the
+        load is sought).
+    Returns (largest speed, m/s, or load, N/m; temperature from which a larger one leads beyond the
+    allowed one; whether the cold branch ends there), arrays in the shape of the states.
     """
     from scipy.optimize.elementwise import find_root
 
@@ -171,7 +175,11 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
     check_ambient(np.asarray(allowed), states.curve, "allowed")
 
     def above(ln: Floats, n: Integers) -> Floats:
-        """Return the coldest equilibrium less the allowed temperature, K."""
+        """Return the coldest equilibrium less the allowed temperature, K, (m,).
+
+        ln: ln of the speed, m/s, or where V is given of the factor of the load, (m,).
+        n: indices of the states, (m,).
+        """
         if states.V is None:
             zeros = zeros_at_speed(states, n, np.exp(ln))
         else:
@@ -197,8 +205,14 @@ def _limits(roller: Any, allowed: float, given: dict[str, Any]) -> tuple[Any, ..
 def _limit_of_cover(
     roller: Any, allowed: float, load: Any = None, V: Any = None, **given: float
 ) -> tuple[Any, ...]:
-    """Return :func:`_limits` of a cover, of which every load has a law of its own.
+    """Return :func:`_limits` of one state of a cover, of which every load has a law of its own.
 
+    With V given the load is sought at which the largest speed is V, by the secant method.
+
+    roller: the cylinder with the cover.
+    allowed: allowed temperature, degrees Celsius.
+    load, V: N/m and m/s, one of the two, a number; None: it is sought.
+    given: ambient and conductance, numbers.
     Raises ParameterError where a load on the way to the limit makes the cover too thin for its law.
     """
     from scipy.optimize import root_scalar
@@ -272,7 +286,8 @@ def turning_points(roller: Roller, *, ambient: float, conductance: float) -> Tur
     curve = states.curve
 
     def ln_V(x: Floats) -> Floats:
-        """Return ln of the speed, m/s, of which log2 a_T is that of an equilibrium."""
+        """Return ln of the speed, m/s, whose equilibrium is at the temperature of log2 a_T = x,
+        (m,)."""
         theta = curve.temperature_of(x)
         off = given["conductance"] * (theta - given["ambient"])
 
@@ -354,9 +369,8 @@ def conductance(
     h: Any = arrays.get("thickness")
     k: Any = arrays.get("conductivity")
     if core == "cooled" and (h is None or k is None):
-        raise described_error(
-            "core", "is 'cooled'", "'insulated' without a thickness and a conductivity"
-        )
+        fault = "is 'cooled', but thickness and conductivity of the cover are not both given"
+        raise described_error("core", fault, "'insulated', or give both")
     if h is not None and np.any(h >= arrays["R"]):
         raise ParameterError("thickness", h, f"below R = {R}")
     width = 2.0 * math.pi * (arrays["R"] if h is None else arrays["R"] - 0.5 * h)
@@ -513,15 +527,17 @@ def warming(
             rates, span, y, "DOP853", stops, rtol=_TIME_TOLERANCE, atol=_TIME_TOLERANCE
         )
         if not found.success:
-            what = f"cannot be integrated ({found.message})"
-            raise described_error("temperature", what, "one that a balance has")
+            what = f"cannot be integrated to t = {span[1]:g} s ({found.message})"
+            raise described_error(
+                "temperature", what, "bounded: reduce V or the load, or shorten t"
+            )
         y = found.y[:, -1]
         parts.append(found.y[:, : own.size])
     course, heat, off = np.split(np.concatenate(parts, axis=1), 3)
     if (hot := course.max(initial=-np.inf)) > states.curve.high:
         sentence = (
-            f"the roller warms to {hot:.5g} degrees Celsius, beyond the shift's "
-            f"{states.curve.high:g}"
+            f"the roller warms to {hot:.5g} degrees Celsius: must be at most "
+            f"{states.curve.high:g}, the highest temperature of the shift of its material"
         )
         raise ParameterError("temperature", hot, f"at most {states.curve.high:g}", sentence)
     V_t = np.tile([speed(time) for time in times.tolist()], theta.size)

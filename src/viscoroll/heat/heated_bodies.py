@@ -1,14 +1,14 @@
 """The arguments of the functions of heat, checked and flattened, and the heat of the body in each
 state: :class:`HeatStates`.
 
-One temperature a body, W per m of length: capacity dtheta/dt = w(V, theta) - conductance (theta -
-ambient).  The law at theta is that of the reference at the speed V a_T; with a vertical shift also
-at kappa sqrt(b_T), but for a body beside an elastic one, whose law at theta is made where it is
-read.
+A body has one temperature theta: capacity dtheta/dt = w(V, theta) - conductance (theta - ambient),
+with w the part of the loss that heats it, W per m of length.
 
-Time-temperature superposition makes the law at a temperature that of the reference at the speed V
-a_T.  A vertical shift b_T multiplies all moduli, so that kappa, with the contact length at rest,
-has the factor sqrt(b_T): :class:`ShiftCurve`.
+The reference is the material at its own ``temperature``.  At theta all its times are multiplied by
+a_T and all its moduli by b_T, so that the law at theta is that of the reference at the speed V a_T
+and, since the contact length at rest changes, at kappa sqrt(b_T) (:class:`ShiftCurve`).  This fails
+for a body with b_T beside an elastic one, whose modulus stays: their law at theta is made where it
+is read.
 """
 
 from __future__ import annotations
@@ -100,8 +100,11 @@ class ShiftCurve:
     ends: tuple[float, float] = (0.0, 0.0)
 
     def factors(self, theta: Floats) -> tuple[Floats, Floats]:
-        """Return a_T and sqrt(b_T) relative to the reference at temperatures (n,), to the bits of
-        ``Material.at``; outside of low to high those of the nearer end.
+        """Return a_T and sqrt(b_T), (n,) each, relative to the reference, dimensionless.
+
+        They have the bits of ``Material.at``, which calls the shift for each temperature.
+
+        theta: temperatures, degrees Celsius, (n,); outside of low to high the nearer end is taken.
         """
         shift: Any = self.material.shift
         vertical = self.material.vertical_shift
@@ -121,8 +124,12 @@ class ShiftCurve:
         return a_T[index], root_b[index]
 
     def at(self, theta: Floats) -> tuple[Floats, Any]:
-        """Return :meth:`factors` at temperatures (n,), of a WLF or Arrhenius to rounding, and
-        beyond the range extrapolated: ln a_T as a straight line, b_T as a constant.
+        """Return a_T and sqrt(b_T) as :meth:`factors`, but fast and at any temperature.
+
+        A WLF or Arrhenius is evaluated by its formula, which agrees to rounding.  Beyond the range
+        of other shifts log2 a_T goes on as a straight line, and b_T as a constant.
+
+        theta: temperatures, degrees Celsius, (n,).
         """
         if self.slope:
             log2 = self.slope / np.maximum(theta - self.pole, _LEAST) - self.own
@@ -152,8 +159,12 @@ def shift_curve(material: Material) -> ShiftCurve:
 
 @lru_cache(maxsize=64)
 def _make_curve(material: Material, shift: Any, vertical: Any) -> ShiftCurve:
-    """Return :func:`shift_curve` of a material with these shifts, by which materials do not
-    differ.
+    """Return the :class:`ShiftCurve` of a material, kept for equal arguments.
+
+    material: the material, of which the temperature is read.
+    shift, vertical: its shifts, which are arguments too since materials compare equal without them.
+    Raises ParameterError for a missing shift, and for one that rises with temperature or is not
+    defined at the reference.
     """
     reference = material.temperature
     if shift is None:
@@ -197,7 +208,8 @@ def _sampled(shift: Any, reference: float | None) -> tuple[Floats, Floats]:
 
     shift: function of a temperature in degrees Celsius, whose attribute ``range``, if it has one,
         is (lowest, highest) temperature.
-    reference: temperature of the material; None: that at which a_T is 1.
+    reference: temperature of the material, degrees Celsius; None: that at which a_T is 1.
+    Returns (temperatures, degrees Celsius, ascending and evenly spaced; a_T there), (n,) each.
     Raises ParameterError for a shift that is not defined at the reference.
     """
     low, high = getattr(shift, "range", _SAMPLED_RANGE)
@@ -276,9 +288,12 @@ class HeatStates:
     def heat(self, n: Integers, theta: Floats, V: Any, more: Any = 1.0) -> Floats:
         """Return the heat of the body, W/m, (m,).
 
-        n, theta: indices of states and temperatures, degrees Celsius, (m,) each.
-        V: m/s, any sign; more: the load over that of the state, of half-spaces that roll freely;
-        numbers or (m,).  A slip that friction does not allow counts as none.
+        n: indices of states, (m,).
+        theta: temperatures, degrees Celsius, (m,).
+        V: speeds, m/s, any sign, a number or (m,).
+        more: factor of the load of the state, a number or (m,); other than 1 only for half-spaces
+            that roll freely.
+        Where friction cannot carry the load, the heat is that without slip.
         """
         factors = self.curve.at(theta)
         if self.loads is None:
@@ -288,8 +303,9 @@ class HeatStates:
         return self.body.part * rolling + self.body.slip * slip
 
     def fields(self, n: Integers, theta: Floats, V: Floats) -> dict[str, Floats]:
-        """Return the fields of a result by name, in SI units, (m,) each; arguments as in
-        :meth:`heat`.
+        """Return the fields of a result by name, in SI units, (m,) each.
+
+        n, theta, V: indices of states, temperatures and speeds, as in :meth:`heat`.
 
         ``a_T`` is NaN outside of the range of the shift, and ``loss`` where the friction does not
         suffice: the others mean nothing there.
@@ -312,7 +328,13 @@ class HeatStates:
     def _free(
         self, n: Integers, factors: tuple[Floats, Any], V: Any, more: Any, names: tuple[str, ...]
     ) -> Floats:
-        """Return fields of free rolling, dimensionless, (names, m), at a_T and sqrt(b_T)."""
+        """Return fields of free rolling at temperatures, dimensionless, (names, m).
+
+        factors: a_T and sqrt(b_T) at these temperatures, (m,) each, or a number.
+        n, V, more: as in :meth:`heat`.  A load that is ``more`` times as large divides kappa = R/l0
+            by the root of ``more``.
+        names: names of fields, as "M".
+        """
         a_T, root_b = factors
         law = self.law
         index = self.material[n]
@@ -337,10 +359,13 @@ class HeatStates:
     def _driven(
         self, n: Integers, factors: tuple[Floats, Any], V: Any
     ) -> tuple[Floats, tuple[Floats, Floats]]:
-        """Return (M_half_space, M_cylinder and delta, dimensionless, (3, m); loss in rolling and in
-        slip, W/m) under the loads.
+        """Return the state under the loads at temperatures, and its losses.
 
-        A cylinder at rest has no slip; a speed of 1 stands for it.
+        factors: a_T and sqrt(b_T) at these temperatures, (m,) each, or a number.
+        n, V: as in :meth:`heat`; at V = 0, where the losses are 0, the state is that of a
+            dimensionless speed of 1.
+        Returns (M_half_space, M_cylinder and delta, dimensionless, (3, m), NaN where the friction
+        does not suffice; (loss in rolling, loss in slip), W/m, (m,) each).
         """
         a_T, root_b = factors
         speed = np.abs(V) * self.roller.T_ref * a_T / self.R[n]
@@ -362,9 +387,11 @@ class HeatStates:
 
 
 def warm_pair(pair: Pair, *factors: tuple[Floats, Any] | None) -> Pair:
-    """Return pairs of half-spaces at m states of temperature, from that at the reference.
+    """Return m pairs of half-spaces, one for each state of temperature.
 
-    factors: of cylinder and base each a_T and sqrt(b_T), (m,); None: the body stays.
+    pair: both bodies at the reference.
+    factors: for the cylinder, then for the base, (a_T, sqrt(b_T)) at the m temperatures, (m,) each,
+        dimensionless; None: that body does not change.
     """
     bodies = [
         warm_solid(body, *each) if each else body
@@ -374,9 +401,10 @@ def warm_pair(pair: Pair, *factors: tuple[Floats, Any] | None) -> Pair:
 
 
 def warm_solid(body: Any, a_T: Floats, root_b: Any) -> Solid:
-    """Return a body at m states of temperature, from that at the reference.
+    """Return m bodies, one for each state of temperature, as a :class:`Solid`.
 
-    body: a Material or a Solid; a_T, root_b: shift and sqrt(b_T), (m,).
+    body: a Material or a Solid at the reference.
+    a_T, root_b: a_T and sqrt(b_T) at the m temperatures, (m,) each, dimensionless.
     """
     return Solid(
         E=body.E * root_b**2,
@@ -438,6 +466,7 @@ def heat_states(
     slip_share: as in :func:`heated_body`.
     driven: force, torque and slope beside V, by name; None: the cylinder rolls freely, which of a
         cover is the torque 0.
+    Returns the :class:`HeatStates`, n states as the shape of all arguments and of the roller has.
     Raises ParameterError for values out of range, shapes that do not broadcast, several laws of
     covers or under a load, an ambient outside the range of the shift, two bodies with a temperature
     each, a vertical shift of a cover or beside an elastic body under a load.
@@ -460,8 +489,8 @@ def heat_states(
     remade = vertical and roller.body_data.pair.share not in (0.0, 0.5, 1.0)
     if vertical and (covered or (remade and driven is not None)):
         allowed = (
-            "left out for a cover, and beside an elastic body under a load: the law at each b_T "
-            "is a table of its own"
+            "left out for a cover, and beside an elastic body where a load is given: the law would "
+            "be another one at each temperature"
         )
         raise described_error("vertical_shift", "is given", allowed)
     several = scene.material_array

@@ -70,7 +70,7 @@ Heat = Callable[[Integers, Floats], Floats]
 
 
 class Zeros(NamedTuple):
-    """Zeros of a balance.
+    """Zeros of balances f (module), one after another.
 
     state : index of the state, (m,).
     theta : temperature, degrees Celsius, (m,).
@@ -85,12 +85,14 @@ class Zeros(NamedTuple):
 def zeros_at_speed(
     states: HeatStates, n: Integers, V: Floats, more: Any = 1.0, hottest: float | None = None
 ) -> Zeros:
-    """Find all equilibria of states at speeds.
+    """Find all equilibria of states at given speeds.
 
-    n: indices of the states; V: m/s, any sign; more: as in :meth:`.HeatStates.heat`, (m,) each.
-    hottest: temperature up to which they are sought; None: as high as the loss of free rolling
-    allows.
-    Returns the zeros, whose ``state`` counts the elements of n.
+    n: indices of the states, (m,).
+    V: their speeds, m/s, any sign, (m,).
+    more: factor of their loads, as in :meth:`.HeatStates.heat`, a number or (m,).
+    hottest: temperature up to which equilibria are sought, degrees Celsius; None: that which the
+        largest loss of free rolling can reach.
+    Returns the :class:`Zeros`, whose ``state`` is an index into n.
     """
     kappa = states.kappa[n] / np.sqrt(more)
     ambient = states.ambient[n]
@@ -114,9 +116,16 @@ def zeros_at_speed(
 def _zeros_by_kernel(
     law: LawTable, curve: ShiftCurve, x: Floats, ambient: Floats, rise: Floats, hottest: Floats
 ) -> Zeros:
-    """Return the zeros of half-spaces of one law that roll freely, by a shift with a pole.
+    """Return the zeros of half-spaces of one law that roll freely, whose shift is a WLF or an
+    Arrhenius.
 
-    x: log2 of kappa V at the reference; rise: loss over kappa M and conductance, K; (n,) each.
+    law: the law at the reference.
+    curve: the shift, of which slope, pole and own are read.
+    x: log2 of kappa V, with V in units of R/T_ref at the reference, (n,).
+    ambient: degrees Celsius, (n,).
+    rise: rise of temperature for kappa M = 1, K, (n,): the loss is conductance times this times
+        kappa M.
+    hottest: temperature up to which zeros are sought, degrees Celsius, (n,).
     """
     from ..kernels.law.heat_zeros import HeatRequest, heat_loop
 
@@ -152,14 +161,17 @@ def _kept_curve(law: LawTable) -> Floats:
 def zeros_of(
     heat: Heat, curve: ShiftCurve, ambient: Floats, conductance: Floats, hottest: Floats
 ) -> Zeros:
-    """Find all zeros of balances: changes of sign between nodes, and pairs of zeros between
-    neighbouring nodes.
+    """Find all zeros of the balances of states.
 
-    heat: of the states; curve: the shift of their body.
-    ambient, conductance: of the states, degrees Celsius and W/(m K); hottest: temperature up to
-    which zeros are sought; (n,) each, n may be 0.
-    A pair is found where |f| has a minimum at a node near which a parabola reaches 0 and f has the
-    other sign at the extremum; zeros at which f only touches 0 are not found.
+    They lie where f (module) changes its sign between two nodes of the temperature.  Two zeros
+    between neighbouring nodes are found where |f| has a minimum at a node near which a parabola
+    reaches 0, and f has the other sign at the extremum there; zeros at which f only touches 0 are
+    not found.
+
+    heat: function (indices of states, temperatures) -> heat of the body, W/m, (m,) each.
+    curve: shift of the body, which places the nodes.
+    ambient, conductance: of the states, degrees Celsius and W/(m K), (n,) each; n may be 0.
+    hottest: temperature up to which zeros are sought, degrees Celsius, (n,).
     Returns the :class:`Zeros`, to the rounding of f.
     """
     from scipy.optimize.elementwise import find_minimum, find_root
@@ -191,8 +203,11 @@ def zeros_of(
 
 
 def _extrema(f: Floats) -> tuple[Integers, Integers]:
-    """Return (rows, columns) of nodes of f, (states, nodes), at which |f| has a minimum near which
-    a parabola reaches 0.
+    """Return the nodes at which |f| has a minimum near which a parabola through three nodes
+    reaches 0; f has one sign at the three.
+
+    f: values of the balances, (states, nodes).
+    Returns (rows, columns) of these nodes, (m,) each.
     """
     size = np.abs(f)
     before, at, after = (size[:, k : f.shape[1] - 2 + k] for k in range(3))
@@ -392,13 +407,14 @@ def _under_load(
     level: the roller on no slope.
     states: the states, without V.
     driven: force, torque and slope as :func:`temperature` has them.
-    Each branch of M(V) = force + torque/R at the reference is a balance of its own, in which the
-    speed is V_0/a_T and the loss w_0/a_T.
-    Returns the fields, as :meth:`.HeatStates.fields`, and the zeros; stable are those of a stable
-    speed alone.
+    Each branch of M(V) = force + torque/R at the reference, with speed V_0 and loss w_0, is a
+    balance of its own, in which the speed is V_0/a_T and the loss w_0/a_T.
+    Returns (fields, as :meth:`.HeatStates.fields`; the zeros, of which only those of a stable speed
+    may be stable).
+    Raises ParameterError for a material with a vertical shift, and as :func:`viscoroll.steady`.
     """
     if states.body.material.vertical_shift is not None:
-        allowed = "left out where the speed follows from the load, whose branches b_T moves: give V"
+        allowed = "left out where the speed follows from the load: give V"
         raise described_error("vertical_shift", "is given", allowed)
     force = 0.0 if driven["force"] is None else driven["force"]
     driven = driven | {"force": np.broadcast_to(force, states.shape)}
@@ -433,8 +449,11 @@ def _pack(
 ) -> Temperatures:
     """Return the result of the equilibria of states, padded to arrays (states..., equilibria).
 
-    zeros, rows: the equilibria and their fields, unsorted; those with a NaN in the loss are named
-    and dropped.
+    states: the states of the call.
+    zeros: the equilibria, (m,), unsorted.
+    rows: their fields by name, (m,) each; an equilibrium with NaN in a_T or in the loss is dropped,
+        and stated as the reason where no other one is left.
+    labels: labels of the arguments, which the fields get; None without.
     """
     low, high = states.roller.body_data.measured_speeds or (0.0, np.inf)
     speed = np.abs(rows["V"] * rows["a_T"])  # reduced to the reference
@@ -475,20 +494,23 @@ def _reasons(
         own = np.flatnonzero(zeros.state == n)
         if not own.size:
             found[n] = (
-                f"no temperature up to {HOTTEST:g} degrees Celsius balances: it runs away, or none "
-                "is steady"
+                f"heat and loss balance at no temperature up to {HOTTEST:g} degrees Celsius: the "
+                "temperature runs away, or none is steady"
             )
             continue
         at = own[np.argmin(zeros.theta[own])]
         theta = f"{zeros.theta[at]:.5g} degrees Celsius"
         if not np.isfinite(rows["a_T"][at]):
-            found[n] = f"only {theta} balances, beyond the shift's {states.curve.high:g}"
+            found[n] = (
+                f"the only balance is at {theta}: above {states.curve.high:g}, the highest "
+                "temperature of the shift"
+            )
         elif not known[at]:
-            found[n] = f"the friction does not suffice at {theta}, which balances"
+            found[n] = f"the balance at {theta} needs more traction than the friction allows"
         else:
             found[n] = (
-                f"only {theta} balances, where the rates of the contact lie outside the measured "
-                "band"
+                f"the only balance is at {theta}, where the transit frequency of the contact lies "
+                "outside the measured band of the material"
             )
     return found
 
@@ -574,7 +596,7 @@ def pair_temperatures(
         if array.shape != (2,):
             raise shape_error(name, array.shape, "(2,), of cylinder and base")
     if not speed:
-        raise described_error("V", "is 0, where nothing heats,", "other than 0")
+        raise described_error("V", "is 0, where the bodies do not heat", "other than 0")
     curves = [shift_curve(body) for body in (pair.cylinder, pair.half_space)]
     for at, curve in zip(around, curves, strict=True):
         check_ambient(at, curve, "ambient")
@@ -582,9 +604,13 @@ def pair_temperatures(
     kappa = scene.kappa
 
     def losses(theta: Floats) -> Floats:
-        """Return the loss of each body, W/m, (2, m).
+        """Return the loss P |V| M_b/(P R) of each body b, W/m, (2, m), with M_b its part of the
+        moment of free rolling without creepage.
 
         theta: temperatures of cylinder and base, degrees Celsius, (2, m).
+        The temperatures change E' and the times of both bodies: kappa = R/l0 grows like the root of
+        E', and the dimensionless speed is V T_ref/R with the T_ref of the warm pair.  mu is 1: any
+        will do, since no shear acts.
         """
         warm = warm_pair(pair, *(curve.at(at) for curve, at in zip(curves, theta, strict=True)))
         own = kappa * np.sqrt(warm.E_prime / pair.E_prime)
@@ -598,7 +624,7 @@ def pair_temperatures(
         )
 
     def rest(theta: Any) -> Floats:
-        """Return the rise that the losses make less that of the temperatures, K, (2, m)."""
+        """Return ambient + loss/conductance - theta of each body, K, (2, m): 0 in balance."""
         return around[:, np.newaxis] + losses(theta) / off[:, np.newaxis] - theta
 
     def slopes(theta: Any) -> Floats:

@@ -1,35 +1,40 @@
-"""The law of a cover over speed, as rows.
+"""The law of a cover over speed, as rows; and what shear does in its contact, to first order.
 
-What shear does in the contact of a cover, to first order, and how M is split between the bodies.
+Notation as in :mod:`.cover_solve`.
 
-Notation as in :mod:`.cover_solve`.  With C the coupling of both bodies, that of the base less that
-of the cylinder, the pressure p strains the surfaces by u' = -C p and a traction q changes the
-slopes by C q (docs/theory_covers.md):
+**Shear.**  With C the coupling of both bodies, that of the base less that of the cylinder, the
+pressure p strains the surfaces by u' = -C p, and a traction q changes their slopes by C q
+(docs/theory_covers.md):
 
 - Stick without slip: T q - C p = delta with the pressure of the contact without shear.  Its
-  creepage less half of Q times the limit of full slip is delta_f, the creepage of free rolling.
-- Full slip, q = Q p: the contact of half length z carries another load, by the solution for the
-  slopes -C p.
+  creepage, less half of Q times the creep limit of full slip, is delta_f, the creepage of free
+  rolling.
+- Full slip, q = Q p: the slopes change by C q = Q C p.  At a given half length z the contact then
+  carries another load and is shifted by another amount, to first order in Q.
 - M of full slip changes by -delta_0* Q, with delta_0* the mean strain mirrored about the middle of
   the contact.
 
 All of these are linear in C, so that each body has its part.
 
-The law of a cover over speed: solutions of :mod:`.cover_solve` at nodes of u = kappa |V|, as
-rows of polynomials.
+**Rows.**  The law over speed is solved by :mod:`.cover_solve` at nodes of u = kappa |V|, and rows
+of polynomials are fitted to the solutions.  A scene fixes l0/h, so that theta = lam l0/(2 h)
+follows from the half contact length that carries the load; all quantities are then smooth
+functions of u alone.  They are computed at twelve nodes an octave, from slow to fast, each from a
+start that is extrapolated from the nodes before.  Octaves are interpolated between these nodes.
+Below the first octave there is a polynomial of u, beyond the last one a polynomial of 1/u, both
+with the limits of elastic layers.  Beside a half-space that relaxes too, that of 1/u has a second
+one times ln u: long waves then have a memory of their own, which the core does not cut off.
 
-A scene fixes l0/h, so that theta = lam l0/(2 h) follows from the half contact length that carries
-the load; all quantities are then smooth functions of u alone.  They are computed at twelve nodes an
-octave, from slow to fast, each from a start that is extrapolated from the nodes before.  Octaves
-are interpolated between these nodes.  Below the first octave there is a polynomial of u, beyond the
-last one a polynomial of 1/u, both with the limits of elastic layers.  Beside a half-space that
-relaxes too, that of 1/u has a second one times ln u: long waves then have a memory of their own,
-which the core does not cut off.
+The eleven quantities of a node, in the order of the indices below, are
 
-The quantities of a node, in the order of the indices below, are lam, L = 2 kappa delta_star/mu,
-epsilon, M/V of the base and of the cylinder, f of both, g of both, lam_Q and epsilon_Q,
-dimensionless, with M in units of P R, V in units of R/T_ref, and T_ref the unit of time of the
-cover's series (:mod:`.cover_law` has f, g and the slopes).
+- lam, L = 2 kappa delta_star/mu, epsilon;
+- M/V of the base and of the cylinder, with M in units of P R and V in units of R/T_ref, where T_ref
+  is the unit of time of the cover's series;
+- f of the base and of the cylinder, whose sum is 2 kappa delta_f;
+- g of the base and of the cylinder, whose sum is 2 kappa (delta_0* - delta_f);
+- lam_Q and epsilon_Q, the derivatives of lam and epsilon with respect to Q.
+
+All are dimensionless (:mod:`.cover_law` has the formulas in which they enter).
 """
 
 from __future__ import annotations
@@ -115,13 +120,15 @@ def shear_of(modes: CoverModes, z: float, state: CoverState) -> Shear:
 
 
 def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:
-    """Return the mean slope, without S, of a solution that has an excess memory and no slope of its
-    own.
+    """Return the mean slope of the surfaces over the contact that an excess memory of the creep
+    modes makes, as on half-spaces.
+
+    What the operator S of the layers adds to the mean slope is not in it.
 
     modes: :class:`CoverModes`.
     state: :class:`CoverState`, of which the exponentials are read.
     excess: excess memory of each creep mode, (modes,), or (modes, k) of k solutions.
-    Returns a float, or (k,).
+    Returns the slope in units of V T_ref/R, a float, or (k,).
     """
     _, root, edge, x, sigma = state.exponentials
     source = (sigma * excess.T).T
@@ -132,8 +139,8 @@ def _shift(modes: CoverModes, state: CoverState, excess: Any) -> Any:
 def _sources(
     modes: CoverModes, z: float, state: CoverState, local: LocalPressure | None
 ) -> tuple[Floats, Floats]:
-    """Return C p of each body over the compliance of both, as terms T_n(x) and as excess memory of
-    each creep mode.
+    """Return the strain C p of each body, divided by the compliance of both, as a source in the
+    equations of the contact: terms T_n(x), and excess memory of each creep mode.
 
     modes: :class:`CoverModes`.
     z: half contact length divided by V T_ref, > 0.
@@ -156,8 +163,11 @@ def _sources(
 
 
 def _mirrored(modes: CoverModes, state: CoverState, local: LocalPressure | None) -> Floats:
-    """Return the parts of each body in delta_0*, (2,): minus the mean of its C p, mirrored, with p
-    as weight.
+    """Return the parts of each body in delta_0*, (2,), in units of V T_ref/R.
+
+    The part of a body is minus the mean of its C p, mirrored about the middle of the contact, with
+    p as weight.
+
 
     modes: :class:`CoverModes`.
     state: :class:`CoverState`.
@@ -581,9 +591,12 @@ def _fit_end(
         return np.hstack([terms, np.log(y)[:, None] * terms[:, :log_terms]])
 
     def fit(values: Floats, at: Any, log_terms: int) -> Any:
-        """Fit each quantity to its ``values`` at the nodes y, (11, n), by its :func:`basis` with
-        ``log_terms``, and return the fits at the points ``at``, (points,), as (11, points), complex
-        where ``at`` is.
+        """Fit each quantity by least squares, and return the fits at other points.
+
+        values: quantities at the nodes y, (11, n).
+        at: points, (points,); complex ones give derivatives.
+        log_terms: number of terms times ln y, as in :func:`basis`.
+        Returns (11, points), complex where ``at`` is.
         """
         parts = (values[: _FREE.start], _END_DEGREE), (values[_FREE.start :], _STRAIN_DEGREE)
         return np.concatenate(
@@ -630,8 +643,10 @@ def _stick_functions(rows: Rows, powers: Floats, limits: Floats) -> tuple[Floats
     """Return eta/F and H/F^2 of a cover at the nodes of v = 1/F(eta), and their derivatives with
     respect to ln v.
 
-    Where the stick zone has the creep limit F' = w/(2 u), w = L - 2 kappa |delta - delta_0|/mu, its
-    law is taken as that of the whole contact at the speed u' with L(u')/(2 u') = F'.  So v = 2
+    With L = 2 kappa delta_star/mu the creep limit of the whole contact, L/(2 u) in units of V
+    T_ref/R, that of the stick zone is F' = w/(2 u), w = L - 2 kappa |delta - delta_0|/mu.  The law
+    of the stick zone is taken as that of the whole contact at the speed u' with L(u')/(2 u') = F'.
+    So v = 2
     u'/L(u'), H/F^2 = 1/L(u')^2 and eta/F = lam(u')/L(u').  That u' is found by Newton's method in
     ln u', from u' = v, until all steps are below 1e-15, in at most 60 steps; nothing is raised if
     it takes more.

@@ -1,7 +1,5 @@
-"""Steady rolling on a layer of finite thickness: solution at one speed, and its pressure.
-
-Steady rolling on bonded viscoelastic layers of finite thickness, solved by Chebyshev
-polynomials.
+"""Steady rolling on bonded viscoelastic layers of finite thickness, solved by Chebyshev polynomials
+at one speed.
 
 Plane strain, constant Poisson's ratios, a Prony series for each body.  Each body is a layer that is
 bonded to a rigid core or bed, or a half-space; one of them may be rigid.  The pressure here is that
@@ -26,12 +24,9 @@ coefficients, so that alpha may be arbitrarily large.
 Sources of the method: the law of the half-space in closed form (:mod:`.material_series`), and
 the layer's kernels as in Johnson, Contact Mechanics (1985), Sect. 5.8.
 
-The pressure of a cover along its contact, and the strain of the surfaces that it makes as on
-half-spaces.
-
-Notation as in :mod:`.cover_solve`: z is half the contact length over V T_ref, with T_ref the unit
-of time of the cover's series; x is the position from the middle of the contact over half its
-length, 1 at the front edge; the pressure p is sqrt(1 - x^2) sum q_m U_(m-1)(x).
+The module also evaluates the pressure along the contact (:func:`pressure`), and the strain of the
+surfaces that it makes by the coupling of short waves, which is that of half-spaces
+(:func:`local_pressure`).
 """
 
 from __future__ import annotations

@@ -1,13 +1,11 @@
-"""The law of a grid, by tensor splines.
-
-The law of a grid: splines of Q over V and delta and of M over V, from a file of this package or
-another program.
+"""The law of a grid: splines of Q over V and delta and of M over V, or over both, from a file of
+this package or another program.
 
 A grid is in SI units where its V has a unit, else dimensionless as a :class:`viscoroll.Scene`: V
 over R/T_epsilon, Q over the load, M over load times radius, delta = (omega R - V)/V in both.
 
-Tensor splines on grids, by scipy, and in the form that compiled code reads
-(``kernels.splines``).
+Splines are tensor splines by scipy (:func:`fit_spline`), which are packed into the form that
+compiled code reads (:func:`pack_spline`, ``kernels.splines``).
 """
 
 from __future__ import annotations
@@ -215,8 +213,13 @@ def load_grid(path: str | PathLike[str], alpha: float | None = None) -> LawGrid 
 
 @contextmanager
 def _told_of(path: Any) -> Iterator[None]:
-    """Raise errors of a grid as FileError of its ``path``: of a missing variable, of scipy, of an
-    attribute.
+    """Raise KeyError, ValueError and TypeError of the body of the ``with`` as FileError; a context
+    manager.
+
+    Such errors come of a missing variable, of values that scipy refuses and of attributes; the
+    FileError quotes their text.
+
+    path: path of the file, for the error.
     """
     try:
         yield
@@ -227,8 +230,8 @@ def _told_of(path: Any) -> Iterator[None]:
 
 
 def _refuse_nodes(variable: DataArray, bad: Any, path: Any, allowed: str) -> None:
-    """Raise FileError for the first bad node of a variable, with its value and its place; none if
-    no node is bad.
+    """Raise FileError for the first bad node of a variable, with its value and its place; do
+    nothing if no node is bad.
 
     variable: variable of a grid.
     bad: truth values of its shape.

@@ -248,26 +248,27 @@ def _parse_rows(fields: Floats, numbers: Mapping[str, Any]) -> CoupledRows:
         lock_array(np.array(numbers[name], dtype=np.float64)) for name in ("u", "t", "edges")
     )
     if fields.shape != (u.size + 2, t.size, len(FIELDS)) or edges.shape != (u.size + 2, 4):
-        raise ValueError(f"functions of shape {fields.shape[:-1]}")
+        raise ValueError(f"its functions have shape {fields.shape[:-1]}")
     return CoupledRows(mu=float(numbers["mu"]), u=u, t=t, edges=edges, fields=fields)
 
 
 def parse_axis(content: Content, path: Any) -> LawAxis:
-    """Return the law of all alpha.
+    """Return the law of one relaxation time for a range of alpha, from the content of its file.
 
     content: :class:`.checked_netcdf.Content` of a file of the kind :data:`.checked_netcdf.AXIS`,
-        verified.
+        whose checksum was verified.
     path: path of the file, for errors.
     Returns the :class:`LawAxis`, with the coefficients of the file.
-    Raises FileError for an incomplete file, and where the number of octaves or of dimensions does
-    not fit.
+    Raises FileError where a variable is missing, where the coefficients do not have the dimensions
+    of this kind, and where they are not for as many octaves of alpha as the variable ``rows``
+    lists.
     """
     with _refuse_incomplete(path):
         coefficients = _coefficients(content)
         numbers = content.numbers
         rows = tuple(map(int, numbers["rows"]))
         if coefficients.ndim != len(KINDS[AXIS].dims) + 1 or len(rows) != len(coefficients):
-            raise ValueError(f"functions of shape {coefficients.shape[:-1]}")
+            raise ValueError(f"its functions have shape {coefficients.shape[:-1]}")
         return LawAxis(coefficients, rows, int(numbers["first"]), int(numbers["e0"]))
 
 

@@ -1,9 +1,7 @@
 """Values of the law by the modes of a material, and rows of polynomials that are fitted to values.
 
-Polynomials of one variable over octaves: :class:`Rows`, which reads and fits them.
-
-The variable is u = kappa |V|, v = 1/F(eta) or w = 1/z (:mod:`.law_table`), dimensionless.  T_ref is
-the unit of time of the material, in which its rates are given.
+**Rows** are polynomials of one variable over octaves, which :class:`Rows` reads and fits.  The
+variable is u = kappa |V|, v = 1/F(eta) or w = 1/z (:mod:`.law_table`), dimensionless.
 
 Slopes are fitted and integrated, and one constant is added: value, slope and secant of a polynomial
 are then all accurate to rounding, where a polynomial fitted to values has lost three digits in its
@@ -11,17 +9,15 @@ slopes.  Powers are computed from the rapidly decreasing Chebyshev coefficients,
 rounding errors small.  No library of linear algebra is used: its last digits differ from machine to
 machine.
 
-Values of the law by its modes, without a table: from these all rows are made.
+**Values** by the modes of a material, without a table (:func:`evaluate_by_modes`): from these all
+rows are made.  T_ref is the unit of time of the material, in which its rates and times are given;
+for a material that is given by alpha alone it is T_epsilon.  z is half the transit time of the
+contact in units of T_ref (zeta of the paper).  The functions g(z) and h(z) of the material
+(:mod:`.material_series`) give the shift of the contact over half its length, g/z, and the contact
+length over that at rest, (1 + 2 h/z)^(-1/2).
 
-T_ref is the unit of time of a material, in which its rates and times are given; for a material that
-is given by alpha alone it is T_epsilon.  z is half the transit time of the contact in units of
-T_ref (zeta of the paper).  The functions g(z) and h(z) of the material
-(:mod:`.material_series`) give the shift of the contact over half its length, g/z, and the
-contact length over that at rest, (1 + 2 h/z)^(-1/2).
-
-Nodes of the law of one scene over speed and creep, of a coupled table or a grid:
-:class:`CoupledRows`, and the vector of splines that kernels read of them
-(:mod:`.coupled_splines`).
+**Nodes** of the law of one scene over speed and creep, of a table of the coupled solution or of a
+grid: :class:`CoupledRows`, with the vector of splines that kernels read (:mod:`.coupled_splines`).
 """
 
 from __future__ import annotations
@@ -363,7 +359,12 @@ class CoupledRows:
 
     @cached_property
     def vector(self) -> Floats:
-        """Return the splines as the vector that kernels read."""
+        """The splines over speed and creep as one read-only vector, which kernels read.
+
+        It has a head, ln u, t, the edges with their slopes over ln u, and of each field at each
+        node the value, both slopes and the mixed derivative (:mod:`.coupled_splines`).  Of a graded
+        table the slip loss (:meth:`_friction`) is a further field.
+        """
         from ..kernels.law import coupled_splines as layout
 
         x = np.log(self.u)
@@ -390,8 +391,13 @@ class CoupledRows:
         return lock_array(np.concatenate([head, x, self.t, edges.ravel(), planes.ravel()]))
 
     def _slopes_along(self, x: Floats, values: Floats) -> Floats:
-        """Return slopes over x = ln u, of ``values`` (n + 2, ...), that join the limits smoothly; 0
-        in the limits.
+        """Return slopes over ln u, by cubic splines that join the limits smoothly.
+
+        x: ln u of the nodes, ascending, (n,).
+        values: values in the limit u = 0, at the nodes, and in the limit u -> infinity, (n + 2,
+            ...).
+        Returns the slopes in the shape of ``values``, 0 in both limits; the slope at an end node is
+        the difference of its value from that of the limit beside it.
         """
         from scipy.interpolate import CubicSpline
 

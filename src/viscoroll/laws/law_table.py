@@ -1,23 +1,18 @@
 """The law of one material, one pair, or every alpha, as a table of rows.
 
-Rows of the law of one material or pair, fitted to the formulas of its modes.
+:class:`LawTable` is the law of one material or pair; :func:`law_table` makes it once a process.
+Its functions, in the order of the coefficients (:data:`.row_layout.FUNCTIONS`), are lam, epsilon,
+M/V of half-space and of cylinder, N, eta/F and H/F^2.  :class:`LawAxis` is the law of one
+relaxation time for all alpha, by Chebyshev polynomials of ln alpha, one an octave of alpha.
 
-The formulas are evaluated once, at 24 nodes an octave of w = 1/z, with z half the transit time of
-the contact in units of T_ref, the unit of time of the material.  The polynomials of w are then
+Rows are fitted to the formulas of the modes of a material.  The formulas are evaluated once, at 24
+nodes an octave of w = 1/z, with z half the transit time of the contact in units of T_ref, the unit
+of time of the material.  The polynomials of w are then
 inverted: for the functions of u = kappa |V|, w = 2 u (1 + 2 h/z)^(1/2), for those of v = 1/F(eta),
 w = v (1 + g/z), with the functions g and h of the material (:mod:`.material_series`).  They
 give F(z) = z + g and H(z) = z^2 + 2 z h, the contact length over that at rest lam = (1 + 2
 h/z)^(-1/2), and its shift over half the length epsilon = g/z; eta is z of the stick zone.  All
 quantities are dimensionless; M/V is in units of P T_ref.
-
-The law of one material or pair as a table: :class:`LawTable`, made once a process by
-:func:`law_table`.
-
-Its functions, in the order of the coefficients (:data:`.row_layout.FUNCTIONS`), are lam, epsilon,
-M/V of half-space and of cylinder, N, eta/F and H/F^2.
-
-The law of one relaxation time for all alpha: Chebyshev polynomials of ln alpha, one an octave of
-alpha.
 """
 
 from __future__ import annotations
@@ -323,10 +318,11 @@ def law_table(
 
 
 def coupled_table(material: Any, rows: CoupledRows) -> LawTable:
-    """Return the law of coupled rows as a :class:`LawTable`.
+    """Return the law of a table of the coupled solution as a :class:`LawTable`.
 
     material: alpha, a series, bodies or a cover, of one scene.
-    rows: :class:`.law_rows.CoupledRows` of it.
+    rows: :class:`.law_rows.CoupledRows` of it, which become ``coupled``.
+    Returns a new table, whose other functions are those of half-spaces without coupling.
     """
     total = total_series(material)
     base = law_table(total if total.E.size else 1.0)

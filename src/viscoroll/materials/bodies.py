@@ -1,14 +1,12 @@
-"""Bodies in contact, dimensionless: pairs of half-spaces, and covers of finite thickness.
+"""Bodies in contact, dimensionless: pairs of half-spaces (:class:`Bodies`), and layers of finite
+thickness (:class:`Cover`).
 
-Two bodies in contact: :class:`Bodies`, a cylinder of one linear viscoelastic material on a
-half-space of another.
+Two half-spaces: the contact law depends only on the sum of their compliances, J = share J_1 + (1 -
+share) J_2, where J_1 is that of the cylinder and J_2 that of the base, each divided by its
+long-time value.  This sum is one series again.  The rolling resistance M is a sum over its creep
+modes, and the part of M that a body has is the part that its compliance has in each mode.
 
-The contact law depends on the sum of their compliances alone, J = share J_1 + (1 - share) J_2,
-which is one series again.  The part of the rolling resistance M that a body has is that of its
-creep modes.
-
-A cover, belt or lining of finite thickness under or on a roller, dimensionless:
-:class:`Cover`.
+A layer may be the cover of a roller, or a belt or lining on which a roller runs.
 """
 
 from __future__ import annotations
@@ -43,8 +41,9 @@ from .prony_forms import HIGHEST_ALPHA, MOST_MODES
 
 @dataclass(frozen=True, eq=False, repr=False)
 class Bodies(OneOrMany):
-    """A pair of materials whose tangential and normal contact do not couple (Dundurs' second
-    constant is 0); or n.
+    """A cylinder of one material on a half-space of another; or n such pairs.
+
+    Shear does not act on the pressure of these bodies: Dundurs' second constant is 0.
 
     Parameters
     ----------
@@ -53,9 +52,9 @@ class Bodies(OneOrMany):
         dimensionless, in [0, 1]; 0: the cylinder is rigid, 1: the half-space is rigid.
         If a body is n series, or ``share`` is an array (n,), these are n pairs: ``p[i]`` is one of
         them, ``p[i:k]`` are some; a single series or number is that of all pairs.
-    poisson : Poisson's ratios of cylinder and base in plane strain, each in (-1, 0.5], of which
-        ``contact(method="coupled")`` computes how shear and pressure couple; other calls take them
-        as uncoupled.  None (default): like ratios, of bodies that do not couple.
+    poisson : Poisson's ratios (nu_1, nu_2) of cylinder and base in plane strain, each in (-1, 0.5].
+        ``contact(method="coupled")`` computes by them how shear acts on the pressure; other calls
+        neglect that action.  None (default): ratios with which there is none.
 
     Attributes
     ----------
@@ -256,6 +255,7 @@ class Bodies(OneOrMany):
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
+        """Values that determine the pairs: bodies, share with its shape, Poisson's ratios."""
         return (
             self.cylinder,
             self.base,
@@ -265,6 +265,7 @@ class Bodies(OneOrMany):
         )
 
     def __repr__(self) -> str:
+        """Return the call that makes the pair; of many pairs their number and those of modes."""
         if self.shape:
             modes = (body.E.shape[-1] for body in (self.cylinder, self.base))
             return f"<{len(self)} pairs of {' and '.join(map(str, modes))} modes>"
@@ -347,11 +348,12 @@ class Cover(Bodies):
     (docs/theory_covers.md), with coefficients to 1e-8 of delta_star/mu where nu = 1/2, else to
     5e-5; :func:`viscoroll.validity` states the error by it.
 
-    Q follows Eq. (15) with the cover's own contact in place of the half-space's: the stick zone of
-    creep limit F' has the traction that a full contact with that creep limit would carry at the
-    same l0/h.  Beside the exact solution without coupling Q/mu is off by at most 1, 3, 4.5 and 6.5
-    % at h/l0 = 5, 1, 0.5 and 0.2, and a third less where nu is near 1/2 (``make prove``;
-    :func:`viscoroll.validity` states it).
+    Q follows Eq. (15) with the contact of the cover in place of that of half-spaces: what the
+    stick zone takes from the traction of full slip is that of a whole contact on the same cover,
+    at the speed V' with delta_star(V')/V' = (delta_star(V) - |delta - delta_0|)/V.  Beside the
+    exact solution without coupling Q/mu is off by at most 1, 3, 4.5 and 6.5 % at h/l0 = 5, 1, 0.5
+    and 0.2, and a third less where nu is near 1/2 (``make prove``; :func:`viscoroll.validity`
+    states it).
     """
 
     nu: Any = 0.5
@@ -575,6 +577,7 @@ class Cover(Bodies):
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
+        """Values that determine the covers: all parameters, arrays by their bytes."""
         numbers = (
             np.shape(self.thickness),
             *(np.asarray(each).tobytes() for each in (self.thickness, self.nu)),
@@ -585,6 +588,7 @@ class Cover(Bodies):
         return self.layer, numbers, self.on, self.part, self.other_nu, self.other, second
 
     def __repr__(self) -> str:
+        """Return the call that makes the cover, without parameters that have no effect."""
         other = "" if self.part == 1.0 else f", part={self.part!r}, other_nu={self.other_nu!r}"
         other += f", other={self.other!r}" if self.other.alpha > 1.0 else ""
         other += (

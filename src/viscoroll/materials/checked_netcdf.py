@@ -1,9 +1,11 @@
-"""NetCDF files with a checksum: laws and materials.
+"""NetCDF files of laws and materials, and their two checksums.
 
-The file of a law: the names of its numbers, their checksum, and a read that trusts nothing it
-has not checked.
+The seal is the SHA-256 of all bytes of a file, at its end; it shows damage (:mod:`..core.files`).
+The checksum of a law is the SHA-256 of its numbers, an attribute of the file; it shows that the
+numbers are those that were written, also after another program converted the file.
 
-A material as netCDF that contains its series: ``to_netcdf`` and ``from_netcdf`` of
+The file of a law has variables by its kind (:data:`KINDS`).  The file of a material has both forms
+of its series; it is written and read by ``to_netcdf`` and ``from_netcdf`` of
 :class:`viscoroll.Material`.
 """
 
@@ -396,8 +398,8 @@ def load_material(path: str | PathLike[str], make: Callable[..., _Made]) -> _Mad
         if seal_matches(Path(path).read_bytes()) is None:
             raise FileError(
                 path,
-                "is damaged or is not a material file of this package: the SHA-256 at its end is "
-                "missing",
+                "is damaged or is not a material file of this package: the checksum "
+                "(SHA-256) at its end is missing",
             )
         form = tuple(numbers[name] for name in _FORMS[about["given"]])
         series = (

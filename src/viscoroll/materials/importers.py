@@ -329,17 +329,20 @@ class FromPrograms:
     ) -> Any:
         """Make a material from terms that are fractions of the instantaneous moduli.
 
+        G(t) = G(0) (1 - sum g_i (1 - exp(-t/tau_i))), and K(t) alike with k_i: the long-time
+        modulus is G_inf = G(0) (1 - sum g_i), and a term of G(t)/G_inf is g_i/(1 - sum g_i).
+
         E, nu: Young's modulus, Pa, and Poisson's ratio, of long times if ``long_term``, else
             instantaneous.
         name: name of the parameter ``fractions``, for errors.
-        fractions: terms of G(t) divided by G(0), dimensionless, (terms,), >= 0, of a sum below 1.
+        fractions: g_i, dimensionless, (terms,), >= 0, with a sum below 1.
         tau: relaxation times, s, > 0, (terms,).
-        bulk: terms of K(t) divided by K(0), (terms,), as ``fractions``; None: nu is constant in
-            time.  Without effect on an incompressible body, nu = 0.5.
-        long_term: whether E and nu are those of long times.
-        more: keywords of the material, as ``name`` and ``density``.
-        Returns the material, of the class ``cls``, with its long-time modulus and, where bulk and
-        shear terms differ, nu of long times.
+        bulk: k_i, dimensionless, (terms,), >= 0, with a sum below 1; None: k_i = g_i, so that nu is
+            constant in time.  At nu = 0.5, where K is infinite, they are checked and have no
+            effect.
+        long_term: True: E and nu are those of long times; False: they are instantaneous.
+        more: further keywords of the material, name -> value, as "name" and "density".
+        Returns the material, of the class ``cls``, with E and nu of long times.
         Raises ParameterError for values out of range, lists of different lengths, too many terms,
         and an unknown keyword.
         """
@@ -411,8 +414,11 @@ class FromPrograms:
 
 
 def check_poisson(nu: Any, name: str = "nu") -> float:
-    """Return Poisson's ratio ``nu`` as a float in (-1, 0.5]; raises ParameterError with ``name``
-    for other values.
+    """Check Poisson's ratio, and return it as a float.
+
+    nu: what a caller gave.
+    name: name of the argument, for the error.
+    Raises ParameterError for what is no number in (-1, 0.5].
     """
     nu = check_number(name, nu)
     if not -1.0 < nu <= 0.5:
@@ -428,11 +434,11 @@ def _poisson(G: Any, K: Any) -> Any:
 
 
 def _warn_of_low_poisson(G_inf: float, G: Floats, K_inf: float, K: Floats, tau: Floats) -> None:
-    """Warn where bulk terms make Poisson's ratio lower than that of any rubber, at some time: their
-    unit may be another.
+    """Give a ModelWarning where G(t) and K(t) make Poisson's ratio lower at some time than that of
+    any rubber, :data:`_LEAST_POISSON`; one of them is then likely to be in another unit.
 
-    G_inf, G, K_inf, K, tau: as in :func:`plane_strain`.  Times are 0, infinity, and those at and a
-    factor of 10 beside each of tau.
+    G_inf, G, K_inf, K, tau: as in :func:`plane_strain`.
+    Times that are examined: 0, infinity, and 0.1, 1 and 10 times each of tau.
     """
     ratio = np.outer((0.0, 0.1, 1.0, 10.0), tau).reshape(-1, 1) / tau
     left = np.vstack([np.exp(-ratio), np.zeros_like(tau)])
@@ -455,8 +461,7 @@ def check_pairs(
         or K, else dimensionless.  Values with a unit are converted.
     other, at: name of the second list, for errors, and its numbers, > 0; in s if it is called tau,
         else in 1/s.
-    above: number that those of the second list must exceed; they must be >= 0 in any case, so
-        that -inf allows 0.
+    above: 0 (default): numbers of the second list must be > 0; -inf: they may be 0 too.
     Returns (numbers of the first list, numbers of the second), (n,) each; n may be 0.
     Raises ParameterError for numbers out of range, lists of different lengths, and other shapes
     than (n,).
@@ -487,9 +492,8 @@ def _long_time_shear(
     given = {name: value for name, value in ways.items() if value is not None}
     if len(given) != 1:
         found = f"is given by {' and '.join(given) or 'no parameter'}"
-        raise described_error(
-            "the long-time modulus", found, "given by one of G_inf, G0 and a pair with beta = 0"
-        )
+        allowed = "given by exactly one of G_inf, G0 and a pair (G_i, beta_i) with beta_i = 0"
+        raise described_error("the long-time modulus", found, allowed)
     (name, value) = given.popitem()
     named = {"G0": "G0 - sum G", "beta = 0": "G with beta = 0"}
     return check_number(named.get(name, name), value, unit="Pa", above=0.0)

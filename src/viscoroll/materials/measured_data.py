@@ -1,12 +1,9 @@
-"""Data that a material was fitted to, and time-temperature shifts.
+"""Data that a material was fitted to (:class:`Measured`), and its time-temperature shifts.
 
-Time-temperature shifts: :class:`WLF`, :class:`Arrhenius` and :class:`ShiftFactors`, functions of
-the temperature in degrees Celsius.
-
-Their value a_T is the factor of all times of a material, which is 1 at the reference temperature
-T0.
-
-The data that a material was fitted to: :class:`Measured`.
+A shift is a function of the temperature in degrees Celsius, :class:`WLF`, :class:`Arrhenius` or
+:class:`ShiftFactors`.  It returns a_T, dimensionless: from the reference temperature T0, where a_T
+is 1, to this temperature all times of the material are multiplied by a_T.  A vertical shift b_T
+multiplies all moduli in the same way.
 """
 
 from __future__ import annotations
@@ -349,8 +346,8 @@ class ShiftFactors:
         return np.subtract(self.temperature, self.T0), np.log10(self.a_T)
 
     def _told(self, law: _Law) -> _Law:
-        """Return a fitted law, and warn where it misses a factor by more than :data:`_FAR_OFF`, 0.1
-        decades.
+        """Return a fitted ``law`` as it is; give a ModelWarning if it misses one of the factors
+        a_T by more than :data:`_FAR_OFF`, 0.1 decades.
         """
         errors = [
             math.log10(law(T) / a_T) for T, a_T in zip(self.temperature, self.a_T, strict=True)
@@ -484,8 +481,11 @@ def shifts_as_toml(shift: Any, vertical_shift: Any) -> dict[str, str]:
 
 
 def shifts_of_toml(text: str) -> dict[str, Any]:
-    """Return ``shift`` and ``vertical_shift``, as parameters of a material, of lines as
-    :func:`shifts_as_toml` has.
+    """Return the shifts of a material that a file holds, as parameters of the material.
+
+    text: lines of TOML with the keys of :func:`shifts_as_toml`; "" without shifts.
+    Returns a dict with "shift", a :class:`WLF` or :class:`Arrhenius`, and "vertical_shift", those
+    that the text has.
     """
     found = tomllib.loads(text)
     for name, kind in (("wlf", WLF), ("arrhenius", Arrhenius)):
@@ -589,7 +589,7 @@ class Measured:
         pairs = check_array("M_error", self.M_error, low=0.0).reshape(-1, 2)
         if not (np.diff(pairs[:, 0]) > 0.0).all():
             raise described_error(
-                "M_error", "has frequencies that do not ascend", "pairs (transit frequency, +-)"
+                "M_error", "has frequencies that do not ascend", "sorted by transit frequency"
             )
         object.__setattr__(self, "M_error", tuple(map(tuple, pairs.tolist())))
         if self.strain is not None:
@@ -597,9 +597,11 @@ class Measured:
 
     @property
     def transit_band(self) -> tuple[float, float]:
-        """(lowest, highest) transit frequency, 1/s, of a contact for which the data suffice:
-        ``low``, and ``high`` divided by :data:`HIGHEST_RATE`; the first is above the second of data
-        over less than that ratio.
+        """(Lowest, highest) transit frequency, 1/s, of a contact for which the data suffice.
+
+        They are ``low``, and ``high`` divided by :data:`HIGHEST_RATE`, since M depends on moduli at
+        frequencies up to that many times the transit frequency.  Where the data span a smaller
+        ratio, the first exceeds the second, and they suffice for no contact.
 
         Examples
         --------
@@ -674,6 +676,7 @@ class Measured:
         return replace(self, low=self.low / a_T, high=self.high / a_T, M_error=moved)
 
     def __str__(self) -> str:
+        """Return band, misfit, accuracy of M and source in one line."""
         source = f" ({self.source})" if self.source else ""
         errors = [100.0 * error for _, error in self.M_error]
         accuracy = f", M +-{min(errors):.3g} to +-{max(errors):.3g} %" if errors else ""

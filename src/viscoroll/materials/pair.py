@@ -187,7 +187,8 @@ class Pair:
         """
         if self.covered is not None:
             allowed = (
-                "left out, or in a Cylinder: the law of a layer depends on its load and radius"
+                "left out here: the law of a layer depends on its load and radius; give the "
+                "materials to a Cylinder"
             )
             raise described_error(f"thickness of the {self.covered}", "is given", allowed)
         if self.like:
@@ -241,7 +242,7 @@ class Pair:
                 "one for all cylinders: thickness, load and R may differ, and beside a "
                 "rigid body E and nu"
             )
-            raise described_error(f"the series of the {on}, which is a cover,", found, allowed)
+            raise described_error(f"the Prony series of the cover, the {on},", found, allowed)
         if np.ptp(parts) > 0.0:
             allowed = (
                 "one for all cylinders where a cover lies beside an elastic body: let thickness, "
@@ -283,8 +284,11 @@ class Pair:
         return max(float(np.abs(each).max()) for each in self._at_both_ends(of_pairs))
 
     def _at_both_ends(self, function: Callable[..., Any]) -> tuple[Any, Any]:
-        """Return what a function with the arguments of :func:`dundurs` gives for the long-time
-        moduli and for the instantaneous ones.
+        """Return (value of a function by the moduli of long times, value by the instantaneous
+        ones).
+
+        function: one with the arguments of :func:`dundurs`: shear moduli and Poisson's ratios of
+            both bodies, and the plane.
         """
         one = self.cylinder
         other = self.half_space

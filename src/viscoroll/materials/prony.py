@@ -45,9 +45,9 @@ _AGREEMENT = 1e-14
 
 
 class Block(NamedTuple):
-    """Materials of equal numbers of modes, along the last axis.
+    """Those of many materials that have the same number of modes.
 
-    rows : their places in the list of indices that was asked for, (materials,).
+    rows : places of these materials in the list of indices that was asked for, (materials,).
     modes : :class:`.prony_forms.Modes`, strengths and rates of relaxation and creep, arrays
         (materials, modes).
     weights : for pairs the part of each creep mode that is the half-space's, 0 to 1, (materials,
@@ -75,7 +75,7 @@ class OneOrMany:
 
     def __len__(self) -> int:
         if not self.shape:
-            raise TypeError("a single material has no length")
+            raise TypeError("len() needs an array of materials, and this is a single one")
         return self.shape[0]
 
     def __bool__(self) -> bool:
@@ -476,6 +476,7 @@ class Prony(OneOrMany):
 
     @cached_property
     def _key(self) -> tuple[Any, ...]:
+        """Values that determine the series: the form in which it was given, modes and alpha."""
         alpha = np.asarray(self.alpha).tobytes()
         return (
             self.by_creep,
@@ -540,14 +541,16 @@ def _check_modes(
 
 
 def series_of_alpha(alpha: float) -> Prony:
-    """Return the standard linear solid of the paper, with both forms of its series by formulas,
-    without a conversion.
+    """Return the standard linear solid of the paper, a series of one mode.
 
-    alpha: instantaneous divided by long-time modulus, >= 1, a float, not checked; for 1 the series
-        is elastic.
-    Returns a :class:`Prony` in creep form with times in units of T_epsilon: one mode, J = (alpha -
-    1)/alpha, T = 1, tau
-    = 1/alpha; for 1 none.
+    Both forms of the series are known in closed form, so that none is converted to the other:
+
+        creep      J = 1 - 1/alpha    T = 1            rate b = 1
+        relaxation E = alpha - 1      tau = 1/alpha    rate a = alpha    gap a - b = alpha - 1
+
+    alpha: instantaneous divided by long-time modulus, >= 1, a float, not checked.
+    Returns a :class:`Prony` in creep form, with times in units of T_epsilon; for alpha = 1 it is
+    elastic, without a mode.
     """
     c = np.array([(alpha - 1.0) / alpha])
     one = np.ones(1)

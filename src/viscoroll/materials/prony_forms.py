@@ -229,13 +229,20 @@ def _improve_distance(
 
 
 def _strengths(gap: NDArray, alpha: Any) -> tuple[Floats, Floats]:
-    """Return the strengths of both forms of a series from the differences between the rates of the
-    two forms.
+    """Return the strengths of both forms of a series, each times its rate, from the gaps between
+    the rates of the two forms.
 
-    A strength times its rate is a product of gaps between rates of the two forms, divided by
-    differences of rates of one form.  The rates of the two forms alternate, so that such a
-    difference is a sum of two gaps: no digits cancel.  Factors are paired so that nothing
-    overflows.
+    With p the variable of Laplace's transform, the modulus divided by that of long times is
+
+        1 + sum_i E_i p/(p + a_i) = alpha prod_l (p + b_l)/(p + a_l),
+
+    and its inverse is 1 - sum_j J_j p/(p + b_j).  The residues at p = -a_i and p = -b_j are
+
+        E_i a_i = alpha (a_i - b_i) prod_{l != i} (a_i - b_l)/(a_i - a_l)
+        J_j b_j = (a_j - b_j)/alpha prod_{l != j} (a_l - b_j)/(b_l - b_j)
+
+    Since the rates alternate, each difference in a denominator is the sum of two gaps of one sign,
+    so that no digits cancel.  Each factor is divided before the product, so that nothing overflows.
 
     gap: a_i - b_j, rates of relaxation minus rates of creep, in any unit, (..., modes, modes),
     [..., j, i].

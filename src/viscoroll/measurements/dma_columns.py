@@ -1,9 +1,7 @@
-"""Columns of a dynamic mechanical analysis: their names and quantities.
+"""Columns of tests of materials: which columns of a table are frequency, moduli and temperature,
+and their numbers.
 
-Names of the columns of tests of materials in five languages, and their quantities, read from
-headings.toml.
-
-Which columns of a table are frequency, moduli and temperature, and their numbers.
+Names of columns in five languages, and the quantities that they mean, are read from headings.toml.
 """
 
 from __future__ import annotations

@@ -1,8 +1,5 @@
-"""Files of dynamic mechanical analysis: :func:`read_dma`.
-
-Relaxation modulus over time from a text file: :func:`read_relaxation`.
-
-Storage and loss modulus over frequency from a text file: :func:`read_dma`.
+"""Text files of tests of materials: storage and loss modulus over frequency (:func:`read_dma`), and
+relaxation modulus over time (:func:`read_relaxation`).
 """
 
 from __future__ import annotations
@@ -83,9 +80,11 @@ class RelaxationModulus(Result):
         Returns
         -------
         xarray.Dataset
-            Variables t (s) and relaxation (Pa) over the dimension ``point``; attributes title,
-            mode, source and notes, one text, parted by "; ", and temperature (degrees Celsius)
-            where it is known.
+            Variables ``t`` (s) and ``relaxation`` (Pa), each over the dimension ``point``.
+            Attributes, texts: ``title``, "Relaxation modulus"; ``mode``, "tension" or "shear";
+            ``source``, where the data are from; ``notes``, all notes in one text, separated by
+            "; ".  Where the temperature is known there is also ``temperature``, a number in
+            degrees Celsius.
 
         Examples
         --------
@@ -238,8 +237,12 @@ def read_relaxation(
 
 
 def _origin(path: Any, taken: list[Column]) -> dict[str, Any]:
-    """Return source, headings and units of the columns that are taken from a file, as fields of a
-    record.
+    """Return where the numbers of a record are from, as fields of the record.
+
+    path: path of the file.
+    taken: the columns that are read.
+    Returns a dict with "source", name of the file; "columns", quantity -> heading; and "units",
+    quantity -> unit in the file.
     """
     return {
         "source": Path(path).name.encode(errors="replace").decode(),
@@ -275,7 +278,7 @@ def read_dma(
     modulus, or the same of compliances.  A third is compared with what the two give.  Units stand
     after the names or in a row of their own; log and ln before a name are of base 10 and e.  Other
     columns are left out and listed in ``notes``, as are lines below the last row.  Columns are
-    parted by tabs, semicolons, commas or blanks; there may be lines before the headings, and
+    separated by tabs, semicolons, commas or blanks; there may be lines before the headings, and
     comments that begin with ``#``.  A line above each of several blocks of rows may state their
     temperature, as "Temperatur 20 °C".
 

@@ -1,11 +1,9 @@
-"""Measured moduli of one or several sweeps.
+"""Measured moduli: as a file of a dynamic mechanical analysis has them (:class:`DynamicModuli`),
+and checked and sorted, as series are fitted to them.
 
-Measured moduli, checked and sorted, and whether storage and loss modulus go together.
-
-A series is fitted to a :class:`Curve` or a :class:`Relaxation`; both have the response of a mode in
-their columns.
-
-Storage and loss modulus of a dynamic mechanical analysis: :class:`DynamicModuli`.
+A series is fitted to a :class:`Curve`, storage and loss modulus, or to a :class:`Relaxation`; both
+compute what one mode contributes to their columns.  :func:`kramers_kronig` examines whether storage
+and loss modulus can be of one material.
 """
 
 from __future__ import annotations
@@ -446,8 +444,11 @@ class DynamicModuli(Result):
 
 
 def rows_of(record: Any) -> list[SummaryRow]:
-    """Return the rows of the report of a record with ``columns``, ``units`` and ``notes``: columns,
-    and notes.
+    """Return the rows of a printed report on where a record is from.
+
+    record: :class:`DynamicModuli` or :class:`.dma_reader.RelaxationModulus`, of which columns,
+        units and notes are read.
+    Returns two :class:`SummaryRow`: the headings of the columns with their units, and the notes.
     """
     given = (
         f"{name} {record.columns[name]!r} in {record.units.get(name, '1')}"

@@ -1,11 +1,7 @@
-"""Results of the fits of measured moduli, and their report.
+"""Results of the fits of measured moduli: :class:`Fit`, :class:`RelaxationFit`, and their base
+:class:`SeriesFit`; and the report that ``print`` shows of them.
 
-The lines that ``print`` shows of a fit.
-
-Of the argument ``fit``, a :class:`SeriesFit`, the functions read the public attributes
-alone.
-
-Results of the fits of measured moduli: :class:`Fit`, :class:`RelaxationFit`, and their base
+Functions of the report read only the public attributes of their argument ``fit``, a
 :class:`SeriesFit`.
 """
 
@@ -293,7 +289,7 @@ class SeriesFit(Result):
         Returns
         -------
         str
-            Two parts for storage and loss, parted by a comma; one part for relaxation.
+            Two parts for storage and loss, separated by a comma; one part for relaxation.
 
         Examples
         --------
@@ -476,9 +472,8 @@ class SeriesFit(Result):
         bodies = cylinder.pair.cylinder, cylinder.pair.half_space
         body = next((body for body in bodies if body.prony == self.prony), None)
         if body is None:
-            raise described_error(
-                "cylinder", "has other materials", "one with the material() of this fit"
-            )
+            allowed = "made with material() of this fit"
+            raise described_error("cylinder", "has other materials", allowed)
         speed = check_array("V", V, unit="m s-1")
         lam = contact(
             cylinder.scene(), speed * (cylinder.T_ref / cylinder.R), delta=0.0, fields="lam"

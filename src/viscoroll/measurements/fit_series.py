@@ -1,7 +1,5 @@
-"""The fits of measured moduli: :func:`fit_prony` and :func:`fit_relaxation`.
-
-Moduli measured at several strains, and the fit at the strain of a contact:
-:func:`fit_at_strain`.
+"""The fits of measured moduli: :func:`fit_prony`, :func:`fit_relaxation`, and of moduli measured at
+several strains :func:`fit_at_strain`.
 
 Filled rubbers soften with the strain (Payne).  The contact depends on the moduli, and its strain on
 the contact, so that the strain is a fixed point: contact -> strain -> moduli -> contact.
@@ -470,7 +468,14 @@ def fit_at_strain(
 
 
 def _sets_of(records: Sequence[DynamicModuli]) -> list[Any]:
-    """Return records of one strain each, by rising strain; one that has one strain as it is."""
+    """Divide records into records of one strain each, by rising strain.
+
+    Two neighbouring strains of a record are of one set if they differ by less than a fifth.
+
+    records : as in :func:`fit_at_strain`.
+    Returns a list of :class:`DynamicModuli`; a record of one strain is in it as it is.
+    Raises ParameterError for a record without strain.
+    """
     found: list[Any] = []
     for record in records:
         if record.mean_strain is None:
@@ -492,8 +497,14 @@ def _points(record: DynamicModuli, at: Any) -> DynamicModuli:
 
 
 def _at_strain(sets: list[Any], strain: float) -> DynamicModuli:
-    """Return the moduli at a strain, by two sets or by the nearest; arguments as in
-    :func:`fit_at_strain`.
+    """Return the moduli at a strain.
+
+    Between two isothermal sets the logarithms of both moduli are interpolated in that of the
+    strain, at the frequencies that both sets cover; else the moduli are those of the nearest set.
+
+    sets : at least two, of :func:`_sets_of`.
+    strain : amplitude of strain, dimensionless, > 0.
+    Returns a :class:`DynamicModuli`, whose ``source`` names the sets.
     """
     strains = np.array([each.mean_strain for each in sets])
     n = int(np.searchsorted(strains, strain).clip(1, strains.size - 1))

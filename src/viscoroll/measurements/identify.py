@@ -1,9 +1,7 @@
-"""Parameters of a cylinder from measurements, given as arguments or as a file.
+"""Parameters of a cylinder from measurements: :func:`identify`, by searches from several starts.
 
-Parameters of a cylinder from measurements: :func:`identify`, by searches from several starts.
-
-A TOML file of measurements, a cylinder, [unknown], [prior] and [[data]], as arguments of
-:func:`identify`.
+:func:`read_measurements` reads its arguments from a TOML file with [cylinder], [unknown], [prior]
+and [[data]].
 """
 
 from __future__ import annotations
@@ -368,17 +366,26 @@ _UNKNOWN = "unknown"
 
 
 def read_measurements(path: str | PathLike[str]) -> dict[str, Any]:
-    """Read the arguments of :func:`identify` from a TOML file.
+    """Read the arguments of :func:`identify` from a TOML file and the files of data that it names.
 
-    path : path of the TOML file, with [cylinder], [unknown], [[data]] and perhaps [prior].
+    Parameters
+    ----------
+    path : path of the TOML file.  It has the sections [cylinder] (the known parameters and the
+        initial guess), [unknown] (NAME = [LOW, HIGH]), [[data]] (a record each) and perhaps
+        [prior] (NAME = [VALUE, STANDARD DEVIATION]), [material] and [base]; numbers are in SI
+        units.
 
     Returns
     -------
     dict
-        Arguments of :func:`identify` by name: cylinder, a :class:`Cylinder`; unknown and
-        prior, name -> two numbers, not checked here, prior perhaps empty; data, a list of records;
-        shift, "material" or "base" -> a_T over temperature in degrees Celsius, of the materials
-        that have one.
+        Arguments of :func:`identify` by name:
+
+        - "cylinder": the :class:`Cylinder`;
+        - "unknown", "prior": dicts, name -> list of two numbers as the file has them, not checked
+          here; without [prior] that dict is empty;
+        - "data": list of the records, as :class:`Resistance`, in the order of the file;
+        - "shift": dict, "material" or "base" -> function a_T of the temperature in degrees Celsius,
+          for those of the two sections that have ``wlf`` or ``arrhenius``.
 
     Raises
     ------

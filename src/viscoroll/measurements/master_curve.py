@@ -1,10 +1,5 @@
-"""Sweeps at several temperatures, and their shifts to one master curve.
-
-Sweeps at several temperatures: the points of each sweep, and the reference and the factors of
-their shifts.
-
-Curves at several temperatures as one master curve, by horizontal shifts:
-:func:`master_curve`.
+"""Sweeps at several temperatures, shifted to one :func:`master_curve`: the points of each sweep
+(:class:`Sets`), the reference temperature, and the factors a_T of the shifts (:class:`Shifts`).
 """
 
 from __future__ import annotations
@@ -106,12 +101,10 @@ def points_of(temperature: Any, *columns: Any) -> tuple[Floats, list[Floats], In
     if given.ndim == 0:
         given = np.full(flat[0].shape, float(given))
     if given.ndim != 1:
-        raise shape_error("temperature", given.shape, "one column, or one for each curve")
+        raise shape_error("temperature", given.shape, "one for each point, or one for each curve")
     for name, column in zip(Curve._fields, flat, strict=True):
         if column.shape != given.shape:
-            raise shape_error(
-                name, column.shape, f"one for each temperature, of shape {given.shape}"
-            )
+            raise shape_error(name, column.shape, f"one for each point, of shape {given.shape}")
     return given, flat, None
 
 

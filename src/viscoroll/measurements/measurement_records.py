@@ -137,16 +137,19 @@ class Record:
 
     @staticmethod
     def unit(name: str) -> str:
-        """Return the SI unit of a field of a record.
+        """Return the SI unit in which records keep a field, and to which a value with a unit is
+        converted.
 
         Parameters
         ----------
-        name : name of a coordinate, a quantity or a number of a record, as "V".
+        name : name of a field: a measured quantity as "F", what it was measured at as "V", or a
+            number of the whole record as "load".  It is not checked.
 
         Returns
         -------
         str
-            The unit, as "m s-1"; "1" of a creepage and of other names without a dimension.
+            The unit, as "m s-1"; forces and loads are per length of the cylinder, "N m-1".  "1" for
+            fields without dimension, as the creepage "delta".
 
         Examples
         --------

@@ -398,12 +398,15 @@ class ProfileWalk:
         return float(self.powers @ (u - self.best.u))
 
     def shift_to(self, d: float, u: Floats) -> Floats:
-        """Return a point moved along the covariance until its combination has a given distance from
-        that at the best minimum.
+        """Return u + slope (d - distance(u)), a point whose combination has the distance d.
 
-        d : the distance, signed.
-        u : coordinates of the point, (unknowns,).
-        Returns coordinates, (unknowns,), perhaps outside of the ranges.
+        Of all points at that distance it is nearest to u in the metric of the inverse covariance,
+        by which chi2 rises about the best minimum.
+
+        d : the wanted :meth:`distance` of the combination from that at the best minimum, signed,
+            dimensionless.
+        u : coordinates of a point, (unknowns,), dimensionless.
+        Returns its coordinates, (unknowns,), perhaps outside of the ranges of the unknowns.
         """
         return u + self.slope * (d - self.distance(u))
 

@@ -1,27 +1,22 @@
-"""Discrete spectra of measured moduli: least squares, number of modes, sensitivity.
+"""Discrete spectra of measured moduli: least squares, number of modes, accuracy.
 
-Least squares of measured moduli by a discrete spectrum: strengths on fixed times, and times that
-are refined.
+**Least squares**: strengths on fixed times, and times that are refined.  The residuals are the
+relative errors of every measured modulus (E' and E'', or E(t)), all points alike.  On fixed times
+the strengths are those of non-negative least squares (as in M. Baumgaertel and H. H. Winter,
+Rheologica Acta 28, 511-519, 1989, doi:10.1007/BF01332922); few modes suffice once their times are
+free.
 
-The residuals are the relative errors of every measured modulus (E' and E'', or E(t)), all points
-alike.  On fixed times the strengths are those of non-negative least squares (as in M. Baumgaertel
-and H. H. Winter, Rheologica Acta 28, 511-519, 1989, doi:10.1007/BF01332922); few modes suffice once
-their times are free.
+**Fewest modes for a misfit** (:func:`fewest_modes`): from a grid of times that reaches the misfit
+modes are left out or merged one by one.  A row of the data is one measured modulus: a
+:class:`.dynamic_moduli.Curve` has two, storage and loss, a :class:`.dynamic_moduli.Relaxation`
+one.  The misfit of a row is the root mean square of its relative errors, dimensionless.
 
-Fewest modes for a misfit: a grid of times that reaches it, from which modes are left out or
-merged one by one.
-
-A row of the data is one measured modulus: a :class:`.dynamic_moduli.Curve` has two, storage and
-loss, a :class:`.dynamic_moduli.Relaxation` one.  The misfit of a row is the root mean square of its
-relative errors, dimensionless.
-
-Accuracy of a fit: rolling resistance by all spectra that meet the data as well
-(:func:`admissible_spectra`).
-
-Data over a limited band do not determine a spectrum.  For each speed the non-negative spectra are
-sought by which M is smallest and largest, among those that meet the data as well as the fit does;
-the fit is one of them, and so is the true spectrum, but for noise.  How far M is off for rubbers
-that are known is measured by ``pipeline/evidence/measure/fits.py``.
+**Accuracy of a fit**: rolling resistance by all spectra that meet the data as well
+(:func:`admissible_spectra`).  Data over a limited band do not determine a spectrum.  For each
+speed the non-negative spectra are sought by which M is smallest and largest, among those that meet
+the data as well as the fit does; the fit is one of them, and so is the true spectrum, but for
+noise.  How far M is off for rubbers that are known is measured by
+``pipeline/evidence/measure/fits.py``.
 
 Speeds, moments and kappa are those of a :class:`viscoroll.Scene`: V in units of R/T_ref, M divided
 by P R.
@@ -152,8 +147,10 @@ class LeastSquares:
     """
 
     def __init__(self, data: Data, tau: Floats) -> None:
-        """Compute the matrix for ``data``, a :class:`Curve` or a :class:`Relaxation`, and times
-        ``tau`` > 0, s.
+        """Compute the matrix of the least squares.
+
+        data : measured moduli, a :class:`Curve` or a :class:`Relaxation`.
+        tau : times of the modes, s, > 0, (modes,).
         """
         columns = _relative_columns(data, 1.0, data.responses(tau))
         self.tau = tau
@@ -682,10 +679,12 @@ def _slopes_of_moment(problem: LeastSquares, best: Floats, rate: float) -> Float
 def _pulled(
     problem: LeastSquares, best: Floats, pull: Floats, sign: float, allowed: float
 ) -> Floats:
-    """Return the unknowns with a linear form as small or large as a sum of squares allows.
+    """Return the unknowns at which a linear form is smallest or largest among those whose sum of
+    squares is allowed.
 
-    The form is pulled towards a change of 1 by a further residual, whose weight is halved between
-    what is allowed and what is not, in its logarithm.
+    A further residual, the form less its value at ``best`` less 1 (or plus 1), pulls the form.  The
+    largest weight of that residual with which the sum of squares is still allowed is found by
+    halving the interval of its logarithm.
 
     problem : :class:`LeastSquares`, n unknowns.
     best : values of the unknowns with the least sum of squares, (n,).

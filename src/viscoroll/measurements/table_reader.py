@@ -1,10 +1,6 @@
-"""Measured moduli from the columns of a table.
-
-Storage and loss modulus from any two of storage, loss, tan delta and magnitude; a third is
-compared.
-
-What the readers of tests of materials share: a table whose columns are understood, and their
-numbers.
+"""What the readers of tests of materials share: a table whose columns are understood
+(:class:`Understood`), the numbers of these columns, and storage and loss modulus from any two of
+storage, loss, tan delta and magnitude, with which a third is compared.
 """
 
 from __future__ import annotations
@@ -184,7 +180,7 @@ def missing(table: Table, problem: str, others: Mapping[str, str]) -> FileError:
 
 
 def quoted(lines: list[str]) -> str:
-    """Return lines for a message, at most 60 characters of each, in quotes and parted by commas."""
+    """Return lines for a message, at most 60 characters of each, in quotes, separated by commas."""
     return ", ".join(f"{' '.join(line.split())!r:.60}" for line in lines)
 
 
@@ -198,14 +194,14 @@ def understand(
 ) -> Understood:
     """Read the table of a file, and find the quantities of its columns.
 
-    test : "dma" or "relaxation".
     path, columns, units, decimal, encoding : as in :func:`.dma_reader.read_dma`.
-    Returns :class:`Understood`.
+    test : kind of test, which determines the quantities that are looked for: "dma" or "relaxation".
+    Returns the table with its columns, as :class:`Understood`.
     Raises ParameterError and FileError as :func:`.dma_reader.read_dma` does for these arguments and
     for what is no table.
     """
     if not isinstance(columns, Mapping | None):
-        raise ParameterError("columns", f"{columns!r:.60}", "quantity -> heading")
+        raise ParameterError("columns", f"{columns!r:.60}", "a dict, quantity -> heading")
     named = dict(columns or {})
     known = QUANTITIES[test]
     bare = BARE[test]
@@ -251,7 +247,7 @@ def _units(units: Any, test: str) -> tuple[dict[str, str], dict[str, str]]:
         if first == "time"
         else "(frequency, moduli), as ('Hz', 'MPa')"
     )
-    allowed = f"{two}, or quantity -> unit"
+    allowed = f"{two}, or a dict, quantity -> unit"
     if not (units is None or by_name or (isinstance(units, (tuple, list)) and len(units) == 2)):
         raise ParameterError("units", f"{units!r:.60}", allowed)
     of_two = zip((UNITS[first], "Pa"), units or (), strict=False)

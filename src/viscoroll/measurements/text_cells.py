@@ -1,10 +1,5 @@
-"""A text file as lines and cells, and cells as numbers.
-
-Cells of a table: which are numbers, gaps or texts, and the numbers of a column.
-
-A text file as lines, and lines as cells: encodings, separators, comments.
-
-A heading of a column: its name, its unit, and the base of its logarithms.
+"""A text file as lines (encodings, comments), lines as cells (separators), cells as numbers, gaps
+or texts, and a heading of a column as its name, its unit and the base of its logarithms.
 """
 
 from __future__ import annotations

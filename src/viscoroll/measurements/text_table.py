@@ -1,10 +1,6 @@
-"""The table in a text file: rows, units, columns.
-
-The table in a text file: its headings, its row of units and its rows of numbers:
-:func:`read_table`.
-
-Columns of a table by the name that the user gives: :func:`named_table`,
-:func:`column_in_unit`.
+"""The table in a text file: its headings, its row of units and its rows of numbers
+(:func:`read_table`); and columns by the name that the user gives (:func:`named_table`,
+:func:`column_in_unit`).
 """
 
 from __future__ import annotations

@@ -5,10 +5,9 @@ terms[n] x^n.  A piece without length does not act; in the last piece, which has
 function is constant.  All is dimensionless.  T_ref is the unit of time: T_epsilon of a material
 that is an alpha, the ``T_ref`` of any other material.
 
-Fit of a callable of time by polynomials: a piece is halved until its fit is good, and joined to
-the previous one.
-
-A fit is good where it agrees with the callable between its nodes, and at samples spread over the
+**Fit of a callable.**  The whole time is halved into pieces until a polynomial fits each, and a
+piece is joined to the one before it where one polynomial fits both.  A fit is good where it agrees
+with the callable between its nodes, and at samples spread over the
 whole time, which find narrow pulses: a thousand, or as many as ``resolve`` requires.
 
 It may differ by a part of the largest value so far, or by a small part of the largest value at all:
@@ -267,8 +266,11 @@ class _Sampled:
         ends = values[n : n + 2].tolist()
 
         def is_before(time: float) -> bool:
-            """Return whether the value at ``time`` is nearer to that before the jump, and replace
-            the nearer one.
+            """Return whether the value at a time is nearer to that before the jump than to that
+            after it.
+
+            The nearer of the two values is replaced by it, for the next call.
+            time: between the two times, in T_ref.
             """
             value = self.value(time)
             before = abs(value - ends[0]) < abs(ends[1] - value)
@@ -326,7 +328,9 @@ def fit_callable(
     samples = SAMPLES
     if resolve is not None:
         if resolve * MOST < end:
-            allowed = f"at least {end / MOST:.6g}: {MOST} samples up to t = {end:.6g}"
+            allowed = (
+                f"at least {end / MOST:.6g}: at most {MOST} samples up to t = {end:.6g} are taken"
+            )
             raise mark_dimensionless(ParameterError("resolve", resolve, allowed))
         samples = max(math.ceil(end / resolve), SAMPLES)
     sampled = _Sampled(name, function, end=end, rtol=rtol, low=low, samples=samples)

@@ -1,9 +1,4 @@
-"""Many motions: :func:`ensemble`, and their result, :class:`Ensemble`.
-
-The result of many motions: :class:`Ensemble`.
-
-Many motions at once: :func:`ensemble`.
-"""
+"""Many motions at once: :func:`ensemble`, and their result, :class:`Ensemble`."""
 
 from __future__ import annotations
 

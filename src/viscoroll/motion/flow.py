@@ -160,7 +160,7 @@ def load(path: Path, parameters: tuple[Any, ...]) -> FlowMap | None:
     write to it or to a folder above it, or if one belongs to another user; None with a
     RuntimeWarning if its content is damaged or of other parameters.
     """
-    damaged = "flow map is damaged ({}) and is built again"
+    damaged = "the cached flow map is damaged ({}) and is built again"
     return load_kept(path, damaged, lambda data: _read(data, parameters))
 
 

@@ -1,9 +1,5 @@
-"""Arguments of one motion and of an ensemble: checks, and the drive.
-
-Checks of arguments that one motion and an ensemble share.
-
-What drives motions, as the caller gives it: :class:`Drive`; the loads and speeds of a result by
-name.
+"""Arguments that one motion and an ensemble share: their checks; what drives motions, as the caller
+gives it (:class:`Drive`); and the names of the loads and speeds of a result.
 """
 
 from __future__ import annotations

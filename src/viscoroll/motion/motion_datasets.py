@@ -1,6 +1,5 @@
-"""Common data of one motion and of an ensemble: :class:`RollResult`.
-
-Motions and ensembles as xarray datasets, with names, units and provenance.
+"""Common data of one motion and of an ensemble (:class:`RollResult`), and both as xarray datasets
+with names, units and provenance.
 """
 
 from __future__ import annotations
@@ -333,11 +332,12 @@ def describe_values(t: NDArray, values: NDArray) -> str:
 
 
 def _shared(array: NDArray, own: int = 0) -> NDArray:
-    """Return numbers of motions, without the axis of the motions if it has length 1: they are those
-    of all motions.
+    """Return numbers of motions without the axis of the motions, if it has length 1: they are then
+    the same for all motions.
 
-    array: (n, ...), or without that axis.
-    own: number of its other axes.
+    array: numbers, (n, ...), or without the axis n.
+    own: number of its axes beside n.
+    Returns ``array`` itself, or its only row.
     """
     return array[0] if array.ndim > own and len(array) == 1 else array
 

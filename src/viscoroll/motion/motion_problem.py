@@ -316,7 +316,7 @@ def _apply_standstill(start: DrivenStart, scene: Parameters, rested: float) -> t
             if still and not prescribed
             else why
         )
-        sentence = f"rested is given, but {why}: the energy loss of the start is then not available"
+        sentence = f"rested is given, but {why}: leave it out, the loss of the start is not known"
         raise ParameterError("rested", rested, "left out", sentence)
     lost = FreeRolling.of_scene(scene, V).start(rested).speed / np.where(V == 0.0, 1.0, np.abs(V))
     return V * (1.0 - lost), start.omega0 * (1.0 - lost), lost > LARGEST_LOSS

@@ -1,15 +1,12 @@
-"""Summaries of many motions: histograms, moments and quantiles.
+"""Summaries of many motions: histograms, moments and quantiles, of an ensemble in memory, and of
+blocks of a run, with the same bits in whatever order these were computed.
 
-Counts and moments of one quantity, which merge with those of further values: :class:`Histogram`.
-
-Counts merge to the same bits in any order, moments to rounding.
+:class:`Histogram` has counts and moments of one quantity, which merge with those of further values:
+counts to the same bits in any order, moments to rounding.
 
 A bin holds the doubles that share sign, exponent and the first eight bits after the point: 256 bins
 to the octave, so each is at most 2^-8 of its value wide (of magnitudes from 2^-1022 on), with no
 range to choose beforehand (as in DDSketch: C. Masson, J. Rim, H. Lee, VLDB 2019).
-
-Summaries of motions: of an ensemble in memory, and of blocks of a run, with the same bits in
-whatever order these were computed.
 
 Counts are whole numbers, and moments are kept for each block and merged in the order of blocks.  A
 quantile of blocks lies between two values that are known to 2^-8 each

@@ -1,12 +1,10 @@
 """Execution of a run, and an estimate of its cost.
 
-Evaluation of the blocks of a run, on threads of this process or on a dask cluster:
-:func:`runs.run_ensemble`.
-
+:func:`run_ensemble` evaluates the blocks of a run, on threads of this process or on a dask cluster.
 One task is one block.  No more tasks are submitted than keep the workers busy, so that neither this
 process nor a scheduler holds more than a few, however many blocks there are.
 
-Time, memory and disk space that a run takes, from a short trial of it: :func:`run_engine`.
+:func:`estimate` states the time, memory and disk space that a run takes, by a short trial of it.
 """
 
 from __future__ import annotations

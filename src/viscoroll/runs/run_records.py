@@ -1,16 +1,13 @@
 """Which blocks a store holds and of which run: records, identity, bytes of its files.
 
-Records: small sealed files that state which parts of a store are complete.
+**Records** are small sealed files that state which parts of a store are complete.  A record holds
+the SHA-256 of each file that belongs to it and is written after them.  So a part is complete
+exactly if its record is undamaged and each file that it names has the digest that it states.
 
-A record holds the SHA-256 of each file that belongs to it and is written after them.  So a part is
-complete exactly if its record is undamaged and each file that it names has the digest that it
-states.
+**Files** of a zarr hierarchy (format 2) are encoded by zarr in memory, and written by the store: so
+each file is written whole, synced, and compared with the digest of its content.
 
-Files of a zarr hierarchy (format 2) as bytes: zarr encodes in memory, and the store writes.
-
-So each file is written whole, synced, and compared with the digest of its content.
-
-Identity of a store: the run that it belongs to, and whether the same run with more motions may
+**Identity** of a store: the run that it belongs to, and whether the same run with more motions may
 extend it.
 """
 

@@ -1,11 +1,6 @@
-"""Results of a finished run: check, open, export.
-
-Check of a results store against its records: :func:`run_results`.
-
-A finished store as a result that prints itself and gives datasets, tables and figures:
-:func:`runs.open_run`.
-
-Export of a store to one netCDF-4 file: :func:`runs.export_netcdf`.
+"""Results of a finished run: its store checked against its records (:func:`verify`), opened as a
+result that prints itself and gives datasets, tables and figures (:func:`open_run`), and exported to
+one netCDF-4 file (:func:`export_netcdf`).
 """
 
 from __future__ import annotations
@@ -40,7 +35,7 @@ from .run_store import MOTIONS, problems
 
 @dataclass(frozen=True)
 class Verdict:
-    """Result of :func:`run_results`; ``str`` states it in words.
+    """Result of :func:`verify`; ``str`` states it in words.
 
     Attributes
     ----------
@@ -379,7 +374,7 @@ def open_run(path: str | PathLike[str]) -> RunResults:
     ------
     FileError
         If the folder is no results store, is not finished, or its summaries are damaged; the files
-        of the motions are not examined (:func:`run_results` does that).
+        of the motions are not examined (:func:`verify` does that).
     MissingDependencyError
         If zarr is not installed.
 

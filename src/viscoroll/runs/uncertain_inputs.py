@@ -1,13 +1,10 @@
 """Uncertain inputs of a run file: distributions, columns, correlations, and their values.
 
-Uncertain inputs: values of each input at points of the unit cube, and the sections of a run file
-with these values.
-
-An input is a :class:`Distribution`, or a column of a joint sample.  Each distribution is one
-dimension of the cube, and so is each file: its columns share the row that is drawn.
-
-Sections of a run file -> :class:`Inputs`: distributions, columns of tables of numbers,
-correlations.
+:func:`inputs_of` collects the uncertain numbers of a run file as :class:`Inputs`.  An input is a
+:class:`Distribution`, or a column of a file, a joint sample.  Motions are drawn as points of a unit
+cube: each distribution is one dimension of the cube, and so is each file, whose columns share the
+row that is drawn.  :class:`Inputs` gives the values of all inputs at such points, and the sections
+of the run file with these values.
 """
 
 from __future__ import annotations
@@ -600,9 +597,8 @@ def correlated(path: Path, inputs: Inputs) -> Inputs:
     pairs: dict[tuple[str, str], Any] = {}
     for a, row in section.items():
         if not isinstance(row, dict):
-            raise section_error(
-                path, "correlation", a, f"{a} = {row!r:.40}: must be a line like V0.mu = 0.5"
-            )
+            problem = f"{a} = {row!r:.40}: must be the correlation of two inputs, as V0.mu = 0.5"
+            raise section_error(path, "correlation", a, problem)
         pairs |= {(a, b): value for b, value in row.items()}
     names = tuple(name for name in random if any(name in pair for pair in pairs))
     matrix = np.eye(len(names))

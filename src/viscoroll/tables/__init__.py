@@ -7,12 +7,13 @@ other programs.
     vr.tables.export(law, "rubber.h")  # table and evaluator in one header of C
 
     roller = vr.presets.RUBBER_CYLINDER
-    grid = vr.tables.build(roller, V=vr.tables.spread(1e-3, 10.0, 201, "log"), delta=[-0.01, 0.0,
-    0.01]) vr.tables.export(grid, "rubber.txt")  # Modelica
+    V = vr.tables.spread(1e-3, 10.0, 201, "log")
+    grid = vr.tables.build(roller, V=V, delta=[-0.01, 0.0, 0.01])
+    vr.tables.export(grid, "rubber.txt")  # Modelica
 
-Modules, in the order of reading: :mod:`law_dataset`, :mod:`grid_build`, :mod:`table_files` (file
-of a grid, interpolation, atomic save, checked load), :mod:`table_export` (formats of other
-programs).
+Modules, in the order of reading: :mod:`law_dataset` (laws as datasets, checks of tables),
+:mod:`grid_build` (grids), :mod:`table_files` (files of both, interpolation), :mod:`table_export`
+(formats of other programs).
 """
 
 from .grid_build import build, creep_nodes, spread

@@ -1,9 +1,6 @@
-"""Grids of the contact law: axes and values.
-
-Nodes of the axes of a grid: in equal steps or ratios, and of creepage, for the onset of full
-slip at every speed.
-
-The contact law on a grid, for look-up blocks of other programs.
+"""Grids of the contact law, for look-up blocks of other programs: nodes of the axes, in equal steps
+or ratios (:func:`spread`), and of creepage for the onset of full slip at every speed
+(:func:`creep_nodes`); and the fields at the nodes (:func:`build`).
 
 Fields: beta, length of the stick zone divided by contact length; Q, creep force; lam, contact
 length divided by that at rest; epsilon, shift of the contact in half contact lengths; M, rolling
@@ -120,7 +117,7 @@ def creep_nodes(
     Parameters
     ----------
     what : a :class:`Scene` or a :class:`Cylinder` with numbers for parameters, or a law, as in
-    :func:`grid_build`.
+        :func:`build`.
     V : speeds of the grid, (n,), > 0, strictly increasing; of a Scene divided by R/T_ref, where
         T_ref is T_epsilon of a scene with alpha, else the unit of time of its material; of a
         Cylinder in m/s.
@@ -253,7 +250,7 @@ def variable(name: str, dims: tuple[str, ...], values: Any, si: bool) -> xr.Vari
     """Make a variable of a grid, with long_name, units, symbol, range, equation and reference as
     attributes.
 
-    name: name of the quantity, a key of ``core.symbols.SYMBOLS``.
+    name: name of the quantity, a key of ``core.scale.SYMBOLS``.
     dims: names of the axes of the variable.
     values: array of its values, over ``dims``.
     si: whether the values are in SI units, else dimensionless; the range of Q is then that of "mu
@@ -553,7 +550,7 @@ def random_points(table: Dataset, count: int, seed: int) -> dict[str, Floats]:
     A cell is drawn with equal probability for each axis, then the place in it evenly in the
     coordinate itself.
 
-    table: the grid, dataset of :func:`grid_build`.
+    table: the grid, dataset of :func:`build`.
     count: number of points, >= 0.
     seed: seed of the generator, >= 0.
     Returns axis -> coordinates, (count,), in the units of the grid.

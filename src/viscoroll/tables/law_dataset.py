@@ -1,6 +1,8 @@
-"""The law of a material, a pair or every alpha as a dataset, and checks of tables.
+"""The law of a material, a pair or every alpha as a dataset with its measured errors (:func:`law`),
+and checks of tables: a law against the formulas of its modes, a grid against the rows of the law
+(:func:`check_table`).
 
-The law of one material or pair, or of every alpha, as a dataset with its measured errors.
+The rows of a law are its polynomials, one for each octave of speed.
 
 kappa is the radius divided by the contact length at rest; zeta is the time in which a point passes
 through half the contact, eta that through half the stick zone, in units of T_ref.  At a speed V:
@@ -8,11 +10,6 @@ lam = 2 kappa V zeta is the contact length divided by that at rest, epsilon the 
 in half contact lengths, H(zeta) = (zeta/lam)^2 and F(zeta) = zeta (1 + epsilon).  M is the rolling
 moment, N that of M + N dV/dt at slow speed changes, delta_star the creepage at which full slip
 begins, and delta_0 that of free rolling, which is 0 but for a layer.
-
-Checks of tables: the file of a law against the formulas of its modes, a grid against the rows of
-the law.
-
-The rows of a law are its polynomials, one for each octave of speed.
 """
 
 from __future__ import annotations
@@ -144,7 +141,7 @@ def measured_errors(
     """Compare a tabulated law with exact values at random points, and return the largest error of
     each function.
 
-    There are three cases:
+    There are four cases:
 
     - Half-spaces: no equation is solved.  A random zeta (half the transit time of the contact, in
       T_ref) gives, by the closed formulas of the modes, the functions and the speed ``kappa |V|``
@@ -158,7 +155,7 @@ def measured_errors(
 
     Parameters
     ----------
-    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.alpha_axis.LawAxis`, the law
+    table : :class:`LawTable` of half-spaces or of a cover; or :class:`.law_table.LawAxis`, the law
         of every alpha.
     count : number of points.  Of every alpha the laws of the random alphas share it, with at least
         one point each.

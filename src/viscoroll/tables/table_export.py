@@ -38,7 +38,7 @@ def export(table: Dataset, path: str | PathLike[str]) -> None:
 
     Parameters
     ----------
-    table : dataset of :func:`law_dataset`, :func:`grid_build` or :func:`tables.load`.
+    table : dataset of :func:`law`, :func:`build` or :func:`load`, all of :mod:`viscoroll.tables`.
     path : file to write, whose suffix, also in capitals, selects the format; a file of that name is
         replaced.  For a law and a grid: .nc (netCDF-4), or .cdf (netCDF-3, for readers without
         HDF5).  For a law: .h (C99 and C++: table and evaluator in one header) or .json.  For a
@@ -293,8 +293,11 @@ def _law_constants(table: LawTable, name: str) -> str:
 
 
 def _table_constants(table: LawTable, name: str) -> str:
-    """Return the constants of C of the splines of a table of the coupled solution; ``name``: of the
-    table.
+    """Return the splines of a table of the coupled solution as constants in C.
+
+    table: law with ``coupled`` rows.
+    name: name of the table, an identifier of C, with which the names of the constants begin.
+    Returns the source text.
     """
     from ..kernels.law import coupled_splines as layout
 

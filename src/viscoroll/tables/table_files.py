@@ -99,9 +99,8 @@ def check_grid(table: Any, path: Any) -> None:
             path, "is a law, not a grid: load it by vr.load_law, and evaluate it by vr.contact"
         )
     if str(about.get(KIND)) != GRID:
-        raise FileError(
-            path, f"is not a table of viscoroll: attribute {KIND} is {about.get(KIND)!r:.40}"
-        )
+        problem = f"its attribute {KIND} is {about.get(KIND)!r:.40}, not {GRID!r}"
+        raise FileError(path, f"is not a table of viscoroll: {problem}")
     version = about.get("schema_version")
     major = SCHEMA_VERSION.partition(".")[0]
     if str(version).partition(".")[0] != major:
@@ -171,7 +170,7 @@ def save(table: Dataset, path: str | PathLike[str]) -> None:
 
     Parameters
     ----------
-    table : a Dataset of :func:`law_dataset`, :func:`grid_build` or :func:`tables.load`.
+    table : dataset of :func:`law`, :func:`build` or :func:`load`, all of :mod:`viscoroll.tables`.
     path : file to write; a file of that name is replaced.
 
     Raises
@@ -484,16 +483,19 @@ class Interpolant:
         return values if self._linear or name == "delta" else np.log(values)
 
     def _spline(self, name: str) -> tuple[tuple[str, ...], Any]:
-        """Return the spline of a field, computed at its first use and kept in ``_splines``.
+        """Return a field as a spline over its axes, fitted at first use and kept in ``_splines``.
+
+        Axes of one node are left out, since nothing can be interpolated along them.  The degree is
+        3, or 1 with ``_linear``, and lower along axes of few nodes (:func:`.law_grid.fit_spline`).
 
         name: name of a field, which the caller has checked (else KeyError).
-        Returns (names of those of its axes that have more than one node, in their order; the spline
-        over these, a function that takes coordinates of :meth:`_map_axis`, (..., axes), and returns
-        values, (...)).  The spline is cubic, with ``_linear`` of degree 1, of lower degree along
-        axes of few nodes (:func:`.law_grid.fit_spline`); it extrapolates, and values are not
-        clipped.  Without such axes the names are () and the second entry is the value of the field,
-        an array without axes.
-        Raises ValueError of scipy where values that were changed after the check are not finite.
+        Returns (names of the remaining axes, in their order; the spline).  The spline is a function
+        of coordinates as :meth:`_map_axis` makes them, (..., axes); it returns values in the unit
+        of the field, (...).  It does not check that points lie inside the axes.  If no axis
+        remains, the names are () and the second entry is the value of the field, an array of shape
+        ().
+        Raises ValueError of scipy where values of the table are not finite, as after the caller
+        changed them.
         """
         if name not in self._splines:
             field = self._table[name].squeeze()

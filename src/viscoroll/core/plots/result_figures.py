@@ -1,9 +1,5 @@
-"""Figures of measurements and of many motions.
-
-Figures of measurements: a material, the fit of a series, and an identification.
-
-Figures of many motions: quantiles and final distribution of each quantity, and Sobol indices as
-bars.
+"""Figures of measurements (a material, the fit of a series, an identification) and of many motions
+(quantiles and final distribution of each quantity, and Sobol indices as bars).
 """
 
 from __future__ import annotations
