@@ -153,7 +153,7 @@ class Scene(Methods, Parameters):
         (n,), in place of ``alpha``, which is then that of the material; the unit of time is T_ref,
         in which a series counts its times.  A law of :func:`viscoroll.load_law` stands for its
         material, or its alpha.  A :class:`viscoroll.Cover` is a layer of finite thickness.
-    coupled : as in :class:`Cylinder`; of :class:`Bodies` by their ``poisson``.
+    coupled : as in :class:`Cylinder`; :class:`Bodies` without ``poisson`` are uncoupled.
 
     Raises
     ------

@@ -23,10 +23,10 @@ fit = vr.fit_prony(omega, storage, loss, source="dma.csv")
 print(fit)
 
 # %%
-# Read the report first.  The target of the misfit is reached.  The loss modulus agrees with the
-# slope of the storage modulus (Kramers-Kronig), so the two curves are consistent.  Modes outside
-# the measured frequencies would change rolling resistance by 2 % at most, at speeds inside the
-# measured band.
+# Read the report first.  The misfit is below its limit.  The loss modulus agrees with the value
+# that follows from the slope of the storage modulus (Kramers-Kronig relation), so the two curves
+# are consistent.  Relaxation times outside the measured frequencies would change the rolling
+# resistance by 2 % at most, at speeds inside the measured band.
 fine = np.geomspace(omega[0], omega[-1], 300)
 figure, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 axes.loglog(omega, storage, "C0o", omega, loss, "C1s", markersize=4)
@@ -46,12 +46,13 @@ roller = vr.Cylinder(R=0.1, m=247.0, material=steel, base=rubber, mu=0.5)
 print(f"contact length at rest: {1e3 * roller.l0:.1f} mm")
 
 # %%
-# Rolling resistance over speed, at three temperatures.  A change of temperature multiplies all
-# relaxation times by one shift factor, here by the equation of Williams, Landel and Ferry.
+# The next figure shows the rolling resistance over speed, at three temperatures.  A change of
+# temperature multiplies all relaxation times by one shift factor, here by the equation of Williams,
+# Landel and Ferry.
 #
-# A point of the surface passes the contact in the transit time, contact length divided by speed.
-# Its inverse must lie inside the measured frequencies.  Outside of them the fit extrapolates:
-# ``contact`` warns, and ``validity`` reports it.  The curves are dotted there.
+# A point of the surface passes through the contact in the transit time, the contact length divided
+# by the speed.  The inverse of this time must lie inside the measured frequencies.  Otherwise the
+# fit extrapolates: ``contact`` warns, and ``validity`` reports it.  The curves are dotted there.
 shift = vr.WLF(C1=8.86, C2=101.6, T0=20.0)
 speed = np.geomspace(1e-4, 1e3, 300)  # m/s
 figure_2, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")

@@ -2,7 +2,8 @@
 2. A roller on a slope
 ======================
 
-The steel roller of step 1 on a slope of half a degree, covered with the rubber, at 60 °C.
+The steel roller of step 1 rolls down a slope of half a degree.  The slope is covered with the
+rubber, at 60 °C.
 """
 
 import matplotlib.pyplot as plt
@@ -24,8 +25,8 @@ slope = np.radians(0.5)
 print(roller.validity(2.0))
 
 # %%
-# No assumption is violated, and the error of V is below 1 % to the end.  At 20 °C the relaxation
-# times are 300 times longer.  This matters only at low speeds (:doc:`/validity`):
+# No assumption is violated, and the error of the speed V is below 1 % to the end.  At 20 °C the
+# relaxation times are 300 times longer.  This matters only at low speeds (:doc:`/validity`):
 print(roller.replace(base=cool).validity(2.0).steady.sentence)
 
 # %%
@@ -65,8 +66,8 @@ left.legend(frameon=False)
 print(f"it slides for {m.onset_time:.3f} s")
 
 # %%
-# The energy balance, in J per metre of length: losses by slip and by rolling resistance, work of
-# gravity.
+# The energy balance, in J per metre of length, consists of the losses by slip and by rolling
+# resistance and of the work of gravity.
 print(
     f"slip {m.slip_loss[-1]:.0f}, rolling {m.rolling_loss[-1]:.0f}, "
     "from the slope "

@@ -64,5 +64,5 @@ print(
 # Friction determines only the duration of sliding, some tenths of a second.  The slope determines
 # the speed after two minutes: measure the slope.
 #
-# Next: a million motions from a run file, resumable and in SI units, :doc:`/ensembles`; shares of
-# the variance for each input, :doc:`/sensitivity`.
+# Next steps: :doc:`/ensembles` shows how to compute a million motions from a run file, and
+# :doc:`/sensitivity` how much of the variance is due to each input.

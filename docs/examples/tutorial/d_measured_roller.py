@@ -2,9 +2,10 @@
 4. Parameters from a drum test and a coast-down
 ===============================================
 
-There are no DMA data of this rubber.  A drum test of a roller gave the moment M over V.  A
-coast-down, launched at some 4 m/s without rotation, gave V over t.  Both contain the friction of
-the bearing.  ``identify`` estimates modulus, relaxation time, friction and bearing.
+There are no DMA data of this rubber.  A drum test of a roller gave the rolling moment M at several
+speeds V.  A coast-down, launched at some 4 m/s without rotation, gave V over the time t.  Both
+contain the friction of the bearing.  ``identify`` estimates modulus, relaxation time, coefficient
+of friction and friction of the bearing.
 """
 
 import matplotlib.pyplot as plt
@@ -24,8 +25,8 @@ data = [
 ]
 
 # %%
-# The given parameters, and an initial guess of the unknown ones, with one relaxation time.
-# ``unknown`` names the unknown parameters and their ranges.
+# The cylinder contains the given parameters, and an initial guess of the unknown ones, with one
+# relaxation time.  ``of_rubber`` names the unknown parameters and their ranges.
 rubber = vr.Material(
     E=2e6, nu=0.49, prony=vr.Prony([5.0], [1.0]), T_ref=2e-3
 )
@@ -44,20 +45,21 @@ print(wrong)
 
 # %%
 # The residuals are autocorrelated, and much larger than the standard deviation.  So the model is
-# inadequate, and its values and intervals are meaningless.  Now with the bearing, a constant torque
-# and a drag:
+# inadequate, and its values and intervals are meaningless.  The second fit includes the bearing: a
+# constant torque (``brake``) and a torque in proportion to the angular velocity (``drag``):
 bearing = {"brake": (0.0, 0.5), "drag": (0.0, 0.05)}
 fit = vr.identify(guess, of_rubber | bearing, data, starts=2)
 print(fit)
 
 # %%
-# Now the residuals are noise.  The data are synthetic: mu = 0.3, E = 3 MPa, E_1 = 9, T_ref = 1 ms,
-# brake = 0.05 N m/m and drag = 0.003 N m s/m.  E, E_1 and T_ref are correlated (0.99).
+# Now the residuals are noise.  The data are synthetic, with mu = 0.3, E = 3 MPa, E_1 = 9, T_ref =
+# 1 ms, brake = 0.05 N m/m and drag = 0.003 N m s/m.  The estimates of E, E_1 and T_ref are
+# correlated (0.99).
 fit.plot()
 
 # %%
-# Rolling resistance with the bearing (measured, fit and its 95 % band), without the bearing, and by
-# the inadequate model.
+# The figure shows the rolling resistance with the bearing (measured, fit and its 95 % band),
+# without the bearing, and by the inadequate model.
 fine = np.geomspace(0.01, 30.0, 200)
 figure, axes = plt.subplots(figsize=(6.4, 3.8), layout="constrained")
 axes.semilogx(V, M, "k.", markersize=4, label="measured, with bearing")
@@ -82,8 +84,8 @@ axes.set(xlabel="speed, m/s", ylabel="moment, N m/m", ylim=(0.0, 1.3))
 axes.legend(frameon=False)
 
 # %%
-# A prediction with its confidence interval: the distance rolled in 30 s from 2 m/s.  It includes
-# the bearing.
+# The fit predicts, with a confidence interval, the distance rolled in 30 s from 2 m/s.  The
+# prediction includes the bearing.
 later = np.linspace(0.0, 30.0, 61)
 distance = fit.predict(vr.Coastdown(later, V0=2.0)).x
 low, high = distance.low[-1], distance.high[-1]
@@ -99,5 +101,5 @@ plan = vr.identify(
 print(plan)
 
 # %%
-# It would not determine friction, and the others poorly.  :doc:`/identify_design` compares the
-# experiments.
+# A coast-down alone would not determine the coefficient of friction, and the other parameters only
+# poorly.  :doc:`/identify_design` compares experiments.

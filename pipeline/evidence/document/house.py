@@ -190,7 +190,8 @@ def sections(results, *wanted):
 def _parameters(thing):
     """What a docstring says of each of its parameters, without the paragraphs that follow."""
     text = inspect.getdoc(thing) or ""
-    found = re.findall(r"(?m)^(\w+(?:, \w+)*) : (.*(?:\n    .*)*)", text)
+    # a meaning goes on to the next parameter or an empty line, however its lines are indented
+    found = re.findall(r"(?m)^(\w+(?:, \w+)*) : (.*(?:\n(?!\w+(?:, \w+)* : )[^\n]+)*)", text)
     return {
         name: _ROLE.sub(r"`\1`", " ".join(words.split("\n\n")[0].split())).replace("|", "\\|")
         for names, words in found

@@ -232,7 +232,7 @@ def limits() -> list[Row]:
     fast = half.contact(FASTEST, delta=0.0, fields=("M", "lam"))
     lost = 1.0 - float(MATERIAL.tau[0]) / float(MATERIAL.T[0])
     hunter = {
-        "M R/(P V (T_epsilon - T_sigma)), slow": (float(slow.M) / SLOWEST / lost, 1.0),
+        "M/(P V (T_epsilon - T_sigma)), slow": (float(slow.M) / SLOWEST / lost, 1.0),
         "contact length over that of the relaxed body, slow": (float(slow.lam), 1.0),
         "contact length over that of the glassy body, fast": (
             float(fast.lam) * float(MATERIAL.alpha) ** 0.5,

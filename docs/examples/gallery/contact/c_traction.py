@@ -2,8 +2,9 @@
 Creep force over creepage
 =========================
 
-The creep force Q at a given creepage.  At low speed, and for an elastic material, it is Carter's
-parabola.  Relaxation changes its scale: a fast contact is shorter and stiffer.
+The figure shows the creep force Q as a function of the creepage.  At low speed, and for an elastic
+material, the curve is Carter's parabola.  At higher speed relaxation changes its scale, since the
+contact is shorter and stiffer.
 """
 
 import matplotlib.pyplot as plt

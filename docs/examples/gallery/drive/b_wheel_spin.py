@@ -2,9 +2,9 @@
 A start with wheel spin
 =======================
 
-The torque of a motor rises linearly.  Above (1 + j) mu times load and radius the whole contact
-slips and the wheel spins.  When the torque is reduced, the stick zone forms again.  Full slip is
-grey.
+The torque of a motor rises linearly.  If it exceeds (1 + j) mu P R, with the load P, the radius R,
+the friction mu and the moment of inertia j m R^2, the whole contact slips and the wheel spins.
+When the torque is reduced, the stick zone forms again.  Full slip is grey.
 """
 
 import matplotlib.pyplot as plt

@@ -2,8 +2,9 @@
 Braked through V = 0
 ====================
 
-A torque against the motion slows the cylinder down and reverses it.  V and omega pass through
-zero with a kink.  The traction Q jumps, because the stick zone forms again at the new leading edge.
+A torque against the motion slows the cylinder down and reverses it.  The speed V and the angular
+velocity omega pass through zero with a kink.  The creep force Q jumps, because the stick zone forms
+again at the new leading edge.
 """
 
 import matplotlib.pyplot as plt

@@ -2,9 +2,10 @@
 Motions on a slope
 ==================
 
-The plane (V, omega) on a slope of 3 degrees.  Motions that start left of the orange line
-(separatrix) settle at the stable steady speed (filled dot).  Motions that start right of it
-accelerate without limit.  The line ends in the unstable steady speed (open dot).
+The figure shows motions on a slope of 3 degrees in the plane of V (speed of the axis) and omega
+(angular velocity).  Motions that start left of the orange line (separatrix) settle at the stable
+steady speed (filled dot).  Motions that start right of it accelerate without limit.  The line ends
+at the unstable steady speed (open dot).
 """
 
 import matplotlib.pyplot as plt
@@ -18,8 +19,9 @@ node, saddle = s.V
 plane = np.array([-0.5, 2.0]) * saddle
 
 # %%
-# The separatrix: for each omega the V whose motion ends in the unstable speed, by bisection.
-# After 30 times the slowest time constant there the motion is clearly on one side.
+# The separatrix contains, for each omega, the V whose motion ends at the unstable speed.  It is
+# found by bisection: after 30 times the slowest time constant of the unstable speed a motion is
+# clearly on one side.
 across = np.linspace(*plane, 81)
 rate = s.eigenvalues[1].real.max() * scene.gamma * np.cos(slope)
 # V + j omega hardly changes while all of the contact slips
@@ -38,7 +40,7 @@ for _ in range(40):
 separatrix = 0.5 * (low + high)
 
 # %%
-# Right: the difference omega - V, enlarged a thousand times.
+# The right panel shows the difference omega - V, enlarged a thousand times.
 V = np.linspace(*plane, 801)
 band = vr.contact(scene, V, delta=0.0).delta_star * np.abs(V)
 end = 150.0 / scene.gamma

@@ -2,9 +2,9 @@
 A roller in another tool
 ========================
 
-``viscoroll fmu`` makes an FMU for Modelica tools, Simulink and others.  Here fmpy runs one: a
-roller
-at rest is driven by a motor for one second.
+``viscoroll fmu`` exports a roller as an FMU, a model in one file that Modelica tools, Simulink and
+other programs run.  Here the program fmpy runs one: a motor drives a roller from rest for one
+second.
 """
 
 import tempfile
@@ -49,7 +49,6 @@ axes.legend(frameon=False)
 print(f"v = {found['v'][-1]:.6f} m/s after 3 s")
 
 # %%
-# ``Roller`` takes its own steps between those of the tool.  ``--model ContactElement`` is the
-# contact
-# alone: v, omega and load give force and torque with their slopes, for a mechanism that contains
-# the cylinder.
+# ``Roller`` takes its own steps between those of the other program.  ``--model ContactElement``
+# exports the contact alone: from the speed v, the angular velocity omega and the load it computes
+# force and torque with their slopes, for a mechanism that contains the cylinder.

@@ -3,8 +3,8 @@ A cold conveyor idler warms
 ===========================
 
 A rubber idler starts at the temperature of its surroundings, and its losses warm it.  From -20 °C
-the stiff rubber loses little at first; when it is warm enough its losses rise and it runs away.
-Each curve ends in a stable equilibrium of loss and heat given off.
+the stiff rubber dissipates little at first.  When it is warm enough its losses rise, and it warms
+rapidly.  Each curve ends at a stable equilibrium of the loss and the heat given off.
 """
 
 import matplotlib.pyplot as plt

@@ -2,10 +2,10 @@
 A roller with two temperatures
 ==============================
 
-In the cold a stiff rubber loses little and stays cold.  Once it is warm enough it loses much and
-stays warm.  Between lies an unstable equilibrium; where it meets a stable one the branch ends.  So
-the temperature has a hysteresis: it jumps up at the speed of the upper end, and down at the lower
-one.
+A stiff rubber in the cold dissipates little and stays cold.  Once it is warm enough it dissipates
+much and stays warm.  Between these two equilibria lies an unstable one.  A branch of stable
+equilibria ends where it meets the unstable branch.  So the temperature has a hysteresis over speed:
+it jumps up where the cold branch ends, and down where the warm branch ends.
 """
 
 import matplotlib.pyplot as plt

@@ -4,7 +4,7 @@ Rolling resistance at three temperatures
 
 Temperature multiplies all relaxation times of a rubber by one factor a_T (here by the equation of
 Williams, Landel and Ferry).  The curve of rolling resistance keeps its shape and shifts along the
-speed axis: to low speeds in the cold, to high speeds in the heat.
+speed axis: to lower speeds at low temperature, to higher speeds at high temperature.
 """
 
 import matplotlib.pyplot as plt

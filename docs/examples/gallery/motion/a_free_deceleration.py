@@ -48,6 +48,6 @@ print(
 )
 
 # %%
-# Is the quasi-steady assumption met?  Yes, down to some centimetres a second, and the
-# remaining distance is short then:
+# A motion uses the contact of steady rolling at each instant (quasi-steady assumption).  Does this
+# hold?  Yes, down to some centimetres per second, where only a short distance remains:
 print(m.validity().steady.sentence)

@@ -2,9 +2,9 @@
 Phase portrait
 ==============
 
-Every motion has two parts.  In full slip (grey) friction equalises the speeds of rim and axis,
-and V + j omega hardly changes.  Then the motion approaches one common curve, the slow manifold
-(black), and follows it towards rest.
+V is the speed of the axis and omega the angular velocity.  Every motion has two parts.  In full
+slip (grey) friction equalises the speeds of rim and axis, and V + j omega hardly changes.  Then the
+motion approaches one common curve, the slow manifold (black), and follows it towards rest.
 """
 
 import matplotlib.pyplot as plt
@@ -68,5 +68,5 @@ right.set(xlim=(-2.0, 2.0), ylim=(-room, room))
 right.set_ylabel(r"$(\omega T_\varepsilon - V T_\varepsilon/R)\times 10^3$")
 
 # %%
-# White: partial slip.  Right: the difference omega - V, enlarged a thousand times.  The band
-# of partial slip is some thousandths of V wide, too narrow for the left panel.
+# White is partial slip.  The right panel shows the difference omega - V, enlarged a thousand times,
+# because the band of partial slip is only some thousandths of V wide.

@@ -3,9 +3,9 @@ Validity of the quasi-steady assumption
 =======================================
 
 A motion uses the law of steady rolling at each instant.  If the speed changes slowly, the next
-term of the moment is known: M = M(V) + N(V) V'.  The term N V' acts as an added mass.  Its ratio
-to the mass, the unsteadiness gamma N/(1 + j), is about the relative error of V.  It is large at
-low speeds, not for long relaxation times.
+term of the rolling moment is known: M = M(V) + N(V) V'.  The term N V' acts as an added mass.  Its
+ratio to the mass, the unsteadiness gamma N/(1 + j), is about the relative error of V.  It is large
+at low speeds.  Long relaxation times do not make it large.
 """
 
 import matplotlib.pyplot as plt

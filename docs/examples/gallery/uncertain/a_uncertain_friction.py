@@ -3,7 +3,7 @@ Ten thousand motions with uncertain friction
 ============================================
 
 The coefficient of friction has a standard deviation of ten per cent.  How long does the roller
-slide?  Friction and initial speed are drawn at random, and each motion is integrated.
+slide?  Friction and initial speed of each motion are drawn at random, and each is integrated.
 """
 
 import matplotlib.pyplot as plt

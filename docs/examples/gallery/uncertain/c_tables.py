@@ -2,8 +2,9 @@
 The law in C, Octave and on grids
 =================================
 
-The law of a material is written once, offline: here as a C header, and as a file for Octave.  Both
-have the accuracy of the package.  A grid, for programs that can only interpolate, is less accurate.
+The contact law of a material is written to a file once.  Here the file is a C header, and a netCDF
+file for Octave.  Both have the accuracy of the package.  A grid, a table for programs that can only
+interpolate, is less accurate.
 """
 
 import shutil
