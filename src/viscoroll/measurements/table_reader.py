@@ -100,7 +100,10 @@ ONE_FREQUENCY = 1e-3
 #: ratio of moduli at one frequency and one temperature above which something else was varied
 _REPEATED = 1.25
 #: advice where columns are not understood
-_NAME_THEM = "name the columns by columns={...} (`viscoroll material fit`: --column NAME=HEADING)"
+_NAME_THEM = (
+    "name the columns by columns={QUANTITY: HEADING, ...} (`viscoroll material fit`: --column "
+    "QUANTITY=HEADING)"
+)
 #: a number in degrees Celsius, or of three digits in kelvin, which is no rate, and none that a
 #: comma in a row of cells may have cut; before it what makes it the end of a range, as "20 to "
 _IN_DEGREES = re.compile(
@@ -217,7 +220,10 @@ def understand(
     if table.without_headings and not named:
         if len(table.headings) != len(bare):
             called = ", ".join(map(repr, table.headings))
-            problem = f"has {len(table.headings)} columns, and no headings for {' and '.join(bare)}"
+            problem = (
+                f"has no headings, and {len(table.headings)} columns in place of {len(bare)} "
+                f"({', '.join(bare)})"
+            )
             raise FileError(path, f"{problem}; they are called {called}: {_NAME_THEM}")
         named = dict(zip(bare, table.headings, strict=True))
     found, others = columns_of(table, test, named=named, overruling=overruling, defaults=defaults)

@@ -521,6 +521,8 @@ def column_in_unit(table: Table, name: str, wanted: str, unit: str = "") -> Floa
     if len(table.starts) > 1:
         raise FileError(table.path, f"has {len(table.starts)} tables: keep one of them")
     found = readings(table.headings[index], table.units[index])
+    # a heading can be read in several ways: the unit is that of the way that gives this name, else
+    # of the likeliest way that has one; ``log`` is the same for all ways
     named = [each for each in found if each.name == name]
     unit = unit or next((each.unit for each in [*named, *found] if each.unit not in NO_UNIT), "")
     heading = table.headings[index]
