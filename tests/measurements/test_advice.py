@@ -57,6 +57,11 @@ CASES = {
     "a frequency of 0": (RIGHT + "0;3;2\n", "remove the row", without("0;3")),
     "a negative loss modulus": (RIGHT + "200;9;-2\n", "remove the row", without("200;9")),
     "thousands": (THOUSANDS, "write only decimal marks", change(",", "")),
+    "a footer of means": (
+        RIGHT + "Mean;9;2\n\nStd;3;1\n",
+        "'Mean' is not a number: remove its row",
+        without("Mean|Std"),
+    ),
     "words among the rows": (
         RIGHT + "sample slipped\n<f; S/1e6; L/1e6>\n",
         "remove it",

@@ -116,7 +116,7 @@ def fault_of(cell: str, decimal: str) -> str:
             "digits: "
             "write only decimal marks"
         )
-    return f"is not a number{_MARKS[decimal]}"
+    return f"is not a number{_MARKS[decimal] if re.search(r'[0-9]', cell) else ': remove its row'}"
 
 
 def numbers_of(cells: list[str]) -> Numbers:
