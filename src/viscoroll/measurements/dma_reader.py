@@ -201,7 +201,7 @@ def read_relaxation(
         raise missing(
             table,
             "relaxation",
-            "no column was found for time, or none for relaxation modulus, or for stress and strain",
+            "no column was found for time, or none for relaxation modulus, or stress and strain",
             others,
         )
     if len(table.starts) > 1:
