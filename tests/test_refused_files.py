@@ -219,6 +219,11 @@ REFUSED = [
                 '"lognrom"',
             ),
             "line 4 | lognorm also needs s": ("a preset", "s = 0.3, ", ""),
+            "an integer of more than 64 bits: write it with a decimal point": (
+                "a preset",
+                "j = 0.4",
+                f"j = {-(2**63) - 1}",
+            ),
             "line 4 | finite number without a unit": ("a preset", "s = 0.3", 's = "0.3 %"'),
             "line 4 | : must have low < high and a probability above 0": (
                 "a preset",
