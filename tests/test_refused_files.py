@@ -137,6 +137,9 @@ REFUSED = [
             "given.nc | unit of Q = N m2 | N/m": lambda: vr.load_law(
                 netcdf(OTHER_GRID.assign(Q=OTHER_GRID.Q.assign_attrs(units="N m2")))
             ),
+            "unit of V = missing | m/s, or 1 of a grid without dimension": lambda: vr.load_law(
+                netcdf(OTHER_GRID.assign_coords(V=OTHER_GRID.V.drop_attrs()))
+            ),
             "given.nc: is not a grid of a law: V must increase strictly, over at least two "
             "nodes": lambda: vr.load_law(netcdf(OTHER_GRID.isel(V=[0]))),
             "given.nc: is not a material file: it is a grid, for vr.load_law and "
