@@ -357,11 +357,17 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     dict.
 
     path: path of the file, in UTF-8; a byte order mark is ignored.
-    Raises FileError if it cannot be read, is not UTF-8 or is not TOML.
+    Raises FileError if it cannot be read, is not UTF-8 or is not TOML, whose integers have 64 bits.
     """
+    import msgspec
+
     try:
         with as_file_error(path, "cannot be read"):
-            return tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+            content = tomllib.loads(Path(path).read_text(encoding="utf-8-sig"))
+        msgspec.msgpack.encode(content)  # tomllib reads longer integers
+    except OverflowError as error:
+        problem = "has an integer of more than 64 bits: write it with a decimal point"
+        raise FileError(path, problem) from error
     except UnicodeDecodeError as error:
         raise FileError(path, f"is not TOML (byte {error.start} is not UTF-8)") from error
     except (
@@ -370,6 +376,7 @@ def read_toml(path: str | PathLike[str]) -> dict[str, Any]:
     ) as error:  # a ValueError of tomllib, or of Python for a number of 5000 digits
         advice = _advise_on_comma(Path(path), str(error))
         raise FileError(path, f"is not TOML ({error}){advice}") from error
+    return content
 
 
 def _advise_on_comma(path: Path, problem: str) -> str:
