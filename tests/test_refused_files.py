@@ -227,6 +227,7 @@ REFUSED = [
                 "j = 0.4",
                 f"j = {-(2**63) - 1}",
             ),
+            "has 1e400, beyond 1.8e308": ("a preset", "j = 0.4", "j = 1e400"),
             "line 4 | finite number without a unit": ("a preset", "s = 0.3", 's = "0.3 %"'),
             "line 4 | : must have low < high and a probability above 0": (
                 "a preset",
