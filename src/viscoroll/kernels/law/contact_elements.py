@@ -89,6 +89,7 @@ def make_mesh(c, spots, used, nodes, at, place):
     node.
     """
     count = at.size
+    # elements that the spots take, high - low, at most a part of all: the others are left for a > 0
     low, _ = _gathered(0.0, spots, used)
     high, _ = _gathered(1.0, spots, used)
     if high - low > _SPOTS_PART * count:
@@ -102,10 +103,10 @@ def make_mesh(c, spots, used, nodes, at, place):
     # Nodes and, half an element after each, places: t with s(t) - s(0) = n/2, by Newton's
     # iteration, bisected where it leaves its bracket.
     for n in range(2 * count + 1):
-        wanted = 0.5 * n + low
-        left = t
+        wanted = 0.5 * n + low  # low: total of the spots at t = 0, so that s(0) counts as 0
+        left = t  # s ascends: t is not below that of the place before
         right = 1.0
-        t = min(t + 0.5 / count, 1.0)
+        t = min(t + 0.5 / count, 1.0)  # first guess: half an element of equal ones further
         for _ in range(_MOST_STEPS):
             total, rate = _gathered(t, spots, used)
             error = plain * t + total - wanted
@@ -123,7 +124,7 @@ def make_mesh(c, spots, used, nodes, at, place):
         if n == 2 * count:
             t = 1.0
         x = -c + 2.0 * c * graded(t)
-        if n % 2:
+        if n % 2:  # odd: the place in element n // 2, else node n // 2
             at[n // 2] = x
         else:
             nodes[n // 2] = x
@@ -132,7 +133,12 @@ def make_mesh(c, spots, used, nodes, at, place):
 
 @kernel
 def scale_mesh(c, nodes, at):
-    """Scale a mesh to another half length, c.  nodes, at : (N + 1,) and (N,), changed."""
+    """Scale a mesh to another half length about its middle, x = 0.
+
+    c : float, the new half length, > 0.
+    nodes, at : nodes and places of collocation, (N + 1,) and (N,), changed.
+    Returns nothing; parameters of the nodes stay.
+    """
     factor = 2.0 * c / (nodes[at.size] - nodes[0])
     for n in range(at.size):
         nodes[n] *= factor
@@ -151,14 +157,16 @@ def _local_part(local, h):
 
     It is the integral of the memory times what linear tractions leave out: the parabola that is 1
     there and 0 at the ends of the element, less its mean 2/3, which the values at the nodes make up
-    for.  With r = h/(2 length) the integral of exp(-s) (1/3 - s^2/r^2) over s from 0 to r.
+    for.  With r = h/(2 length) the integral of exp(-s) (1/3 - s^2/r^2) over s from 0 to r, which is
+    (1 - e)/3 - (2 - e (r^2 + 2 r + 2))/r^2 with e = exp(-r).
     """
     found = 0.0
     for k in range(local.shape[0]):
         length = local[k, 1]
         r = 0.5 * h / length if length > 0.0 else np.inf
-        # Where terms of the closed form cancel, its first term; where exp(-r) is below rounding, or
-        # r infinite, the form without it.
+        # Where terms of the closed form cancel, the first term of its series, r^2/12; where exp(-r)
+        # is below rounding, or r infinite, the form without it, in which r^2 is not formed: it
+        # might overflow.
         if r < _SMALL_RATIO:
             found += local[k, 0] * r * r / 12.0
         elif r > _LARGE_RATIO:
@@ -189,6 +197,7 @@ def add_local(local, nodes, at, C):
         # (-1, 9, 9, -1)/16 in the middle of the element, less the linear interpolation, with
         # weights 1 - ``ahead`` and ``ahead``.  Column n belongs to node n + 1.
         ahead = (at[e] - nodes[e]) / h
+        # 0.5625 = 9/16 and 0.0625 = 1/16; the outer nodes have no traction and no column
         if e > 0:
             C[e, e - 1] += part * (0.5625 - (1.0 - ahead))
         if e < last:
@@ -210,9 +219,9 @@ def assemble(table, instant, nodes, at, H, T, C):
 
     table : polynomials in ln|x|, (BINS, 2 signs of x, 3 kernels, DEGREE + 1), of the slope by
         pressure, of the strain by shear, and of the coupling; without ``instant`` x ln|x|/pi of the
-        first two.
+        first two.  Sign 0 is that of x > 0, the constant of a polynomial in y comes first.
     instant : instantaneous compliance over the summed long-time compliance.
-    nodes, at : mesh, (N + 1,) and (N,), of at most exp(1.4) in all.
+    nodes, at : mesh, (N + 1,) and (N,), of at most exp(1.4) in all; no place is a node.
     H, T, C : (N, N - 1) each, written: slope at places by the traction at inner nodes.
     """
     N = at.size
@@ -224,7 +233,8 @@ def assemble(table, instant, nodes, at, H, T, C):
         for j in range(N + 1):
             x = at[i] - nodes[j]
             log = math.log(abs(x))
-            # Bin b of ln|x|, and the position y in it in [-1, 1].
+            # Bin b of ln|x|, and the position y in it in [-1, 1].  Beyond the bins the first or the
+            # last polynomial is extrapolated.
             y = (log - LOWEST) / WIDTH
             b = min(max(int(y), 0), BINS - 1)
             y = 2.0 * (y - b) - 1.0
@@ -236,6 +246,7 @@ def assemble(table, instant, nodes, at, H, T, C):
                 a0 = fma(a0, y, p[0, d])
                 a1 = fma(a1, y, p[1, d])
                 a2 = fma(a2, y, p[2, d])
+            # the part of an instantaneous half-space, which the table leaves out
             own = instant * x * log / math.pi
             first[j] = a0 + own
             second[j] = a1 + own
@@ -271,6 +282,7 @@ def moments(nodes, values):
         a = node_value(values, e)
         b = node_value(values, e + 1)
         h = nodes[e + 1] - nodes[e]
+        # linear from a to b: the moment about the left node is h^2 (a + 2 b)/6
         total += 0.5 * h * (a + b)
         moment += h * (0.5 * nodes[e] * (a + b) + h * (a + 2.0 * b) / 6.0)
     return total, moment
@@ -297,6 +309,8 @@ def product(nodes, at, values, slope):
         low = max(e - 1, 0)
         high = min(e + 1, last)
         gradient = (slope[high] - slope[low]) / (at[high] - at[low])
+        # Slope in the middle of the element; the product of the linear parts of both about it has
+        # the integral gradient (b - a)/h h^3/12.
         middle = slope[e] + gradient * (0.5 * (nodes[e] + nodes[e + 1]) - at[e])
         found += h * (0.5 * (a + b) * middle + gradient * h * (b - a) / 12.0)
     return found
@@ -318,9 +332,10 @@ def factor(matrix, order):
     """Replace a square matrix by its factors L and U, with row exchanges; return whether no pivot
     is 0.
 
-    matrix : (n, n), overwritten.
-    order : (n,), int, written: the row that was exchanged with each.
-    The diagonal of L is 1 and not stored.
+    matrix : (n, n), overwritten by U on and above the diagonal and L below it; the diagonal of L is
+        1 and not stored.  Where a pivot is 0 or NaN it is left half factorized.
+    order : (n,), int, written: the row, from k on, that was exchanged with row k at step k.
+    Returns a bool.
     """
     n = matrix.shape[0]
     for k in range(n):
@@ -331,7 +346,7 @@ def factor(matrix, order):
         order[k] = best
         if not abs(matrix[best, k]) > 0.0:  # True for NaN too.
             return False
-        if best != k:
+        if best != k:  # whole rows, with the part of L that they have
             for j in range(n):
                 kept = matrix[k, j]
                 matrix[k, j] = matrix[best, j]
@@ -394,7 +409,8 @@ def eliminate(H, C, at, coupled):
     the last row belongs to g).  Without ``coupled`` B is 0.
     """
     N = at.size
-    # (H, -1) (p, g) = x - C q, N equations for N - 1 pressures and g.
+    # (H, -1) (p, g) = x - C q, N equations for N - 1 pressures and g: (p, g) is the inverse times
+    # x, the column a, less the inverse times C, the columns B, times q.
     matrix = np.empty((N, N))
     matrix[:, : N - 1] = H
     matrix[:, N - 1] = -1.0
@@ -407,7 +423,7 @@ def eliminate(H, C, at, coupled):
         found[:, : N - 1] = C
         found[:, N - 1] = at
         substitute(matrix, order, found)
-    else:
+    else:  # B stays 0: one right side instead of N
         one = at.reshape(N, 1).copy()
         substitute(matrix, order, one)
         found[:, N - 1] = one[:, 0]
@@ -434,7 +450,7 @@ def strain_by_shear(T, C, B, coupled):
             row = S[i]
             for k in range(N - 1):
                 part = C[i, k]
-                other = B[k]
+                other = B[k]  # p_k = a_k - B_k q; a_k is the last number of the row
                 for j in range(N - 1):
                     row[j] += part * other[j]
                 row[N - 1] -= part * other[N - 1]
@@ -497,13 +513,14 @@ def pressure_and_strain(S, B, q, p, strain):
     for i in range(n + 1):
         own = B[i]
         row = S[i]
+        # column n is the part without shear: p = a - B q, u' = u'(0) + S q
         value = own[n]
         slope = row[n]
         for j in range(n):
             value -= own[j] * q[j]
             slope += row[j] * q[j]
         strain[i] = slope
-        if i < n:
+        if i < n:  # the last row is that of g
             p[i] = value
         else:
             g = value
@@ -539,14 +556,14 @@ def find_zones(S, B, mu, d, zone, kept, p, q, strain):
         which = -1
         for i in range(kept, n):
             new[i] = zone[i]
-            slip = d - strain[i + 1]
+            slip = d - strain[i + 1]  # in the element ahead of the node, as in solve_zones
             wrong = 0.0
             if zone[i] == 0.0:
                 over = abs(q[i]) - mu * p[i] * (1.0 + _ROUNDING)
                 if over > 0.0:
                     new[i] = 1.0 if q[i] > 0.0 else -1.0
                     wrong = over / max(mu * abs(p[i]), 1e-300)  # not divided by a pressure of 0
-            elif slip * zone[i] < -_ROUNDING * scale:
+            elif slip * zone[i] < -_ROUNDING * scale:  # never where ``scale`` is 0
                 new[i] = 0.0
                 wrong = abs(slip) / scale
             if wrong > worst:

@@ -162,6 +162,8 @@ def _interval(begin, count, step, x, table):
         # has all its digits.
         middle = count >> 1
         y = (x - table[np.uint64(begin + middle)]) * inverse
+        # From the first node to the last interval, count - 2: its middle, count - 1.5, is rounded
+        # down to it, while the last node would begin an interval that does not exist.
         left = np.floor(min(max(y, -np.float64(middle)), count - 1.5 - middle))
         return Interval(middle + np.int64(left), h, inverse, y - left, left + 1.0 - y)
     # Else it is found by bisection: ``low`` is its left node, ``span`` the intervals left.
@@ -169,6 +171,8 @@ def _interval(begin, count, step, x, table):
     span = count - 1
     while span > 1:
         half = span >> 1
+        # A product in place of a branch.  Of an odd span the left part counts one interval too
+        # many, which no later test reaches.
         low += half * np.int64(x >= table[np.uint64(begin + low + half)])
         span -= half
     left = table[np.uint64(begin + low)]
@@ -189,6 +193,7 @@ def _cubic(first, at, dx):
     s = at.s
     r = at.r
     slope = 6.0 * s * r * dx * at.inverse  # derivative of a1, and minus that of a0
+    # b0 and b1 multiply slopes, and have the factor h; their derivatives over the coordinate none
     return Weights(
         first=first,
         a0=(1.0 + 2.0 * s) * r * r,
@@ -209,6 +214,8 @@ def locate_speed(u, table):
     u : float, kappa |V|, >= 0, which may be infinite.
     table : vector of the module.
     """
+    # Row 0 is the limit of u = 0, row n the node n - 1 of ln u, the last row the limit of u
+    # infinite.  Outside of the nodes two rows are weighted without their slopes.
     rows = np.int64(table[ROWS])
     if u <= table[FIRST]:  # linear in u from row 0, the limit of u = 0
         part = u / table[FIRST]
@@ -238,10 +245,11 @@ def edge_at(name, u, speed, table):
     """Return an edge, one of the creeps of the module, as :class:`Edge`.
 
     name : int, MIDDLE, ONSET, ONSET + 1 or FREE.
-    u : float, kappa |V|.
+    u : float, kappa |V|, >= 0, which may be infinite.
     speed : :class:`Weights` of u, of :func:`locate_speed`.
     table : vector of the module.
     """
+    # edges have rows of EDGE_COUNT pairs, value and slope; the next row is 2 EDGE_COUNT further
     at = np.int64(table[EDGES]) + (speed.first * EDGE_COUNT + name) * 2
     # Values f and slopes g over ln u in the two rows of the interval.
     f0 = table[np.uint64(at)]
@@ -256,6 +264,7 @@ def edge_at(name, u, speed, table):
         return Edge(value, slope, 0.0)
     if u >= table[LAST]:
         return Edge(value, slope, -2.0 * slope / u)
+    # row ``first`` is the node first - 1 of ln u, as row 0 is the limit of u = 0
     left = table[np.uint64(HEAD + speed.first - 1)]
     h = table[np.uint64(HEAD + speed.first)] - left
     s = (np.log(u) - left) / h
@@ -284,7 +293,7 @@ def locate_creep(w, sigma, table):
         square = min(max(w, 0.0), 1.0) * (1.0 + root) / (1.0 + root + root * root)
         t = max(np.sqrt(square), _MIDDLE_DISTANCE)
         slope = 1.0 / (3.0 * t * root)
-    if rest == 0.0:
+    if rest == 0.0:  # from the onset on exactly the outer node, and nothing depends on w
         t = 1.0
         slope = 0.0
     begin = np.int64(table[T_BEGIN])
@@ -349,6 +358,7 @@ def cell_at(speed, place, table):
     place : :class:`Weights` of the nodes, of :func:`locate_creep`.
     table : vector of the module.
     """
+    # a field is ROWS rows of NODES nodes of JET numbers, and fields follow each other
     down = np.int64(table[NODES]) * JET
     return Cell(
         at=np.int64(table[FIELDS]) + speed.first * down + place.first * JET,
@@ -396,6 +406,7 @@ def field_at(name, w, cell, table):
     table : vector of the module.
     """
     nodes = _nodes_of(name, cell, table)
+    # the weights of a slope: those of derivatives in one direction, of values in the other
     dw = _combined(_corners(_values(cell.speed), _slopes(cell.place)), nodes)
     return FieldValue(
         _combined(cell.corners, nodes) + min(w, 0.0) * dw,
@@ -429,6 +440,7 @@ def place_of(D, u, speed, table):
     """
     middle = edge_at(MIDDLE, u, speed, table)
     sigma = 1.0 if D >= middle.value else -1.0
+    # ONSET + 0 is that of sigma = -1, ONSET + 1 that of 1; w and ``width`` have the sign of sigma
     onset = edge_at(ONSET + np.int64(D >= middle.value), u, speed, table)
     width = onset.value - middle.value
     w = (D - middle.value) / width

@@ -163,6 +163,7 @@ def find_spots(zone, place, width, weight, spots):
     spots : (MOST_SPOTS, 3), parameter, width and weight, written; further edges have none.
     """
     used = 0
+    # inner node i is node i + 1 of the mesh, whose parameter is place[i + 1]
     for i in range(zone.size - 1):
         if zone[i] != zone[i + 1] and used < spots.shape[0]:
             # The edge counts as at the node that slips, of two that slip at the rear one.
@@ -202,6 +203,7 @@ def gather(row, contact, c, spots):
         element.
     """
     count = contact.at.size
+    # widths are in the parameter, of which an element of an equal mesh has 1/count
     edges = find_spots(contact.zone, contact.place, WIDTH_OF_SPOT / count, WEIGHT_OF_SPOT, spots)
     used = edges
     # Width of the layer in the parameter t: as x = -c + 2 c sin^2(pi t/2), a place near t = 1 is
@@ -212,7 +214,7 @@ def gather(row, contact, c, spots):
         spots[used, 1] = thin
         spots[used, 2] = WEIGHT_OF_LAYER
         used += 1
-    zone = contact.zone.copy()
+    zone = contact.zone.copy()  # of the old mesh, since make_mesh and carry_zones overwrite both
     place = contact.place.copy()
     make_mesh(c, spots, used, contact.nodes, contact.at, contact.place)
     carry_zones(zone, place, contact.place, contact.zone)
@@ -252,7 +254,9 @@ def solve_contact(row, contact, c, mu, d, spots, again):
             return SINGULAR, 0.0, True
         return SOLVED, pressure_and_strain(S, B, contact.q, contact.p, contact.strain), True
     good, g = find_zones(S, B, mu, d, contact.zone, 0, contact.p, contact.q, contact.strain)
-    found = np.empty((MOST_SPOTS, 3))  # edges of the zones of the solution
+    # Edges of the zones of the solution; width and weight, 1.0, are not read.  With a mesh that is
+    # kept (edges = 0) the result is of no use, and find_length does not wait for it.
+    found = np.empty((MOST_SPOTS, 3))
     centred = find_spots(contact.zone, contact.place, 1.0, 1.0, found) == edges
     for k in range(edges):
         centred = centred and abs(found[k, 0] - spots[k, 0]) * count < OFF_SPOT
@@ -287,6 +291,7 @@ def stick_length(contact):
     contact : solved :class:`Contact`.
     Returns a float in [0, 1].
     """
+    # an element has the zone of the inner node behind it, as in slip_work
     found = 0.0
     for e in range(contact.at.size):
         if contact.zone[max(e - 1, 0)] == 0.0:
@@ -310,7 +315,8 @@ def split_powers(row, contact):
     They are its moment and the work of its strain, over V (docs/theory_covers.md, Powers).
 
     row : :class:`Row`, of which the kernels of the cylinder alone are read.
-    contact : solved :class:`Contact`, whose matrices are overwritten by those of the cylinder.
+    contact : solved :class:`Contact`, whose matrices are overwritten by those of the cylinder: they
+        do not belong to its tractions any more.
     Both are floats, in the units of the module.
     """
     assemble(row.own, row.own_instant, contact.nodes, contact.at, contact.H, contact.T, contact.C)
@@ -336,7 +342,9 @@ def write_state(row, contact, c, g, mu, d, status, out):
     c, g : floats, half length, and distance of the middle ahead of the axis, divided by l0.
     mu, d : floats, coefficient of friction; kappa times the creepage delta, infinite in full slip.
     status : int, status of the solution; a solution with tension becomes TENSION.
-    out : (COLUMNS,), written; lam = 2 c belongs to the load of the elements, not yet to LOAD.
+    out : (COLUMNS,), written but for columns 5 and 6: 0, lam; 1, epsilon; 2, Q/(mu P); 3, kappa M;
+        4, 2 kappa times the work of the strain; 7, beta; 8, status; 9, half length.  lam = 2 c
+        belongs to the load of the elements, not yet to LOAD.
     Returns the load of the elements, the integral of p, a float.
     """
     total, moment = moments(contact.nodes, contact.p)
@@ -346,12 +354,15 @@ def write_state(row, contact, c, g, mu, d, status, out):
     out[1] = g / c
     out[2] = traction / (mu * total)
     out[3] = g + moment / total
+    # In full slip d is not known here: q u' is integrated as it is, by the linear strain.
     if math.isinf(d):
         out[4] = 2.0 * product(contact.nodes, contact.at, contact.q, contact.strain) / total
     else:
         # int q u' = d int q - int q (d - u'), of which the last vanishes where the contact sticks.
         out[4] = 2.0 * (slip * traction - slip_work(contact, slip)) / total
     out[7] = stick_length(contact)
+    # The integral of negative pressure: that of inner node i counts for half of the two elements
+    # beside it, which lie between the nodes i and i + 2 of the mesh.
     if status == SOLVED:
         negative = 0.0
         for i in range(contact.p.size):
@@ -385,12 +396,14 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
     error = 1.0  # ln(load/LOAD)
     for n in range(_MOST_LENGTHS):
         c = math.exp(y)
+        # after some meshes the last one is kept: else it could change from length to length
         status, g, centred = solve_contact(row, contact, c, mu, d, spots, n > _MOST_CENTRINGS)
         total = write_state(row, contact, c, g, mu, d, status, out)
         if status == SINGULAR:
             return c, slope
         # A load that is not above 0 counts as e times too small, so that the contact grows.
         error = math.log(total / LOAD) if total > 0.0 else -1.0
+        # The slope of a secant, bounded, or that of the caller where lengths are too close for one.
         if n > 0 and abs(y - before) > _LEAST_CHANGE:
             slope = min(max((error - last) / (y - before), _LEAST_SLOPE), _LARGEST_SLOPE)
         if abs(error) < tolerance and (centred or n >= _MOST_CENTRINGS):
@@ -401,7 +414,7 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
     if not abs(error) < tolerance and out[8] == SOLVED:
         out[8] = NO_LOAD
     c *= math.exp(-error / slope)  # to first order, to the load LOAD
-    out[0] = 2.0 * c
+    out[0] = 2.0 * c  # the other columns are ratios, which are not corrected
     out[9] = c
     return c, slope
 
@@ -414,6 +427,8 @@ def finish_state(row, contact, out):
     contact : the solved :class:`Contact` of the state; its matrices are overwritten.
     out : (COLUMNS,), the state of :func:`write_state`, of which columns 5 and 6 are written.
     """
+    # kappa M of the cylinder alone, and 2 kappa times the work of its strain, per load; where one
+    # body alone deforms they are all of columns 3 and 4, or nothing
     if row.split:
         total, _ = moments(contact.nodes, contact.p)
         moment, work = split_powers(row, contact)
@@ -442,6 +457,7 @@ def full_slip(row, mu, sign, count, c, out):
     """
     contact = new_contact(count)
     contact.zone[:] = sign
+    # 2.0: the load of an elastic half-space grows as c^2
     _, slope = find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
     best = -np.inf
     for e in range(count):
@@ -520,6 +536,7 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
         this = n % 2
         found[this] = find_spots(contact.zone, contact.place, 1.0, 1.0, edges[this])
         if 0 < n < creeps.size - 1:
+            # linear in ``at``: ln of the half length (column 9), and the edges if as many as before
             ahead = min((at[n + 1] - at[n]) / (at[n] - at[n - 1]), _LARGEST_STEP)
             guess *= (length / out[n - 1, 9]) ** ahead
             if found[0] == found[1]:

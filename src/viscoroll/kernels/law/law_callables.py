@@ -145,15 +145,17 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
     position = locate_row(u, law)
     functions = length_and_moment(position, u, law)
     factor = moment_factor(position, u, functions.scale, state)
-    pairs = pairs_at(position, u, cover_rows)
+    pairs = pairs_at(position, u, cover_rows)  # zeros of half-spaces, as what follows from them
     free_creep = free_creep_of(pairs)[0]
     c = asymmetry_at(pairs, state.mu, functions.L, functions.dL, functions.ddL, cover_rows).value
     D = signed_creep(functions.L, free_creep, c, state, law)
     v = stick_argument(u, functions.L, abs(D))
     out[0] = signed_traction(locate_row(v, law), v, u, functions.L, D, state.mu, law)
-    # What the traction changes in the moments: nothing of half-spaces.
+    # What the traction changes in the moments: nothing of half-spaces, where it is -0.0, which
+    # changes no bit of a sum.
     change = traction_on_moments(pairs, functions, out[0], state, cover_rows)
     out[1] = factor * functions.m + (change.half_space + change.cylinder)
+    # like bodies: half of M and of its slope each; M of half-spaces does not depend on omega
     out[2] = out[3] = 0.5 * out[1]
     out[6] = out[7] = 0.5 * functions.d_um
     out[8] = out[9] = 0.0
@@ -161,6 +163,8 @@ def _evaluate(caller_V, caller_omega, pointer, scene, cover_rows):
         half_space, cylinder, out[6], out[7] = body_moments(position, u, law)
         out[2] = factor * half_space + change.half_space
         out[3] = factor * cylinder + change.cylinder
+    # Slopes in the units of the caller: those of a load over V or omega, times the unit of the load
+    # over that of V or omega.  ``out[0]`` is still dimensionless.
     if scene.slopes:
         out[4], _, out[5] = Q_slopes(u, functions.L, functions.dL, D, state, law)
         if cover_rows is not None:

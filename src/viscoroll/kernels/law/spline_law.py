@@ -137,7 +137,7 @@ def _locate(spline, name, x):
         return AxisPosition(axis, interval, 0.0, slope)
     if _number_at(spline, axis + IS_LOG) > 0.0:
         slope = 1.0 / x
-        x = np.log(x)
+        x = np.log(x)  # NaN of x < 0, which is refused below
     # Outside of the axis, or NaN.
     if not _number_at(spline, axis + EDGES) <= x <= _number_at(spline, axis + EDGES + count):
         return AxisPosition(axis, interval, np.nan, slope)
@@ -162,7 +162,8 @@ def _basis(spline, position, n):
     vector.  Value and slope are NaN outside of the axis.
     """
     axis = position.axis
-    # Index of the constant coefficient: behind head and count + 1 edges of the axis.
+    # Index of the constant coefficient: behind head and count + 1 edges of the axis, in the square
+    # of TERMS basis splines with TERMS coefficients each of the interval.
     at = (
         (position.interval * TERMS + n) * TERMS
         + EDGES
@@ -175,6 +176,7 @@ def _basis(spline, position, n):
     c2 = _number_at(spline, at + 2)
     c3 = _number_at(spline, at + 3)
     t = position.t
+    # basis splines are numbered from left to right: in interval i those of i to i + 3 are not 0
     start = (position.interval + n) * _integer_at(spline, axis + STRIDE)
     return (
         fma(t, fma(t, fma(t, c3, c2), c1), c0),
@@ -200,6 +202,8 @@ def evaluate(spline, V, delta, alpha):
     over_alpha = _locate(spline, ALPHA_AXIS, alpha)
     # 0, or NaN where a coordinate is outside of its axis.
     value = dV = ddelta = dalpha = 0.0 * (over_V.t + over_delta.t + over_alpha.t)
+    # Over alpha as many basis splines as the axis has, often one; over V and delta always TERMS, a
+    # number known to the compiler, of which those beyond the degree are 0.
     for k in range(_integer_at(spline, over_alpha.axis + ORDER)):
         c, dc, plane = _basis(spline, over_alpha, k)
         for i in range(TERMS):
@@ -325,10 +329,12 @@ def _traction(mu, at, table):
     """Return the traction Q, a float, dimensionless, limited to +-mu LIMIT.
 
     mu : float, coefficient of friction.
-    at, table : as of :func:`_load`.
+    at : :class:`TablePlace` of the state.
+    table : vector of :mod:`.coupled_splines`.
     """
     limit = table[LIMIT]
     found = value_at(TRACTION, at.cell, table)
+    # in full slip exactly the limit, not the value of the spline at the onset
     found = at.state.sigma * limit if at.state.w >= 1.0 and limit < np.inf else found
     return at.sign * mu * min(max(found, -limit), limit)
 
@@ -350,8 +356,11 @@ def _sloped_traction(mu, kappa, at, table):
 
 @inline_kernel
 def _at_fixed_omega(load, V, delta):
-    """Return (slope of a load over V at fixed omega, that over omega), floats; infinite at V = 0
-    where it depends on the creepage.
+    """Return (slope of a load over V at fixed omega, that over omega), floats, dimensionless;
+    infinite, or NaN, at V = 0 where it depends on the creepage.
+
+    load : :class:`Load`, slopes over V at fixed creepage and over the creepage.
+    V, delta : floats, speed, of any sign, and creepage, dimensionless.
     """
     if load.ddelta == 0.0:  # Also at V = 0, where the quotients below are NaN.
         return load.dV, 0.0
@@ -367,9 +376,9 @@ def look_up(table, u, D):
     u, D : kappa |V| and 2 kappa delta of each, (n,).
     Columns are the fields TRACTION to WORK + 1 of :mod:`.coupled_splines`.
     """
-    out = np.empty((u.size, FRICTION))
+    out = np.empty((u.size, FRICTION))  # FRICTION is the number of fields before friction
     for n in range(u.size):
-        at = _place(u[n], D[n], 1.0, table)
+        at = _place(u[n], D[n], 1.0, table)  # u as V > 0 with kappa = 1
         for name in range(out.shape[1]):
             out[n, name] = value_at(name, at.cell, table)
     return out
@@ -466,7 +475,8 @@ def _write_slopes(table, given, at, delta, n, request):
     write_field(to.dQ_ddelta, Q.ddelta, n, request)
     write_field(to.dM_ddelta, M.ddelta, n, request)
     fixed = given.creep_is_omega
-    # The slope over V is at fixed omega where the state has omega, else at fixed creepage.
+    # The slope over V is at fixed omega where the state has omega, else at fixed creepage; that
+    # over omega is always at fixed V.
     for load, over_V, over_omega in (
         (Q, to.dQ_dV, to.dQ_domega),
         (M, to.dM_dV, to.dM_domega),
@@ -499,6 +509,7 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     u = kappa * abs(V)
     if not (u <= table[MOST] and abs(slip) < np.inf):  # too fast, or not finite
         return refuse(out)
+    # as in law_record.slip_and_creepage: V = 0.0 and -0.0 count as V > 0
     delta = slip / V if V != 0.0 else 0.0 if slip == 0.0 else np.copysign(np.inf, slip)
     at = _place(V, 2.0 * kappa * delta, kappa, table)
     if at.state.w > 1.0 and table[SLIPS] == 0.0:
@@ -594,11 +605,12 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
                 found -= value_at(HALF_SPACE, cell, table) / kappa[n]
             if (step == 0 and found >= load[n]) or (step == 1 and found <= load[n]):
                 break
-            if step > 1 and found < load[n]:
+            if step > 1 and found < load[n]:  # the load of friction grows with d
                 low = d
             elif step > 1:
                 high = d
         middle = edge_at(MIDDLE, u[n], speed, table).value
         onset = edge_at(ONSET + np.int64(d >= 0.0), u[n], speed, table).value
+        # 2 kappa delta from w = |d| on the side of d; |d| = 1 exactly only in steps 0 and 1
         out[n, 0] = middle + abs(d) * (onset - middle)
         out[n, 1] = load[n] - found if abs(d) == 1.0 else 0.0
