@@ -115,6 +115,7 @@ def multiply_matrix(matrix, row, offset, values, target, result):
     are read before.  A NaN or inf in the row makes the whole product NaN or inf, even where the
     matrix is 0.  Returns nothing.
     """
+    # ``low`` has rows 0 ... 3 of the product, ``high`` rows 4 ... 7: a column times a number each
     low = high = broadcast(0.0)
     for k in range(ROW_LENGTH):
         x = broadcast(values[row + k] - offset)
@@ -139,6 +140,8 @@ def assemble_newton_matrix(weights, diagonal, nodes, matrix):
     matrix: pointer to ROW_LENGTH^2 numbers, of which columns 1 ... N are written; column 0 keeps
     its values, 0 from the start of the motion.  Returns nothing.
     """
+    # weights of rows 0 ... 3 and 4 ... 7; row 0 of DIFFERENTIATION and of columns 1 ... N of the
+    # identity is 0, so that the entry of node 0 becomes 0
     low = load(nodes, weights)
     high = load(nodes, weights + LANES)
     for k in range(1, ROW_LENGTH):

@@ -89,7 +89,7 @@ def _evaluate_N(u, law):
     row, t, dt_dx = locate_octave(u, law.marks[E0])
     count = law.marks[ROW_COUNT]
     alpha = law.rows[ALPHA]
-    if row < count:
+    if row < count:  # a row of N_rows is a pair, N and its integral, and has no head in front
         N, integral, slope, _, _, _ = evaluate_pair(law.N_rows, row * 2 * TERMS, t)
         return row, N, integral, slope * dt_dx
     # N = (alpha - 1)/(16 alpha u^2): its integral from infinity is -N u, its slope -2 N/u.
@@ -462,15 +462,16 @@ def _decay_on_side(sigma, work):
     spin_inertia = scene.j * (1.0 + rest_limits(scene)[1])
     on_axis = 1.0 + slow.reaction_half_space
     on_spin = 1.0 - slow.reaction_cylinder
-    n = added_inertia(0.0, scene)[0]
+    n = added_inertia(0.0, scene)[0]  # 0 of covers
     inertia = on_spin + spin_inertia * on_axis + n
-    if on_axis == 1.0 and on_spin == 1.0:  # half-spaces
+    if on_axis == 1.0 and on_spin == 1.0:  # half-spaces: the same sum, in another order
         rate = (slow.half_space + slow.cylinder - force - torque) / inertia
     else:
         axis_loss = on_spin * (slow.half_space - force)
         rate = (axis_loss + on_axis * (slow.cylinder - torque)) / inertia
     Q = (spin_inertia + 0.5 * n) * (slow.half_space - force)
     Q = (Q - (1.0 + 0.5 * n) * (slow.cylinder - torque)) / inertia
+    # Q_V is Q/V at d = 0, so that Q above it means d > 0; at equality both sides serve
     decay = FreeDecay(rate=rate, Q=Q, creep=slow.creep_V + slow.creep_Q * Q)
     return decay, sigma * (Q - slow.Q_V) >= 0.0
 
@@ -567,7 +568,7 @@ def speeds_after_sliding(V, omega, scene):
     c = asymmetry_at_rest(scene)
     # Sign of the creepage less delta_0; a product of the two least speeds would underflow to 0.
     side = 1.0 if (omega >= free * V) == (V >= 0.0) else -1.0
-    limit = _limit_at_rest(side, scene)
+    limit = _limit_at_rest(side, scene)  # |delta - delta_0| at d = side without c d^2
     left = np.inf  # |d| at which the integral over d begins; above 1 in full slip
     if V != 0.0:
         left = abs(reduced_creep(side * abs(omega - free * V) / (limit * abs(V)), c))
@@ -576,6 +577,8 @@ def speeds_after_sliding(V, omega, scene):
     if left > 1.0:  # Full slip: V b + j omega a is kept until omega/V is that of |d| = 1.
         left = 1.0
         on_axis, on_spin, _, _ = pull_at_rest(side, scene)
+        # what is kept, with the signs of Q on the axis and on the cylinder, which are those of
+        # ``side`` in pull_at_rest
         kept = side * (V * on_spin + j * omega * on_axis)
         turned = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
         if turned != side:  # V passes through 0, from where on a and b are those of the other side.
@@ -662,6 +665,7 @@ def reduced_slip(slip, limit, V, sigma, scene):
     part = slip / limit
     if by_value(scene.law).cover_rows is None:
         return part
+    # limit is delta_star |V| (1 + sigma c): from here on the excess is divided by delta_star |V|
     c = _asymmetry_at_speed(V, scene)
     return reduced_creep(part * (1.0 + sigma * c), c)
 
@@ -676,6 +680,7 @@ def creepage(V, d, scene):
     scene: Scene, of which kappa, mu and ``law`` are read.
     Returns a float, dimensionless; omega = V (1 + delta) follows from it.
     """
+    # the side of d, which L of a table depends on; d = -0.0 is on the side -1, where the term is 0
     width = _width(V, np.copysign(1.0, d), scene)
     creep = _creep_over_L(V, d, scene)
     return 0.5 * scene.mu / scene.kappa * width.L * creep + 0.5 / scene.kappa * width.middle

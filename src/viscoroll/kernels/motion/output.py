@@ -154,7 +154,7 @@ def record_switch(code, step_state, work):
     """
     nodes = work.nodes
     switches = work.switches
-    n = int(nodes[N_RECORDED])
+    n = int(nodes[N_RECORDED])  # a count that is stored as a double, beside the other numbers
     if n < switches.shape[0]:
         switches[n, 0] = step_state.tau / work.scene.gamma
         switches[n, 1] = code
@@ -183,6 +183,7 @@ def write_outputs_at_rest(end, inclusive, code, step_state, work):
     column = step_state.next_output
     tau = work.output_tau
     while column < tau.size and (tau[column] < end or (inclusive and tau[column] == end)):
+        # direction 1 of REGIME_AT_REST: forces in fixed directions
         load = evaluate_load(tau[column], step_state.segment, REGIME_AT_REST, work)
         write_column(column, (0.0, 0.0, 0.0), code, (load.force, load.torque), work)
         _write_totals(column, work)
@@ -373,12 +374,14 @@ def accept_step(end, v, step, regime, step_state, work):
     while column < tau.size and (tau[column] < end or is_last):
         v_output = min(dense_position(tau[column], step), 2.0)  # 2 may be passed by rounding.
         _write_state(column, dense_state(v_output, work.nodes), step.segment, regime, work)
+        # those that are not computed, as nothing drives, keep their totals
         for n in range(N_QUADRATURES if work.with_quadratures else 0):
             increase = _quadrature_at(n, v_output, step, work.nodes) if n < n_quadratures else 0.0
             write_quadrature(column, n, increase, work)
         column += 1
     if step_state.n_accepted < work.step_ends.size:
         work.step_ends[step_state.n_accepted] = end / work.scene.gamma
+    # up to v by the interpolant; along the whole step by Radau's rule, which is of higher order
     for n in range(n_quadratures):
         if v < 2.0:
             work.nodes[QUADRATURE_TOTALS + n] += _quadrature_at(n, v, step, work.nodes)

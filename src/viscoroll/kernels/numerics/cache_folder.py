@@ -90,6 +90,7 @@ def write_private(path: Path, content: bytes) -> None:
     file then keeps its content, and no temporary file is left.
     """
     make_private_folder(path.parent)
+    # in the same folder, so that os.replace is one step that nobody sees half done
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
     try:
         temporary.touch(mode=0o644, exist_ok=False)
@@ -111,9 +112,10 @@ def make_private_folder(folder: Path) -> None:
     made.
     """
     refuse_writable_by_others(folder)
+    # from the top down, each with this mode, which ``parents=True`` would not give to all
     for parent in reversed((folder, *folder.parents)):
         if not parent.exists():
-            parent.mkdir(mode=0o755, exist_ok=True)
+            parent.mkdir(mode=0o755, exist_ok=True)  # another process may have made it meanwhile
 
 
 def refuse_writable_by_others(path: Path) -> None:
@@ -135,6 +137,7 @@ def refuse_writable_by_others(path: Path) -> None:
         return
     # the owner of "/" may do anything; in a container that is not always 0
     trusted = {os.geteuid(), 0, Path("/").stat().st_uid}
+    # the path as written, whose links others might replace, and the one it leads to, each part once
     plain = path.absolute()
     real = Path(os.path.realpath(path))
     for part in dict.fromkeys((plain, *plain.parents, real, *real.parents)):

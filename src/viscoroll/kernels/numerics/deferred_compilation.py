@@ -70,9 +70,8 @@ def _memoized_types(typing, target):
             isinstance(kind, (types.Float, types.Integer, types.Boolean)) for kind in args
         ):
             return plain(function, args, kws)
-        if not all(
-            isinstance(kind, types.Literal) for kind in args
-        ):  # numba resolves again for every literal integer
+        # numba resolves again for every literal integer
+        if not all(isinstance(kind, types.Literal) for kind in args):
             args = tuple(map(types.unliteral, args))
         if (function, args) not in resolved:
             resolved[function, args] = plain(function, args, kws)
@@ -86,6 +85,7 @@ def _memoized_types(typing, target):
     try:
         yield
     finally:
+        # the attributes of the instances: the methods of their classes show again
         del typing.resolve_function_type, typing.resolve_getattr, target.get_abi_sizeof
         base._has_loc = has_location
 
@@ -242,6 +242,7 @@ def _pipelines():
 
             module : the module, which belongs to the library from then on.  Returns nothing.
             """
+            # empty: no function yet
             if next(iter(self._final_module.functions), None) is None:
                 self._optimize_functions(module)
                 self._final_module = module
@@ -273,12 +274,11 @@ def _pipelines():
             module = self._final_module
             own = {function.name for function in module.functions if not function.is_declaration}
             _link(self, module)
-            for (
-                function
-            ) in module.functions:  # nobody else calls the parts: LLVM leaves out what is not used
+            # nobody else calls the parts: LLVM leaves out what is not used
+            for function in module.functions:
                 if not function.is_declaration and function.name not in own:
                     function.linkage = "internal"
-            self._linking_libraries = []
+            self._linking_libraries = []  # all are linked already; numba would link them again
             super().finalize()
 
         def _optimize_final_module(self):
