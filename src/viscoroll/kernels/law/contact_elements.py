@@ -59,8 +59,9 @@ def _gathered(t, spots, used):
     It is the sum over refinements of weight sgn(t - t_k) ln(1 + |t - t_k|/width).
 
     t : float, parameter of the mesh, in [0, 1].
-    spots : (most, 3), t_k, width and weight of each refinement, as in :func:`make_mesh`.
-    used : int, number of refinements.
+    spots : (most, 3), t_k in [0, 1], width > 0 in the parameter and weight of each refinement, the
+        number of elements in a factor of e of the distance from it.
+    used : int, number of refinements, rows of ``spots`` that count.
     """
     total = 0.0
     rate = 0.0
@@ -84,9 +85,11 @@ def make_mesh(c, spots, used, nodes, at, place):
     spots : (most, 3): parameter in [0, 1], width > 0 in the parameter, and number of elements in a
         factor of e of the distance from it; changed in place: weights are reduced where spots would
         take more than :data:`_SPOTS_PART`.
-    used : number of spots.
-    nodes, at, place : (N + 1,), (N,) and (N + 1,), written: from -c to c; the parameter of each
-    node.
+    used : int, number of spots, rows of ``spots`` that count.
+    nodes, at, place : (N + 1,), (N,) and (N + 1,), written: nodes, ascending from -c to c; places
+        of collocation, each half an element after the node before it; the parameter of each node,
+        from 0 to 1.
+    Returns nothing.
     """
     count = at.size
     # elements that the spots take, high - low, at most a part of all: the others are left for a > 0
@@ -184,9 +187,10 @@ def add_local(local, nodes, at, C):
     """Add to the local part of the coupling what linear tractions leave out, by the values at four
     nodes.
 
-    local : as of :func:`_local_part`.
-    nodes, at : mesh, (N + 1,) and (N,).
-    C : (N, N - 1), matrix of :func:`assemble`, changed.
+    local : (modes, 2), strength and length, divided by l0, of each mode, 0 for the length of the
+        instantaneous one.
+    nodes, at : mesh, (N + 1,) and (N,), N >= 2.
+    C : (N, N - 1), matrix of :func:`assemble`, changed: row e belongs to the place in element e.
     The tractions are odd about the two outer nodes, in the parameter of the mesh.  Returns nothing.
     """
     last = at.size - 1
@@ -222,7 +226,8 @@ def assemble(table, instant, nodes, at, H, T, C):
         first two.  Sign 0 is that of x > 0, the constant of a polynomial in y comes first.
     instant : instantaneous compliance over the summed long-time compliance.
     nodes, at : mesh, (N + 1,) and (N,), of at most exp(1.4) in all; no place is a node.
-    H, T, C : (N, N - 1) each, written: slope at places by the traction at inner nodes.
+    H, T, C : (N, N - 1) each, written: slope by pressure, strain by shear, and coupling, at the
+        place in element i by the traction 1 at inner node n.  Returns nothing.
     """
     N = at.size
     # Second antiderivatives of the three kernels, at the place i less each node.
@@ -295,9 +300,9 @@ def product(nodes, at, values, slope):
     The gradient in an element is that between the places of its neighbours, so that a linear slope
     is exact.
 
-    nodes, at : mesh, (N + 1,) and (N,).
+    nodes, at : mesh, (N + 1,) and (N,), N >= 2.
     values : traction at inner nodes, (N - 1,).
-    slope : at ``at``, (N,).
+    slope : (N,), the slope at the places ``at``, one in each element.
     Returns a float, in the units of the module.
     """
     found = 0.0
@@ -367,8 +372,8 @@ def factor(matrix, order):
 def substitute(matrix, order, right):
     """Solve for many right sides with the factors of :func:`factor`.
 
-    matrix, order : factors and row exchanges, (n, n) and (n,).
-    right : (n, m), replaced by the solutions.  Returns nothing.
+    matrix, order : factors and row exchanges, (n, n) and (n,), of a call that returned True.
+    right : (n, m), m right sides as columns, replaced by the solutions.  Returns nothing.
     """
     n, m = right.shape
     # Row exchanges, then L from the first row on, then U from the last row on.
@@ -402,11 +407,11 @@ def substitute(matrix, order, right):
 def eliminate(H, C, at, coupled):
     """Eliminate pressure and g: p = a - B q.
 
-    H, C : matrices of slopes, (N, N - 1).
-    at : places of collocation, (N,).
-    coupled : whether C is not 0.
-    Returns (whether the matrix has an inverse; (N, N): B in its first N - 1 columns, a in the last;
-    the last row belongs to g).  Without ``coupled`` B is 0.
+    H, C : matrices of slopes by pressure and by coupling, (N, N - 1), not changed.
+    at : places of collocation from the middle of the contact on, (N,).
+    coupled : bool, whether C is not 0; else it is not read.
+    Returns (whether the matrix has an inverse, a bool; (N, N): B in its first N - 1 columns, a in
+    the last; the last row belongs to g; zeros without an inverse).  Without ``coupled`` B is 0.
     """
     N = at.size
     # (H, -1) (p, g) = x - C q, N equations for N - 1 pressures and g: (p, g) is the inverse times
@@ -437,8 +442,8 @@ def strain_by_shear(T, C, B, coupled):
     The pressure is not fixed: it follows q by p = a - B q.
 
     T, C : matrices (N, N - 1), strain by shear and, with the opposite sign, by pressure.
-    B : elimination of p, (N, N), of :func:`eliminate`.
-    coupled : bool, whether C is not 0.
+    B : elimination of p, (N, N), of :func:`eliminate`: B and, in the last column, a.
+    coupled : bool, whether C is not 0; else neither C nor B is read.
     Returns (N, N): the factors of q in the first N - 1 columns, u' for q = 0 in the last.
     """
     N = B.shape[0]

@@ -149,9 +149,10 @@ def _interval(begin, count, step, x, table):
     """Return the :class:`Interval` of a coordinate; outside of the nodes it is the first or the
     last.
 
-    begin, count : ints, where the nodes begin in the vector, and their number.
-    step : int, index in the head of the step of the axis: U_STEP or T_STEP.
-    x : float, coordinate, ln u or t.
+    begin, count : ints, where the nodes begin in the vector, and their number, >= 2.
+    step : int, index in the head of the step of the axis: U_STEP or T_STEP; the inverse of the step
+        follows it.
+    x : float, coordinate, ln u or t, not a NaN.
     table : vector of the module.
     """
     # Indices of the vector are unsigned: numba would test signed ones for negative numbers.

@@ -159,8 +159,10 @@ def find_spots(zone, place, width, weight, spots):
     contact; return their number, an int.
 
     zone, place : zones at inner nodes, (N - 1,), and parameters of all nodes, (N + 1,).
-    width, weight : floats, of each spot, as in :func:`.contact_elements.make_mesh`.
-    spots : (MOST_SPOTS, 3), parameter, width and weight, written; further edges have none.
+    width, weight : floats, of each spot: width > 0 in the parameter, and number of elements in a
+        factor of e of the distance from it (:func:`.contact_elements.make_mesh`).
+    spots : (MOST_SPOTS, 3), parameter, width and weight, written from the first row on, from the
+        rear edge to the front edge; further edges than it has rows are left out.
     """
     used = 0
     # inner node i is node i + 1 of the mesh, whose parameter is place[i + 1]
@@ -197,7 +199,8 @@ def gather(row, contact, c, spots):
     front edge; return the number of edges, an int.
 
     row : :class:`Row`, of which ``layer`` is read.
-    contact : :class:`Contact`, whose mesh is written and whose zones are carried to it.
+    contact : :class:`Contact`, whose mesh (``nodes``, ``at``, ``place``) is written, and whose
+        zones are carried to it; before, ``place`` and ``zone`` are those of the last mesh.
     c : float, half length divided by l0, > 0.
     spots : (MOST_SPOTS, 3), written: the edges first, then the layer if it is thinner than an
         element.
@@ -229,13 +232,14 @@ def solve_contact(row, contact, c, mu, d, spots, again):
     contact : :class:`Contact`, mesh, matrices and tractions, written; its zones are a first guess.
     c : float, half length of the contact divided by l0, > 0.
     mu : float, coefficient of friction, > 0.
-    d : float, kappa times the creepage delta; infinite: full slip in the zones of ``contact``.
-    spots : (MOST_SPOTS, 3), refinements of the mesh at edges of zones, as in :func:`make_mesh`;
-        written, or with ``again`` read.
+    d : float, kappa times the creepage delta, of either sign; infinite, of any sign: full slip in
+        the zones of ``contact``.
+    spots : (MOST_SPOTS, 3), refinements of the mesh at edges of zones, parameter, width and weight
+        each (:func:`.contact_elements.make_mesh`): scratch, written unless ``again``.
     again : bool, whether the mesh of the previous call is kept and scaled to c.
     Returns three values: the status, an int, SOLVED, NO_ZONES or SINGULAR; the distance g of the
-    middle of the contact ahead of the axis, divided by l0; whether the edges of the zones lie
-    within OFF_SPOT elements of the refinements of the mesh.
+    middle of the contact ahead of the axis, a float, divided by l0; a bool, whether the edges of
+    the zones lie within OFF_SPOT elements of the refinements of the mesh, True in full slip.
     """
     count = contact.at.size
     edges = 0  # number of edges at which the mesh is refined; 0 where the mesh is kept
@@ -381,12 +385,15 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
 
     The mesh of each length is refined at the edges of the zones of the previous length.
 
-    row : :class:`Row`.
+    row : :class:`Row`, kernels of both bodies at one speed.
     contact : :class:`Contact`, written; its zones are the first guess.
-    c, slope : floats, first guesses of the half length and of d ln(load)/d ln(c).
-    mu, d : floats, coefficient of friction; kappa times the creepage delta, infinite in full slip.
+    c, slope : floats, first guesses of the half length, divided by l0, > 0, and of d ln(load)/d
+        ln(c), > 0.
+    mu, d : floats, coefficient of friction, > 0; kappa times the creepage delta, infinite in full
+        slip.
     tolerance : float, largest relative error of the load.
-    out : (COLUMNS,), written, with a status other than SOLVED if no solution was found.
+    out : (COLUMNS,), the state, written but for columns 5 and 6, with a status other than SOLVED if
+        no solution was found.
     Returns (half length divided by l0, d ln(load)/d ln(c)), floats.
     """
     spots = np.empty((MOST_SPOTS, 3))
@@ -423,9 +430,13 @@ def find_length(row, contact, c, slope, mu, d, tolerance, out):
 def finish_state(row, contact, out):
     """Write moment and work of the cylinder alone into a state.
 
-    row : :class:`Row`.
-    contact : the solved :class:`Contact` of the state; its matrices are overwritten.
-    out : (COLUMNS,), the state of :func:`write_state`, of which columns 5 and 6 are written.
+    row : :class:`Row`, of which ``split`` and ``cylinder`` are read, and where both bodies deform
+        the kernels of the cylinder.
+    contact : the solved :class:`Contact` of the state; where both bodies deform its matrices are
+        overwritten by those of the cylinder.
+    out : (COLUMNS,), the state of :func:`write_state`, of which columns 5 and 6 are written: kappa
+        M and 2 kappa times the work of the strain, of the cylinder.
+    Returns nothing.
     """
     # kappa M of the cylinder alone, and 2 kappa times the work of its strain, per load; where one
     # body alone deforms they are all of columns 3 and 4, or nothing
@@ -447,18 +458,19 @@ def full_slip(row, mu, sign, count, c, out):
     three elements: as a polynomial of the parameter of the mesh with coupling, where the strain
     varies like the root of the distance, else of the square of the parameter.
 
-    row : :class:`Row`.
-    mu : float, coefficient of friction.
+    row : :class:`Row`, kernels of both bodies at one speed.
+    mu : float, coefficient of friction, > 0.
     sign : float, 1.0 or -1.0, sign of the slip.
-    count : int, number of elements.
-    c : float, guess of the half length divided by l0.
-    out : (COLUMNS,), the state, written.
+    count : int, number of elements, at least 3.
+    c : float, guess of the half length divided by l0, > 0.
+    out : (COLUMNS,), the state, written, all columns.
     Returns (kappa times the creepage of the onset; d ln(load)/d ln(c)), floats.
     """
     contact = new_contact(count)
     contact.zone[:] = sign
     # 2.0: the load of an elastic half-space grows as c^2
     _, slope = find_length(row, contact, c, 2.0, mu, np.inf, _LOAD_ERROR, out)
+    # slip d - u' of the sign everywhere means sign d >= sign u' everywhere
     best = -np.inf
     for e in range(count):
         best = max(best, sign * contact.strain[e])
@@ -484,10 +496,12 @@ def full_slip(row, mu, sign, count, c, out):
 def move_edges(place, last, before, count, ahead):
     """Move the nodes of a mesh to the edges of zones that are extrapolated from two states.
 
-    place : parameters of the nodes, (N + 1,), changed; they stay where edges would meet.
+    place : parameters of the nodes, (N + 1,), ascending from 0 to 1, changed; they stay where edges
+        would meet.  The nodes themselves are not moved: :func:`gather` reads their parameters, at
+        which it carries zones and edges to the next mesh.
     last, before : edges of the last state and of the one before it, in column 0, (MOST_SPOTS, 3).
-    count : number of edges of both.
-    ahead : float, step to the next state divided by the step between the two.
+    count : int, number of edges of both, >= 0.
+    ahead : float, step to the next state divided by the step between the two, > 0.
     Returns nothing.
     """
     # Parameters of both ends and of the edges, before and after; those of nodes are interpolated.
@@ -507,15 +521,16 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
 
     The first guess of each state, zones and length, is extrapolated from the two before it.
 
-    row : :class:`Row`.
-    mu : float, coefficient of friction.
-    creeps : kappa times the creepage delta of each state, (n,); neighbours should be close.
-    at : coordinate of the states in which they change smoothly, ascending, (n,).
+    row : :class:`Row`, kernels of both bodies at one speed.
+    mu : float, coefficient of friction, > 0.
+    creeps : kappa times the creepage delta of each state, finite, (n,); neighbours should be close.
+    at : coordinate of the states in which they change smoothly, strictly ascending, (n,).
     count : int, number of elements.
-    c, slope : floats, guesses of the first half length and of d ln(load)/d ln(c).
-    apart : bool, whether each state starts from stick and the guess c instead, so that it does not
-        depend on the others.
-    out : (n, COLUMNS), written.
+    c, slope : floats, guesses of the first half length, divided by l0, and of d ln(load)/d ln(c),
+        > 0.
+    apart : bool, whether each state starts from stick and the guess c instead; that its mesh begins
+        with the nodes of the state before has no effect, as all its nodes stick.
+    out : (n, COLUMNS), written, all columns.
     Returns nothing.
     """
     contact = new_contact(count)
@@ -547,13 +562,13 @@ def states_loop(row, mu, creeps, at, count, c, slope, apart, out):
 def rear_slip(row, contact, c, slope, mu, d, out):
     """Solve a state roughly, and return the directions of slip in the rear half of the contact.
 
-    row : :class:`Row`.
-    contact : :class:`Contact`, written.
-    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
-    mu, d : floats, coefficient of friction, kappa times the creepage delta.
-    out : (COLUMNS,), written.
-    Returns (whether a node there slips with sign +; with sign -; zone of the rear node, 0 in stick;
-    half length divided by l0).
+    row : :class:`Row`, kernels of both bodies at one speed.
+    contact : :class:`Contact`, written; its zones are the first guess.
+    c, slope : floats, guesses of the half length, divided by l0, and of d ln(load)/d ln(c), > 0.
+    mu, d : floats, coefficient of friction, > 0, and kappa times the creepage delta, finite.
+    out : (COLUMNS,), scratch, written.
+    Returns (whether a node there slips with sign +, a bool; with sign -; zone of the rear inner
+    node, 1.0, -1.0 or 0.0 in stick; half length divided by l0).
     """
     c, _ = find_length(row, contact, c, slope, mu, d, _ROUGH_LOAD, out)
     plus = False
@@ -572,11 +587,11 @@ def touch_creep(row, mu, low, high, count, c, slope):
     an interval of creepages, it is the lower end of the interval if the rear edge slips with sign -
     there, else the upper end.  It is found by bisection on the zones.
 
-    row : :class:`Row`.
-    mu : float, coefficient of friction.
-    low, high : floats, kappa times the creepages of both onsets of full slip.
+    row : :class:`Row`, kernels of both bodies at one speed.
+    mu : float, coefficient of friction, > 0.
+    low, high : floats, kappa times the creepages of both onsets of full slip, ``low`` < ``high``.
     count : int, number of elements.
-    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
+    c, slope : floats, guesses of the half length, divided by l0, and of d ln(load)/d ln(c), > 0.
     Returns a float between ``low`` and ``high``.
     """
     contact = new_contact(count)
@@ -612,13 +627,14 @@ def touch_creep(row, mu, low, high, count, c, slope):
 def solve_one(row, mu, d, count, c, slope, sign, out):
     """Solve one state and return its :class:`Contact`, with nodes and tractions.
 
-    row : :class:`Row`.
-    mu : float, coefficient of friction.
-    d : float, kappa times the creepage delta; infinite: full slip.
+    row : :class:`Row`, kernels of both bodies at one speed.
+    mu : float, coefficient of friction, > 0.
+    d : float, kappa times the creepage delta; infinite, of any sign: full slip of ``sign``.
     count : int, number of elements.
-    c, slope : floats, guesses of the half length and of d ln(load)/d ln(c).
+    c, slope : floats, guesses of the half length, divided by l0, and of d ln(load)/d ln(c), > 0.
     sign : float, 1.0 or -1.0, sign of full slip; not read otherwise.
-    out : (COLUMNS,), the state, written, but for moment and work of the cylinder.
+    out : (COLUMNS,), the state, written, but for moment and work of the cylinder, columns 5 and 6.
+        Its lam and half length are corrected to the load; the nodes of the contact are not.
     """
     contact = new_contact(count)
     if math.isinf(d):

@@ -291,9 +291,9 @@ class TablePlace(NamedTuple):
 def _place(V, D, kappa, table):
     """Return the :class:`TablePlace` of a state.
 
-    V : float, speed of the axis, dimensionless, of any sign.
-    D : float, 2 kappa delta, which may be infinite.
-    kappa : float, slenderness R/l0.
+    V : float, speed of the axis, dimensionless, of any sign; kappa |V| may exceed the nodes.
+    D : float, 2 kappa delta, of any sign, which may be infinite.
+    kappa : float, slenderness R/l0, > 0.
     table : vector of :mod:`.coupled_splines`.
     """
     u = kappa * abs(V)
@@ -308,15 +308,16 @@ def _place(V, D, kappa, table):
 def _load(name, factor, kappa, at, table):
     """Return a field times a factor as a :class:`Load`, which is odd in V.
 
-    name : int, TRACTION, HALF_SPACE or CYLINDER.
+    name : int, TRACTION, HALF_SPACE or CYLINDER, of which the table has Q/mu and kappa times the
+        moments.
     factor : float, mu of Q, 1/kappa of a moment.
-    kappa : float, slenderness.
+    kappa : float, slenderness, > 0.
     at : :class:`TablePlace` of the state.
     table : vector of :mod:`.coupled_splines`.
     """
     found = field_at(name, at.state.w, at.cell, table)
-    # With u = kappa |V| and D = 2 kappa delta; the slope over V has twice the sign of V, which is
-    # 1.
+    # With u = kappa |V| and D = 2 kappa delta.  The slope over V has the sign of V twice, as the
+    # load is odd and du/dV = kappa sign V: it has none.
     return Load(
         at.sign * factor * found.value,
         factor * kappa * (found.du + found.dw * at.state.dw_du),
@@ -343,10 +344,11 @@ def _traction(mu, at, table):
 def _sloped_traction(mu, kappa, at, table):
     """Return Q of one state with its slopes, a :class:`Load`.
 
-    mu, kappa : floats, coefficient of friction and slenderness.
+    mu, kappa : floats, coefficient of friction and slenderness, > 0.
     at : :class:`TablePlace`, the state in the table.
     table : vector of :mod:`.coupled_splines`.
-    The slopes are 0 where |Q| is limited to mu times the entry LIMIT of the table.
+    The slopes are 0 where |Q| is limited to mu times the entry LIMIT of the table, so also in full
+    slip; an infinite LIMIT limits nothing.
     """
     value = _traction(mu, at, table)
     if abs(value) >= mu * table[LIMIT]:
@@ -403,9 +405,11 @@ def _write_state(table, given, n, request):
     """Write the requested fields of one state.
 
     table : vector of :mod:`.coupled_splines`, with all fields.
-    given : :class:`.law_record.State`, of numbers.
-    n : int, its number.
-    request : :class:`.law_record.Request`, whose ``out`` is written, dimensionless.
+    given : :class:`.law_record.State` of numbers; all fields are read.
+    n : int, index of the state, >= 0; its column of ``out`` is n + ``request.first``.
+    request : :class:`.law_record.Request`: of ``out`` the rows that ``to`` names are written,
+        dimensionless: creepages, lengths, Q in units of P, moments in units of P R and their
+        slopes.  Slopes of the moments of the bodies are written only beside one of Q or M.
     Returns nothing.
     """
     to = request.to
@@ -454,11 +458,13 @@ def _write_slopes(table, given, at, delta, n, request):
     """Write the requested slopes of one state, of Q and of the moments.
 
     table : vector of :mod:`.coupled_splines`.
-    given : :class:`.law_record.State`, the state.
+    given : :class:`.law_record.State`, the state, of which V, kappa, mu and ``creep_is_omega`` are
+        read.
     at : :class:`TablePlace`, the state in the table.
-    delta : float, creepage.
-    n : int, index of the state in ``request.out``.
-    request : :class:`.law_record.Request`, whose ``out`` is written.
+    delta : float, creepage, dimensionless, infinite at V = 0 where omega is given and not 0.
+    n : int, index of the state, >= 0; its column of ``out`` is n + ``request.first``.
+    request : :class:`.law_record.Request`, of whose ``out`` the rows of the slopes that ``to``
+        names are written, dimensionless.
     Returns nothing.
     """
     to = request.to
@@ -496,7 +502,7 @@ def _table_law(caller_V, caller_omega, pointer, scenes):
     any sign.
     pointer : address of RESULTS numbers, which are written in the units of the caller as by
         :func:`.law_callables._evaluate`: without ``slopes`` the first four alone.
-    scenes : pointer to a TABLE record.
+    scenes : pointer to a TABLE record, all of whose fields but ``function`` are read.
     Returns the status, an int: 0; or 1, and all results are NaN, where |V| is above the table, V or
     omega is not finite, or the creepage is outside of a table that does not slip fully at its ends.
     """
@@ -531,12 +537,15 @@ def _slopes_to_caller(scene, V, delta, at, table, out):
     """Write the slopes of a state in the units of the caller into ``out``, (RESULTS,).
 
     scene : TABLE record, of which kappa, mu and the units are read.
-    V, delta : floats, speed, dimensionless, and creepage.
+    V, delta : floats, speed, of any sign, and creepage, dimensionless.
     at : :class:`TablePlace` of the state.
     table : vector of :mod:`.coupled_splines`.
-    out : vector of RESULTS numbers, of which 4 to 9 are written.
+    out : vector of RESULTS numbers, of which 4 to 9 are written, in the order of
+        :func:`.law_callables._evaluate`: dQ/dV at fixed omega, dQ/domega at fixed V, then slopes of
+        M_half_space and M_cylinder over V, then over omega.
     Returns nothing.
     """
+    # a slope in the units of the caller: times the unit of the load over that of V or omega
     kappa = scene.kappa
     Q = _sloped_traction(scene.mu, kappa, at, table)
     half_space = _load(HALF_SPACE, 1.0 / kappa, kappa, at, table)
@@ -555,11 +564,15 @@ def _slopes_to_caller(scene, V, delta, at, table, out):
 def jitted_table(table, owner, kappa: float, mu: float, scale) -> Jitted:
     """Return the law of a table as a function for jitted code, :class:`Jitted`.
 
-    table : vector of :mod:`.coupled_splines`, which the law keeps alive with ``owner``.
-    kappa, mu : of the scene.
+    table : vector of :mod:`.coupled_splines`, contiguous doubles, which the law keeps alive.
+    owner : any object that the law keeps alive besides, as it owns the memory of ``table``.
+    kappa, mu : floats, slenderness R/l0 and coefficient of friction of the scene, > 0.
     scale : "V", "omega", "Q" and "M" -> the unit of this dimensionless quantity in the units of the
-    caller.
+        caller, a float: a dimensionless number times it is the caller's.
+    Raises KeyError if ``scale`` lacks a name.  The C function is compiled here if it is not yet.
     """
+    # two records of user data: without slopes, then with them (Jitted); the fields in the order of
+    # TABLE
     function = c_function_address(_table_law, TABLE)
     numbers = (
         table.ctypes.data,
@@ -578,7 +591,7 @@ def balance_loop(table, kappa, mu, u, load, of_spin, out):
     """Find the creepages at which friction balances given loads, by bisection of d = sigma w.
 
     table : vector of :mod:`.coupled_splines`.
-    kappa, mu : slenderness and coefficient of friction of each state, (n,).
+    kappa, mu : slenderness and coefficient of friction of each state, > 0, (n,).
     u : kappa V of each state, >= 0, (n,).
     load : required value of Q - M_half_space, with ``of_spin`` of Q + M_cylinder, (n,).
     of_spin : bool, whether the cylinder is balanced, instead of the axis.

@@ -264,7 +264,9 @@ def _change_of(Q, pairs, L, dL, scene):
 def _change_of_cover(Q, pairs, L, dL, scene, cover_rows):
     """Return what :func:`_change_of` does.
 
-    Q, pairs, L, dL, scene: as of :func:`_change_of`.
+    Q: float, traction, dimensionless.
+    pairs, L, dL: fields of :class:`SpeedFunctions`, not read for half-spaces.
+    scene: Scene, of which kappa and mu are read, of a cover alone.
     cover_rows: those of the law, None of half-spaces, by whose type numba compiles one of the two
     branches.
     """
@@ -453,8 +455,11 @@ def _slow_law(sigma, scene):
 
 @inline_kernel
 def _decay_on_side(sigma, work):
-    """Return (:class:`FreeDecay`, whether d lies on the side sigma) by the law of this side;
-    arguments as of :func:`_slow_law` and :func:`free_decay`.
+    """Return (:class:`FreeDecay`, whether d lies on the side sigma, a bool) by the law of this
+    side; the formulas are those of :func:`free_decay`.
+
+    sigma: float, side of d, 1.0 or -1.0, on which the law of a table depends.
+    work: Workspace, of the motion; its Scene and the gains of its feedback are read.
     """
     scene = work.scene
     slow = _slow_law(sigma, scene)

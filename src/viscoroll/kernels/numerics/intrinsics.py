@@ -369,8 +369,7 @@ def bin_offset(x, bits):
     """
     word = float_to_bits(x)
     # The centre has the leading bits of the mantissa, and then a half bin; both numbers get the
-    # exponent of 1.
-    # 2 half_bin - 1 masks the bits of the mantissa behind the leading ones.
+    # exponent of 1.  2 half_bin - 1 masks the bits of the mantissa behind the leading ones.
     half_bin = 1 << (51 - bits)
     centre = bits_to_float((word & (_MANTISSA - (2 * half_bin - 1))) | (_ONE + half_bin))
     return bits_to_float((word & _MANTISSA) | _ONE) - centre

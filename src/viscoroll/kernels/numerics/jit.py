@@ -167,6 +167,7 @@ class DiskCache:
         """
         if compiled.library.has_dynamic_globals:
             return
+        # level 1, the fastest; the checksum of the compressed code is in front of it
         content = zlib.compress(dumps(compiled._reduce()), 1)
         try:
             write_private(
@@ -193,7 +194,8 @@ class DiskCache:
         """
         function = self._function
         name = f"{function.__module__}.{function.__qualname__}"
-        # None for a setting that this version of numba does not have
+        # None for a setting that this version of numba does not have; the line below tells
+        # functions of one name apart
         settings = [str(getattr(numba.config, setting, None)) for setting in _SETTINGS]
         key = (
             name,
