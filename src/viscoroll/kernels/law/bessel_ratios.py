@@ -135,6 +135,8 @@ def asymptotic_series(sign: int, terms: int) -> list[Decimal]:
     Returns [a_0 = 1, a_1, ...], a list of ``terms`` Decimals, in the digits of the current decimal
     context.
     """
+    # Of the Riccati equation the coefficient of x^-n is compared: r^2 or k^2 gives 2 a_0 a_n and
+    # ``products``, the slope -(n - 1) a_(n-1), and r/x or k/z a_(n-1).
     a = [Decimal(1)]
     for n in range(1, terms):
         products = sum(a[i] * a[n - i] for i in range(1, n))

@@ -69,6 +69,7 @@ def _gathered(t, spots, used):
         distance = t - spots[k, 0]
         width = spots[k, 1]
         weight = spots[k, 2]
+        # odd about the spot, so that it ascends everywhere: the slope is the same on both sides
         total += math.copysign(weight * math.log(1.0 + abs(distance) / width), distance)
         rate += weight / (abs(distance) + width)
     return total, rate

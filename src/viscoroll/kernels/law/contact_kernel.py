@@ -561,6 +561,7 @@ def _write_reaction(n, position, u, state, law, cover_rows, request):
     """
     if cover_rows is not None:
         to = request.to
+        # a row above -1 among the four: one is requested
         if (
             max(
                 to.reaction_half_space,
@@ -702,6 +703,7 @@ def _write_pairs(c, position, functions, cover_rows, scratch, request):
         scratch[_FREE_CREEP + c] = 0.0
     else:
         u = scratch[_U + c]
+        # values alone, without derivatives; the second number of a pair is _T after the first
         total = total_at(position, u, cover_rows)
         scratch[_TOTAL + c] = total.first
         scratch[_TOTAL + _T + c] = total.second
@@ -711,6 +713,7 @@ def _write_pairs(c, position, functions, cover_rows, scratch, request):
             scratch[_CYLINDER + _T + c] = cylinder.second
         if request.to.M >= 0:
             state = _state(c, scratch, request)
+            # as in _write_moment_of_half_space; Q is not known yet
             factor = moment_factor(position, u, functions.scale, state)
             scratch[_M_WITHOUT + c] = factor * functions.m
 

@@ -343,6 +343,7 @@ def _corners(rows, nodes):
     """
     a0, a1, b0, b1 = rows
     c0, c1, d0, d1 = nodes
+    # each vector in the order of a JET: value, slopes over ln u and over t, mixed derivative
     return (
         pack(a0 * c0, b0 * c0, a0 * d0, b0 * d0),
         pack(a0 * c1, b0 * c1, a0 * d1, b0 * d1),
@@ -373,8 +374,12 @@ def cell_at(speed, place, table):
 
 @inline_kernel
 def _nodes_of(name, cell, table):
-    """Return what a field has at the four nodes of a cell, vectors; arguments as of
-    :func:`field_at`.
+    """Return what a field has at the four nodes of a cell, four vectors of four in the order of
+    ``corners`` of :class:`Cell`.
+
+    name : int, number of the field, TRACTION to FRICTION, as far as the table has it; not checked.
+    cell : :class:`Cell` of :func:`cell_at`.
+    table : vector of the module.
     """
     at = cell.at + name * cell.plane
     below = at + cell.down
@@ -383,7 +388,12 @@ def _nodes_of(name, cell, table):
 
 @inline_kernel
 def _combined(weights, nodes):
-    """Return the sum of weights of four nodes times what a field has there, vectors both."""
+    """Return the sum of weights of four nodes times what a field has there, a float.
+
+    weights : four vectors of four, of :func:`_corners`.
+    nodes : four vectors of four in the same order, of :func:`_nodes_of`.
+    """
+    # two products that do not wait for one another, then the four numbers of the sum
     a, b, c, d = unpack(
         fma4(nodes[0], weights[0], nodes[1] * weights[1])
         + fma4(nodes[2], weights[2], nodes[3] * weights[3])
@@ -393,7 +403,12 @@ def _combined(weights, nodes):
 
 @inline_kernel
 def value_at(name, cell, table):
-    """Return the value of a field for w >= 0; arguments as of :func:`field_at`."""
+    """Return the value of a field, a float, for w >= 0; for w < 0 that of w = 0.
+
+    name : int, number of the field, TRACTION to FRICTION, as far as the table has it; not checked.
+    cell : :class:`Cell` of :func:`cell_at`.
+    table : vector of the module.
+    """
     return _combined(cell.corners, _nodes_of(name, cell, table))
 
 

@@ -328,6 +328,7 @@ def split_powers(row, contact):
     N = contact.at.size
     slope = np.empty(N)
     strain = np.empty(N)
+    # H p + C q and T q - C p, as in contact_elements, of the part that the cylinder has in both
     for e in range(N):
         slope[e] = _of_matrix(contact.H, e, contact.p) + _of_matrix(contact.C, e, contact.q)
         strain[e] = _of_matrix(contact.T, e, contact.q) - _of_matrix(contact.C, e, contact.p)
@@ -637,7 +638,7 @@ def solve_one(row, mu, d, count, c, slope, sign, out):
         Its lam and half length are corrected to the load; the nodes of the contact are not.
     """
     contact = new_contact(count)
-    if math.isinf(d):
+    if math.isinf(d):  # the zones of full slip are given (solve_contact)
         contact.zone[:] = sign
     find_length(row, contact, c, slope, mu, d, _LOAD_ERROR, out)
     return contact

@@ -366,6 +366,7 @@ def total_at(position, u, cover_rows):
     u : float, kappa |V|, dimensionless, >= 0; read beyond the last row alone.
     cover_rows : vector of the numbers that only a cover has, as in the module; not None.
     """
+    # rows have the sum, the head both parts
     if position.row < 0:
         base = _limits_at(FREE_HALF_SPACE_LIMIT, EXCESS_HALF_SPACE_LIMIT, u, cover_rows)
         cylinder = _limits_at(FREE_CYLINDER_LIMIT, EXCESS_CYLINDER_LIMIT, u, cover_rows)

@@ -97,6 +97,7 @@ def _cover_law(V, omega, out, scenes):
     not finite or kappa |V| exceeds MAX_U.
     """
     scene = record_at(scenes)
+    # row_count counts the head of the rows as a row; cover rows have a head of their own
     cover_rows = floats_at(
         scene.cover_rows, COVER_FRONT_SIZE + COVER_ROW_SIZE * (scene.row_count - 1)
     )
@@ -200,6 +201,7 @@ def pack_scenes(
         caller, a float: a dimensionless number times it is the caller's.
     Returns an array of shape (2,) and dtype SCENE.  Raises KeyError if ``scale`` lacks a name.
     """
+    # In the order of the fields of SCENE; row_count, the third of ``arrays``, includes the head.
     cover_rows = law.cover_rows
     function, address = (
         (_half_space_law, 0) if cover_rows is None else (_cover_law, cover_rows.ctypes.data)
@@ -321,6 +323,8 @@ class Jitted:
     def __init__(self, scenes: NDArray[Any], owner):
         self._scenes = scenes
         self._owner = owner
+        # record 0 is without slopes, record 1 with them; both have the same C function.  Its
+        # pointers are void ones here, as ``out`` and an address are passed.
         self.plain, self.address = (int(scenes[n:].ctypes.data) for n in (0, 1))
         self.function_address = int(scenes["function"][0])
         self.function = ctypes.PYFUNCTYPE(*_C_TYPES[:3], ctypes.c_void_p, ctypes.c_void_p)(
@@ -410,6 +414,8 @@ def _lower_call(context, builder, signature, arguments):
     user data.  The status of the C function is not read: a state at which the law is not defined
     has NaN in all of them.
     """
+    # The record as doubles, and its first word as the address of a function; the results are
+    # written to the stack of the caller.
     law, V, omega = arguments
     scene = builder.inttoptr(law, _POINTER)
     function = builder.load(builder.bitcast(scene, _FUNCTION.as_pointer().as_pointer()))

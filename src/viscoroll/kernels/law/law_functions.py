@@ -322,7 +322,7 @@ def limits_at_rest(kappa, law):
     """
     if law.cover_rows is None:
         return 1.0, -0.0
-    position = locate_row(0.0, law)
+    position = locate_row(0.0, law)  # row 0, t = 0: limits are the constants of its polynomials
     free_creep = free_creep_at(position, 0.0, law.cover_rows)[0]
     return length_and_moment(position, 0.0, law).L, 0.5 * free_creep / kappa
 

@@ -139,6 +139,7 @@ def split_workspace(numbers, modes):
     numbers : vector of :func:`workspace_size` doubles.
     modes : int, number of modes, >= 0.
     """
+    # six vectors of n numbers, then the matrix, modes times n, then four numbers a function
     n = LANES * modes
     end = (_VECTORS + modes) * n
     row = numbers[: _VECTORS * n].reshape(_VECTORS, n)

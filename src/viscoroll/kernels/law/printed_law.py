@@ -82,6 +82,8 @@ def _temme_k1(terms: int = 10) -> list[list[float]]:
     Returns [coefficients of z I1, coefficients of z K1 - 1 - (ln(z/2) + gamma) z I1], lists of
     ``terms`` floats, n = 0 first; gamma is Euler's constant.
     """
+    # z I1 = sum 2 n q^n/n!^2, by which the logarithm of f_n is multiplied; the rest is 1/n!^2 less
+    # 2 n/n!^2 times the harmonic sum, from n = 1 on
     i0, k0 = _temme_k0(terms)
     return [
         [2 * n * i0[n] for n in range(terms)],

@@ -374,6 +374,7 @@ def _slow_limit(function, grid):
     """
     half_space = grid.rows[_T_HALF_SPACE]
     cylinder = grid.rows[_T_HALF_SPACE + 1]
+    # epsilon -> u times both sums, and t = u 2^-e0
     if function == _EPSILON:
         return math.ldexp(half_space + cylinder, int(grid.e0))
     if function == _M:

@@ -271,6 +271,7 @@ def is_coasting(state, regime, step_state, work):
     if regime.full_slip or not 0.0 < state.V < _COASTING_SPEED * rtol * moderate_speed(work.scene):
         return False
     scene = work.scene
+    # the cheapest test first: most states do not reach the others
     return (
         abs(state.omega_or_d) < _COASTING_D * rtol
         and sticks_at_rest(scene.kappa, scene.mu, by_value(scene.law).table)

@@ -283,6 +283,7 @@ def evaluate_dense_output(v, nodes, row):
     row: int, index in ``nodes`` of the first of the ROW_LENGTH coefficients of
     :func:`fit_dense_output`.
     """
+    # Horner's scheme in t; the last coefficient is the 0 that fills the row
     t = v - 1.0
     value = 0.0
     for k in range(ROW_LENGTH - 1, -1, -1):
@@ -318,6 +319,7 @@ def row_range(row, nodes):
     Returns (smallest, largest), floats in the unit of the row.  Both are NaN if node 0 is; a NaN at
     another node is passed over.
     """
+    # a NaN is passed over in the second argument of min and max, and kept in the first
     smallest = largest = nodes[row]
     for i in range(1, N + 1):
         smallest = min(smallest, nodes[row + i])

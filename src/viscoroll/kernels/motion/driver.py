@@ -233,6 +233,7 @@ def _vanishes_within_rounding(state, regime, step_state, work):
     """
     if state.V <= _NEGLIGIBLE_SPEED and not is_undriven(step_state.segment, work.drive):
         return True
+    # V/|V'| below 1e-13 tau, multiplied out with the sign of V': False for V' >= 0
     return (
         state.V
         < -_TIME_ROUNDING * step_state.tau * current_rates(state, regime, step_state, work).V_rate

@@ -389,7 +389,7 @@ def _event_function(event, v, regime, work):
     BELOW_REST_SPEED and spin_sign (1 + delta) for OMEGA_ZERO; positive within the regime.
     """
     V, omega_or_d = dense_state(v, work.nodes)
-    if event == BELOW_REST_SPEED:
+    if event == BELOW_REST_SPEED:  # in full slip, where the second unknown is omega
         return max(abs(V), abs(omega_or_d)) - work.options.rest_speed
     if event == OMEGA_ZERO:
         return regime.spin_sign * (1.0 + creepage(V, omega_or_d, work.scene))
@@ -477,6 +477,7 @@ def ends_at_event(event, nodes, rtol):
     scale = _event_scale(event, nodes)
     last = nodes[event + N]
     (_, largest) = row_range(event, nodes)
+    # it has fallen, it was above rounding, and it is 0 to the tolerance; False for NaN
     return (
         last < largest
         and largest > _EDGE_ROUNDING * scale

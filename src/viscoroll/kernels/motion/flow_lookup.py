@@ -158,7 +158,7 @@ def slide_distance(start, tau, flow):
     0.02 |T|, where that difference cancels, the integral of V by a five-point Gauss rule.
     """
     T, X = start
-    if tau > _SHORT * abs(T):
+    if tau > _SHORT * abs(T):  # X of the speed reached less X of the start
         return full_slip_integrals(speed_at_slide_time(T + tau, flow), PATH, flow)[1] - X
     x = 0.0
     for n in range(_GAUSS_X.size):

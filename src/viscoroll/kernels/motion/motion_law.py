@@ -296,6 +296,8 @@ def loaded_moments(V, du_dV, Q, dQ_dV, dQ_dd, functions, scene):
     scene: Scene, of which kappa and mu are read, of a cover alone.
     """
     change = _change_of(Q, functions.pairs, functions.L, functions.dL, scene)
+    # M = V m(u) + change(Q, u): slopes of the first are given in V; the second depends on V by u
+    # and by Q, on d by Q alone
     return Loads(
         Q=Q,
         Q_dV=dQ_dV,
@@ -332,6 +334,7 @@ def slip_power(V, omega, Q, M_half_space, M_cylinder, scene):
     by_shear = V * change.half_space + omega * change.cylinder
     table = by_value(scene.law).table
     by_shear = friction_by_shear(V, omega, Q, scene.kappa, scene.mu, by_shear, table)
+    # what friction takes beside (omega - V) Q, the bodies do not take: the sum stays
     return (omega - V) * Q + by_shear, V * M_half_space + omega * M_cylinder - by_shear
 
 
@@ -398,6 +401,7 @@ def rest_limits(scene, sigma=1.0):
     """
     law = by_value(scene.law)
     L, delta_0 = limits_at_rest(scene.kappa, law)
+    # the middle creep 2 kappa delta_0 stands for delta_0, which a table replaces by its own
     rows = Width(
         L=L, dL=0.0, ddL=0.0, middle=2.0 * scene.kappa * delta_0, dmiddle=0.0, ddmiddle=0.0
     )
@@ -523,6 +527,7 @@ def _leverage(used, scene):
     reaction = reaction_at_rest(scene)
     on_axis = 1.0 + reaction.half_space + reaction.half_space_excess * used
     on_spin = 1.0 - reaction.cylinder - reaction.cylinder_excess * used
+    # Q (a + e |Q|/mu) has the derivative a + 2 e |Q|/mu in Q: once more the term of the excess
     return (
         on_axis,
         on_spin,
@@ -738,6 +743,7 @@ def omega_and_delta(state, regime, scene):
         delta = creepage(state.V, state.omega_or_d, scene)
         return state.V * (1.0 + delta), delta
     slip = state.omega_or_d - state.V
+    # at V = 0 infinite, also for omega = 0, where law_record.slip_and_creepage has 0
     return state.omega_or_d, slip / state.V if state.V != 0.0 else np.copysign(np.inf, slip)
 
 
@@ -777,7 +783,7 @@ def stick_edge_function(V, omega_or_d, regime, scene):
     Returns a float, dimensionless: in full slip a speed, in partial slip a part of the critical
     creepage.
     """
-    if not regime.full_slip:
+    if not regime.full_slip:  # one function for both ends; added_mass_exhausted tells which it was
         n, _, _ = added_inertia(V, scene)
         return (1.0 - regime.sigma * omega_or_d) * added_mass_margin(n, scene.j)
     return regime.sigma * excess_slip(omega_or_d - V, V, scene) - critical_creepage(

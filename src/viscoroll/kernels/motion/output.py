@@ -83,6 +83,7 @@ def requested_groups(rows):
     them; whether force or torque is.
     """
     quadratures = forces = False
+    # rows of quadratures are those of x and angle, and from OUT_WORK on; of forces those between
     for row in rows:
         quadratures = quadratures or OUT_X <= row < OUT_X + 2 or row >= OUT_WORK
         forces = forces or OUT_FORCE <= row < OUT_WORK

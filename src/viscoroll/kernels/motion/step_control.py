@@ -212,6 +212,7 @@ def _variation_of_p_rate(half, nodes):
     nodes: Workspace.nodes, with p' at nodes 1 ... N; one that is NaN is passed over unless it is at
     node 1.
     """
+    # the nodes at which the equations are met
     smallest = largest = nodes[ROW_P_RATE + 1]
     for i in range(2, N + 1):
         smallest = min(smallest, nodes[ROW_P_RATE + i])

@@ -220,6 +220,7 @@ def _pull(d, kappa, mu, table):
     table: vector of :mod:`.coupled_splines`.
     Returns four floats, dimensionless.
     """
+    # sigma is the sign of d; at d = 0 both sides have the same loads, but not the same derivatives
     found = _loads(0.0, d, np.copysign(1.0, d), kappa, mu, table)
     return (
         found.Q - found.half_space,

@@ -164,6 +164,7 @@ def _is_private(group: int) -> bool:
     the name of this user and lists no member but this user; else False, also if the group or this
     user has no entry in the system's lists.
     """
+    # modules that Windows does not have, where nobody calls this
     import grp
     import pwd
 

@@ -180,6 +180,7 @@ def _fma4(context, builder, signature, arguments):
     context, builder, signature, arguments : of numba's lowering of (a, b, c), vectors or tuples.
     Returns a value of LLVM, a vector or a tuple of vectors.
     """
+    # three columns of as many vectors as the result has
     kind = signature.return_type
     columns = (
         _vectors_of(builder, own, x, getattr(kind, "count", 1))
@@ -487,6 +488,7 @@ def evaluate_secants(table, start, t, s):
     """
     square = t * t
     s_square = s * s
+    # four polynomials in t^4, of p and of p', with their secants between t^4 and s^4
     sums, secants, slope_sums, slope_secants = _one_secants(
         table, start, square * square, s_square * s_square
     )
@@ -602,6 +604,7 @@ def sum_of_rows(matrix, first, terms, factors, to, numbers):
     numbers : contiguous vector with the factors; the sum, 24 numbers, is written after all factors
         have been read, so that the two may overlap; zeros if ``terms`` is 0.  Returns nothing.
     """
+    # six vectors, the 24 numbers of a row, which stay in registers until all rows are added
     zero = broadcast(0.0)
     total = zero, zero, zero, zero, zero, zero
     for n in range(terms):
