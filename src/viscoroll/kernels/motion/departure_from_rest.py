@@ -498,6 +498,8 @@ def depart_from_rest(tau, segment, work):
     scene = work.scene
     tau_drive = tau
     load = evaluate_load(tau, segment, REGIME_AT_REST, work)
+    # A drive that holds the cylinder, or is in balance with it to rounding, at ``tau``, where its
+    # segment begins or the cylinder was found to depart: its change tells what follows.
     rounding = _HOLDING_ROUNDING * (scene.mu + load.brake)
     if holding_margin(load, scene) >= -rounding and not is_constant(segment, work.drive):
         # Whether the drive moves the cylinder is decided by its values a little later.
@@ -516,7 +518,8 @@ def depart_from_rest(tau, segment, work):
         load = evaluate_load(tau_drive, segment, regime, work)
         spin_sign, locked = _spin_against_brake(load, scene) if braked else (0.0, False)
         if locked:
-            # delta = -1 of a locked cylinder that moves: d < 0, so that sigma is -1
+            # delta = -1 of a locked cylinder that moves: d < 0, so that sigma is -1; its load has
+            # an inverse_inertia of 0
             regime = Regime(
                 full_slip=False, direction=direction, sigma=-1.0, spin_sign=0.0, locked=True
             )
@@ -526,7 +529,8 @@ def depart_from_rest(tau, segment, work):
         if sticks and kind == ROLLS_OFF:
             return AMBIGUOUS, REGIME_AT_REST, 0.0
         if sticks:
-            # The motion departs from d at the present time.
+            # The motion departs from d at the present time, where it may be 0: sigma is the sign
+            # that d has a little later.
             load = evaluate_load(tau, segment, regime, work)
             kind = ROLLS_OFF
             d_start = solve_d_at_departure(load, spin_sign, scene)[1]

@@ -317,6 +317,7 @@ def find_first_event(step, regime, work):
         if node == 0:
             continue
         v_zero = locate_zero(candidate, node, nodes)
+        # node is at most ``last``: before it, or between the same nodes as the first event so far
         if event == NO_EVENT or node < last or v_zero < v:
             event = candidate
             last = node
@@ -418,6 +419,7 @@ def refine_event(event, v, regime, work):
         (STICK_EDGE, BELOW_REST_SPEED) if regime.full_slip else (OMEGA_ZERO, OMEGA_ZERO)
     ):
         return v
+    # the difference quotient is ``difference`` over 2 _SECANT_OFFSET
     difference = _event_function(event, v + _SECANT_OFFSET, regime, work)
     difference -= _event_function(event, v - _SECANT_OFFSET, regime, work)
     for _ in range(_SECANT_STEPS):

@@ -180,6 +180,8 @@ def find_onset(V, delta, edge, flow):
     v0 = v
     ln_v0 = 0.0
     change = np.inf
+    # the test of convergence follows the evaluation, so that ln_V and creep belong to the last v0
+    # and u
     for _ in range(_MAX_ITERATIONS):
         u = _clamp(u, _LOWEST_U, _HIGHEST_U)
         at, t, s = locate_in_layer(family, v0, u, flow)

@@ -591,12 +591,15 @@ def speeds_after_sliding(V, omega, scene):
         # ``side`` in pull_at_rest
         kept = side * (V * on_spin + j * omega * on_axis)
         turned = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
-        if turned != side:  # V passes through 0, from where on a and b are those of the other side.
+        # V passes through 0, from where on a and b are those of the other side.  There j omega a is
+        # all of what is kept: it changes with a, as omega stays.
+        if turned != side:
             kept /= abs(on_axis)
             on_axis, on_spin, _, _ = pull_at_rest(turned, scene)
             kept *= abs(on_axis)
             side = turned
             limit = _limit_at_rest(side, scene)
+        # V b + j omega a with omega/V at |d| = 1, where d + c d^2 = side + c
         V = kept / (abs(on_spin) + j * abs(on_axis) * (free + limit * (side + c)))
     for place, weight in _GAUSS:
         d = side * left * place

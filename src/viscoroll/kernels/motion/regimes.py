@@ -311,6 +311,7 @@ def enter_segment(state, regime, step_state, work):
     """
     if step_state.segment > 0:  # A start keeps its given speeds.
         state, regime = impose_prescribed_speed(state, regime, step_state, work)
+    # V would fall below 0 at once: in the opposite direction it grows, as a regime has V >= 0
     if (
         regime.full_slip
         and state.V == 0.0

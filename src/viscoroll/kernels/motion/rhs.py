@@ -381,8 +381,8 @@ def full_slip_rates(V, omega, load, regime, scene):
     force, _, torque = applied_forces(V, omega, load, regime)
     gains = load.gains
     du_dV = scene.kappa if V >= 0.0 else -scene.kappa
-    on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)
-    # Full slip is the edge d = sigma of a table.
+    on_rows = loaded_moments(V, du_dV, Q, 0.0, 0.0, functions, scene)  # Q is constant
+    # Full slip is the edge d = sigma of a table, which also knows what it is at V < 0.
     moments = table_state(
         V, regime.sigma, regime.sigma, scene.kappa, scene.mu, on_rows, scene.law.table
     )

@@ -207,7 +207,8 @@ def _predict_relaxation(step, relaxation, regime, nodes):
     for i in range(1, N + 1):
         time = step.h * NODE_FRACTIONS[i]
         # With x' = r + relaxation (x - x_0), x - x_0 = r (exp(relaxation time) - 1)/relaxation; a
-        # growth is not extrapolated, and a relaxation of 0 not divided by.
+        # growth is not extrapolated, and a relaxation of 0 not divided by: up to 1e-8 the quotient
+        # is ``time`` to 5e-9.
         effective_time = (
             np.expm1(relaxation * time) / relaxation if relaxation * time < -1e-8 else time
         )
@@ -475,12 +476,14 @@ def solve_step(step, relaxation, dense_step, regime, work):
             contraction = min(
                 _FIRST_CONTRACTION, _QUADRATIC_CONTRACTION * change + _REFACTOR_CONTRACTION
             )
-        if not (change < 1e6 and contraction < 2.0):  # Divergence, or a NaN.
+        # Divergence, or a NaN: an update of a million scales, or one twice as large as the last.
+        if not (change < 1e6 and contraction < 2.0):
             return False
         if change * contraction <= stop:
             fit_dense_output(ROW_V, ROW_DENSE_V, nodes)
             fit_dense_output(ROW_OMEGA_OR_D, ROW_DENSE_OMEGA_OR_D, nodes)
             return True
+        # new matrices only where updates are large and the old ones no longer reduce them well
         refactor = change > _REFACTOR_UPDATE and (n == 0 or contraction > _REFACTOR_CONTRACTION)
         last_change = change
     return False

@@ -93,11 +93,12 @@ def write_private(path: Path, content: bytes) -> None:
     # in the same folder, so that os.replace is one step that nobody sees half done
     temporary = path.with_name(f".{os.getpid()}-{secrets.token_hex(4)}.tmp-{path.name}")
     try:
+        # made with its rights before anything is in it, and never one that others have put there
         temporary.touch(mode=0o644, exist_ok=False)
         temporary.write_bytes(content)
         os.replace(temporary, path)
     finally:
-        with suppress(OSError):
+        with suppress(OSError):  # it does not exist any more, unless a step before failed
             temporary.unlink()
 
 
