@@ -139,6 +139,8 @@ def _make_sum(lengths):
         )
         for length, target in zip(lengths, targets):
             total = zero
+            # from the highest T_4g down, as the groups are stored; a cubic as two linear parts in
+            # s, which do not wait for one another
             for T in reversed([one, *chebyshev][:length]):
                 low, linear, high, cubic = (next(terms) for _ in range(GROUP))
                 low = fma_vectors(builder, linear, power, low)

@@ -194,6 +194,7 @@ def _evaluate_N(z, series, of_g, of_h, of_y):
     dH = 2.0 * (z + h + z * dh)
     H_s = 2.0 * z * h_s
     dH_s = 2.0 * (h_s + z * dh_s)
+    # y_s + T_mean g stands in the last term of U, here with its slope; d in front is d/dz
     y_s = y_s + T_mean * g
     dy_s = dy_s + T_mean * dg
     W = H * g - 2.0 * z * (h - z * dh) * g - z * H * dg + z * z * (y - z * dy)

@@ -90,6 +90,7 @@ def _residual_of_d(d, load, scene):
     Returns (residual, its slope in d, V'), floats, dimensionless; V' is in the direction of
     ``load``, of either sign.
     """
+    # Eq. (22) at V = 0: friction pulls the axis by ``axis`` and takes the torque ``spin``
     axis, spin, axis_dd, spin_dd = pull_at_rest(d, scene)
     V_rate = load.inverse_mass * (axis + load.force) + load.prescribed_V_rate
     omega_rate = load.inverse_inertia * (load.torque - spin) + load.prescribed_omega_rate

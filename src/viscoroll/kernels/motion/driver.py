@@ -437,6 +437,7 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             )
         if event == BELOW_REST_SPEED:
             return CAME_TO_REST, _come_to_rest(code, state, regime, step_state, work)
+        # ``regime`` is still the one that the event ends
         stick_formed = event == STICK_EDGE and regime.full_slip
         if event == STEP_FAILED:
             # Where d relaxes faster than time resolves it is set to its equilibrium, once at a
@@ -448,6 +449,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             relaxed_at = step_state.tau
             moving, state, regime, step_state = relax_creep(state, regime, step_state, work)
             continue
+        # An event of exhausted added mass is not applied: the next turn of the loop ends the
+        # motion.
         if event != NO_EVENT and not added_mass_exhausted(event, state, regime, work):
             moving, state, regime = apply_event(event, state, regime, step_state, work)
             # At d = 0 the law is smooth but for its second derivative, so that the length of the
@@ -457,6 +460,8 @@ def _integrate_regimes(moving, stick_formed, state, regime, step_state, work):
             )
         if moving and code >= 0 and regime.direction != direction:
             record_switch(DIRECTION_REVERSED, step_state, work)
+        # A cylinder that an event has brought to V = 0 may depart again at this time: its code is
+        # recorded in the next turn, when that is decided.
         if moving or event == NO_EVENT:
             new_code = regime_code(regime) if moving else rest_code(step_state, work)
             code = _record_regime(

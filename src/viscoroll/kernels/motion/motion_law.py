@@ -443,6 +443,7 @@ def _slow_law(sigma, scene):
     sigma: float, side of d, 1.0 or -1.0, on which that of a table depends.
     scene: Scene, of which ``law`` and, of a cover or a table, kappa and mu are read.
     """
+    # Q_V = 0, as on rows Q is 0 at d = 0; creep_V = 0, as the change of delta_0 with V is left out
     functions = evaluate_moments(0.0, scene)
     reaction = reaction_at_rest(scene)
     rows = SlowLaw(
@@ -590,6 +591,7 @@ def speeds_after_sliding(V, omega, scene):
         # what is kept, with the signs of Q on the axis and on the cylinder, which are those of
         # ``side`` in pull_at_rest
         kept = side * (V * on_spin + j * omega * on_axis)
+        # the side in the end: ``kept`` has the sign of V there, omega - free V keeps its own
         turned = 1.0 if (omega >= free * V) == (kept >= 0.0) else -1.0
         # V passes through 0, from where on a and b are those of the other side.  There j omega a is
         # all of what is kept: it changes with a, as omega stays.

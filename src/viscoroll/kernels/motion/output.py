@@ -104,6 +104,7 @@ def write_column(column, speeds, code, forces, work):
     work: Workspace, of whose ``outputs`` rows 0, 1, 4, 5, 6 and 7 are written at ``column``.
     Returns nothing.
     """
+    # rows 2 and 3, x and angle, and those from OUT_WORK on are quadratures, written elsewhere
     out = work.outputs
     (V, omega, delta) = speeds
     (force, torque) = forces

@@ -147,6 +147,7 @@ def refuse_writable_by_others(path: Path) -> None:
         except OSError:  # it does not exist yet
             continue
         group = status.st_mode & stat.S_IWGRP and not _is_private(status.st_gid)
+        # S_ISVTX: a sticky folder, such as /tmp
         shared = (group or status.st_mode & stat.S_IWOTH) and not status.st_mode & stat.S_ISVTX
         if shared or status.st_uid not in trusted:
             problem = "others may write to it" if shared else "it belongs to another user"

@@ -365,6 +365,7 @@ def _pipeline(library_class: type):
         Other kinds of numba's flags are never equal to them.
         """
 
+        # ``_values``, private to numba: the flags that are set, by name
         def __hash__(self):
             return hash(frozenset(self._values))
 

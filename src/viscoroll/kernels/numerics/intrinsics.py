@@ -59,6 +59,7 @@ def make_intrinsic(lower: Callable, returned, *kinds):
     Returns numba's intrinsic, which is called in kernels with these arguments, by position.
     """
 
+    # numba passes the types of the arguments: a kind given replaces that of the argument
     def give_signature(context, *arguments):
         return returned(*(kind or own for kind, own in zip(kinds, arguments, strict=True))), lower
 
